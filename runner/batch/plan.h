@@ -1,0 +1,53 @@
+// The plan: every case resolved and frozen before the first is run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/scene/catalog.h"
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::batch {
+
+/// One case, complete: a worker needs nothing else.
+struct Case {
+    std::string id;          // 12 hexadecimal digits of the content hash
+    std::string experiment;  // "zju2005/2.1"
+    std::string technique;
+    config::Node scene;   // null or a reference
+    config::Node params;  // every declared parameter with its value
+    config::Node axes;    // the swept ones
+    int outputWidthPx = 0;
+    int outputHeightPx = 0;
+    config::Measure measure;
+    std::uint64_t seed = 0;
+
+    std::string title() const;  // "zju2005/2.1 scene=models/duck"
+    nlohmann::ordered_json toJson() const;
+    static Case fromJson(const config::Node& node);
+};
+
+struct Plan {
+    std::string profile;
+    std::string deviceClass;  // "software" | "gpu"
+    std::uint64_t seed = 1;
+    std::string hash;  // of everything that a result depends on
+    std::vector<Case> cases;
+    /// The experiments as loaded (file text after merging), so that tables can be made again from
+    /// the run directory alone.
+    std::vector<config::Experiment> experiments;
+
+    nlohmann::ordered_json toJson() const;
+    static Plan fromJsonFile(const std::filesystem::path& path);
+};
+
+/// Expands, constructs each technique once a case (which validates all parameters), resolves
+/// scenes, and hashes. Throws Error for anything that is wrong in a config.
+Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
+              std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
+              const std::string& deviceClass, std::uint64_t seed);
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,1 @@
+#include "runner/config/experiment.h"

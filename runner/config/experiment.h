@@ -1,0 +1,176 @@
+// A config file: one published table (or figure, or section), what is measured for it, and what
+// must follow.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/config/node.h"
+
+namespace gfxrepro::config {
+
+/// One point of a sweep: axis name → value, in the order of the axes.
+using AxisPoint = std::vector<std::pair<std::string, Node>>;
+
+/// The `sweep:` map. Each key is an axis: `scene`, `output.width`, or a technique's parameter.
+///
+///     sweep:
+///       scene: [models/duck, models/bunny]          # a list; axes multiply
+///       delta_s: {range: [1, 10]}                   # 1, 2, …, 10; {range: [0, 1, 0.25]} with a
+///       step resolution: {log2: [64, 512]}               # 64, 128, 256, 512 zip: # go together
+///         - {resolution: [64, 128], voxel_bits: [8, 16]}
+///       list:                                       # points spelt out; keys may differ
+///         - [{method: slices}, {method: worksheet, voxel_bits: 1}]
+///       exclude: [{scene: models/duck, resolution: 512}]
+///       when: {slices: {method: slices}}            # axis `slices` varies only there
+std::vector<AxisPoint> expandSweep(const Node& sweep);
+
+/// How often and how a case is measured.
+struct Measure {
+    enum class Lane { Quality, Timing };
+    Lane lane = Lane::Quality;
+    int warmup = 0;     // iterations before the first measured one
+    int repeats = 1;    // measured iterations in one process
+    int processes = 1;  // times the case is run, in a process of its own each if more than 1
+    int frames = 1;     // frames of a path; each is repeated
+    double timeLimitS = 120.0;       // of the whole case, scene loading included
+    long long memoryLimitBytes = 0;  // resident; 0: none
+};
+
+/// What a cell shows: chosen records and their summary. Row axes, column axes and `cell` each give
+/// a part; the column's part wins over the row's, the row's over `cell`.
+struct Selection {
+    std::optional<std::string> metric;
+    std::optional<std::string> pass;
+    std::optional<std::string>
+        format;                   // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
+    std::optional<double> scale;  // multiplies every value
+    std::vector<std::pair<std::string, Node>> where;  // axis = value
+    SourceLocation location;
+};
+
+/// An axis of the layout: a sweep axis by its values, or labels with selections (`axes:`, `columns:
+/// {…}`).
+struct LayoutAxis {
+    std::string name;
+    std::vector<std::pair<std::string, Selection>> labels;  // empty: a sweep axis
+    bool isSweepAxis() const { return labels.empty(); }
+};
+
+/// `layout:` — rows, columns and what a cell shows.
+struct Layout {
+    std::vector<LayoutAxis> rows;
+    std::vector<LayoutAxis> columns;
+    Selection cell;
+    bool isGiven = false;
+};
+
+/// `printed:` — what the paper printed. Never reaches a worker.
+struct Printed {
+    std::string hardware;
+    std::string remark;
+    /// A header of row-axis and column names, then a line a row; a cell is written as the cell's
+    /// format writes it; empty where lost.
+    std::vector<std::string> header;
+    std::vector<std::vector<std::string>> rows;
+    SourceLocation location;
+};
+
+/// `claims:` — typed, not code. Operands are arithmetic expressions over column names ("a + b").
+struct ClaimSpec {
+    enum class Type { Order, Ratio, Trend, Independent, Bound, Exact, Tolerance, Crossover };
+    enum class Device { Any, Gpu };
+    std::string id;
+    std::string text;  // `says:` the claim in the paper's sense, one line
+    Type type = Type::Order;
+    std::vector<std::string>
+        operands;  // order: a < b < c · ratio: a / b · independent: each · crossover: a, b
+    std::optional<std::string> over;  // trend, crossover: a row axis or column; independent: `of`
+    std::optional<double> low,
+        high;               // what is required of the ratio, exponent, spread (as a fraction), …
+    bool isStrict = false;  // trend: strictly monotonic
+    int direction = 0;      // trend: −1 decreasing, +1 increasing, 0 by exponent
+    std::optional<std::string> statistic;  // of a cell with several, e.g. mean
+    /// Rows that are read: axis = one of these values. A claim must hold in every group of rows
+    /// that agree on all row axes but `over`.
+    std::vector<std::pair<std::string, std::vector<Node>>> at;
+    Device device = Device::Any;
+    std::optional<std::string> profile;  // only in this one
+    SourceLocation location;
+};
+
+/// `assumptions:` — what the paper left open.
+struct Assumption {
+    std::string name;  // a parameter, `scene`, or free text
+    Node value;
+    Node range;
+    std::string unit;
+    std::string why;
+};
+
+struct Experiment {
+    enum class Kind { Table, Figure, Section, Sweep };
+    Kind kind = Kind::Table;
+    std::string id;  // "zju2005/2.1": paper and number; sweeps: "sweep/voxelization-speed"
+    std::string title;
+    std::filesystem::path file;
+    std::string technique;
+    Node params;  // a map, before the sweep is laid over it
+    Node scene;   // null, or a reference
+    int outputWidthPx = 512;
+    int outputHeightPx = 512;
+    Node sweep;
+    Measure measure;
+    Layout layout;
+    Printed printed;
+    std::vector<ClaimSpec> claims;
+    std::vector<Assumption> assumptions;
+    std::vector<std::string> profiles;  // those that the file declares
+    Node document;                      // merged and profile applied, as it stands before expansion
+
+    /// "zju2005-2.1": for file names.
+    std::string slug() const;
+    /// "Table 2.1", "Figure 2.6", "Section 2.5.3".
+    std::string label() const;
+};
+
+/// `key=value` from the command line; the value is YAML. Keys without a section (`resolution=64`)
+/// mean params.
+struct Override {
+    std::string key;
+    Node value;
+};
+Override parseOverride(const std::string& text);
+
+struct ExperimentOptions {
+    std::string profile = "full";  // quick | full | paper; `full` is the file as it stands
+    std::vector<Override> sets;    // --set
+    std::vector<Override>
+        sweeps;  // --sweep: replaces or adds an axis; the value is a comma list or axis
+};
+
+/// Reads, merges `extends` (relative to configs/, then to the file; in order, later wins; cycles
+/// are an Error), applies the profile and the overrides, and checks every key. Throws Error with
+/// file:line:column.
+Experiment loadExperiment(const std::filesystem::path& file, const ExperimentOptions& options,
+                          const std::filesystem::path& configsFolder);
+
+/// The schema in words: every key, type, default and meaning (`gfxrepro describe config`).
+std::string describeConfig();
+
+/// One case before the technique's defaults are filled in.
+struct CaseSpec {
+    AxisPoint axes;
+    Node params;  // with the axes laid over
+    Node scene;   // null or a reference
+    int outputWidthPx = 0;
+    int outputHeightPx = 0;
+};
+/// The cases of an experiment, in the order of the sweep.
+std::vector<CaseSpec> expandCases(const Experiment& experiment);
+
+}  // namespace gfxrepro::config

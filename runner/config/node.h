@@ -1,0 +1,95 @@
+// A YAML value that remembers where it stands.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::config {
+
+/// null, a scalar, a sequence or a map, with the place of each. A value type: copies are deep.
+///
+/// Scalars keep their text; the typed reads decide. Plain `010`, `0x10`, `yes`, `.inf` are never
+/// numbers or booleans by accident: numbers are decimal without leading zeros, booleans are `true`
+/// and `false`.
+class Node {
+  public:
+    using Map = std::vector<std::pair<std::string, Node>>;  // in the order of the file
+    using Sequence = std::vector<Node>;
+
+    Node() = default;
+    static Node scalar(std::string text, SourceLocation where = {}, bool quoted = false);
+    static Node number(double value, SourceLocation where = {});
+    static Node sequence(Sequence items, SourceLocation where = {});
+    static Node map(Map entries, SourceLocation where = {});
+
+    const SourceLocation& location() const { return location_; }
+    /// "a number", "text", "a list", "a map", "nothing": for messages.
+    std::string kindName() const;
+
+    bool isNull() const { return std::holds_alternative<std::monostate>(value_); }
+    bool isScalar() const { return std::holds_alternative<Scalar>(value_); }
+    bool isSequence() const { return std::holds_alternative<Sequence>(value_); }
+    bool isMap() const { return std::holds_alternative<Map>(value_); }
+
+    // Typed reads. Each throws Error with the location, what was found and what was allowed.
+    const std::string& text() const;
+    double asDouble() const;
+    long long asInteger() const;
+    bool asBool() const;
+    const Sequence& items() const;
+    const Map& entries() const;
+    Map& entries();
+
+    // Typed reads that answer whether the value is such a one.
+    std::optional<double> tryDouble() const;
+    std::optional<long long> tryInteger() const;
+    std::optional<bool> tryBool() const;
+
+    /// The entry of a map, or null. `this` must be a map.
+    const Node* find(std::string_view key) const;
+    Node* find(std::string_view key);
+    /// Where the key itself stands (for "unknown key" messages).
+    const SourceLocation& keyLocation(std::string_view key) const;
+    /// Adds or replaces an entry; a null node becomes a map.
+    void set(std::string key, Node value);
+    bool erase(std::string_view key);
+    /// Follows "a.b.c"; sets it, making maps on the way. Throws Error when a step is no map.
+    void setPath(std::string_view dottedPath, Node value);
+
+    /// Equal content, wherever it stands. Numbers compare as numbers (1.0 equals 1).
+    bool sameContent(const Node& other) const;
+
+    nlohmann::ordered_json toJson() const;
+    /// One line, for messages and titles: `256`, `[1, 2]`, `{a: 1}`.
+    std::string toFlowText() const;
+
+  private:
+    struct Scalar {
+        std::string text;
+        bool quoted = false;  // a quoted "12" is text, not a number
+    };
+    std::variant<std::monostate, Scalar, Sequence, Map> value_;
+    SourceLocation location_;
+    std::vector<SourceLocation> keyLocations_;  // beside Map's entries
+};
+
+/// Parses one YAML document (JSON is YAML). Throws Error with file:line:column on syntax errors,
+/// duplicate keys, anchors that expand beyond 100,000 nodes, more than one document, and nesting
+/// deeper than 64.
+Node parseYaml(std::string_view text, const std::string& fileName);
+Node parseYamlFile(const std::filesystem::path& path);
+
+/// `over` laid on `base`: maps merge key by key, everything else is replaced. An explicit null
+/// removes.
+Node merged(const Node& base, const Node& over);
+
+}  // namespace gfxrepro::config

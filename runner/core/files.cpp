@@ -1,0 +1,122 @@
+#include "runner/core/files.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Closes a file descriptor when it goes out of scope.
+class Descriptor {
+  public:
+    explicit Descriptor(int fd) : fd_(fd) {}
+    ~Descriptor() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    int get() const { return fd_; }
+
+  private:
+    int fd_;
+};
+
+[[noreturn]] void fail(const char* what, const fs::path& path) {
+    throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
+}
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+}  // namespace
+
+std::string readFile(const fs::path& path) {
+    return std::string(MappedFile(path).text());
+}
+
+void writeFileAtomic(const fs::path& path, std::string_view content) {
+    if (path.has_parent_path()) fs::create_directories(path.parent_path());
+    fs::path temporary = path;
+    temporary += ".tmp" + std::to_string(::getpid());
+    {
+        const Descriptor file(
+            ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+        if (file.get() < 0) fail("write", temporary);
+        while (!content.empty()) {
+            const ssize_t written = ::write(file.get(), content.data(), content.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written < 0) {
+                const int reason = errno;
+                ::unlink(temporary.c_str());
+                errno = reason;
+                fail("write", path);
+            }
+            content.remove_prefix(static_cast<std::size_t>(written));
+        }
+        if (::fsync(file.get()) != 0) fail("flush", temporary);
+    }
+    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("rename to", path);
+}
+
+MappedFile::MappedFile(const fs::path& path) {
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.get() < 0) fail("read", path);
+    struct stat status {};
+    if (::fstat(file.get(), &status) != 0) fail("read", path);
+    if (S_ISDIR(status.st_mode)) {
+        errno = EISDIR;
+        fail("read", path);
+    }
+    const auto sizeBytes = static_cast<std::size_t>(status.st_size);
+    if (sizeBytes == 0) return;
+    void* data = ::mmap(nullptr, sizeBytes, PROT_READ, MAP_PRIVATE, file.get(), 0);
+    if (data == MAP_FAILED) fail("map", path);
+    bytes_ = {static_cast<const std::byte*>(data), sizeBytes};
+}
+
+MappedFile::~MappedFile() {
+    if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+fs::path dataFolder(std::string_view name) {
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+    std::vector<fs::path> candidates;
+    if (const std::string data = environment("GFXREPRO_DATA"); !data.empty()) {
+        candidates.push_back(fs::path(data) / name);
+    }
+    // <build>/shaders; <source>/configs with <source>/build/<preset>/gfxrepro; an installed prefix.
+    for (const char* up : {".", "..", "../..", "../../..", "../../../..", "../share/gfxrepro"}) {
+        candidates.push_back((program / up / name).lexically_normal());
+    }
+    std::string tried;
+    for (const fs::path& candidate : candidates) {
+        if (fs::is_directory(candidate)) return candidate;
+        tried += "\n  " + candidate.string();
+    }
+    throw Error("the folder '" + std::string(name) + "' was not found; looked at:" + tried);
+}
+
+fs::path assetsFolder(const std::string& given) {
+    if (!given.empty()) return given;
+    if (const std::string folder = environment("GFXREPRO_ASSETS"); !folder.empty()) return folder;
+    if (const std::string cache = environment("XDG_CACHE_HOME"); !cache.empty()) {
+        return fs::path(cache) / "gfxrepro/assets";
+    }
+    return fs::path(environment("HOME")) / ".cache/gfxrepro/assets";
+}
+
+}  // namespace gfxrepro

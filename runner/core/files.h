@@ -1,0 +1,46 @@
+// Files: whole reads, atomic writes, read-only maps, and where the program's own data lies.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace gfxrepro {
+
+/// The whole file. Throws Error("cannot read PATH: reason").
+std::string readFile(const std::filesystem::path& path);
+
+/// Writes to a temporary name beside `path`, flushes it to the disk and renames it: a reader sees
+/// the old file or the new one, never a part. Creates missing folders. Throws Error.
+void writeFileAtomic(const std::filesystem::path& path, std::string_view content);
+
+/// A file mapped read-only. An empty file gives an empty span.
+class MappedFile {
+  public:
+    /// Throws Error("cannot read PATH: reason").
+    explicit MappedFile(const std::filesystem::path& path);
+    ~MappedFile();
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    std::span<const std::byte> bytes() const { return bytes_; }
+    std::string_view text() const {
+        return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
+    }
+
+  private:
+    std::span<const std::byte> bytes_;
+};
+
+/// Where shaders/ and configs/ lie: beside the running program in a build tree, share/gfxrepro in
+/// an installation, or GFXREPRO_DATA. Throws Error when `name` is in none of them, naming all that
+/// were tried.
+std::filesystem::path dataFolder(std::string_view name);
+
+/// The folder of real models: `given` (from --assets), else GFXREPRO_ASSETS, else
+/// ${XDG_CACHE_HOME:-~/.cache}/gfxrepro/assets. It need not exist.
+std::filesystem::path assetsFolder(const std::string& given = "");
+
+}  // namespace gfxrepro

@@ -1,0 +1,62 @@
+#include "runner/core/hash.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <fstream>
+#include <memory>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro {
+
+namespace {
+
+class Sha256 {
+  public:
+    Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+        GFXREPRO_ASSERT(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+    }
+    void update(const void* data, std::size_t sizeBytes) {
+        GFXREPRO_ASSERT(EVP_DigestUpdate(context_.get(), data, sizeBytes) == 1);
+    }
+    std::string hexDigest() {
+        std::array<unsigned char, 32> digest{};
+        GFXREPRO_ASSERT(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) == 1);
+        constexpr char kDigits[] = "0123456789abcdef";
+        std::string text;
+        for (const unsigned char byte : digest) {
+            text += kDigits[byte >> 4];
+            text += kDigits[byte & 15];
+        }
+        return text;
+    }
+
+  private:
+    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
+std::string sha256(std::span<const std::byte> bytes) {
+    Sha256 hash;
+    hash.update(bytes.data(), bytes.size());
+    return hash.hexDigest();
+}
+
+std::string sha256(std::string_view text) {
+    return sha256(std::as_bytes(std::span(text)));
+}
+
+std::string sha256OfFile(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error("cannot read " + path.string());
+    Sha256 hash;
+    std::array<char, 1 << 16> block{};
+    while (file.read(block.data(), block.size()) || file.gcount() > 0) {
+        hash.update(block.data(), static_cast<std::size_t>(file.gcount()));
+    }
+    return hash.hexDigest();
+}
+
+}  // namespace gfxrepro

@@ -1,0 +1,1 @@
+#include "runner/gl/device.h"

@@ -1,0 +1,1 @@
+#include "runner/gl/objects.h"

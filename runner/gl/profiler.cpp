@@ -1,0 +1,1 @@
+#include "runner/gl/profiler.h"

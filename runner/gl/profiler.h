@@ -1,0 +1,77 @@
+// Times of passes: GL_TIMESTAMP pairs on the device, steady clock on the CPU.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/gl/objects.h"
+
+namespace gfxrepro::gl {
+
+/// The measured time of one scope.
+struct PassTime {
+    enum class Clock { Gpu, Cpu };
+    std::string pass;
+    Clock clock = Clock::Gpu;
+    double timeMs = 0.0;
+};
+
+/// Collects scopes of one iteration. On a software device everything is finished before each stamp,
+/// so that a pass's vertex work is not counted with its neighbour (llvmpipe runs it when the draw
+/// is called and rasterizes at the next flush).
+class Profiler {
+  public:
+    explicit Profiler(bool isSoftwareDevice) : isSoftwareDevice_(isSoftwareDevice) {}
+
+    /// The scopes since the last call, in the order in which they began, scopes of one name and
+    /// clock summed. Waits for the device.
+    std::vector<PassTime> collect();
+
+  private:
+    friend class GpuScope;
+    friend class CpuScope;
+    struct Entry {
+        std::string pass;
+        PassTime::Clock clock;
+        detail::Name<detail::deleteQuery> begin, end;
+        double cpuTimeMs = 0.0;
+    };
+    std::size_t beginGpu(std::string_view pass);
+    void endGpu(std::size_t entry);
+
+    bool isSoftwareDevice_;
+    std::vector<Entry> entries_;
+};
+
+/// Times the commands issued in its life on the device. Scopes may nest.
+class GpuScope {
+  public:
+    GpuScope(Profiler& profiler, std::string_view pass)
+        : profiler_(profiler), entry_(profiler.beginGpu(pass)) {}
+    ~GpuScope() { profiler_.endGpu(entry_); }
+    GpuScope(const GpuScope&) = delete;
+    GpuScope& operator=(const GpuScope&) = delete;
+
+  private:
+    Profiler& profiler_;
+    std::size_t entry_;
+};
+
+/// Times its life on the CPU.
+class CpuScope {
+  public:
+    CpuScope(Profiler& profiler, std::string_view pass);
+    ~CpuScope();
+    CpuScope(const CpuScope&) = delete;
+    CpuScope& operator=(const CpuScope&) = delete;
+
+  private:
+    Profiler& profiler_;
+    std::size_t entry_;
+    std::chrono::steady_clock::time_point begin_;
+};
+
+}  // namespace gfxrepro::gl

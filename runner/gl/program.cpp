@@ -1,0 +1,1 @@
+#include "runner/gl/program.h"

@@ -1,0 +1,86 @@
+// Shader programs from files: #include, injected defines, driver errors translated back to file and
+// line.
+#pragma once
+
+#include <GL/glcorearb.h>
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "runner/gl/objects.h"
+
+namespace gfxrepro::gl {
+
+/// A `#define NAME value` put behind #version. Ordered by name, so that equal sets give equal
+/// source.
+using Defines = std::map<std::string, std::variant<int, unsigned, float, std::string>>;
+
+/// One stage's source, put together: `#include "shared/x.glsl"` is resolved against the shader
+/// folders, each file at most once; `lines` maps a line of `text` back to file and line.
+struct ShaderSource {
+    std::string text;
+    struct Line {
+        std::string file;
+        int line = 0;
+    };
+    std::vector<Line> lines;
+};
+
+/// Finds shader files: <folder>/<technique>/<pass>.<stage>.glsl.
+class ShaderLibrary {
+  public:
+    explicit ShaderLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    const std::filesystem::path& folder() const { return folder_; }
+
+    /// `file` is relative to the folder ("voxelization/rasterize.frag.glsl"). `snippets` replace
+    /// lines
+    /// `#pragma snippet NAME` (generated code, such as an implicit surface's formula).
+    /// Throws Error for missing files and include cycles with the chain of files.
+    ShaderSource assemble(std::string_view file, const Defines& defines,
+                          const std::map<std::string, std::string>& snippets = {}) const;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+/// A linked program. The stage of a file is its middle extension: .vert .tesc .tese .geom .frag
+/// .comp.
+class Program {
+  public:
+    Program() = default;
+    /// Throws Error with the driver's log, its line numbers translated to file:line.
+    Program(const ShaderLibrary& library, const std::vector<std::string>& files,
+            const Defines& defines = {}, const std::map<std::string, std::string>& snippets = {});
+
+    GLuint id() const { return name_.get(); }
+    void use() const;
+
+    // Setters by name. A name that is not an active uniform asserts, unless the driver may have
+    // removed it: setIfActive.
+    void set(const char* name, int value) const;
+    void set(const char* name, unsigned value) const;
+    void set(const char* name, float value) const;
+    void set(const char* name, const glm::ivec2& value) const;
+    void set(const char* name, const glm::ivec3& value) const;
+    void set(const char* name, const glm::uvec3& value) const;
+    void set(const char* name, const glm::vec2& value) const;
+    void set(const char* name, const glm::vec3& value) const;
+    void set(const char* name, const glm::vec4& value) const;
+    void set(const char* name, const glm::mat4& value) const;
+    bool isActive(const char* name) const;
+
+  private:
+    GLint location(const char* name) const;
+    detail::Name<detail::deleteProgram> name_;
+};
+
+/// Translates the line numbers of a driver's log (Mesa "0:12(3):", NVIDIA "0(12) :") into
+/// file:line.
+std::string translateLog(std::string_view log, const ShaderSource& source);
+
+}  // namespace gfxrepro::gl

@@ -1,0 +1,1 @@
+#include "runner/gpu_scene/gpu_mesh.h"

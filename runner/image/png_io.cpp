@@ -1,0 +1,1 @@
+#include "runner/image/png_io.h"

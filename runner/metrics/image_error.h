@@ -1,0 +1,21 @@
+// Differences of images.
+#pragma once
+
+#include "runner/image/image.h"
+
+namespace gfxrepro::metrics {
+
+/// Over all values of two images of equal size and channels; throws Error when they differ in
+/// either, or when one holds a value that is not finite.
+double meanSquaredError(const image::ImageF& a, const image::ImageF& b);
+/// 10·log10(1 / MSE), for values in [0, 1]; infinity for equal images.
+double peakSignalToNoiseDb(const image::ImageF& a, const image::ImageF& b);
+/// Largest absolute difference.
+double maxAbsoluteError(const image::ImageF& a, const image::ImageF& b);
+/// Mean structural similarity of luminance (Wang et al. 2004: 11×11 Gaussian window, σ 1.5, K 0.01
+/// and 0.03), for values in [0, 1].
+double structuralSimilarity(const image::ImageF& a, const image::ImageF& b);
+/// |a − b| a value, times `gain`.
+image::ImageF absoluteDifference(const image::ImageF& a, const image::ImageF& b, float gain = 1.0F);
+
+}  // namespace gfxrepro::metrics

@@ -1,0 +1,1 @@
+#include "runner/raycast/ray_tracer.h"

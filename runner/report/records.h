@@ -1,0 +1,74 @@
+// Measurements in long form: one row a number, append-only, readable by any data frame library.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace gfxrepro::report {
+
+/// How a case ended. `ok` rows carry values; the others one row a case with the message.
+enum class Status {
+    Ok,
+    Ambiguous,
+    Flaky,
+    Unsupported,
+    Timeout,
+    Oom,
+    Crash,
+    DeviceLost,
+    Missing,
+    Error
+};
+std::string_view statusName(Status status);
+/// Throws Error for a name that is none.
+Status statusFromName(std::string_view name);
+
+/// A row of records.csv. Columns in this order, schema version first.
+struct Record {
+    static constexpr int kSchema = 1;
+
+    std::string caseId;
+    std::string table;  // "zju2005/2.1"
+    std::string technique;
+    std::string method;
+    std::string scene;
+    std::string params;  // one-line JSON of the case's resolved parameters
+    int frame = 0;
+    int repeat = 0;
+    int process = 0;
+    std::string lane;  // "timing" | "quality"
+    std::string pass;  // the paper's step; empty for whole-case metrics
+    std::string metric;
+    std::string unit;
+    double value = 0.0;  // not-a-number for failed cases, written as an empty field
+    Status status = Status::Ok;
+    std::string message;
+
+    bool operator==(const Record&) const = default;
+};
+
+/// Appends whole cases: a case's rows reach the disk together, or not at all.
+class RecordWriter {
+  public:
+    /// Creates the file with its header, or opens it for appending after cutting off a torn last
+    /// line.
+    explicit RecordWriter(const std::filesystem::path& path);
+    void append(const std::vector<Record>& rows);
+
+  private:
+    std::filesystem::path path_;
+    int fd_ = -1;
+
+  public:
+    ~RecordWriter();
+    RecordWriter(const RecordWriter&) = delete;
+    RecordWriter& operator=(const RecordWriter&) = delete;
+};
+
+/// Reads records.csv. A torn last line (no newline) is ignored; any other malformed row is an Error
+/// with file and line.
+std::vector<Record> readRecords(const std::filesystem::path& path);
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,60 @@
+// The catalogue of named scenes: configs/scenes/**/*.yaml, each with its sources in order of
+// preference.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/config/node.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::scene {
+
+/// One way to get a scene: a file of the assets folder, possibly refined to a triangle count, or a
+/// generator.
+struct SceneSource {
+    std::string file;  // relative to the assets folder; empty: generated
+    std::optional<long long>
+        refineTo;  // triangles: longest edges are split until the count is reached
+    std::string generator;
+    config::Node params;  // of the generator
+    std::uint64_t seed = 1;
+    Origin::Kind kind = Origin::Kind::Real;
+    SourceLocation where;
+};
+
+struct SceneEntry {
+    std::string name;  // "models/dragon" = configs/scenes/models/dragon.yaml
+    std::string doc;
+    std::string canonical;  // where a user gets the real thing
+    std::vector<SceneSource> sources;
+    std::filesystem::path path;
+};
+
+class Catalog {
+  public:
+    /// Reads every YAML file under `scenesFolder`. Throws Error on the first that is wrong.
+    Catalog(const std::filesystem::path& scenesFolder, std::filesystem::path assetsFolder);
+
+    const std::map<std::string, SceneEntry>& entries() const { return entries_; }
+
+    /// The source that load() would take: the first whose file is there, or a generator.
+    /// A reference with a file extension is a user's own file, relative to the file that names it.
+    /// Throws Error for unknown names (with the nearest) and for entries none of whose sources is
+    /// at hand (with where it looked and how to get it).
+    SceneSource resolve(const config::Node& reference) const;
+    /// Identity of the content: changes when the file or the generator's parameters change.
+    std::string contentKey(const config::Node& reference) const;
+    Scene load(const config::Node& reference) const;
+
+    const std::filesystem::path& assetsFolder() const { return assetsFolder_; }
+
+  private:
+    std::filesystem::path assetsFolder_;
+    std::map<std::string, SceneEntry> entries_;
+};
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,26 @@
+// Seeded scene generators: same seed, same bytes, on every machine.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "runner/config/params.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::scene {
+
+/// A generator reads its parameters by declaration (so `describe` can print them) and returns a
+/// scene.
+struct GeneratorInfo {
+    std::string_view name;
+    std::string_view summary;
+    Scene (*generate)(config::Params& params, std::uint64_t seed);
+};
+
+std::span<const GeneratorInfo> generators();
+
+/// Throws Error with the nearest name when there is none of that name.
+const GeneratorInfo& findGenerator(std::string_view name, const SourceLocation& where);
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,1 @@
+#include "runner/technique/technique.h"

@@ -1,0 +1,91 @@
+// The contract between the runner and a technique.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/config/params.h"
+#include "runner/gl/device.h"
+#include "runner/gl/profiler.h"
+#include "runner/gl/program.h"
+#include "runner/image/exr_io.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::technique {
+
+/// Loads scenes by catalogue name or path and keeps them for later cases of the same worker.
+class SceneProvider {
+  public:
+    virtual ~SceneProvider() = default;
+    /// The reference lives as long as the case. Throws Error as scene::Catalog does.
+    virtual const scene::Scene& load(const std::string& reference) = 0;
+};
+
+/// What setup() may use; references live as long as the technique.
+struct SetupContext {
+    gl::Device& device;
+    const gl::ShaderLibrary& shaders;
+    SceneProvider& scenes;
+    const scene::Scene* scene;  // the case's scene; null when its config names none
+    glm::ivec2 outputSizePx;
+    std::uint64_t seed;
+    gl::Profiler& profiler;
+};
+
+/// One measured iteration: frame `frame` of `frameCount`, repeated.
+struct FrameContext {
+    int frame;
+    int frameCount;
+    gl::Profiler& profiler;
+};
+
+/// Takes what a technique has to report of the last iteration.
+class Recorder {
+  public:
+    virtual ~Recorder() = default;
+    /// `metric` is snake_case with its unit where it has one ("memory_bytes"); `unit` is spelt out
+    /// ("voxel", "byte", "ms", "1"). A metric may be given once a pass and frame.
+    virtual void metric(std::string_view metric, double value, std::string_view unit,
+                        std::string_view pass = "") = 0;
+    /// Saved as images/<case>-<name>.exr, with a PNG beside it for the report (linear, shown as
+    /// sRGB). 1, 3 or 4 channels.
+    virtual void image(std::string_view name, const image::ImageF& image) = 0;
+    /// As above with channels of the technique's own; `preview` is what the PNG shows.
+    virtual void image(std::string_view name, const image::ExrImage& image,
+                       const image::ImageF& preview) = 0;
+    /// A path in the run directory for a file of the technique's own format ("grid.binvox").
+    virtual std::filesystem::path artifact(std::string_view fileName) = 0;
+};
+
+/// A method under measurement with its competitors. Life: constructor (parameters only, no GL) →
+/// setup → render, repeatedly → record, after the last repeat of a frame. Errors are thrown.
+class Technique {
+  public:
+    virtual ~Technique() = default;
+    virtual void setup(SetupContext& context) = 0;
+    /// The passes in the paper's order, each in a GpuScope or CpuScope with the paper's step name.
+    virtual void render(FrameContext& context) = 0;
+    virtual void record(Recorder& recorder) = 0;
+};
+
+struct TechniqueInfo {
+    std::string_view name;
+    std::string_view summary;
+    std::unique_ptr<Technique> (*create)(config::Params& params);
+};
+
+/// Every technique, from techniques/registry.cpp.
+std::span<const TechniqueInfo> registeredTechniques();
+
+/// Throws Error with the nearest name when there is none of that name.
+const TechniqueInfo& findTechnique(std::span<const TechniqueInfo> techniques, std::string_view name,
+                                   const SourceLocation& where);
+
+}  // namespace gfxrepro::technique

@@ -1,0 +1,86 @@
+# The four ways a target comes into being here: module, technique, program, test.
+
+add_library(gfxrepro_options INTERFACE)
+target_compile_features(gfxrepro_options INTERFACE cxx_std_20)
+target_include_directories(gfxrepro_options INTERFACE "${CMAKE_SOURCE_DIR}")
+# Expressions are evaluated as written: the CPU references are compared with shaders bit for bit.
+target_compile_options(gfxrepro_options INTERFACE -ffp-contract=off)
+if(GFXREPRO_SANITIZE)
+    target_compile_options(gfxrepro_options INTERFACE
+        -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(gfxrepro_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+add_library(gfxrepro_warnings INTERFACE)
+target_compile_options(gfxrepro_warnings INTERFACE
+    -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion $<$<BOOL:${GFXREPRO_WERROR}>:-Werror>)
+
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+# gfxrepro_verify_headers(TARGET): every header beside the target's sources compiles alone.
+function(gfxrepro_verify_headers target)
+    if(NOT GFXREPRO_VERIFY_HEADERS)
+        return()
+    endif()
+    file(GLOB headers CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.h")
+    set(units)
+    foreach(header IN LISTS headers)
+        file(RELATIVE_PATH path "${CMAKE_SOURCE_DIR}" "${header}")
+        set(unit "${CMAKE_CURRENT_BINARY_DIR}/headers/${path}.cpp")
+        file(CONFIGURE OUTPUT "${unit}" CONTENT "#include \"${path}\"\n")
+        list(APPEND units "${unit}")
+    endforeach()
+    if(units)
+        add_library(${target}_headers OBJECT ${units})
+        target_link_libraries(${target}_headers PRIVATE ${target} gfxrepro_warnings)
+    endif()
+endfunction()
+
+# gfxrepro_module(NAME SOURCES … [PUBLIC targets …] [PRIVATE targets …]) → library gfxrepro_NAME
+function(gfxrepro_module name)
+    cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    add_library(gfxrepro_${name} STATIC ${arg_SOURCES})
+    target_link_libraries(gfxrepro_${name}
+        PUBLIC gfxrepro_options ${arg_PUBLIC}
+        PRIVATE gfxrepro_warnings ${arg_PRIVATE})
+    gfxrepro_verify_headers(gfxrepro_${name})
+endfunction()
+
+# add_technique(NAME SOURCES … SHADERS … [PRIVATE targets …]) → library technique_NAME; its shaders are
+# copied to <build>/shaders/NAME and installed beside the program.
+function(add_technique name)
+    cmake_parse_arguments(arg "" "" "SOURCES;SHADERS;PRIVATE" ${ARGN})
+    add_library(technique_${name} STATIC ${arg_SOURCES})
+    target_link_libraries(technique_${name}
+        PUBLIC gfxrepro_technique
+        PRIVATE gfxrepro_warnings gfxrepro_raycast gfxrepro_metrics gfxrepro_gpu_scene ${arg_PRIVATE})
+    gfxrepro_verify_headers(technique_${name})
+    gfxrepro_shaders(technique_${name} ${name} ${arg_SHADERS})
+endfunction()
+
+# gfxrepro_shaders(TARGET FOLDER files …): copied to <build>/shaders/FOLDER whenever they change.
+function(gfxrepro_shaders target folder)
+    set(copies)
+    foreach(shader IN LISTS ARGN)
+        get_filename_component(file "${shader}" NAME)
+        set(copy "${CMAKE_BINARY_DIR}/shaders/${folder}/${file}")
+        add_custom_command(OUTPUT "${copy}"
+            COMMAND "${CMAKE_COMMAND}" -E copy "${CMAKE_CURRENT_SOURCE_DIR}/${shader}" "${copy}"
+            DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${shader}" VERBATIM)
+        list(APPEND copies "${copy}")
+    endforeach()
+    if(copies)
+        add_custom_target(${target}_shaders ALL DEPENDS ${copies})
+        add_dependencies(${target} ${target}_shaders)
+        install(FILES ${copies} DESTINATION "${CMAKE_INSTALL_DATADIR}/gfxrepro/shaders/${folder}")
+    endif()
+endfunction()
+
+# gfxrepro_test(NAME LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case
+function(gfxrepro_test name)
+    cmake_parse_arguments(arg "" "LABEL" "SOURCES;LINK" ${ARGN})
+    add_executable(${name} ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
+    include(GoogleTest)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABEL}" TIMEOUT 300)
+endfunction()

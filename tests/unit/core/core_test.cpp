@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runner/core/error.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/core/random.h"
+#include "runner/core/text.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro {
+namespace {
+
+TEST(Error, SaysWhere) {
+    EXPECT_STREQ(Error({"a.yaml", 3, 7}, "unknown key 'x'").what(), "a.yaml:3:7: unknown key 'x'");
+    EXPECT_STREQ(Error({"a.ply", 3, 0}, "short").what(), "a.ply:3: short");
+    EXPECT_STREQ(Error(SourceLocation{}, "short").what(), "short");
+}
+
+TEST(Text, NearestNameFindsTyposOnly) {
+    const std::vector<std::string> names = {"resolution", "method", "voxel_bits"};
+    EXPECT_EQ(nearestName("resolutoin", names), "resolution");
+    EXPECT_EQ(nearestName("Method", names), "method");
+    EXPECT_EQ(nearestName("banana", names), std::nullopt);
+    EXPECT_EQ(suggestion("metod", names), "; did you mean 'method'?");
+    EXPECT_EQ(suggestion("", names), "");
+}
+
+TEST(Text, NumbersAreDecimalOnly) {
+    EXPECT_EQ(parseDouble("1e-3"), 1e-3);
+    EXPECT_EQ(parseDouble("+2"), 2.0);
+    EXPECT_EQ(parseDouble("0.5"), 0.5);
+    EXPECT_EQ(parseInteger("-12"), -12);
+    for (const char* text :
+         {"010", "0x10", "", "-", "1 ", "nan", "inf", ".inf", "1e999", "1,5", "--1"}) {
+        EXPECT_EQ(parseDouble(text), std::nullopt) << text;
+    }
+    EXPECT_EQ(parseInteger("1.0"), std::nullopt);
+    EXPECT_EQ(parseInteger("99999999999999999999"), std::nullopt);
+}
+
+TEST(Text, SplitsTrimsAndJoins) {
+    EXPECT_THAT(split("a,,b", ','), testing::ElementsAre("a", "", "b"));
+    EXPECT_EQ(trimmed(" \t a b\n"), "a b");
+    EXPECT_EQ(trimmed("  "), "");
+    const std::vector<std::string> items = {"a", "b"};
+    EXPECT_EQ(joined(items), "a, b");
+}
+
+TEST(Hash, MatchesFips180) {
+    EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(sha256OfFile(folder.write("abc", "abc")), sha256("abc"));
+}
+
+TEST(Random, MatchesThePcgReference) {
+    // First outputs of pcg32 with state 42 and stream 54, from the reference implementation's demo.
+    Random random(42, 54);
+    EXPECT_EQ(random.next(), 0xa15c02b7U);
+    EXPECT_EQ(random.next(), 0x7b47f409U);
+    EXPECT_EQ(random.next(), 0xba1d3330U);
+}
+
+TEST(Random, UniformIsInItsRange) {
+    Random random(1);
+    double sum = 0.0;
+    for (int i = 0; i < 10000; ++i) {
+        const float value = random.uniform();
+        ASSERT_GE(value, 0.0F);
+        ASSERT_LT(value, 1.0F);
+        sum += value;
+    }
+    EXPECT_NEAR(sum / 10000, 0.5, 0.02);
+    EXPECT_LT(random.index(3), 3U);
+}
+
+TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
+    const test::TemporaryFolder folder;
+    const auto path = folder.path() / "deep" / "file.txt";
+    writeFileAtomic(path, "one");
+    writeFileAtomic(path, "two");
+    EXPECT_EQ(readFile(path), "two");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
+}
+
+TEST(Files, MissingFilesAndFoldersAreNamed) {
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "none"); }, folder.path()),
+              "cannot read DIR/none: No such file or directory");
+    EXPECT_EQ(test::errorText([&] { readFile(folder.path()); }, folder.path()),
+              "cannot read DIR: Is a directory");
+    EXPECT_TRUE(readFile(folder.write("empty", "")).empty());
+}
+
+}  // namespace
+}  // namespace gfxrepro
