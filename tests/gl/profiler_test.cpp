@@ -92,8 +92,10 @@ void main() {
 }
 )"},
                                       {"v.frag.glsl", "#version 450 core\nvoid main() {}\n"}});
-    const gl::Framebuffer framebuffer = gl::Framebuffer::withoutAttachments({16, 16});
+    const gl::Texture target = gl::Texture::make2D(GL_RGBA8, {512, 512});
+    const gl::Framebuffer framebuffer(std::array{&target});
     framebuffer.bind();
+    framebuffer.clearColour(0, glm::vec4(0));
     busy.use();
     const gl::VertexArray vertexArray;
     vertexArray.bind();
