@@ -1,5 +1,6 @@
 #include "runner/report/operand.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
 #include <numeric>
@@ -40,7 +41,7 @@ Operand::Operand(const std::string& text, const Table& table, const SourceLocati
     slots_.resize(columns_.size());
     try {
         for (std::size_t i = 0; i < columns_.size(); ++i) {
-            parser_.DefineVar("v" + std::to_string(i), &slots_[i]);
+            parser_.DefineVar(fmt::format("v{}", i), &slots_[i]);
         }
         parser_.SetExpr(expression);
         parser_.Eval();
@@ -53,7 +54,7 @@ std::string Operand::variableOf(std::size_t column) {
     const auto found = std::find(columns_.begin(), columns_.end(), column);
     const auto index = found - columns_.begin();
     if (found == columns_.end()) columns_.push_back(column);
-    return "v" + std::to_string(index);
+    return fmt::format("v{}", index);
 }
 
 std::string Operand::translated(const Table& table, const SourceLocation& where,
