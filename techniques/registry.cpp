@@ -7,7 +7,7 @@ namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
-        kTemplate,
+        template_::kTemplate,
     };
     return kTechniques;
 }

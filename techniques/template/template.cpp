@@ -8,7 +8,7 @@
 #include "runner/gl/program.h"
 #include "runner/gpu_scene/gpu_mesh.h"
 
-namespace gfxrepro::technique {
+namespace gfxrepro::template_ {
 
 namespace {
 
@@ -25,11 +25,11 @@ glm::mat4 clipFromWorld(const scene::Camera& camera, float aspect) {
            glm::lookAt(camera.position, camera.target, camera.up);
 }
 
-class Template : public Technique {
+class TemplateTechnique : public technique::Technique {
   public:
     // Every parameter is declared here, once: default, meaning, unit and range. No GL, so that
     // `gfxrepro check` validates a config on any machine.
-    explicit Template(config::Params& params)
+    explicit TemplateTechnique(config::Params& params)
         : method_(params.getEnum("method", Method::Gradient, kMethods, {"what is drawn"})),
           brightness_(static_cast<float>(
               params.getDouble("brightness", 1.0, {"value of a white pixel", "1", 0.0, 1.0}))) {
@@ -37,20 +37,21 @@ class Template : public Technique {
     }
 
     // Compile, allocate, upload. The runner times it as set-up.
-    void setup(SetupContext& context) override {
+    void setup(technique::SetupContext& context) override {
         size_ = context.outputSizePx;
         colour_ = gl::Texture::make2D(GL_R32F, size_);
         const gl::Texture* attachments[] = {&colour_};
         framebuffer_ = gl::Framebuffer(attachments);
         if (method_ == Method::Gradient) {
-            program_ = gl::Program(context.shaders,
-                                   {"template/fullscreen.vert.glsl", "template/gradient.frag.glsl"});
+            program_ = gl::Program(
+                context.shaders, {"template/fullscreen.vert.glsl", "template/gradient.frag.glsl"});
             withoutAttributes_.emplace();
             return;
         }
         if (!context.scene) throw Error("method 'silhouette' needs a scene");
         const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
-        clipFromWorld_ = clipFromWorld(scene::framingCamera(context.scene->bounds(), aspect), aspect);
+        clipFromWorld_ =
+            clipFromWorld(scene::framingCamera(context.scene->bounds(), aspect), aspect);
         mesh_.emplace(scene::flattened(*context.scene));
         program_ = gl::Program(context.shaders,
                                {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
@@ -58,7 +59,7 @@ class Template : public Technique {
     }
 
     // One measured iteration. Each pass stands in a scope with the paper's step name.
-    void render(FrameContext& context) override {
+    void render(technique::FrameContext& context) override {
         const gl::GpuScope scope(context.profiler, "draw");
         framebuffer_.bind();
         framebuffer_.clearColour(0, glm::vec4(0.0F));
@@ -77,7 +78,7 @@ class Template : public Technique {
     }
 
     // Read back and report: metrics with their units, and images.
-    void record(Recorder& recorder) override {
+    void record(technique::Recorder& recorder) override {
         const image::ImageF image = colour_.readImage(1);
         const auto values = image.values();
         const double sum = std::accumulate(values.begin(), values.end(), 0.0);
@@ -98,13 +99,13 @@ class Template : public Technique {
     std::optional<gl::VertexArray> withoutAttributes_;
 };
 
-std::unique_ptr<Technique> create(config::Params& params) {
-    return std::make_unique<Template>(params);
+std::unique_ptr<technique::Technique> create(config::Params& params) {
+    return std::make_unique<TemplateTechnique>(params);
 }
 
 }  // namespace
 
-const TechniqueInfo kTemplate{"template", "the skeleton for new techniques: a ramp or a silhouette",
-                              create};
+const technique::TechniqueInfo kTemplate{
+    "template", "the skeleton for new techniques: a ramp or a silhouette", create};
 
-}  // namespace gfxrepro::technique
+}  // namespace gfxrepro::template_

@@ -3,8 +3,8 @@
 
 #include "runner/technique/technique.h"
 
-namespace gfxrepro::technique {
+namespace gfxrepro::template_ {
 
-extern const TechniqueInfo kTemplate;
+extern const technique::TechniqueInfo kTemplate;
 
-}  // namespace gfxrepro::technique
+}  // namespace gfxrepro::template_
