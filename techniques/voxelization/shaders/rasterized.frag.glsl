@@ -1,3 +1,4 @@
+#version 450 core
 // Rasterization by the hardware: the voxel at the pixel and the fragment's depth.
 // [zju2005] Sec. 2.2.1.
 #include "voxelization/emit_voxel.glsl"

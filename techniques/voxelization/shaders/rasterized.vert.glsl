@@ -1,3 +1,4 @@
+#version 450 core
 // Rasterization by the hardware: projects a triangle along its axis onto N × N pixels; window z
 // times N is the depth in voxels. With SLICED, triangles wholly outside the slice are culled.
 // [zju2005] Sec. 2.2.1.
