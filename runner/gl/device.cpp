@@ -1,1 +1,246 @@
 #include "runner/gl/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <new>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "runner/core/error.h"
+#include "runner/core/text.h"
+#include "runner/gl/egl_context.h"
+#include "runner/gl/gl.h"
+
+namespace gfxrepro::gl {
+
+struct Device::Impl {
+    egl::Context context;
+    DeviceInfo info;
+    DeviceLimits limits;
+    std::set<std::string, std::less<>> extensions;
+    std::string fatalMessage;  // the first of high severity since the last check
+};
+
+namespace {
+
+std::string getString(GLenum name) {
+    const GLubyte* text = glGetString(name);
+    return text == nullptr ? "" : reinterpret_cast<const char*>(text);
+}
+
+/// "4.5 (Core Profile) Mesa 22.3.6" → "22.3.6".
+std::string mesaVersionIn(const std::string& version) {
+    constexpr std::string_view kMark = "Mesa ";
+    const std::size_t at = version.find(kMark);
+    if (at == std::string::npos) return "";
+    const std::size_t begin = at + kMark.size();
+    return version.substr(begin, version.find(' ', begin) - begin);
+}
+
+bool isSoftwareRenderer(const std::string& renderer) {
+    return std::ranges::any_of(
+        std::array{"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer"},
+        [&](const char* name) { return renderer.find(name) != std::string::npos; });
+}
+
+double measureTimerResolutionNs() {
+    constexpr int kReadings = 256;
+    GLint64 smallestNs = std::numeric_limits<GLint64>::max();
+    GLint64 lastNs = getInteger64(GL_TIMESTAMP);
+    for (int i = 0; i < kReadings; ++i) {
+        const GLint64 nowNs = getInteger64(GL_TIMESTAMP);
+        if (nowNs > lastNs) smallestNs = std::min(smallestNs, nowNs - lastNs);
+        lastNs = nowNs;
+    }
+    const bool hasTicked = smallestNs != std::numeric_limits<GLint64>::max();
+    return hasTicked ? static_cast<double>(smallestNs) : 0.0;
+}
+
+DeviceInfo readInfo(const egl::Candidate& candidate) {
+    DeviceInfo info;
+    info.index = candidate.index;
+    info.platform = candidate.platform;
+    info.vendor = getString(GL_VENDOR);
+    info.renderer = getString(GL_RENDERER);
+    info.version = getString(GL_VERSION);
+    info.mesaVersion = mesaVersionIn(info.version);
+    info.isSoftware = isSoftwareRenderer(info.renderer);
+    info.timerResolutionNs = measureTimerResolutionNs();
+    return info;
+}
+
+DeviceLimits readLimits() {
+    DeviceLimits limits;
+    limits.maxTextureSizePx = getInteger(GL_MAX_TEXTURE_SIZE);
+    limits.max3dTextureSizePx = getInteger(GL_MAX_3D_TEXTURE_SIZE);
+    limits.maxArrayLayers = getInteger(GL_MAX_ARRAY_TEXTURE_LAYERS);
+    limits.maxStorageBlockBytes = getInteger64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+    limits.maxTessellationLevel = getInteger(GL_MAX_TESS_GEN_LEVEL);
+    limits.maxComputeInvocations = getInteger(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
+    limits.maxImageUnits = getInteger(GL_MAX_IMAGE_UNITS);
+    return limits;
+}
+
+std::set<std::string, std::less<>> readExtensions() {
+    std::set<std::string, std::less<>> extensions;
+    const auto count = static_cast<GLuint>(getInteger(GL_NUM_EXTENSIONS));
+    for (GLuint i = 0; i < count; ++i) {
+        extensions.insert(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, i)));
+    }
+    return extensions;
+}
+
+void APIENTRY logMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei,
+                         const GLchar* message, const void*) {
+    const bool isWarning =
+        severity == GL_DEBUG_SEVERITY_MEDIUM && type != GL_DEBUG_TYPE_PERFORMANCE;
+    if (severity == GL_DEBUG_SEVERITY_HIGH || type == GL_DEBUG_TYPE_ERROR || isWarning) {
+        std::fprintf(stderr, "OpenGL: %s\n", message);
+    }
+}
+
+/// Only remembers: an exception must not pass through the driver's frames.
+void APIENTRY rememberMessage(GLenum, GLenum, GLuint, GLenum severity, GLsizei,
+                              const GLchar* message, const void* fatalMessage) {
+    auto& first = *static_cast<std::string*>(const_cast<void*>(fatalMessage));
+    if (severity == GL_DEBUG_SEVERITY_HIGH && first.empty()) first = message;
+}
+
+void setDebugOutput(DebugOutput debug, std::string& fatalMessage) {
+    if (debug == DebugOutput::Off) return;
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    // A compiler's message comes with Program's Error, there with the file and line.
+    glDebugMessageControl(GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr,
+                          GL_FALSE);
+    glDebugMessageCallback(debug == DebugOutput::Fatal ? rememberMessage : logMessage,
+                           &fatalMessage);
+}
+
+/// Empty while the device is well. Drivers without reset notification report none.
+std::string resetReason() {
+    switch (glGetGraphicsResetStatus()) {
+        case GL_NO_ERROR:
+            return "";
+        case GL_GUILTY_CONTEXT_RESET:
+            return "by this context's work";
+        case GL_INNOCENT_CONTEXT_RESET:
+            return "by another context's work";
+        default:
+            return "for an unknown reason";
+    }
+}
+
+}  // namespace
+
+Device::Device(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug) {
+    auto impl = std::make_unique<Impl>(
+        Impl{egl::Context(candidate, debug != DebugOutput::Off), {}, {}, {}, {}});
+    impl->context.makeCurrent();
+    impl->info = readInfo(candidate);
+    impl->limits = readLimits();
+    impl->extensions = readExtensions();
+    setDebugOutput(debug, impl->fatalMessage);
+    return Device(std::move(impl));
+}
+
+Device Device::open(const DeviceChoice& choice) {
+    const std::optional<long long> index = parseInteger(choice.name);
+    if (choice.name != "auto" && choice.name != "software" && !index) {
+        throw UsageError(fmt::format(
+            "unknown device '{}'; allowed: auto, software, or an index as 'gfxrepro doctor' lists "
+            "them",
+            choice.name));
+    }
+    auto [candidates, problems] = egl::findCandidates();
+    if (index && (*index < 0 || *index >= static_cast<long long>(candidates.size()))) {
+        problems.push_back(fmt::format("device {}: there are {} ways to a device, counted from 0",
+                                       *index, candidates.size()));
+    }
+
+    std::optional<Device> software;  // what auto falls back on
+    for (const egl::Candidate& candidate : candidates) {
+        if (index && *index != candidate.index) continue;
+        try {
+            Device device = openCandidate(candidate, choice.debug);
+            const bool isSoftware = device.info().isSoftware;
+            if (index || (choice.name == "software") == isSoftware) return device;
+            if (choice.name == "software") {
+                problems.push_back(fmt::format("{}: {} is no software renderer", candidate.name(),
+                                               device.info().renderer));
+            } else if (!software) {
+                software = std::move(device);
+            }
+        } catch (const NoDeviceError& error) {
+            problems.push_back(error.what());
+        }
+    }
+    if (software) {
+        software->impl_->context.makeCurrent();
+        return std::move(*software);
+    }
+    throw NoDeviceError(fmt::format("no usable OpenGL 4.5 device for '{}':\n  {}", choice.name,
+                                    joined(problems, "\n  ")));
+}
+
+const DeviceInfo& Device::info() const {
+    return impl_->info;
+}
+
+const DeviceLimits& Device::limits() const {
+    return impl_->limits;
+}
+
+bool Device::hasExtension(const std::string& name) const {
+    return impl_->extensions.contains(name);
+}
+
+void Device::checkDebug(const char* what) {
+    if (impl_->fatalMessage.empty()) return;
+    throw Error(fmt::format("{}: {}", what, std::exchange(impl_->fatalMessage, "")));
+}
+
+void Device::finish(const char* what) {
+    glFinish();
+    if (const std::string reason = resetReason(); !reason.empty()) {
+        throw DeviceLostError(fmt::format("{}: the device was reset {}", what, reason));
+    }
+    // Both at once: the message says more than the error, and neither may be left for the next one.
+    const GLenum error = glGetError();
+    checkDebug(what);
+    if (error == GL_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != GL_NO_ERROR) throw Error(fmt::format("{}: {}", what, errorName(error)));
+}
+
+std::vector<DeviceReport> listDevices() {
+    const egl::CurrentContextGuard guard;
+    const auto [candidates, problems] = egl::findCandidates();
+    std::vector<DeviceReport> reports;
+    for (const egl::Candidate& candidate : candidates) {
+        DeviceReport report;
+        report.info.index = candidate.index;
+        report.info.platform = candidate.platform;
+        try {
+            const egl::Context context(candidate, false);
+            context.makeCurrent();
+            report.info = readInfo(candidate);
+            report.limits = readLimits();
+        } catch (const NoDeviceError& error) {
+            report.problem = error.what();
+        }
+        reports.push_back(std::move(report));
+    }
+    return reports;
+}
+
+}  // namespace gfxrepro::gl

@@ -7,6 +7,10 @@
 
 namespace gfxrepro::gl {
 
+namespace egl {
+struct Candidate;
+}
+
 /// What a device says of itself; goes into the manifest.
 struct DeviceInfo {
     int index = 0;                   // as `doctor` lists it and --device takes it
@@ -33,7 +37,9 @@ struct DeviceLimits {
 enum class DebugOutput {
     Off,    // timing runs
     Log,    // errors and warnings to standard error
-    Fatal,  // an error of high severity throws Error from the call that raised it (tests)
+    Fatal,  // the first message of high severity is kept, and thrown as Error by the next
+            // checkDebug() or finish() (tests). Not from the call that raised it: an exception must
+            // not pass through the driver's frames.
 };
 
 /// "auto": the first hardware device, else the software one; "software"; or an index from
@@ -47,7 +53,8 @@ struct DeviceChoice {
 /// rule.
 class Device {
   public:
-    /// Throws NoDeviceError with one message per way that was tried.
+    /// The context is current afterwards. Throws NoDeviceError with one message per way that was
+    /// tried, UsageError for a name that is none of the three kinds.
     static Device open(const DeviceChoice& choice);
     Device(Device&&) noexcept;
     Device& operator=(Device&&) noexcept;
@@ -57,17 +64,21 @@ class Device {
     const DeviceLimits& limits() const;
     bool hasExtension(const std::string& name) const;
 
-    /// Waits for everything; throws DeviceLostError after a reset and Error for a pending GL error,
-    /// naming `what` was being done.
+    /// Waits for everything (glFinish); throws DeviceLostError after a reset, std::bad_alloc after
+    /// GL_OUT_OF_MEMORY and Error for any other pending GL error, naming `what` was being done.
     void finish(const char* what);
+    /// With DebugOutput::Fatal, throws Error for a message of high severity since the last check.
+    void checkDebug(const char* what);
 
   private:
     struct Impl;
     explicit Device(std::unique_ptr<Impl> impl);
+    static Device openCandidate(const egl::Candidate& candidate, DebugOutput debug);
     std::unique_ptr<Impl> impl_;
 };
 
-/// What is there, without keeping a context; entries that cannot make a context carry the reason.
+/// What is there, without keeping a context (one that was current stays so); entries that cannot
+/// make a context carry the reason.
 struct DeviceReport {
     DeviceInfo info;
     DeviceLimits limits;

@@ -2,14 +2,14 @@
 // empty. Every constructor and function needs the device's context to be current.
 #pragma once
 
-#include <GL/glcorearb.h>
-
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "runner/gl/gl.h"
 #include "runner/image/image.h"
 
 namespace gfxrepro::gl {

@@ -1,1 +1,73 @@
 #include "runner/gl/profiler.h"
+
+#include <algorithm>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::gl {
+
+namespace {
+
+detail::Name<detail::deleteQuery> stamp(bool isSoftwareDevice) {
+    // llvmpipe runs vertex work when the draw is called and rasterizes at the next flush: without
+    // this, a pass would be charged with its predecessor's pixels.
+    if (isSoftwareDevice) glFinish();
+    GLuint id = 0;
+    glCreateQueries(GL_TIMESTAMP, 1, &id);
+    glQueryCounter(id, GL_TIMESTAMP);
+    return detail::Name<detail::deleteQuery>(id);
+}
+
+GLuint64 timeNs(GLuint query) {
+    GLuint64 value = 0;
+    glGetQueryObjectui64v(query, GL_QUERY_RESULT, &value);
+    return value;
+}
+
+}  // namespace
+
+std::size_t Profiler::beginGpu(std::string_view pass) {
+    entries_.push_back({std::string(pass), PassTime::Clock::Gpu, {}, {}});
+    entries_.back().begin = stamp(isSoftwareDevice_);
+    return entries_.size() - 1;
+}
+
+void Profiler::endGpu(std::size_t entry) {
+    entries_[entry].end = stamp(isSoftwareDevice_);
+}
+
+std::vector<PassTime> Profiler::collect() {
+    std::vector<PassTime> times;
+    for (const Entry& entry : entries_) {
+        double timeMs = entry.cpuTimeMs;
+        if (entry.clock == PassTime::Clock::Gpu) {
+            GFXREPRO_ASSERT(entry.end.get() != 0);  // a scope is still open
+            timeMs =
+                static_cast<double>(timeNs(entry.end.get()) - timeNs(entry.begin.get())) * 1e-6;
+        }
+        const auto same = std::ranges::find_if(times, [&](const PassTime& time) {
+            return time.pass == entry.pass && time.clock == entry.clock;
+        });
+        if (same != times.end()) {
+            same->timeMs += timeMs;
+        } else {
+            times.push_back({entry.pass, entry.clock, timeMs});
+        }
+    }
+    entries_.clear();
+    return times;
+}
+
+CpuScope::CpuScope(Profiler& profiler, std::string_view pass)
+    : profiler_(profiler), entry_(profiler.entries_.size()) {
+    profiler.entries_.push_back({std::string(pass), PassTime::Clock::Cpu, {}, {}});
+    begin_ = std::chrono::steady_clock::now();
+}
+
+CpuScope::~CpuScope() {
+    const std::chrono::duration<double, std::milli> time =
+        std::chrono::steady_clock::now() - begin_;
+    profiler_.entries_[entry_].cpuTimeMs = time.count();
+}
+
+}  // namespace gfxrepro::gl

@@ -2,8 +2,6 @@
 // line.
 #pragma once
 
-#include <GL/glcorearb.h>
-
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
@@ -12,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "runner/gl/gl.h"
 #include "runner/gl/objects.h"
 
 namespace gfxrepro::gl {
@@ -38,9 +37,10 @@ class ShaderLibrary {
     const std::filesystem::path& folder() const { return folder_; }
 
     /// `file` is relative to the folder ("voxelization/rasterize.frag.glsl"). `snippets` replace
-    /// lines
-    /// `#pragma snippet NAME` (generated code, such as an implicit surface's formula).
-    /// Throws Error for missing files and include cycles with the chain of files.
+    /// lines `#pragma snippet NAME` (generated code, such as an implicit surface's formula). The
+    /// file's first line is `#version …`; the defines follow it.
+    /// Throws Error at file:line with the chain of including files for a missing file, an include
+    /// cycle, a snippet that was not given, a malformed `#include` and a misplaced `#version`.
     ShaderSource assemble(std::string_view file, const Defines& defines,
                           const std::map<std::string, std::string>& snippets = {}) const;
 
@@ -60,8 +60,8 @@ class Program {
     GLuint id() const { return name_.get(); }
     void use() const;
 
-    // Setters by name. A name that is not an active uniform asserts, unless the driver may have
-    // removed it: setIfActive.
+    // Setters by name. A name that is not an active uniform asserts; ask isActive() first where a
+    // define can leave it unused.
     void set(const char* name, int value) const;
     void set(const char* name, unsigned value) const;
     void set(const char* name, float value) const;
