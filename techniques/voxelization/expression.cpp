@@ -298,7 +298,8 @@ double Expression::evaluate(std::span<const double> values) const {
 std::string Expression::glslFunction(const std::string& name) const {
     std::vector<std::string> parameters;
     for (const std::string& variable : impl_->variables) parameters.push_back("float " + variable);
-    return fmt::format("float {}({}) {{ return {}; }}", name, joined(parameters), impl_->glsl);
+    return fmt::format("float {}({}) {{ precise float value = {}; return value; }}", name,
+                       joined(parameters), impl_->glsl);
 }
 
 }  // namespace gfxrepro::voxelization

@@ -30,7 +30,8 @@ class Expression {
     /// One value a variable, in the order of the constructor. Not-a-number outside the domain.
     double evaluate(std::span<const double> values) const;
 
-    /// `float NAME(float x, …) { return …; }`; needs expression.glsl. Outside the domain of log and
+    /// `float NAME(float x, …) { … }`; needs expression.glsl. Precise: equal arguments give equal
+    /// bits wherever it is called. Outside the domain of log and
     /// sqrt the value is undefined, as these are in GLSL.
     std::string glslFunction(const std::string& name) const;
 

@@ -2,8 +2,8 @@
 
 // base^exponent by repeated squaring; |exponent| <= 64.
 float integerPower(float base, int exponent) {
-    float result = 1.0;
-    float square = base;
+    precise float result = 1.0;
+    precise float square = base;
     for (int left = abs(exponent); left > 0; left >>= 1) {
         if ((left & 1) != 0) result *= square;
         square *= square;

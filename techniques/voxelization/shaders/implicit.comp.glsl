@@ -24,6 +24,15 @@ float sampleAt(ivec3 halfVoxels) {
     return insideSign * formula(p.x, p.y, p.z);
 }
 
+// Value of a full voxel; the gradient points outwards.
+uint valueOf(vec3 gradient) {
+#if NORMALS
+    return encodeNormal(gradient);
+#else
+    return 1u;
+#endif
+}
+
 // The target of the surface rule is a voxel's crosshair: the three unit segments through its centre
 // along the axes (Laine 2013). It is met when the samples at the centre and the six ends differ in
 // sign. Voxels that share a face share that sample: no path through faces leads past the surface.
@@ -40,18 +49,33 @@ uint surfaceVoxel(ivec3 voxel, float below, float above) {
         reachesInside = reachesInside || ends[i] <= 0.0;
     }
     if (!reachesOutside || !reachesInside) return 0u;
-    return valueOfSurface(vec3(ends[1] - ends[0], ends[3] - ends[2], ends[5] - ends[4]));
+    return valueOf(vec3(ends[1] - ends[0], ends[3] - ends[2], ends[5] - ends[4]));
+}
+
+uint solidVoxel(ivec3 voxel) {
+    ivec3 centre = 2 * voxel + 1;
+    if (!(sampleAt(centre) <= 0.0)) return 0u;
+#if NORMALS
+    ivec2 step = ivec2(1, 0);
+    return valueOf(vec3(sampleAt(centre + step.xyy) - sampleAt(centre - step.xyy),
+                        sampleAt(centre + step.yxy) - sampleAt(centre - step.yxy),
+                        sampleAt(centre + step.yyx) - sampleAt(centre - step.yyx)));
+#else
+    return valueOf(vec3(0.0));
+#endif
 }
 
 void main() {
     ivec2 column = ivec2(gl_GlobalInvocationID.xy);
     int slab = int(gl_GlobalInvocationID.z);
     uint word = 0u;
+#if !SOLID
     float below = sampleAt(ivec3(2 * column + 1, 2 * slab * VOXELS_PER_TEXEL));
+#endif
     for (int lane = 0; lane < VOXELS_PER_TEXEL; ++lane) {
         ivec3 voxel = ivec3(column, slab * VOXELS_PER_TEXEL + lane);
 #if SOLID
-        uint value = sampleAt(2 * voxel + 1) <= 0.0 ? solidValue() : 0u;
+        uint value = solidVoxel(voxel);
 #else
         float above = sampleAt(ivec3(2 * column + 1, 2 * voxel.z + 2));
         uint value = surfaceVoxel(voxel, below, above);

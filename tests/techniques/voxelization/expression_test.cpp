@@ -38,8 +38,9 @@ TEST(Expression, EvaluatesTheQuarticOfTheThesis) {
 }
 
 std::string errorOf(const std::string& formula) {
-    return test::errorText(
-        [&] { Expression(formula, {"x", "y"}, SourceLocation{"a.yaml", 3, 14}); });
+    return test::errorText([&] {
+        Expression(formula, {"x", "y"}, SourceLocation{"a.yaml", 3, 14});
+    });
 }
 
 TEST(Expression, SaysWhereAFormulaIsWrong) {
@@ -47,21 +48,25 @@ TEST(Expression, SaysWhereAFormulaIsWrong) {
         "; allowed: numbers, x, y, pi, abs, cos, exp, log, max, min, sin, sqrt, tan, + - * / ^ ( )";
     EXPECT_EQ(errorOf("x + foo"),
               "a.yaml:3:14: formula 'x + foo', character 5: unknown name 'foo'" + allowed);
-    EXPECT_EQ(errorOf("x +"), "a.yaml:3:14: formula 'x +', character 4: the formula ends early" +
-                                  allowed);
-    EXPECT_EQ(errorOf(""), "a.yaml:3:14: formula '', character 1: the formula ends early" + allowed);
+    EXPECT_EQ(errorOf("x +"),
+              "a.yaml:3:14: formula 'x +', character 4: the formula ends early" + allowed);
+    EXPECT_EQ(errorOf(""),
+              "a.yaml:3:14: formula '', character 1: the formula ends early" + allowed);
     EXPECT_EQ(errorOf("2x"), "a.yaml:3:14: formula '2x', character 2: unexpected 'x'" + allowed);
     EXPECT_EQ(errorOf("--x"), "a.yaml:3:14: formula '--x', character 2: unexpected '-'" + allowed);
     EXPECT_EQ(errorOf("(x"), "a.yaml:3:14: formula '(x', character 3: ')' is missing" + allowed);
     EXPECT_EQ(errorOf("max(x)"),
               "a.yaml:3:14: formula 'max(x)', character 6: unexpected ')'" + allowed);
-    EXPECT_EQ(errorOf("x, y"), "a.yaml:3:14: formula 'x, y', character 2: unexpected ','" + allowed);
+    EXPECT_EQ(errorOf("x, y"),
+              "a.yaml:3:14: formula 'x, y', character 2: unexpected ','" + allowed);
     EXPECT_EQ(errorOf("x ? y : 1"),
               "a.yaml:3:14: formula 'x ? y : 1', character 3: unexpected '?'" + allowed);
-    EXPECT_EQ(errorOf("x = y"), "a.yaml:3:14: formula 'x = y', character 3: unexpected '='" + allowed);
-    EXPECT_EQ(errorOf("1e99"),
-              "a.yaml:3:14: formula '1e99', character 1: the number is out of the range of a float" +
-                  allowed);
+    EXPECT_EQ(errorOf("x = y"),
+              "a.yaml:3:14: formula 'x = y', character 3: unexpected '='" + allowed);
+    EXPECT_EQ(
+        errorOf("1e99"),
+        "a.yaml:3:14: formula '1e99', character 1: the number is out of the range of a float" +
+            allowed);
     EXPECT_EQ(errorOf(std::string(5000, 'x')),
               "a.yaml:3:14: a formula of 5000 characters; at most 4096 are allowed");
 }
@@ -118,15 +123,15 @@ Sample randomFormula(Random& random, const std::array<double, 3>& at, int depth)
     switch (kind) {
         case 5:
         case 6:
-            return rounded({wrapped(a, 1) + " + " + wrapped(b, 2), 1, a.value + b.value,
-                            a.error + b.error});
+            return rounded(
+                {wrapped(a, 1) + " + " + wrapped(b, 2), 1, a.value + b.value, a.error + b.error});
         case 7:
-            return rounded({wrapped(a, 1) + " - " + wrapped(b, 2), 1, a.value - b.value,
-                            a.error + b.error});
+            return rounded(
+                {wrapped(a, 1) + " - " + wrapped(b, 2), 1, a.value - b.value, a.error + b.error});
         case 8:
-            return rounded({wrapped(a, 2) + "*" + wrapped(b, 3), 2, a.value * b.value,
-                            std::abs(a.value) * b.error + std::abs(b.value) * a.error +
-                                a.error * b.error});
+            return rounded(
+                {wrapped(a, 2) + "*" + wrapped(b, 3), 2, a.value * b.value,
+                 std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error});
         case 9: {
             const double quotient = a.value / b.value;
             const double smallest = std::abs(b.value) - b.error;
@@ -193,10 +198,11 @@ TEST_F(GlTest, RandomFormulasHaveTheSameValueInShadersAsInMuParser) {
 
 TEST_F(GlTest, PowersOfNegativeBasesAndOtherFunctionsAgreeWithMuParser) {
     const std::vector<std::string> formulas{
-        "y^3",     "y^-2",    "y^2.0",       "y^(1+2)",  "x^0.5",    "x^y",     "y^(x-x)",
-        "0^2.5",   "sqrt(x)", "exp(y)",      "log(z)",   "abs(y)",   "tan(y)",  "cos(z)",
-        "min(x,y)", "-y^2",   "2^3^0.5",     "-x^-y^2",  "pi*x",     "1e-3*x",  "12345678 + x",
-        "y^64",    "y^65",    "2*-x^2/-4-1", "x^4-5*x^2+y^4-5*y^2+z^4-5*z^2+11.8"};
+        "y^3",          "y^-2",    "y^2.0",   "y^(1+2)",     "x^0.5",
+        "x^y",          "y^(x-x)", "0^2.5",   "sqrt(x)",     "exp(y)",
+        "log(z)",       "abs(y)",  "tan(y)",  "cos(z)",      "min(x,y)",
+        "-y^2",         "2^3^0.5", "-x^-y^2", "pi*x",        "1e-3*x",
+        "12345678 + x", "y^64",    "y^65",    "2*-x^2/-4-1", "x^4-5*x^2+y^4-5*y^2+z^4-5*z^2+11.8"};
     const std::array<double, 3> at{1.25, -0.75, 2.5};
     const std::vector<float> values = evaluateOnDevice(shaders(), formulas, at);
     for (std::size_t i = 0; i < formulas.size(); ++i) {
