@@ -1,1 +1,281 @@
 #include "runner/config/node.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+template <class Entries>
+auto findKey(Entries& entries, std::string_view key) {
+    return std::find_if(entries.begin(), entries.end(),
+                        [&](const auto& entry) { return entry.first == key; });
+}
+
+[[noreturn]] void throwExpected(const char* wanted, const Node& found) {
+    std::string what = found.kindName();
+    if (found.isScalar()) {
+        what = found.tryDouble() || found.tryBool() ? found.text() : "'" + found.text() + "'";
+    }
+    throw Error(found.location(), std::string("expected ") + wanted + ", found " + what);
+}
+
+/// Whether a plain scalar would be read as something else, or end early, inside [ ] or { }.
+bool needsQuotes(const std::string& text) {
+    return text.empty() || text == "null" || text == "~" || text.front() == ' ' ||
+           text.back() == ' ' || text.find_first_of(",[]{}:#&*!|>'\"%@`\n\t") != std::string::npos;
+}
+
+}  // namespace
+
+Node Node::scalar(std::string text, SourceLocation where, bool quoted) {
+    Node node;
+    node.value_ = Scalar{std::move(text), quoted, false};
+    node.location_ = std::move(where);
+    return node;
+}
+
+Node Node::block(std::string text, SourceLocation where) {
+    Node node;
+    node.value_ = Scalar{std::move(text), true, true};
+    node.location_ = std::move(where);
+    return node;
+}
+
+Node Node::number(double value, SourceLocation where) {
+    // The shortest form of 100000 is 1e+05, which no longer reads as a whole number.
+    constexpr double kExactIntegers = 9007199254740992.0;  // 2⁵³
+    if (value == std::floor(value) && std::abs(value) <= kExactIntegers) {
+        return scalar(std::to_string(static_cast<long long>(value)), std::move(where));
+    }
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return scalar(std::string(digits.data(), end), std::move(where));
+}
+
+Node Node::null(SourceLocation where) {
+    Node node;
+    node.location_ = std::move(where);
+    return node;
+}
+
+Node Node::sequence(Sequence items, SourceLocation where) {
+    Node node;
+    node.value_ = std::move(items);
+    node.location_ = std::move(where);
+    return node;
+}
+
+Node Node::map(Map entries, SourceLocation where) {
+    Node node;
+    node.value_ = std::move(entries);
+    node.location_ = std::move(where);
+    return node;
+}
+
+std::string Node::kindName() const {
+    if (isNull()) return "nothing";
+    if (isSequence()) return "a list";
+    if (isMap()) return "a map";
+    if (tryDouble()) return "a number";
+    return tryBool() ? "a boolean" : "text";
+}
+
+const std::string& Node::text() const {
+    if (!isScalar()) throwExpected("text", *this);
+    return std::get<Scalar>(value_).text;
+}
+
+double Node::asDouble() const {
+    const auto value = tryDouble();
+    if (!value) throwExpected("a decimal number", *this);
+    return *value;
+}
+
+long long Node::asInteger() const {
+    const auto value = tryInteger();
+    if (!value) throwExpected("a whole number", *this);
+    return *value;
+}
+
+bool Node::asBool() const {
+    const auto value = tryBool();
+    if (!value) throwExpected("true or false", *this);
+    return *value;
+}
+
+const Node::Sequence& Node::items() const {
+    if (!isSequence()) throwExpected("a list", *this);
+    return std::get<Sequence>(value_);
+}
+
+const Node::Map& Node::entries() const {
+    if (!isMap()) throwExpected("a map", *this);
+    return std::get<Map>(value_);
+}
+
+Node::Map& Node::entries() {
+    if (!isMap()) throwExpected("a map", *this);
+    return std::get<Map>(value_);
+}
+
+std::optional<double> Node::tryDouble() const {
+    const auto* value = std::get_if<Scalar>(&value_);
+    return value && !value->quoted ? parseDouble(value->text) : std::nullopt;
+}
+
+std::optional<long long> Node::tryInteger() const {
+    const auto* value = std::get_if<Scalar>(&value_);
+    return value && !value->quoted ? parseInteger(value->text) : std::nullopt;
+}
+
+std::optional<bool> Node::tryBool() const {
+    const auto* value = std::get_if<Scalar>(&value_);
+    if (!value || value->quoted) return std::nullopt;
+    if (value->text == "true") return true;
+    if (value->text == "false") return false;
+    return std::nullopt;
+}
+
+const Node* Node::find(std::string_view key) const {
+    GFXREPRO_ASSERT(isMap());
+    const auto& map = std::get<Map>(value_);
+    const auto at = findKey(map, key);
+    return at == map.end() ? nullptr : &at->second;
+}
+
+Node* Node::find(std::string_view key) {
+    return const_cast<Node*>(std::as_const(*this).find(key));
+}
+
+const SourceLocation& Node::keyLocation(std::string_view key) const {
+    const auto at = findKey(keyLocations_, key);
+    return at == keyLocations_.end() ? location_ : at->second;
+}
+
+void Node::set(std::string key, Node value) {
+    const SourceLocation where = value.location();
+    set(std::move(key), std::move(value), where);
+}
+
+void Node::set(std::string key, Node value, SourceLocation keyWhere) {
+    if (isNull()) value_ = Map{};
+    const auto place = findKey(keyLocations_, key);
+    if (place == keyLocations_.end()) {
+        keyLocations_.emplace_back(key, std::move(keyWhere));
+    } else {
+        place->second = std::move(keyWhere);
+    }
+    if (Node* old = find(key)) {
+        *old = std::move(value);
+    } else {
+        entries().emplace_back(std::move(key), std::move(value));
+    }
+}
+
+bool Node::erase(std::string_view key) {
+    return std::erase_if(entries(), [&](const auto& entry) { return entry.first == key; }) > 0;
+}
+
+void Node::setPath(std::string_view dottedPath, Node value) {
+    Node* node = this;
+    std::string done;
+    std::vector<std::string> steps = split(dottedPath, '.');
+    for (std::size_t i = 0;; ++i) {
+        if (!node->isNull() && !node->isMap()) {
+            throw Error(value.location(), "cannot set '" + std::string(dottedPath) + "': '" + done +
+                                              "' is " + node->kindName() + ", not a map");
+        }
+        if (i + 1 == steps.size()) break;
+        if (node->isNull() || !node->find(steps[i])) node->set(steps[i], map({}, value.location()));
+        node = node->find(steps[i]);
+        done += (done.empty() ? "" : ".") + steps[i];
+    }
+    node->set(std::move(steps.back()), std::move(value));
+}
+
+bool Node::sameContent(const Node& other) const {
+    if (value_.index() != other.value_.index()) return false;
+    if (isScalar()) {
+        const auto a = tryDouble();
+        const auto b = other.tryDouble();
+        if (a || b) return a == b;
+        return tryBool() == other.tryBool() && text() == other.text();
+    }
+    if (isSequence()) {
+        return std::equal(items().begin(), items().end(), other.items().begin(),
+                          other.items().end(),
+                          [](const Node& a, const Node& b) { return a.sameContent(b); });
+    }
+    if (isMap()) {
+        return entries().size() == other.entries().size() &&
+               std::all_of(entries().begin(), entries().end(), [&](const auto& entry) {
+                   const Node* match = other.find(entry.first);
+                   return match && entry.second.sameContent(*match);
+               });
+    }
+    return true;
+}
+
+nlohmann::ordered_json Node::toJson() const {
+    if (const auto* list = std::get_if<Sequence>(&value_)) {
+        auto json = nlohmann::ordered_json::array();
+        for (const Node& item : *list) json.push_back(item.toJson());
+        return json;
+    }
+    if (const auto* map = std::get_if<Map>(&value_)) {
+        auto json = nlohmann::ordered_json::object();
+        for (const auto& [key, value] : *map) json[key] = value.toJson();
+        return json;
+    }
+    if (const auto integer = tryInteger()) return *integer;
+    if (const auto real = tryDouble()) return *real;
+    if (const auto boolean = tryBool()) return *boolean;
+    return isNull() ? nlohmann::ordered_json() : nlohmann::ordered_json(text());
+}
+
+std::string Node::toFlowText() const {
+    if (isNull()) return "null";
+    std::vector<std::string> parts;
+    if (isSequence()) {
+        for (const Node& item : items()) parts.push_back(item.toFlowText());
+        return fmt::format("[{}]", joined(parts));
+    }
+    if (isMap()) {
+        for (const auto& [key, value] : entries()) parts.push_back(key + ": " + value.toFlowText());
+        return fmt::format("{{{}}}", joined(parts));
+    }
+    const auto& [text, quoted, isBlock] = std::get<Scalar>(value_);
+    const bool misread = quoted && (parseDouble(text) || text == "true" || text == "false");
+    return misread || needsQuotes(text) ? toJson().dump() : text;
+}
+
+SourceLocation Node::lineLocation(std::size_t lineIndex) const {
+    const auto* value = std::get_if<Scalar>(&value_);
+    if (!value || !value->isBlock || location_.line == 0) return location_;
+    return {location_.file, location_.line + 1 + static_cast<int>(lineIndex), 0};
+}
+
+Node merged(const Node& base, const Node& over) {
+    if (!over.isMap()) return over;
+    Node result = base.isMap() ? base : Node::map({}, over.location());
+    for (const auto& [key, value] : over.entries()) {
+        if (value.isNull()) {
+            result.erase(key);
+            continue;
+        }
+        const Node* old = result.find(key);
+        result.set(key, merged(old ? *old : Node(), value), over.keyLocation(key));
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::config

@@ -27,12 +27,18 @@ class Node {
 
     Node() = default;
     static Node scalar(std::string text, SourceLocation where = {}, bool quoted = false);
+    /// The shortest text that reads back as the same number.
     static Node number(double value, SourceLocation where = {});
+    /// Lines of text, as `|` writes them; `where` is the place of the bar.
+    static Node block(std::string text, SourceLocation where = {});
+    static Node null(SourceLocation where);
     static Node sequence(Sequence items, SourceLocation where = {});
     static Node map(Map entries, SourceLocation where = {});
 
     const SourceLocation& location() const { return location_; }
-    /// "a number", "text", "a list", "a map", "nothing": for messages.
+    /// Where line `lineIndex` of a block of text stands; the node's own place when it is none.
+    SourceLocation lineLocation(std::size_t lineIndex) const;
+    /// "a number", "a boolean", "text", "a list", "a map", "nothing": for messages.
     std::string kindName() const;
 
     bool isNull() const { return std::holds_alternative<std::monostate>(value_); }
@@ -57,10 +63,11 @@ class Node {
     /// The entry of a map, or null. `this` must be a map.
     const Node* find(std::string_view key) const;
     Node* find(std::string_view key);
-    /// Where the key itself stands (for "unknown key" messages).
+    /// Where the key itself stands (for "unknown key" messages); the map's place when not known.
     const SourceLocation& keyLocation(std::string_view key) const;
     /// Adds or replaces an entry; a null node becomes a map.
     void set(std::string key, Node value);
+    void set(std::string key, Node value, SourceLocation keyWhere);
     bool erase(std::string_view key);
     /// Follows "a.b.c"; sets it, making maps on the way. Throws Error when a step is no map.
     void setPath(std::string_view dottedPath, Node value);
@@ -75,16 +82,17 @@ class Node {
   private:
     struct Scalar {
         std::string text;
-        bool quoted = false;  // a quoted "12" is text, not a number
+        bool quoted = false;   // a quoted "12" is text, not a number
+        bool isBlock = false;  // written below a bar
     };
     std::variant<std::monostate, Scalar, Sequence, Map> value_;
     SourceLocation location_;
-    std::vector<SourceLocation> keyLocations_;  // beside Map's entries
+    std::vector<std::pair<std::string, SourceLocation>> keyLocations_;  // of a map
 };
 
-/// Parses one YAML document (JSON is YAML). Throws Error with file:line:column on syntax errors,
-/// duplicate keys, anchors that expand beyond 100,000 nodes, more than one document, and nesting
-/// deeper than 64.
+/// Parses one YAML document (JSON is YAML); an empty one is null. Throws Error with
+/// file:line:column on syntax errors, duplicate keys, tags, merge keys, keys that are no text,
+/// anchors that expand beyond 100,000 nodes, more than one document, and nesting deeper than 64.
 Node parseYaml(std::string_view text, const std::string& fileName);
 Node parseYamlFile(const std::filesystem::path& path);
 

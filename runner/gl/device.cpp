@@ -171,6 +171,8 @@ Device Device::open(const DeviceChoice& choice) {
     std::optional<Device> software;  // what auto falls back on
     for (const egl::Candidate& candidate : candidates) {
         if (index && *index != candidate.index) continue;
+        // Where Mesa lists its devices, the surfaceless platform only offers the same again.
+        if (software && candidate.platform == "surfaceless") continue;
         try {
             Device device = openCandidate(candidate, choice.debug);
             const bool isSoftware = device.info().isSoftware;

@@ -1,1 +1,120 @@
+#include <array>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+#include <optional>
+
 #include "runner/gpu_scene/gpu_mesh.h"
+
+namespace gfxrepro::gpu_scene {
+
+namespace {
+
+constexpr int kBaseColorTexture = 0;  // texture unit
+constexpr glm::vec4 kBackground{0.18F, 0.20F, 0.24F, 1.0F};
+
+/// The mesh itself when it has normals; else one with three vertices of its own for each triangle,
+/// which carry the triangle's normal.
+scene::Mesh withNormals(const scene::Mesh& mesh) {
+    if (!mesh.normals.empty()) return mesh;
+    scene::Mesh flat;
+    flat.positions.reserve(3 * mesh.triangles.size());
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const auto first = static_cast<unsigned>(flat.positions.size());
+        for (int corner = 0; corner < 3; ++corner) {
+            flat.positions.push_back(mesh.positions[triangle[corner]]);
+            if (!mesh.texcoords.empty()) flat.texcoords.push_back(mesh.texcoords[triangle[corner]]);
+        }
+        const glm::vec3* corners = flat.positions.data() + first;
+        const glm::vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        flat.normals.insert(flat.normals.end(), 3, normal);
+        flat.triangles.push_back({first, first + 1, first + 2});
+    }
+    return flat;
+}
+
+/// What is uploaded once and drawn by every instance that uses it.
+class Uploads {
+  public:
+    explicit Uploads(const scene::Scene& scene) : scene_(scene) {}
+
+    const GpuMesh& mesh(int index) {
+        auto found = meshes_.find(index);
+        if (found == meshes_.end()) {
+            const scene::Mesh& mesh = scene_.meshes[static_cast<std::size_t>(index)];
+            found = meshes_.emplace(index, withNormals(mesh)).first;
+        }
+        return found->second;
+    }
+
+    const gl::Texture& texture(int index) {
+        auto found = textures_.find(index);
+        if (found == textures_.end()) {
+            const image::Image8& image = scene_.textures[static_cast<std::size_t>(index)];
+            found = textures_.emplace(index, gl::Texture::fromImage(image, true)).first;
+            found->second.setFilter(GL_LINEAR, GL_LINEAR);
+        }
+        return found->second;
+    }
+
+  private:
+    const scene::Scene& scene_;
+    std::map<int, GpuMesh> meshes_;
+    std::map<int, gl::Texture> textures_;
+};
+
+void drawInstance(const scene::Scene& scene, const scene::Instance& instance, Uploads& uploads,
+                  const gl::Program& program) {
+    const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    const scene::Material material = mesh.material < 0
+                                         ? scene::Material{}
+                                         : scene.materials[static_cast<std::size_t>(mesh.material)];
+    const bool hasTexture = material.baseColorTexture >= 0 && !mesh.texcoords.empty();
+    if (hasTexture) uploads.texture(material.baseColorTexture).bind(kBaseColorTexture);
+
+    const glm::mat3 linear(instance.worldFromMesh);
+    program.set("worldFromMesh", instance.worldFromMesh);
+    program.set("normalWorldFromMesh", glm::mat4(glm::transpose(glm::inverse(linear))));
+    program.set("baseColor", material.baseColor);
+    program.set("emissive", material.emissive);
+    program.set("alphaCutoff", material.alphaCutoff);
+    program.set("hasTexture", hasTexture ? 1 : 0);
+    uploads.mesh(instance.mesh).draw();
+}
+
+}  // namespace
+
+image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
+                            int height, const gl::ShaderLibrary& shaders) {
+    gl::Defines defines = attributeDefines();
+    defines["kBaseColorTexture"] = kBaseColorTexture;
+    const gl::Program program(
+        shaders, {"gpu_scene/preview.vert.glsl", "gpu_scene/preview.frag.glsl"}, defines);
+    const gl::Texture colour = gl::Texture::make2D(GL_RGBA32F, {width, height});
+    const gl::Texture depth = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, {width, height});
+    const gl::Framebuffer framebuffer(std::array{&colour}, &depth);
+
+    framebuffer.bind();
+    framebuffer.clearColour(0, kBackground);
+    framebuffer.clearDepth(1.0F);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    program.use();
+    program.set("clipFromWorld",
+                glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
+                    glm::lookAt(camera.position, camera.target, camera.up));
+    program.set("cameraPositionWorld", camera.position);
+    Uploads uploads(scene);
+    for (const scene::Instance& instance : scene.instances) {
+        drawInstance(scene, instance, uploads, program);
+    }
+    return colour.readImage(3);
+}
+
+}  // namespace gfxrepro::gpu_scene

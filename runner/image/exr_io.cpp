@@ -1,1 +1,250 @@
 #include "runner/image/exr_io.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVersion.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+
+#include "runner/core/files.h"
+#include "runner/image/limits.h"
+
+namespace gfxrepro::image {
+
+namespace {
+
+constexpr int kCallingThreadOnly = 0;
+
+/// OpenEXR's view of a mapped file.
+class MemoryStream : public Imf::IStream {
+  public:
+    MemoryStream(std::span<const std::byte> bytes, const std::string& name)
+        : Imf::IStream(name.c_str()), bytes_(bytes) {}
+
+    /// False at the end of the file; throws when it ends before `count`.
+    bool read(char to[], int count) override {
+        const auto wanted = static_cast<std::uint64_t>(count);
+        if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_) {
+            throw std::runtime_error("the file ends early");
+        }
+        std::memcpy(to, bytes_.data() + position_, wanted);
+        position_ += wanted;
+        return position_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t position) override { position_ = position; }
+
+  private:
+    std::span<const std::byte> bytes_;
+    std::uint64_t position_ = 0;
+};
+
+int sampledCount(int count, int sampling) {
+    return (count + sampling - 1) / sampling;
+}
+
+/// Checks what the first header declares before the library allocates for it.
+void checkHeader(std::span<const std::byte> bytes, const std::string& name) {
+    unsigned char start[8];  // magic number and version, little-endian
+    if (bytes.size() < sizeof(start)) throw Error(name + ": not an OpenEXR file");
+    std::memcpy(start, bytes.data(), sizeof(start));
+    const auto word = [&start](int at) {
+        return start[at] | start[at + 1] << 8 | start[at + 2] << 16 |
+               static_cast<int>(static_cast<unsigned>(start[at + 3]) << 24);
+    };
+    if (word(0) != Imf::MAGIC) throw Error(name + ": not an OpenEXR file");
+    int version = word(4);
+    if (Imf::getVersion(version) != Imf::EXR_VERSION ||
+        !Imf::supportsFlags(Imf::getFlags(version))) {
+        throw Error(name + ": OpenEXR version " + std::to_string(Imf::getVersion(version)) +
+                    " with flags that are not supported; 2 is read");
+    }
+    MemoryStream stream(bytes, name);
+    stream.seekg(sizeof(start));
+    Imf::Header header;
+    header.readFrom(stream, version);
+    if (Imf::isNonImage(version) || (header.hasType() && Imf::isDeepData(header.type()))) {
+        throw Error(name + ": deep images are not supported");
+    }
+    std::size_t channels = 0;
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) ++channels;
+    const Imath::Box2i& window = header.dataWindow();
+    checkDeclaredSize(std::int64_t{window.max.x} - window.min.x + 1,
+                      std::int64_t{window.max.y} - window.min.y + 1, channels * sizeof(float),
+                      bytes.size(), name);
+    if (header.hasTileDescription()) {
+        const Imf::TileDescription& tile = header.tileDescription();
+        checkDeclaredSize(tile.xSize, tile.ySize, channels * sizeof(float), bytes.size(),
+                          name + ": tile");
+    }
+}
+
+/// Values of a channel that is stored at every (x, y) sampling-th pixel, repeated over the pixels.
+ImageF repeated(const ImageF& sampled, int width, int height, int xSampling, int ySampling) {
+    ImageF result(width, height, 1);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            result.at(x, y) = sampled.at(x / xSampling, y / ySampling);
+        }
+    }
+    return result;
+}
+
+ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
+    checkHeader(bytes, name);
+    MemoryStream stream(bytes, name);
+    Imf::InputFile file(stream, kCallingThreadOnly);
+    const Imf::Header& header = file.header();
+    const Imath::Box2i window = header.dataWindow();
+    const int width = window.max.x - window.min.x + 1;
+    const int height = window.max.y - window.min.y + 1;
+
+    ExrImage image;
+    Imf::FrameBuffer frameBuffer;
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+        const Imf::Channel& channel = i.channel();
+        image.channels.push_back(
+            {i.name(), channel.type == Imf::HALF ? ExrPixelType::Half : ExrPixelType::Float,
+             ImageF(sampledCount(width, channel.xSampling), sampledCount(height, channel.ySampling),
+                    1)});
+        ImageF& values = image.channels.back().values;
+        frameBuffer.insert(
+            i.name(), Imf::Slice::Make(Imf::FLOAT, values.values().data(), window, sizeof(float),
+                                       static_cast<std::size_t>(values.width()) * sizeof(float),
+                                       channel.xSampling, channel.ySampling));
+    }
+    file.setFrameBuffer(frameBuffer);
+    file.readPixels(window.min.y, window.max.y);
+
+    for (ExrImage::Channel& channel : image.channels) {
+        const Imf::Channel& stored = header.channels()[channel.name.c_str()];
+        if (stored.xSampling == 1 && stored.ySampling == 1) continue;
+        channel.values =
+            repeated(channel.values, width, height, stored.xSampling, stored.ySampling);
+    }
+    for (auto i = header.begin(); i != header.end(); ++i) {
+        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute());
+        if (text != nullptr) image.attributes[i.name()] = text->value();
+    }
+    return image;
+}
+
+/// Refuses what a file cannot hold; OpenEXR itself would keep the last of two equal names.
+void checkWritable(const ExrImage& image) {
+    if (image.width() == 0 || image.height() == 0) throw Error("the image has no pixels");
+    for (auto channel = image.channels.begin(); channel != image.channels.end(); ++channel) {
+        if (channel->values.width() != image.width() ||
+            channel->values.height() != image.height() || channel->values.channels() != 1) {
+            throw Error("channel '" + channel->name + "' differs in size from the first");
+        }
+        const auto sameName = [&](const auto& other) { return other.name == channel->name; };
+        if (std::any_of(image.channels.begin(), channel, sameName)) {
+            throw Error("channel '" + channel->name + "' is there twice");
+        }
+    }
+}
+
+std::string encoded(const ExrImage& image) {
+    checkWritable(image);
+    Imf::Header header(image.width(), image.height());
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [key, value] : image.attributes) {
+        header.insert(key, Imf::StringAttribute(value));
+    }
+    Imf::FrameBuffer frameBuffer;
+    std::vector<std::vector<half>> halves;  // keeps what the frame buffer points to
+    const auto width = static_cast<std::size_t>(image.width());
+    for (const ExrImage::Channel& channel : image.channels) {
+        const std::span<const float> values = channel.values.values();
+        const bool isHalf = channel.type == ExrPixelType::Half;
+        const Imf::PixelType type = isHalf ? Imf::HALF : Imf::FLOAT;
+        header.channels().insert(channel.name, Imf::Channel(type));
+        if (isHalf) halves.emplace_back(values.begin(), values.end());
+        const void* data = isHalf ? static_cast<const void*>(halves.back().data()) : values.data();
+        const std::size_t valueBytes = isHalf ? sizeof(half) : sizeof(float);
+        // The library only reads here, but its slices point to what may be written.
+        frameBuffer.insert(channel.name,
+                           Imf::Slice(type, static_cast<char*>(const_cast<void*>(data)), valueBytes,
+                                      width * valueBytes));
+    }
+    Imf::StdOSStream stream;
+    {
+        Imf::OutputFile file(stream, header, kCallingThreadOnly);
+        file.setFrameBuffer(frameBuffer);
+        file.writePixels(image.height());
+    }  // the end writes the table of offsets
+    return stream.str();
+}
+
+}  // namespace
+
+const ImageF* ExrImage::find(const std::string& name) const {
+    const auto channel = std::find_if(channels.begin(), channels.end(),
+                                      [&](const Channel& each) { return each.name == name; });
+    return channel == channels.end() ? nullptr : &channel->values;
+}
+
+void ExrImage::add(const ImageF& image, const std::vector<std::string>& names, ExrPixelType type) {
+    GFXREPRO_ASSERT_EQ(static_cast<std::size_t>(image.channels()), names.size());
+    for (int channel = 0; channel < image.channels(); ++channel) {
+        ImageF plane(image.width(), image.height(), 1);
+        for (int y = 0; y < image.height(); ++y) {
+            for (int x = 0; x < image.width(); ++x) plane.at(x, y) = image.at(x, y, channel);
+        }
+        channels.push_back({names[static_cast<std::size_t>(channel)], type, std::move(plane)});
+    }
+}
+
+ImageF ExrImage::colour() const {
+    std::vector<const ImageF*> planes{find("R"), find("G"), find("B")};
+    if (planes[0] == nullptr || planes[1] == nullptr || planes[2] == nullptr) {
+        const ImageF* single = find("Y") != nullptr ? find("Y") : find("Z");
+        if (single != nullptr) return *single;
+        std::string names;
+        for (const Channel& channel : channels) names += " '" + channel.name + "'";
+        throw Error("the image has the channels" + names + "; R, G, B or Y or Z are needed");
+    }
+    if (find("A") != nullptr) planes.push_back(find("A"));
+    ImageF result(width(), height(), static_cast<int>(planes.size()));
+    for (int y = 0; y < height(); ++y) {
+        for (int x = 0; x < width(); ++x) {
+            for (std::size_t c = 0; c < planes.size(); ++c) {
+                result.at(x, y, static_cast<int>(c)) = planes[c]->at(x, y);
+            }
+        }
+    }
+    return result;
+}
+
+ExrImage readExr(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    try {
+        return decoded(file.bytes(), path.string());
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw Error(path.string() + ": " + error.what());
+    }
+}
+
+void writeExr(const std::filesystem::path& path, const ExrImage& image) {
+    std::string content;
+    try {
+        content = encoded(image);
+    } catch (const std::exception& error) {
+        throw Error("cannot write " + path.string() + ": " + error.what());
+    }
+    writeFileAtomic(path, content);
+}
+
+}  // namespace gfxrepro::image

@@ -1,1 +1,198 @@
 #include "runner/image/png_io.h"
+
+#include <png.h>
+
+#include <bit>
+#include <csetjmp>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "runner/core/files.h"
+#include "runner/image/limits.h"
+
+namespace gfxrepro::image {
+
+namespace {
+
+constexpr bool kSwapBytes = std::endian::native == std::endian::little;  // PNG is big-endian
+
+/// libpng reports an error by this callback, which must not return.
+[[noreturn]] void keepMessageAndJump(png_structp png, png_const_charp message) {
+    *static_cast<std::string*>(png_get_error_ptr(png)) = message;
+    png_longjmp(png, 1);
+}
+
+void ignoreWarning(png_structp, png_const_charp) {}
+
+/// Runs libpng calls and turns libpng's longjmp into an Error. `step` and what it calls hold
+/// nothing with a destructor, as a jump would skip it.
+template <class Step>
+void guarded(png_structp png, const std::string& place, const std::string& message, Step&& step) {
+    if (setjmp(png_jmpbuf(png)) != 0) throw Error(place + ": " + message);
+    step();
+}
+
+class Reader {
+  public:
+    Reader(std::span<const std::byte> bytes, const std::string& name) : rest_(bytes), name_(name) {
+        constexpr std::size_t kSignatureBytes = 8;
+        if (bytes.size() < kSignatureBytes ||
+            png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, kSignatureBytes) != 0) {
+            throw Error(name + ": not a PNG file");
+        }
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
+                                      ignoreWarning);
+        if (png_ != nullptr) info_ = png_create_info_struct(png_);
+        if (info_ == nullptr) {
+            png_destroy_read_struct(&png_, &info_, nullptr);
+            throw Error(name + ": libpng cannot be started");
+        }
+        png_set_read_fn(png_, this, take);
+        guarded(png_, name_, message_, [this] { png_read_info(png_, info_); });
+        checkDeclaredSize(png_get_image_width(png_, info_), png_get_image_height(png_, info_),
+                          decodedBytesPerPixel(), bytes.size(), name);
+    }
+    ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+
+    int bitDepth() const { return png_get_bit_depth(png_, info_); }
+
+    /// All rows as T, palettes, low depths and transparent colours expanded.
+    template <class T>
+    Image<T> decoded() {
+        guarded(png_, name_, message_, [this] {
+            png_set_expand(png_);
+            if (sizeof(T) == 2) {
+                png_set_expand_16(png_);
+                if (kSwapBytes) png_set_swap(png_);
+            }
+            png_set_interlace_handling(png_);
+            png_read_update_info(png_, info_);
+        });
+        Image<T> image(static_cast<int>(png_get_image_width(png_, info_)),
+                       static_cast<int>(png_get_image_height(png_, info_)),
+                       png_get_channels(png_, info_));
+        std::vector<png_bytep> rows(static_cast<std::size_t>(image.height()));
+        for (int y = 0; y < image.height(); ++y) {
+            rows[static_cast<std::size_t>(y)] = reinterpret_cast<png_bytep>(image.row(y).data());
+        }
+        GFXREPRO_ASSERT_EQ(png_get_rowbytes(png_, info_), image.row(0).size_bytes());
+        guarded(png_, name_, message_, [this, &rows] {
+            png_read_image(png_, rows.data());
+            png_read_end(png_, nullptr);
+        });
+        return image;
+    }
+
+  private:
+    static void take(png_structp png, png_bytep to, std::size_t count) {
+        auto& rest = static_cast<Reader*>(png_get_io_ptr(png))->rest_;
+        if (count > rest.size()) png_error(png, "the file ends early");
+        std::memcpy(to, rest.data(), count);
+        rest = rest.subspan(count);
+    }
+
+    /// At most: with the alpha that a transparent colour may add.
+    std::size_t decodedBytesPerPixel() const {
+        return bitDepth() == 16 ? 4 * sizeof(std::uint16_t) : 4;
+    }
+
+    std::span<const std::byte> rest_;
+    std::string name_;
+    std::string message_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+
+class Writer {
+  public:
+    Writer() {
+        png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
+                                       ignoreWarning);
+        if (png_ != nullptr) info_ = png_create_info_struct(png_);
+        if (info_ == nullptr) {
+            png_destroy_write_struct(&png_, &info_);
+            throw Error("libpng cannot be started");
+        }
+        png_set_write_fn(png_, &encoded_, append, nullptr);
+    }
+    ~Writer() { png_destroy_write_struct(&png_, &info_); }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    /// `place` begins the message of an Error.
+    template <class T>
+    std::string encoded(const Image<T>& image, const std::string& place) {
+        constexpr int kColourTypes[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
+                                        PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+        if (image.channels() > 4) {
+            throw Error(place + ": " + std::to_string(image.channels()) +
+                        " channels; PNG has 1 to 4");
+        }
+        const std::size_t rowValues =
+            static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
+        guarded(png_, place, message_, [&] {
+            png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width()),
+                         static_cast<png_uint_32>(image.height()), 8 * sizeof(T),
+                         kColourTypes[image.channels() - 1], PNG_INTERLACE_NONE,
+                         PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+            png_write_info(png_, info_);
+            if (sizeof(T) == 2 && kSwapBytes) png_set_swap(png_);
+            for (std::size_t y = 0; y < static_cast<std::size_t>(image.height()); ++y) {
+                png_write_row(
+                    png_, reinterpret_cast<png_const_bytep>(image.values().data() + y * rowValues));
+            }
+            png_write_end(png_, info_);
+        });
+        return std::move(encoded_);
+    }
+
+  private:
+    static void append(png_structp png, png_bytep from, std::size_t count) {
+        static_cast<std::string*>(png_get_io_ptr(png))
+            ->append(reinterpret_cast<const char*>(from), count);
+    }
+
+    std::string encoded_;
+    std::string message_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+
+template <class T>
+void writeEncoded(const std::filesystem::path& path, const Image<T>& image) {
+    writeFileAtomic(path, Writer().encoded(image, "cannot write " + path.string()));
+}
+
+}  // namespace
+
+Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name) {
+    Reader reader(bytes, name);
+    if (reader.bitDepth() == 16) throw Error(name + ": 16 bits a channel; at most 8 are allowed");
+    return reader.decoded<std::uint8_t>();
+}
+
+Image8 readPng8(const std::filesystem::path& path) {
+    return decodePng8(MappedFile(path).bytes(), path.string());
+}
+
+Image16 readPng16(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    return Reader(file.bytes(), path.string()).decoded<std::uint16_t>();
+}
+
+void writePng(const std::filesystem::path& path, const Image8& image) {
+    writeEncoded(path, image);
+}
+
+void writePng(const std::filesystem::path& path, const Image16& image) {
+    writeEncoded(path, image);
+}
+
+std::string encodePng(const Image8& image) {
+    return Writer().encoded(image, "cannot encode a PNG");
+}
+
+}  // namespace gfxrepro::image

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gfxrepro::report {
@@ -53,22 +53,24 @@ struct Record {
 class RecordWriter {
   public:
     /// Creates the file with its header, or opens it for appending after cutting off a torn last
-    /// line.
+    /// line, and with it the other rows of its case.
     explicit RecordWriter(const std::filesystem::path& path);
+    /// One write, then flushed to the disk. Throws Error, leaving the file as it was.
     void append(const std::vector<Record>& rows);
 
-  private:
-    std::filesystem::path path_;
-    int fd_ = -1;
-
-  public:
     ~RecordWriter();
     RecordWriter(const RecordWriter&) = delete;
     RecordWriter& operator=(const RecordWriter&) = delete;
+
+  private:
+    void writeBlock(std::string_view block);
+
+    std::filesystem::path path_;
+    int fd_ = -1;
 };
 
-/// Reads records.csv. A torn last line (no newline) is ignored; any other malformed row is an Error
-/// with file and line.
+/// Reads records.csv. A torn last line (no newline) is ignored with the other rows of its case; any
+/// other malformed row is an Error with file and line.
 std::vector<Record> readRecords(const std::filesystem::path& path);
 
 }  // namespace gfxrepro::report

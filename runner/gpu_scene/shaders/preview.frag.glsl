@@ -1,1 +1,25 @@
 #version 450 core
+// The look at a scene, pixels: base colour under a headlight. Reads the material, writes linear
+// radiance; raycast::renderPreview evaluates the same formula on the CPU.
+
+in vec3 normalWorld;
+in vec3 toCameraWorld;
+in vec2 uv;
+
+uniform vec4 baseColor;  // linear
+uniform vec3 emissive;
+uniform float alphaCutoff;  // 0: opaque
+uniform int hasTexture;
+
+layout(binding = kBaseColorTexture) uniform sampler2D baseColorTexture;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    vec4 base = baseColor;
+    // One level without mipmaps: the ray traced look has no footprint to choose a level by.
+    if (hasTexture != 0) base *= textureLod(baseColorTexture, uv, 0.0);
+    if (base.a < alphaCutoff) discard;
+    float facing = abs(dot(normalize(normalWorld), normalize(toCameraWorld)));
+    radiance = vec4(base.rgb * (0.15 + 0.85 * facing) + emissive, 1.0);
+}

@@ -1,0 +1,26 @@
+#include "runner/image/limits.h"
+
+#include <algorithm>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::image {
+
+void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
+                       std::size_t fileBytes, const std::string& name) {
+    constexpr std::int64_t kMaxSidePx = 32768;
+    const std::string declared =
+        name + ": the header declares " + std::to_string(width) + " x " + std::to_string(height);
+    if (width < 1 || height < 1 || width > kMaxSidePx || height > kMaxSidePx) {
+        throw Error(declared + " pixels; 1 to 32768 a side are allowed");
+    }
+    constexpr std::size_t kAlwaysAllowedBytes = std::size_t{16} << 20;
+    constexpr std::size_t kMaxExpansion = 2000;
+    const std::size_t bytes = static_cast<std::size_t>(width * height) * bytesPerPixel;
+    if (bytes > std::max(kAlwaysAllowedBytes, kMaxExpansion * fileBytes)) {
+        throw Error(declared + " pixels of " + std::to_string(bytesPerPixel) +
+                    " bytes, too many for a file of " + std::to_string(fileBytes) + " bytes");
+    }
+}
+
+}  // namespace gfxrepro::image

@@ -1,0 +1,16 @@
+// The bound on memory that every image decoder keeps to.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace gfxrepro::image {
+
+/// Throws Error when a header declares more than 32768 pixels a side, none at all, or an image of
+/// more than 16 MiB that is also more than 2,000 times the file's size. `name` stands in the
+/// message.
+void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
+                       std::size_t fileBytes, const std::string& name);
+
+}  // namespace gfxrepro::image

@@ -1,0 +1,33 @@
+// The list of a run's images: images/index.csv, one row an image.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gfxrepro::report {
+
+/// Columns case,table,frame,name,png,exr,title in this order. Paths are relative to the run folder:
+/// "images/zju2005-2.1/<case>-<name>.png".
+struct ImageEntry {
+    std::string caseId;
+    std::string table;  // "zju2005/2.1"
+    int frame = 0;
+    std::string name;   // "surface"
+    std::string png;    // empty when there is none
+    std::string exr;    // empty when there is none
+    std::string title;  // the case's title: "zju2005/2.1 scene=models/duck"
+
+    bool operator==(const ImageEntry&) const = default;
+};
+
+/// Appends to `runDir`/images/index.csv, making it with its header if it is not there. One write;
+/// throws Error.
+void appendImages(const std::filesystem::path& runDir, const std::vector<ImageEntry>& images);
+
+/// The images of a run, in the order in which they were made; none when there is no list. Of two
+/// entries of one case, frame and name the last counts (a case that was run again). A torn last
+/// line is passed over; other malformed rows are an Error with file and line.
+std::vector<ImageEntry> readImages(const std::filesystem::path& runDir);
+
+}  // namespace gfxrepro::report

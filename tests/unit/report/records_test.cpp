@@ -1,0 +1,189 @@
+#include "runner/report/records.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "runner/core/files.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::report {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+constexpr const char* kHeader =
+    "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
+    "value,status,message\n";
+
+Record sample(const std::string& caseId, double value) {
+    Record record;
+    record.caseId = caseId;
+    record.table = "zju2005/2.1";
+    record.technique = "voxelization";
+    record.method = "worksheet";
+    record.scene = "models/duck";
+    record.params = R"({"resolution":256,"method":"worksheet"})";
+    record.frame = 1;
+    record.repeat = 2;
+    record.process = 3;
+    record.lane = "timing";
+    record.pass = "rasterization";
+    record.metric = "gpu_time_ms";
+    record.unit = "ms";
+    record.value = value;
+    return record;
+}
+
+TEST(Records, WriteTheDocumentedColumns) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    RecordWriter(path).append({sample("abc", 0.1)});
+    EXPECT_EQ(readFile(path),
+              std::string(kHeader) +
+                  "1,abc,zju2005/2.1,voxelization,worksheet,models/duck,"
+                  "\"{\"\"resolution\"\":256,\"\"method\"\":\"\"worksheet\"\"}\",1,2,3,timing,"
+                  "rasterization,gpu_time_ms,ms,0.1,ok,\n");
+}
+
+TEST(Records, ReadBackAsWritten) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    std::vector<Record> rows;
+    for (const double value : {0.0, -0.0, 1.0 / 3.0, 1e-300, 6.02214076e23, 5e-324,
+                               std::numeric_limits<double>::infinity(), 123456789.0}) {
+        rows.push_back(sample("abc", value));
+    }
+    for (const std::string text : {"", ",", "\"", "a\nb", "a\r\nb", "\"\"", " lead", "ü,\"ß\"\n"}) {
+        rows.push_back(sample("abc", 1.0));
+        rows.back().message = text;
+        rows.back().scene = text + "x";
+    }
+    {
+        RecordWriter writer(path);
+        writer.append(rows);
+        writer.append({sample("def", 2.0)});
+    }
+    rows.push_back(sample("def", 2.0));
+    EXPECT_EQ(readRecords(path), rows);
+}
+
+TEST(Records, FailedCaseHasAnEmptyValue) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    Record row = sample("abc", std::numeric_limits<double>::quiet_NaN());
+    row.status = Status::DeviceLost;
+    row.message = "the context was reset";
+    RecordWriter(path).append({row});
+    EXPECT_THAT(readFile(path), testing::EndsWith(",ms,,device-lost,the context was reset\n"));
+    const std::vector<Record> read = readRecords(path);
+    ASSERT_EQ(read.size(), 1u);
+    EXPECT_TRUE(std::isnan(read[0].value));
+    EXPECT_EQ(read[0].status, Status::DeviceLost);
+}
+
+/// Whatever the byte at which a write was cut: what is read, and what is there after reopening, are
+/// the cases before it.
+TEST(Records, CutAtAnyByteLosesOnlyTheLastCase) {
+    const TemporaryFolder folder;
+    const auto whole = folder.path() / "whole.csv";
+    std::vector<Record> first = {sample("aaa", 1.0), sample("aaa", 2.0)};
+    first[1].message = "two\nlines";
+    RecordWriter(whole).append(first);
+    const std::size_t firstEnd = readFile(whole).size();
+    std::vector<Record> second = {sample("bbb", 3.0), sample("bbb", 4.0)};
+    second[0].message = "a \"quoted\"\nnewline";
+    RecordWriter(whole).append(second);
+    const std::string text = readFile(whole);
+    const std::size_t rowEnd = text.find("1,bbb", firstEnd + 1);
+
+    for (std::size_t length = firstEnd + 3; length < text.size(); ++length) {
+        // A cut exactly behind a row cannot be told from a case that has one row less.
+        if (length == rowEnd) continue;
+        const auto path = folder.write("cut.csv", text.substr(0, length));
+        EXPECT_EQ(readRecords(path), first) << "cut at " << length;
+        RecordWriter(path).append(second);
+        EXPECT_EQ(readFile(path), text) << "cut at " << length;
+    }
+}
+
+TEST(Records, CutHeaderIsWrittenAgain) {
+    const TemporaryFolder folder;
+    const std::string header = kHeader;
+    for (std::size_t length = 0; length <= header.size(); ++length) {
+        const auto path = folder.write("cut.csv", header.substr(0, length));
+        { const RecordWriter writer(path); }
+        EXPECT_EQ(readFile(path), header);
+    }
+}
+
+TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
+    const TemporaryFolder folder;
+    const auto error = [&](const std::string& content) {
+        const auto path = folder.write("records.csv", content);
+        return errorText([&] { readRecords(path); }, folder.path());
+    };
+    const std::string good = "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,\n";
+    EXPECT_EQ(error("a,b\n"),
+              "DIR/records.csv:1: expected the header "
+              "'schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,"
+              "metric,unit,value,status,message', found 'a,b'");
+    EXPECT_EQ(error(kHeader + good + "1,c,t\n"), "DIR/records.csv:3: expected 17 columns, found 3");
+    EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,\n"),
+              "DIR/records.csv:3: expected records of schema 1, found 2");
+    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0.5,0,0,timing,p,x,ms,1,ok,\n"),
+              "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
+    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,fast,ok,\n"),
+              "DIR/records.csv:2: column 'value': expected a number or nothing, found 'fast'");
+    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,fine,\n"),
+              "DIR/records.csv:2: column 'status': found 'fine'; allowed: ok, ambiguous, flaky, "
+              "unsupported, timeout, oom, crash, device-lost, missing, error");
+    EXPECT_EQ(error(std::string(kHeader) + "1,\"two\nlines\",t\n" + good),
+              "DIR/records.csv:2: expected 17 columns, found 3");
+    EXPECT_EQ(error(std::string(kHeader) + "1,c\"d,t\n"),
+              "DIR/records.csv:2: expected a comma or the end of the line after 'c', found '\"'");
+    EXPECT_EQ(error(std::string(kHeader) + "1,\"c\"d,t\n"),
+              "DIR/records.csv:2: expected a comma or the end of the line after 'c', found 'd'");
+    EXPECT_EQ(errorText([&] { readRecords(folder.path() / "none.csv"); }, folder.path()),
+              "cannot read DIR/none.csv: No such file or directory");
+    EXPECT_EQ(errorText([] { statusFromName("fine"); }),
+              "unknown status 'fine'; allowed: ok, ambiguous, flaky, unsupported, timeout, oom, "
+              "crash, device-lost, missing, error");
+}
+
+TEST(Records, WriterRefusesAnotherFile) {
+    const TemporaryFolder folder;
+    const auto path = folder.write("notes.txt", "my notes\n");
+    EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
+                testing::EndsWith("found 'my notes'"));
+    EXPECT_EQ(readFile(path), "my notes\n");
+}
+
+TEST(Records, StatusNamesRoundTrip) {
+    for (int i = 0; i <= static_cast<int>(Status::Error); ++i) {
+        const auto status = static_cast<Status>(i);
+        EXPECT_EQ(statusFromName(statusName(status)), status);
+    }
+}
+
+TEST(Records, HundredThousandRows) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    std::vector<Record> rows(100'000, sample("0123456789ab", 1.25));
+    RecordWriter(path).append(rows);
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Record> read = readRecords(path);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(read.size(), rows.size());
+    RecordProperty("seconds", std::to_string(elapsed.count()));
+    std::cout << "read in " << elapsed.count() << " s\n";
+}
+
+}  // namespace
+}  // namespace gfxrepro::report
