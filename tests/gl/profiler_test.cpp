@@ -81,6 +81,35 @@ void main() {
     EXPECT_GT(times[0].timeMs, times[1].timeMs);
 }
 
+TEST_F(GlTest, AScopeHoldsTheVertexWorkOfItsDraw) {
+    // A software device runs the vertices in the draw call, so the scope around the call is longer
+    // than the call, unless its first stamp is taken late. Nothing is rasterized.
+    const gl::Program busy = program({{"v.vert.glsl", R"(#version 450 core
+void main() {
+    float x = float(gl_VertexID);
+    for (int i = 0; i < 64; ++i) x = fract(x * 1.37 + 0.11);
+    gl_Position = vec4(x, 0.0, 0.0, 1.0);
+}
+)"},
+                                      {"v.frag.glsl", "#version 450 core\nvoid main() {}\n"}});
+    const gl::Texture target = gl::Texture::make2D(GL_RGBA8, {512, 512});
+    const gl::Framebuffer framebuffer(std::array{&target});
+    framebuffer.bind();
+    framebuffer.clearColour(0, glm::vec4(0));
+    busy.use();
+    const gl::VertexArray vertexArray;
+    vertexArray.bind();
+    gl::Profiler profiler(device.info().isSoftware);
+    {
+        const gl::GpuScope scope(profiler, "draw");
+        const gl::CpuScope call(profiler, "draw call");
+        glDrawArrays(GL_TRIANGLES, 0, 300000);
+    }
+    const std::vector<PassTime> times = profiler.collect();
+    ASSERT_EQ(names(times), (std::vector<std::string>{"gpu draw", "cpu draw call"}));
+    EXPECT_GE(times[0].timeMs, times[1].timeMs);
+}
+
 TEST_F(GlTest, QueriesGoWithTheirScopes) {
     gl::Profiler profiler(device.info().isSoftware);
     { const gl::GpuScope scope(profiler, "a"); }
