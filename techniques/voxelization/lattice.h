@@ -1,0 +1,29 @@
+// A mesh snapped to a lattice of 2⁻⁸ voxels. On it the exact rules (thin, conservative, solid) are
+// decided in integers, or in doubles that hold them, alike on the device and on the CPU.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::voxelization {
+
+/// Lattice units a voxel.
+inline constexpr int kLatticePerVoxel = 256;
+/// Farthest that a vertex may lie from the box's corner, in voxels: keeps products of differences
+/// of coordinates below 2⁵³.
+inline constexpr int kMaxExtentVoxels = 65536;
+
+/// Positions in lattice units from the box's minimum; voxel (x, y, z) is the closed cube from
+/// 256·(x, y, z) to 256·(x + 1, y + 1, z + 1), its centre at +128. `triangles` must outlive it.
+struct LatticeMesh {
+    std::vector<glm::ivec3> positions;
+    std::span<const glm::uvec3> triangles;
+};
+
+/// Each vertex at the nearest lattice point. Throws Error for a vertex beyond kMaxExtentVoxels.
+LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, int resolution);
+
+}  // namespace gfxrepro::voxelization

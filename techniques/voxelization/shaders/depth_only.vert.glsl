@@ -1,0 +1,8 @@
+#version 450 core
+// The yardstick of speed: the mesh seen along z, depth only; there is no fragment stage.
+layout(location = POSITION_LOCATION) in vec3 positionWorld;
+
+uniform vec3 boxCentreWorld;
+uniform float clipFromWorldScale;  // 2 / edge of the box
+
+void main() { gl_Position = vec4((positionWorld - boxCentreWorld) * clipFromWorldScale, 1.0); }

@@ -1,0 +1,10 @@
+// A triangle of the lattice mesh, 256 units a voxel, in the local (u, v, w) of `axis`.
+// Defines: POSITION_BINDING, TRIANGLE_BINDING.
+
+layout(std430, binding = POSITION_BINDING) restrict readonly buffer Positions { int lattice[]; };
+layout(std430, binding = TRIANGLE_BINDING) restrict readonly buffer Triangles { uint corners[]; };
+
+ivec3 cornerLocal(int projection, uint triangle, uint corner) {
+    uint vertex = 3u * corners[3u * triangle + corner];
+    return localFromVolume(projection, ivec3(lattice[vertex], lattice[vertex + 1u], lattice[vertex + 2u]));
+}

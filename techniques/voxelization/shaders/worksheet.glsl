@@ -1,0 +1,33 @@
+// Addresses of voxels in a worksheet: the GLSL side of worksheet.h, from the defines RESOLUTION,
+// VOXEL_BITS, VOXELS_PER_TEXEL (C), PATCHES_X, PATCHES_PER_SHEET and LANE_MASK.
+// Departure [zju2005] Sec. 2.3.2: integer instructions instead of lookup textures (256×8 bits of a
+// byte, 8×1 powers of two, sheet to sheet): shader model 2 had none; the addresses are the same.
+
+// Local (u, v, w) of an axis (0 x, 1 y, 2 z), w along it: x: (y, z, x), y: (z, x, y), z: (x, y, z).
+ivec3 localFromVolume(int axis, ivec3 p) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }
+vec3 localFromVolume(int axis, vec3 p) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }
+ivec3 volumeFromLocal(int axis, ivec3 q) { return axis == 0 ? q.zxy : axis == 1 ? q.yzx : q; }
+
+// Corner texel (x, y, layer) of the patch that holds slab w / C.
+ivec3 worksheetPatch(int slab) {
+    int patchInSheet = slab % PATCHES_PER_SHEET;
+    return ivec3(ivec2(patchInSheet % PATCHES_X, patchInSheet / PATCHES_X) * RESOLUTION,
+                 slab / PATCHES_PER_SHEET);
+}
+
+// Texel (x, y, layer) of the voxel at local (u, v, w). In a grid of the z layout local is (x, y, z).
+ivec3 worksheetTexel(ivec3 local) {
+    return worksheetPatch(local.z / VOXELS_PER_TEXEL) + ivec3(local.xy, 0);
+}
+
+// Position of the voxel's lowest bit in its texel.
+int worksheetShift(int w) { return w % VOXELS_PER_TEXEL * VOXEL_BITS; }
+
+// The voxel's value out of its texel's word.
+uint voxelOfWord(uint word, int w) { return (word >> worksheetShift(w)) & LANE_MASK; }
+
+// The value of voxel (x, y, z) of a grid in the z layout; 0 outside the grid.
+uint loadVoxel(usampler2DArray sheets, ivec3 voxel) {
+    if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, ivec3(RESOLUTION)))) return 0u;
+    return voxelOfWord(texelFetch(sheets, worksheetTexel(voxel), 0).r, voxel.z);
+}

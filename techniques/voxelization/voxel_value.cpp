@@ -1,0 +1,78 @@
+#include "techniques/voxelization/voxel_value.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+glm::uvec2 normalLevels(int voxelBits) {
+    GFXREPRO_ASSERT(voxelBits == 8 || voxelBits == 16 || voxelBits == 32);
+    return voxelBits == 8    ? glm::uvec2(15)
+           : voxelBits == 16 ? glm::uvec2(255)
+                             : glm::uvec2(65535, 32767);
+}
+
+glm::uvec3 colorBits(int voxelBits) {
+    GFXREPRO_ASSERT(voxelBits == 8 || voxelBits == 16 || voxelBits == 32);
+    return voxelBits == 8    ? glm::uvec3(3, 3, 2)
+           : voxelBits == 16 ? glm::uvec3(5, 6, 5)
+                             : glm::uvec3(8);
+}
+
+std::uint32_t quantised(float value, std::uint32_t maximum) {
+    const float clamped = std::clamp(value, 0.0F, 1.0F);
+    return static_cast<std::uint32_t>(std::floor(clamped * static_cast<float>(maximum) + 0.5F));
+}
+
+glm::vec2 signNotZero(const glm::vec2& v) {
+    return {v.x < 0.0F ? -1.0F : 1.0F, v.y < 0.0F ? -1.0F : 1.0F};
+}
+
+}  // namespace
+
+std::uint32_t encodeNormal(const glm::vec3& normal, int voxelBits) {
+    const float sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+    const glm::vec3 n = sum > 0.0F ? normal / sum : glm::vec3(0, 0, 1);
+    glm::vec2 octahedral(n.x, n.y);
+    if (n.z < 0.0F) {
+        octahedral = (1.0F - glm::vec2(std::abs(n.y), std::abs(n.x))) * signNotZero(octahedral);
+    }
+    const glm::uvec2 levels = normalLevels(voxelBits);
+    const std::uint32_t x = quantised(octahedral.x * 0.5F + 0.5F, levels.x - 1);
+    const std::uint32_t y = quantised(octahedral.y * 0.5F + 0.5F, levels.y - 1);
+    return voxelBits == 32 ? 0x80000000U | y << 16 | x : 1U + y * levels.x + x;
+}
+
+glm::vec3 decodeNormal(std::uint32_t code, int voxelBits) {
+    const glm::uvec2 levels = normalLevels(voxelBits);
+    const glm::uvec2 q = voxelBits == 32 ? glm::uvec2(code & 0xFFFFU, (code >> 16) & 0x7FFFU)
+                                         : glm::uvec2((code - 1) % levels.x, (code - 1) / levels.x);
+    const glm::vec2 p = glm::vec2(q) / glm::vec2(levels - 1U) * 2.0F - 1.0F;
+    glm::vec3 n(p, 1.0F - std::abs(p.x) - std::abs(p.y));
+    if (n.z < 0.0F) {
+        const glm::vec2 folded = (1.0F - glm::vec2(std::abs(n.y), std::abs(n.x))) * signNotZero(p);
+        n = {folded, n.z};
+    }
+    return glm::normalize(n);
+}
+
+std::uint32_t encodeColor(const glm::vec3& color, int voxelBits) {
+    const glm::uvec3 bits = colorBits(voxelBits);
+    const glm::uvec3 maximum = (glm::uvec3(1) << bits) - 1U;
+    const std::uint32_t code = quantised(color.r, maximum.r) << (bits.g + bits.b) |
+                               quantised(color.g, maximum.g) << bits.b |
+                               quantised(color.b, maximum.b);
+    return voxelBits == 32 ? 0xFF000000U | code : std::max(code, 1U);
+}
+
+glm::vec3 decodeColor(std::uint32_t code, int voxelBits) {
+    const glm::uvec3 bits = colorBits(voxelBits);
+    const glm::uvec3 maximum = (glm::uvec3(1) << bits) - 1U;
+    const glm::uvec3 q = glm::uvec3(code >> (bits.g + bits.b), code >> bits.b, code) & maximum;
+    return glm::vec3(q) / glm::vec3(maximum);
+}
+
+}  // namespace gfxrepro::voxelization

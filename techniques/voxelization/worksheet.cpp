@@ -1,0 +1,99 @@
+#include "techniques/voxelization/worksheet.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::voxelization {
+
+WorksheetLayout::WorksheetLayout(int resolution, int voxelBits)
+    : resolution_(resolution), voxelBits_(voxelBits) {
+    GFXREPRO_ASSERT(resolution >= 32 && resolution <= 1024 &&
+                    std::has_single_bit(static_cast<unsigned>(resolution)));
+    GFXREPRO_ASSERT(voxelBits == 1 || voxelBits == 8 || voxelBits == 16 || voxelBits == 32);
+    const int patchesAcross = kMaxSheetSizePx / resolution;
+    const int patches = std::min(slabCount(), patchesAcross * patchesAcross);
+    // Powers of two: as square as they can be, the wider side along x.
+    while (patchesX_ * patchesX_ < patches) patchesX_ *= 2;
+    patchesY_ = patches / patchesX_;
+}
+
+std::size_t WorksheetLayout::wordCount() const {
+    const auto n = static_cast<std::size_t>(resolution_);
+    return n * n * n / static_cast<std::size_t>(voxelsPerTexel());
+}
+
+// [zju2005] Sec. 2.2.2: pz by C gives the patch, (px, py) the texel in it, pz modulo C the bits.
+glm::ivec3 WorksheetLayout::texel(const glm::ivec3& local) const {
+    const int slab = local.z / voxelsPerTexel();
+    const int patch = slab % patchesPerSheet();
+    return {patch % patchesX_ * resolution_ + local.x, patch / patchesX_ * resolution_ + local.y,
+            slab / patchesPerSheet()};
+}
+
+std::size_t WorksheetLayout::wordIndex(const glm::ivec3& local) const {
+    const glm::ivec3 at = texel(local);
+    const glm::ivec2 size = sheetSizePx();
+    return (static_cast<std::size_t>(at.z) * static_cast<std::size_t>(size.y) +
+            static_cast<std::size_t>(at.y)) *
+               static_cast<std::size_t>(size.x) +
+           static_cast<std::size_t>(at.x);
+}
+
+gl::Defines WorksheetLayout::defines() const {
+    return {{"RESOLUTION", resolution_},
+            {"VOXEL_BITS", voxelBits_},
+            {"VOXELS_PER_TEXEL", voxelsPerTexel()},
+            {"PATCHES_X", patchesX_},
+            {"PATCHES_PER_SHEET", patchesPerSheet()},
+            {"LANE_MASK", laneMask()}};
+}
+
+DenseGrid::DenseGrid(const WorksheetLayout& layout) : layout_(layout), words_(layout.wordCount()) {}
+
+DenseGrid::DenseGrid(const WorksheetLayout& layout, std::vector<std::uint32_t> words)
+    : layout_(layout), words_(std::move(words)) {
+    GFXREPRO_ASSERT_EQ(words_.size(), layout_.wordCount());
+}
+
+std::uint32_t DenseGrid::value(const glm::ivec3& voxel) const {
+    return (words_[layout_.wordIndex(voxel)] >> layout_.shift(voxel.z)) & layout_.laneMask();
+}
+
+void DenseGrid::set(const glm::ivec3& voxel, std::uint32_t value) {
+    GFXREPRO_ASSERT((value & ~layout_.laneMask()) == 0);
+    std::uint32_t& word = words_[layout_.wordIndex(voxel)];
+    const int shift = layout_.shift(voxel.z);
+    word = (word & ~(layout_.laneMask() << shift)) | (value << shift);
+}
+
+std::size_t DenseGrid::countFull() const {
+    std::size_t count = 0;
+    for (std::uint32_t word : words_) {
+        if (layout_.voxelBits() == 1) {
+            count += static_cast<std::size_t>(std::popcount(word));
+            continue;
+        }
+        for (int lane = 0; lane < layout_.voxelsPerTexel(); ++lane) {
+            if ((word >> (lane * layout_.voxelBits())) & layout_.laneMask()) ++count;
+        }
+    }
+    return count;
+}
+
+gl::Texture makeSheets(const WorksheetLayout& layout) {
+    gl::Texture sheets = gl::Texture::make2DArray(GL_R32UI, layout.sheetSizePx(), layout.layers());
+    sheets.clearToZero();
+    return sheets;
+}
+
+DenseGrid VoxelGrid::read() const {
+    return DenseGrid(layout, readSheets(sheets));
+}
+
+std::vector<std::uint32_t> readSheets(const gl::Texture& sheets) {
+    return sheets.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+}
+
+}  // namespace gfxrepro::voxelization

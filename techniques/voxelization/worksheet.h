@@ -1,0 +1,132 @@
+// The worksheet: a voxel grid held in 2D textures, C voxels a texel. [zju2005] Sec. 2.2.1, 2.2.2.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/program.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::voxelization {
+
+/// A direction of projection and packing.
+enum class Axis { X = 0, Y = 1, Z = 2 };
+inline constexpr Axis kAxes[] = {Axis::X, Axis::Y, Axis::Z};
+
+/// Local coordinates (u, v, w) of an axis, w along it: x: (y, z, x), y: (z, x, y), z: (x, y, z).
+template <class Vector>
+Vector localFromVolume(Axis axis, const Vector& p) {
+    switch (axis) {
+        case Axis::X:
+            return {p.y, p.z, p.x};
+        case Axis::Y:
+            return {p.z, p.x, p.y};
+        case Axis::Z:
+            break;
+    }
+    return p;
+}
+template <class Vector>
+Vector volumeFromLocal(Axis axis, const Vector& local) {
+    switch (axis) {
+        case Axis::X:
+            return {local.z, local.x, local.y};
+        case Axis::Y:
+            return {local.y, local.z, local.x};
+        case Axis::Z:
+            break;
+    }
+    return local;
+}
+
+/// How N³ voxels of b bits lie in R32UI sheets. A texel packs C = 32 / b voxels along w; a slab of
+/// C slices is a patch of N × N texels; patches tile a sheet row by row; what does not fit a sheet
+/// of 2048² texels (the thesis's) takes further sheets, layers of one array texture. Capacity: N³ =
+/// W · H · layers · C.
+class WorksheetLayout {
+  public:
+    static constexpr int kMaxSheetSizePx = 2048;
+
+    WorksheetLayout() = default;
+    /// Asserts a power of two 32 … 1024 and 1, 8, 16 or 32 bits.
+    WorksheetLayout(int resolution, int voxelBits);
+
+    int resolution() const { return resolution_; }          // N
+    int voxelBits() const { return voxelBits_; }            // b
+    int voxelsPerTexel() const { return 32 / voxelBits_; }  // C
+    int slabCount() const { return resolution_ / voxelsPerTexel(); }
+    int patchesX() const { return patchesX_; }  // a sheet
+    int patchesY() const { return patchesY_; }  // a sheet
+    int patchesPerSheet() const { return patchesX_ * patchesY_; }
+    int layers() const { return slabCount() / patchesPerSheet(); }
+    glm::ivec2 sheetSizePx() const { return {patchesX_ * resolution_, patchesY_ * resolution_}; }
+    std::size_t wordCount() const;
+    std::size_t sizeBytes() const { return wordCount() * sizeof(std::uint32_t); }
+    std::uint32_t laneMask() const { return voxelBits_ == 32 ? ~0U : (1U << voxelBits_) - 1U; }
+
+    /// Texel (x, y, layer) of the voxel at `local` = (u, v, w).
+    glm::ivec3 texel(const glm::ivec3& local) const;
+    /// Position of the voxel's lowest bit in its texel.
+    int shift(int w) const { return w % voxelsPerTexel() * voxelBits_; }
+    /// Index of that texel in a whole read-back, layer after layer, rows in the order of y.
+    std::size_t wordIndex(const glm::ivec3& local) const;
+
+    /// RESOLUTION, VOXEL_BITS, VOXELS_PER_TEXEL, PATCHES_X, PATCHES_PER_SHEET, LANE_MASK for
+    /// worksheet.glsl.
+    gl::Defines defines() const;
+
+    bool operator==(const WorksheetLayout&) const = default;
+
+  private:
+    int resolution_ = 32;
+    int voxelBits_ = 1;
+    int patchesX_ = 1;
+    int patchesY_ = 1;
+};
+
+/// A grid on the CPU: one value a voxel, packed as in a worksheet of the z layout.
+class DenseGrid {
+  public:
+    DenseGrid() = default;
+    explicit DenseGrid(const WorksheetLayout& layout);
+    /// Asserts layout.wordCount() words.
+    DenseGrid(const WorksheetLayout& layout, std::vector<std::uint32_t> words);
+
+    const WorksheetLayout& layout() const { return layout_; }
+    int resolution() const { return layout_.resolution(); }
+    std::span<const std::uint32_t> words() const { return words_; }
+
+    std::uint32_t value(const glm::ivec3& voxel) const;
+    bool isFull(const glm::ivec3& voxel) const { return value(voxel) != 0; }
+    void set(const glm::ivec3& voxel, std::uint32_t value);
+    /// Number of voxels whose value is not 0.
+    std::size_t countFull() const;
+
+    bool operator==(const DenseGrid&) const = default;
+
+  private:
+    WorksheetLayout layout_;
+    std::vector<std::uint32_t> words_ = std::vector<std::uint32_t>(layout_.wordCount());
+};
+
+/// An R32UI 2D array texture of the layout's size, all bits 0.
+gl::Texture makeSheets(const WorksheetLayout& layout);
+
+/// A voxel grid on the device, in the z layout. Voxel (0, 0, 0) lies at box.min.
+struct VoxelGrid {
+    gl::Texture sheets;
+    WorksheetLayout layout;
+    scene::Box box;  // cubic, world space
+
+    float voxelSize() const { return box.size().x / static_cast<float>(layout.resolution()); }
+    /// Waits for the device.
+    DenseGrid read() const;
+};
+
+/// The sheets' words as wordIndex() counts them; waits for the device.
+std::vector<std::uint32_t> readSheets(const gl::Texture& sheets);
+
+}  // namespace gfxrepro::voxelization
