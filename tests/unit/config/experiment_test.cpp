@@ -358,7 +358,8 @@ TEST_F(ExperimentTest, Overrides) {
     EXPECT_EQ(errorText([] { parseOverride("resolution"); }),
               "'resolution' on the command line; allowed: key=value");
     EXPECT_EQ(errorText([] { parseOverride("a=[1"); }),
-              "command line, a=[1:1:3: end of sequence flow not found");
+              "command line, a=[1:1:1: a key must be text, found a list; perhaps a bracket is not "
+              "closed");
     options = {};
     options.sets = {parseOverride("delta_s=3")};
     EXPECT_EQ(loadError(kTerrain, options),
@@ -407,8 +408,8 @@ TEST_F(ExperimentTest, SweptOutputSizes) {
 }
 
 TEST_F(ExperimentTest, BadSections) {
-    EXPECT_EQ(errorWith("tilte: u"),
-              "DIR/zju/a.yaml:4:1: config: unknown key 'tilte'; did you mean 'title'?");
+    EXPECT_EQ(errorWith("titl: u"),
+              "DIR/zju/a.yaml:4:1: config: unknown key 'titl'; did you mean 'title'?");
     EXPECT_EQ(errorWith("output: {width: 20000}"),
               "DIR/zju/a.yaml:4:17: output: width is 20000; allowed: 1 … 16384 pixels");
     EXPECT_EQ(errorWith("measure: {lane: fast}"),
@@ -418,8 +419,8 @@ TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("params: [1]"), "DIR/zju/a.yaml:4:9: params is [1]; allowed: a map");
     EXPECT_EQ(errorWith("assumptions: {a: {value: 1}}"),
               "DIR/zju/a.yaml:4:15: assumption 'a' needs 'why'");
-    EXPECT_EQ(errorWith("assumptions: {a: {valeu: 1, why: w}}"),
-              "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valeu'; did you mean 'value'?");
+    EXPECT_EQ(errorWith("assumptions: {a: {valu: 1, why: w}}"),
+              "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valu'; did you mean 'value'?");
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
 }
 
@@ -534,25 +535,25 @@ TEST_F(ExperimentTest, BadClaims) {
                   "3: claim 'C' has no type; allowed: order, ratio, trend, independent, bound, "
                   "exact, tolerance, crossover");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
-              head + "29: claim 'C' is of two types, 'order' and 'bound'");
+              head + "32: claim 'C' is of two types, 'order' and 'bound'");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
               head +
-                  "29: claim 'C': unknown key 'above'; allowed: says, at, statistic, device, "
+                  "32: claim 'C': unknown key 'above'; allowed: says, at, statistic, device, "
                   "profile, order");
     EXPECT_EQ(claimError("{says: s, order: aa}"),
-              head + "20: claim 'C': order is aa; allowed: a < b < …");
+              head + "23: claim 'C': order is aa; allowed: a < b < …");
     EXPECT_EQ(claimError("{says: s, order: aa < }"),
-              head + "20: claim 'C' is aa <; allowed: an expression over columns");
+              head + "23: claim 'C' is aa <; allowed: an expression over columns");
     EXPECT_EQ(claimError("{says: s, order: aa < bc}"),
-              head + "20: claim 'C': unknown column 'bc'; did you mean 'bb'?");
+              head + "23: claim 'C': unknown column 'bc'; did you mean 'bb'?");
     EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
-              head + "20: claim 'C': ratio is aa; allowed: a / b");
+              head + "23: claim 'C': ratio is aa; allowed: a / b");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
               head + "3: claim 'C' needs at_least, at_most or between");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, at_most: 1}"),
-              head + "51: claim 'C': the lower bound exceeds the upper");
+              head + "54: claim 'C': the lower bound exceeds the upper");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, between: [1, 2]}"),
-              head + "51: claim 'C': between beside other bounds");
+              head + "54: claim 'C': between beside other bounds");
     EXPECT_EQ(claimError("{says: s, bound: aa}"), head + "3: claim 'C' needs above or below");
     EXPECT_EQ(claimError("{says: s, trend: aa, exponent: [1, 2]}"),
               head + "3: claim 'C' needs 'over'");
@@ -560,18 +561,18 @@ TEST_F(ExperimentTest, BadClaims) {
               head + "3: claim 'C' needs exponent or direction");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: scen, direction: decreasing}"),
               head +
-                  "30: claim 'C': 'scen' is neither a row axis nor a column; did you mean "
+                  "33: claim 'C': 'scen' is neither a row axis nor a column; did you mean "
                   "'scene'?");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: down}"),
-              head + "45: claim 'C': direction is down; allowed: increasing | decreasing");
+              head + "48: claim 'C': direction is down; allowed: increasing | decreasing");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [1, 2], strictly: true}"),
-              head + "62: claim 'C': strictly needs 'direction'");
+              head + "65: claim 'C': strictly needs 'direction'");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [2, 1]}"),
-              head + "44: claim 'C': exponent is [2, 1]; allowed: [low, high], low first");
+              head + "47: claim 'C': exponent is [2, 1]; allowed: [low, high], low first");
     for (const char* within : {"25", "x%", "-1%", "[1]"}) {
         EXPECT_EQ(
             claimError(std::string("{says: s, independent: aa, of: bb, within: ") + within + "}"),
-            head + "46: claim 'C': within is " + within +
+            head + "49: claim 'C': within is " + within +
                 "; allowed: a percentage as 25%, or a fraction 0 … 1");
     }
     EXPECT_EQ(claimError("{says: s, exact: aa}"), head + "3: claim 'C' needs 'equals'");
@@ -580,17 +581,17 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s, tolerance: aa, within: 5%}"),
               head + "3: claim 'C' needs printed values");
     EXPECT_EQ(claimError("{says: s, crossover: [aa], over: scene, between: [1, 2]}"),
-              head + "24: claim 'C': crossover is [aa]; allowed: [a, b]");
+              head + "27: claim 'C': crossover is [aa]; allowed: [a, b]");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scene: u}}"),
-              head + "46: claim 'C': at.scene is u; allowed: s | t");
+              head + "49: claim 'C': at.scene is u; allowed: s | t");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scnene: s}}"),
-              head + "39: claim 'C': at: unknown key 'scnene'; did you mean 'scene'?");
+              head + "42: claim 'C': at: unknown key 'scnene'; did you mean 'scene'?");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, device: cpu}"),
-              head + "42: claim 'C': device is cpu; allowed: any | gpu");
+              head + "45: claim 'C': device is cpu; allowed: any | gpu");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, profile: fast}"),
-              head + "43: claim 'C': profile is fast; allowed: quick | full | paper");
+              head + "46: claim 'C': profile is fast; allowed: quick | full | paper");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, statistic: avg}"),
-              head + "45: statistic is avg; allowed: median, mean, min, max, sum, count");
+              head + "48: statistic is avg; allowed: median, mean, min, max, sum, count");
     EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, above: 1}"),
               head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
 }
