@@ -392,6 +392,19 @@ TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
     EXPECT_EQ(table.layout.columns[0].labels[0].second.where[0].second.text(), file);
 }
 
+TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {
+    ExperimentOptions options;
+    options.sets = {parseOverride("scene=m.obj")};
+    const std::string here = (std::filesystem::current_path() / "m.obj").string();
+    EXPECT_EQ(load("table: p/1\ntitle: t\ntechnique: x\n", options).scene.text(), here);
+    options.sets.clear();
+    options.sweeps = {parseOverride("scene=m.obj,models/duck")};
+    const auto cases = expandCases(load("table: p/1\ntitle: t\ntechnique: x\n", options));
+    ASSERT_EQ(cases.size(), 2U);
+    EXPECT_EQ(cases[0].scene.text(), here);
+    EXPECT_EQ(cases[1].scene.text(), "models/duck");
+}
+
 TEST_F(ExperimentTest, SweptOutputSizes) {
     const Experiment table = load(
         "sweep_of: size\ntitle: t\ntechnique: x\n"
