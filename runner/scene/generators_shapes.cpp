@@ -217,11 +217,11 @@ Shape blade(std::uint32_t) {
 
 Shape brain(std::uint32_t seed) {
     Shape brain;
-    brain.addPair(ellipsoid({0.31F, 0.14F, 0.02F}, {0.4F, 0.56F, 0.88F}), 0.03F);
+    brain.addPair(ellipsoid({0.28F, 0.14F, 0.02F}, {0.4F, 0.56F, 0.88F}), 0.03F);
     brain.addPair(ellipsoid({0.42F, -0.1F, 0.2F}, {0.3F, 0.28F, 0.5F}), 0.1F);        // temporal
     brain.addPair(ellipsoid({0.2F, -0.42F, -0.52F}, {0.3F, 0.2F, 0.28F}), 0.03F);     // cerebellum
     brain.add(capsule({0, -0.2F, -0.15F}, {0, -0.85F, -0.4F}, 0.17F, 0.11F), 0.08F);  // stem
-    brain.setRelief({Relief::Kind::Grooves, 0.06F, 3.4F, seed});
+    brain.setRelief({Relief::Kind::Grooves, 0.03F, 3.8F, seed});
     return brain;
 }
 

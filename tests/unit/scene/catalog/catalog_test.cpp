@@ -176,6 +176,7 @@ TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
         EXPECT_EQ(scene.origin.kind, Origin::Kind::StandIn);
         const Topology topology = topologyOf(scene.meshes[0]);
         EXPECT_TRUE(topology.isClosed()) << printed.name;
+        EXPECT_EQ(topology.degenerateTriangles, 0U) << printed.name;
         EXPECT_TRUE(topology.isManifold()) << printed.name;
         EXPECT_TRUE(topology.isOriented()) << printed.name;
     }
