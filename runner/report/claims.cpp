@@ -52,6 +52,7 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     }
     outcome.judgement = judge(reading.group, part.quantity, part.requirement);
     std::vector<std::string> reasons;
+    if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
     if (isNamed) reasons.push_back("least at " + groupName);
     switch (outcome.judgement.verdict) {
         case Verdict::Ambiguous:
