@@ -100,7 +100,8 @@ std::string ClaimReader::groupName(const Rows& rows) const {
         const bool isShared = std::all_of(rows.begin(), rows.end(), [&](std::size_t row) {
             return table_.rows[row].labels[axis] == label;
         });
-        if (isShared) parts.push_back(table_.rowAxes[axis] + "=" + label);
+        const std::string& name = table_.rowAxes[axis];
+        if (isShared) parts.push_back(name.empty() ? label : name + "=" + label);
     }
     return joined(parts);
 }

@@ -135,7 +135,8 @@ bool Table::hasSources() const {
 std::string Table::rowName(std::size_t row) const {
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < rowAxes.size(); ++i) {
-        parts.push_back(rowAxes[i] + "=" + rows[row].labels[i]);
+        const std::string& value = rows[row].labels[i];
+        parts.push_back(rowAxes[i].empty() ? value : rowAxes[i] + "=" + value);
     }
     return joined(parts);
 }
