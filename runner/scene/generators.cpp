@@ -99,14 +99,14 @@ constexpr float kExtent = 1.3F;
 /// A closed mesh with as many triangles as the grid can give without exceeding `most`; at least 40
 /// % of them, so that little is left to refinement.
 Mesh polygonizedBelow(const sdf::Shape& shape, std::size_t most) {
-    // The count grows with the square of the resolution. Aim at 85 %, first from a coarse grid.
+    // The count grows with the square of the resolution. Aim at 60 %, first from a coarse grid.
     float spacing = 2.0F * kExtent / 40.0F;
     for (int attempt = 0; attempt < 24; ++attempt) {
         Mesh mesh = sdf::polygonized(shape, kExtent, spacing);
         const std::size_t count = mesh.triangles.size();
         if (count <= most && 5 * count >= 2 * most) return mesh;
-        const float ratio = static_cast<float>(std::max<std::size_t>(count, 1)) /
-                            (0.85F * static_cast<float>(most));
+        const float ratio =
+            static_cast<float>(std::max<std::size_t>(count, 1)) / (0.6F * static_cast<float>(most));
         spacing *= std::sqrt(std::clamp(ratio, 1e-6F, 1e6F));
         spacing = std::min(spacing, 0.5F * kExtent);
     }
