@@ -1,13 +1,24 @@
 // Powers for generated formulas (expression.h). GLSL's pow() is undefined for negative bases.
 
-// base^exponent by repeated squaring; |exponent| <= 64.
+// base^exponent by repeated squaring; |exponent| <= 64, a constant. Written out, because compilers that
+// do not unroll the loop take minutes for a long formula.
 float integerPower(float base, int exponent) {
     precise float result = 1.0;
     precise float square = base;
-    for (int left = abs(exponent); left > 0; left >>= 1) {
-        if ((left & 1) != 0) result *= square;
-        square *= square;
-    }
+    int n = abs(exponent);
+    if ((n & 1) != 0) result = square;
+    square *= square;
+    if ((n & 2) != 0) result *= square;
+    square *= square;
+    if ((n & 4) != 0) result *= square;
+    square *= square;
+    if ((n & 8) != 0) result *= square;
+    square *= square;
+    if ((n & 16) != 0) result *= square;
+    square *= square;
+    if ((n & 32) != 0) result *= square;
+    square *= square;
+    if ((n & 64) != 0) result *= square;
     return exponent < 0 ? 1.0 / result : result;
 }
 
