@@ -36,11 +36,12 @@ void deleteProgram(GLuint id) {
 
 namespace {
 
-/// Throws UnsupportedError when `value` is beyond the device's limit.
-void checkLimit(const char* what, long long value, long long limit, const char* limitName) {
+/// Throws UnsupportedError when `value` (of `unit`) is beyond the device's limit.
+void checkLimit(const char* what, long long value, const char* unit, long long limit,
+                const char* limitName) {
     if (value <= limit) return;
-    throw UnsupportedError(
-        fmt::format("{} {} is beyond this device's {} = {}", what, value, limitName, limit));
+    throw UnsupportedError(fmt::format("{} of {} {} is beyond this device's {} = {}", what, value,
+                                       unit, limitName, limit));
 }
 
 GLintptr bytes(std::size_t value) {
@@ -78,13 +79,13 @@ void Buffer::clear(std::uint32_t value) {
 }
 
 void Buffer::bindStorage(GLuint binding) const {
-    checkLimit("a storage buffer of bytes", static_cast<long long>(sizeBytes_),
+    checkLimit("a storage buffer", static_cast<long long>(sizeBytes_), "bytes",
                getInteger64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE), "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id());
 }
 
 void Buffer::bindUniform(GLuint binding) const {
-    checkLimit("a uniform buffer of bytes", static_cast<long long>(sizeBytes_),
+    checkLimit("a uniform buffer", static_cast<long long>(sizeBytes_), "bytes",
                getInteger(GL_MAX_UNIFORM_BLOCK_SIZE), "GL_MAX_UNIFORM_BLOCK_SIZE");
     glBindBufferBase(GL_UNIFORM_BUFFER, binding, id());
 }
@@ -138,27 +139,27 @@ Texture Texture::make(GLenum target, GLenum format, glm::ivec3 size, int levels)
 }
 
 Texture Texture::make2D(GLenum format, glm::ivec2 size, int levels) {
-    checkLimit("a 2D texture's size of pixels", std::max(size.x, size.y),
-               getInteger(GL_MAX_TEXTURE_SIZE), "GL_MAX_TEXTURE_SIZE");
+    checkLimit("a 2D texture", std::max(size.x, size.y), "pixels", getInteger(GL_MAX_TEXTURE_SIZE),
+               "GL_MAX_TEXTURE_SIZE");
     return make(GL_TEXTURE_2D, format, {size, 1}, levels);
 }
 
 Texture Texture::make2DArray(GLenum format, glm::ivec2 size, int layers, int levels) {
-    checkLimit("a 2D array texture's size of pixels", std::max(size.x, size.y),
+    checkLimit("a 2D array texture", std::max(size.x, size.y), "pixels",
                getInteger(GL_MAX_TEXTURE_SIZE), "GL_MAX_TEXTURE_SIZE");
-    checkLimit("a 2D array texture's number of layers", layers,
-               getInteger(GL_MAX_ARRAY_TEXTURE_LAYERS), "GL_MAX_ARRAY_TEXTURE_LAYERS");
+    checkLimit("a 2D array texture", layers, "layers", getInteger(GL_MAX_ARRAY_TEXTURE_LAYERS),
+               "GL_MAX_ARRAY_TEXTURE_LAYERS");
     return make(GL_TEXTURE_2D_ARRAY, format, {size, layers}, levels);
 }
 
 Texture Texture::make3D(GLenum format, glm::ivec3 size, int levels) {
-    checkLimit("a 3D texture's size of pixels", std::max({size.x, size.y, size.z}),
+    checkLimit("a 3D texture", std::max({size.x, size.y, size.z}), "pixels",
                getInteger(GL_MAX_3D_TEXTURE_SIZE), "GL_MAX_3D_TEXTURE_SIZE");
     return make(GL_TEXTURE_3D, format, size, levels);
 }
 
 Texture Texture::makeCube(GLenum format, int size, int levels) {
-    checkLimit("a cube map's size of pixels", size, getInteger(GL_MAX_CUBE_MAP_TEXTURE_SIZE),
+    checkLimit("a cube map", size, "pixels", getInteger(GL_MAX_CUBE_MAP_TEXTURE_SIZE),
                "GL_MAX_CUBE_MAP_TEXTURE_SIZE");
     return make(GL_TEXTURE_CUBE_MAP, format, {size, size, 6}, levels);
 }
@@ -214,8 +215,8 @@ void Texture::readBytes(GLenum pixelFormat, GLenum pixelType, void* data,
     // Image stores are seen by later reads only behind a barrier.
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    checkLimit("reading a texture of bytes", static_cast<long long>(sizeBytes),
-               std::numeric_limits<GLsizei>::max(), "size of one transfer (GLsizei)");
+    checkLimit("reading a texture", static_cast<long long>(sizeBytes), "bytes",
+               std::numeric_limits<GLsizei>::max(), "largest transfer");
     const auto bufferBytes = static_cast<GLsizei>(sizeBytes);
     glGetTextureImage(id(), 0, pixelFormat, pixelType, bufferBytes, data);
     checkError("glGetTextureImage");

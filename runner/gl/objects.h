@@ -46,7 +46,8 @@ void deleteProgram(GLuint id);
 class Buffer {
   public:
     Buffer() = default;
-    /// Immutable storage of `sizeBytes` (at least 1), undefined content; updatable by write().
+    /// Immutable storage of `sizeBytes` (rounded up to whole words), undefined content; updatable
+    /// by write(). Throws std::bad_alloc when the device refuses it.
     explicit Buffer(std::size_t sizeBytes);
     template <class T>
     static Buffer of(std::span<const T> values) {
@@ -75,8 +76,11 @@ class Buffer {
     }
     /// Fills with one 32-bit value.
     void clear(std::uint32_t value = 0);
-    void bindStorage(GLuint binding) const;  // GL_SHADER_STORAGE_BUFFER
-    void bindUniform(GLuint binding) const;  // GL_UNIFORM_BUFFER
+    /// GL_SHADER_STORAGE_BUFFER. Throws UnsupportedError beyond GL_MAX_SHADER_STORAGE_BLOCK_SIZE
+    /// (128 MiB on llvmpipe).
+    void bindStorage(GLuint binding) const;
+    /// GL_UNIFORM_BUFFER. Throws UnsupportedError beyond GL_MAX_UNIFORM_BLOCK_SIZE.
+    void bindUniform(GLuint binding) const;
 
   private:
     void writeBytes(std::size_t offsetBytes, const void* data, std::size_t sizeBytes);
@@ -90,18 +94,21 @@ class Texture {
   public:
     Texture() = default;
     /// Immutable storage. `format` is sized (GL_R32UI, GL_RGBA16F, GL_DEPTH_COMPONENT32F, …);
-    /// levels 0: all.
+    /// levels 0: all. Sampled nearest and clamped to the edge until set otherwise. Throws
+    /// UnsupportedError naming the limit that the size is beyond, std::bad_alloc.
     static Texture make2D(GLenum format, glm::ivec2 size, int levels = 1);
     static Texture make2DArray(GLenum format, glm::ivec2 size, int layers, int levels = 1);
     static Texture make3D(GLenum format, glm::ivec3 size, int levels = 1);
     static Texture makeCube(GLenum format, int size, int levels = 1);
-    /// 8-bit image, 1 to 4 channels; `isSrgb` decodes in the sampler; mipmapped.
+    /// 8-bit image, 1 to 4 channels (3 or 4 when `isSrgb`, which decodes in the sampler);
+    /// mipmapped, sampled trilinearly, repeating. The image's top row is at v = 0, as glTF has it.
     static Texture fromImage(const image::Image8& image, bool isSrgb);
 
     GLuint id() const { return name_.get(); }
     GLenum target() const { return target_; }
     GLenum format() const { return format_; }
     glm::ivec3 size() const { return size_; }
+    /// All levels, by the bits that the device keeps a texel in.
     std::size_t sizeBytes() const;
 
     /// Level 0, whole; `pixelFormat` and `pixelType` say how `data` is laid out.
@@ -142,7 +149,8 @@ class Framebuffer {
     Framebuffer() = default;
     /// Colour attachments in order; `depth` may be null. Throws Error when it is not complete.
     explicit Framebuffer(std::span<const Texture* const> colours, const Texture* depth = nullptr);
-    /// No attachments: for draws that write images only.
+    /// No attachments: for draws that write images only. Throws UnsupportedError beyond the
+    /// device's limits.
     static Framebuffer withoutAttachments(glm::ivec2 size, int samples = 0);
 
     GLuint id() const { return name_.get(); }

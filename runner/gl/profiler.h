@@ -19,9 +19,9 @@ struct PassTime {
     double timeMs = 0.0;
 };
 
-/// Collects scopes of one iteration. On a software device everything is finished before each stamp,
-/// so that a pass's vertex work is not counted with its neighbour (llvmpipe runs it when the draw
-/// is called and rasterizes at the next flush).
+/// Collects scopes of one iteration. On a software device everything is finished before and
+/// after each stamp, so that no pass's work is counted with its neighbour (llvmpipe runs vertex
+/// work when the draw is called, and rasterizes and takes the stamp at the next flush).
 class Profiler {
   public:
     explicit Profiler(bool isSoftwareDevice) : isSoftwareDevice_(isSoftwareDevice) {}

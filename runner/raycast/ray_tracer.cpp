@@ -1,1 +1,243 @@
 #include "runner/raycast/ray_tracer.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace gfxrepro::raycast {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+template <class T, void (*release)(T)>
+struct Releaser {
+    void operator()(T object) const { release(object); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Releaser<RTCDevice, rtcReleaseDevice>>;
+using BvhScene = std::unique_ptr<RTCSceneTy, Releaser<RTCScene, rtcReleaseScene>>;
+using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<RTCGeometry, rtcReleaseGeometry>>;
+
+Device newDevice() {
+    Device device(rtcNewDevice(nullptr));
+    if (!device) {
+        throw Error("Embree gives no device (error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                    ")");
+    }
+    return device;
+}
+
+/// What an Embree call that returned nothing ran into.
+void requireNoError(RTCDevice device, const char* step) {
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+        throw Error(std::string("Embree failed to ") + step + " (error " + std::to_string(error) +
+                    ")");
+    }
+}
+
+template <class T>
+T* newBuffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+             std::size_t count) {
+    void* data = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(T), count);
+    if (!data) requireNoError(device, "reserve memory");
+    return static_cast<T*>(data);
+}
+
+RTCRay rayAlong(const glm::vec3& origin, const glm::vec3& unitDirection, float tMin, float tMax) {
+    RTCRay ray{};
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = unitDirection.x;
+    ray.dir_y = unitDirection.y;
+    ray.dir_z = unitDirection.z;
+    ray.tnear = tMin;
+    ray.tfar = tMax;
+    ray.mask = 0xFFFFFFFF;
+    return ray;
+}
+
+RTCRayHit rayHitAlong(const RTCRay& ray) {
+    RTCRayHit rayHit{};
+    rayHit.ray = ray;
+    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return rayHit;
+}
+
+/// One triangle met by a ray.
+struct Record {
+    float distance;
+    unsigned geometry;
+    unsigned triangle;
+    bool isEntering;      // the ray meets the outside
+    float edgeClearance;  // smallest barycentric weight
+};
+
+/// Extends Embree's context, which its filter gets to see. `base` comes first.
+struct CollectingContext {
+    RTCIntersectContext base;
+    std::vector<Record>* records;
+};
+
+/// Notes a hit and rejects it, so that traversal goes on.
+void collect(const RTCFilterFunctionNArguments* arguments) {
+    GFXREPRO_ASSERT_EQ(arguments->N, 1U);
+    const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+    const float along = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
+    reinterpret_cast<CollectingContext*>(arguments->context)
+        ->records->push_back({ray->tfar, hit->geomID, hit->primID, along < 0.0F,
+                              std::min({hit->u, hit->v, 1.0F - hit->u - hit->v})});
+    *arguments->valid = 0;
+}
+
+}  // namespace
+
+struct RayTracer::Impl {
+    Device device = newDevice();
+    BvhScene bvh;
+    std::vector<bool> mirrored;  // of each instance
+
+    explicit Impl(const scene::Scene& scene);
+    void addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh, unsigned id);
+    /// Every triangle along the ray once, by distance.
+    std::vector<Record> recordsAlong(const glm::vec3& origin, const glm::vec3& direction) const;
+};
+
+RayTracer::Impl::Impl(const scene::Scene& scene)
+    : bvh(rtcNewScene(device.get())), mirrored(scene.instances.size(), false) {
+    rtcSetSceneFlags(bvh.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                                           RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    for (unsigned i = 0; i < scene.instances.size(); ++i) {
+        const scene::Instance& instance = scene.instances[i];
+        const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        if (!mesh.triangles.empty()) addInstance(mesh, instance.worldFromMesh, i);
+    }
+    rtcCommitScene(bvh.get());
+    requireNoError(device.get(), "build the hierarchy");
+}
+
+void RayTracer::Impl::addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh,
+                                  unsigned id) {
+    const Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    auto* positions = newBuffer<glm::vec3>(device.get(), geometry.get(), RTC_BUFFER_TYPE_VERTEX,
+                                           RTC_FORMAT_FLOAT3, mesh.positions.size());
+    const bool isPlaced = worldFromMesh != glm::mat4(1.0F);
+    std::transform(mesh.positions.begin(), mesh.positions.end(), positions,
+                   [&](const glm::vec3& p) {
+                       return isPlaced ? glm::vec3(worldFromMesh * glm::vec4(p, 1.0F)) : p;
+                   });
+    auto* triangles = newBuffer<glm::uvec3>(device.get(), geometry.get(), RTC_BUFFER_TYPE_INDEX,
+                                            RTC_FORMAT_UINT3, mesh.triangles.size());
+    // A mirror turns triangles inside out; turning them once more keeps the outside outside.
+    const bool isMirrored = glm::determinant(glm::mat3(worldFromMesh)) < 0.0F;
+    std::transform(mesh.triangles.begin(), mesh.triangles.end(), triangles,
+                   [&](const glm::uvec3& t) { return isMirrored ? glm::uvec3(t.x, t.z, t.y) : t; });
+    mirrored[id] = isMirrored;
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(bvh.get(), geometry.get(), id);
+}
+
+std::vector<Record> RayTracer::Impl::recordsAlong(const glm::vec3& origin,
+                                                  const glm::vec3& direction) const {
+    std::vector<Record> records;
+    CollectingContext context;
+    rtcInitIntersectContext(&context.base);
+    context.base.filter = &collect;
+    context.records = &records;
+    RTCRayHit rayHit = rayHitAlong(rayAlong(origin, glm::normalize(direction), 0.0F, kInfinity));
+    rtcIntersect1(bvh.get(), &context.base, &rayHit);
+    const auto inOrder = [](const Record& a, const Record& b) {
+        return std::tie(a.distance, a.geometry, a.triangle) <
+               std::tie(b.distance, b.geometry, b.triangle);
+    };
+    // The filter may see a triangle twice where the hierarchy refers to it twice.
+    const auto isSame = [](const Record& a, const Record& b) {
+        return a.geometry == b.geometry && a.triangle == b.triangle;
+    };
+    std::sort(records.begin(), records.end(), inOrder);
+    records.erase(std::unique(records.begin(), records.end(), isSame), records.end());
+    return records;
+}
+
+RayTracer::RayTracer(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+RayTracer::~RayTracer() = default;
+RayTracer::RayTracer(RayTracer&&) noexcept = default;
+RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
+
+std::optional<Hit> RayTracer::closestHit(const glm::vec3& origin, const glm::vec3& direction,
+                                         float tMin, float tMax) const {
+    const glm::vec3 unit = glm::normalize(direction);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit rayHit = rayHitAlong(rayAlong(origin, unit, tMin, tMax));
+    rtcIntersect1(impl_->bvh.get(), &context, &rayHit);
+    const RTCHit& found = rayHit.hit;
+    if (found.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+    Hit hit;
+    hit.distance = rayHit.ray.tfar;
+    hit.position = origin + hit.distance * unit;
+    hit.geometricNormal = glm::normalize(glm::vec3(found.Ng_x, found.Ng_y, found.Ng_z));
+    // The triangle was turned when it was put in: vertices 1 and 2 are swapped.
+    hit.barycentric =
+        impl_->mirrored[found.geomID] ? glm::vec2(found.v, found.u) : glm::vec2(found.u, found.v);
+    hit.instance = found.geomID;
+    hit.triangle = found.primID;
+    return hit;
+}
+
+bool RayTracer::isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
+                           float tMax) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
+    rtcOccluded1(impl_->bvh.get(), &context, &ray);
+    return ray.tfar < 0.0F;  // Embree's sign for "something is in the way"
+}
+
+std::vector<float> RayTracer::allHits(const glm::vec3& origin, const glm::vec3& direction) const {
+    std::vector<float> distances;
+    for (const Record& record : impl_->recordsAlong(origin, direction)) {
+        distances.push_back(record.distance);
+    }
+    return distances;
+}
+
+std::vector<float> RayTracer::crossings(const glm::vec3& origin, const glm::vec3& direction) const {
+    // Distances of one edge from its two triangles differ by rounding, which grows with the
+    // coordinates that went into them.
+    const float scale = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
+    std::vector<float> distances;
+    float lastOfFacing[2] = {-kInfinity, -kInfinity};
+    for (const Record& record : impl_->recordsAlong(origin, direction)) {
+        const float tolerance =
+            16.0F * std::numeric_limits<float>::epsilon() * std::max(scale, record.distance);
+        float& last = lastOfFacing[record.isEntering ? 1 : 0];
+        if (record.distance - last > tolerance) distances.push_back(record.distance);
+        last = record.distance;
+    }
+    return distances;
+}
+
+bool RayTracer::isInside(const glm::vec3& point) const {
+    // Skew to each other, to the axes and to their diagonals.
+    constexpr glm::vec3 kDirections[] = {{0.577F, 0.211F, 0.789F},   {-0.683F, 0.557F, 0.472F},
+                                         {0.331F, -0.871F, 0.363F},  {0.149F, 0.937F, -0.317F},
+                                         {-0.411F, -0.343F, 0.845F}, {0.893F, -0.239F, -0.381F},
+                                         {-0.271F, 0.619F, -0.737F}, {-0.797F, -0.523F, -0.301F}};
+    constexpr float kClearance = 1e-4F;  // of barycentric weights, far above their rounding
+    for (const glm::vec3& direction : kDirections) {
+        const std::vector<Record> records = impl_->recordsAlong(point, direction);
+        const bool isClear = std::all_of(records.begin(), records.end(), [&](const Record& r) {
+            return r.edgeClearance > kClearance;
+        });
+        if (isClear) return records.size() % 2 == 1;
+    }
+    throw Error("no ray from the point stays clear of edges: the mesh is too fine for its size");
+}
+
+}  // namespace gfxrepro::raycast

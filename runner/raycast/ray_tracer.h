@@ -21,7 +21,12 @@ struct Hit {
 };
 
 /// A BVH over the instanced triangles of a scene; it keeps no reference to the scene. Watertight
-/// (Embree's robust mode): no ray slips between triangles that share an edge.
+/// (Embree's robust mode): no ray slips between triangles that share an edge. The price is that a
+/// ray through a shared edge may be reported for both triangles; closestHit() and isOccluded() do
+/// not care, for counting there are crossings() and isInside().
+///
+/// Directions need not be of unit length; distances, tMin and tMax always count along the unit
+/// direction, in the scene's units. All queries may run on several threads at once.
 class RayTracer {
   public:
     explicit RayTracer(const scene::Scene& scene);
@@ -29,22 +34,40 @@ class RayTracer {
     RayTracer(RayTracer&&) noexcept;
     RayTracer& operator=(RayTracer&&) noexcept;
 
-    /// The nearest hit in (tMin, tMax); `direction` need not be of unit length.
+    /// The nearest hit in (tMin, tMax).
     std::optional<Hit> closestHit(const glm::vec3& origin, const glm::vec3& direction,
                                   float tMin = 0.0F,
                                   float tMax = std::numeric_limits<float>::infinity()) const;
     bool isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
                     float tMax) const;
-    /// Distances of all crossings, ascending, through `occlusion`-free traversal (every triangle
-    /// counts).
+    /// Distances of all hits, ascending; every triangle counts, so a crossing at a shared edge may
+    /// stand there twice.
     std::vector<float> allHits(const glm::vec3& origin, const glm::vec3& direction) const;
+    /// As allHits(), but hits at one distance (to 16 units in the last place) that face the same
+    /// way count once: the crossings of the surface. Two parallel sheets nearer than that merge,
+    /// too.
+    std::vector<float> crossings(const glm::vec3& origin, const glm::vec3& direction) const;
+    /// Parity of crossings: whether the point lies inside of closed surfaces (an odd number of
+    /// nested ones). Exact unless the point is within rounding of the surface: of several fixed
+    /// directions the first is taken whose ray stays clear of all edges. Throws Error when none
+    /// does.
+    bool isInside(const glm::vec3& point) const;
 
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 
-/// A look at a scene, ray traced: base colours (textured) under a headlight, N·V shading. The
+/// A look at a scene, ray traced: one sample at the centre of each pixel, 3 channels, linear, rows
+/// from the top.
+///
+///     radiance = baseColor.rgb · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
+///
+/// N is the interpolated vertex normal where the mesh has normals, else the geometric normal; V is
+/// the unit direction to the camera (a headlight). The texture is decoded from sRGB texel by texel,
+/// filtered bilinearly, repeated, v downwards. Where baseColor.a · texture.a < alphaCutoff the ray
+/// goes on. Background: (0.18, 0.20, 0.24). Points are not drawn. Hits nearer than the camera's
+/// near plane or beyond its far plane (measured along its view direction) do not count. The
 /// rasterized look of gpu_scene uses the same formula, so that the two agree.
 image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
                             int height);

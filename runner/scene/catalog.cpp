@@ -1,1 +1,231 @@
 #include "runner/scene/catalog.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/scene/generators.h"
+#include "runner/scene/load.h"
+#include "runner/scene/refine.h"
+
+namespace gfxrepro::scene {
+
+namespace fs = std::filesystem;
+using config::Node;
+
+namespace {
+
+void requireKeys(const Node& map, const std::string& what,
+                 std::initializer_list<std::string> allowed) {
+    if (!map.isMap()) {
+        throw Error(map.location(), what + " is " + map.kindName() + ", but must be a map");
+    }
+    const std::vector<std::string> names(allowed);
+    for (const auto& [key, value] : map.entries()) {
+        if (std::find(names.begin(), names.end(), key) != names.end()) continue;
+        throw Error(map.keyLocation(key), what + ": unknown key '" + key + "'" +
+                                              suggestion(key, names) +
+                                              " (allowed: " + joined(names) + ")");
+    }
+}
+
+const Node& required(const Node& map, const std::string& what, std::string_view key) {
+    const Node* value = map.find(key);
+    if (!value) throw Error(map.location(), what + ": '" + std::string(key) + "' is missing");
+    return *value;
+}
+
+SceneSource readFileSource(const Node& node) {
+    requireKeys(node, "source", {"file", "refine_to"});
+    SceneSource source;
+    const Node& file = required(node, "source", "file");
+    source.file = file.text();
+    if (source.file.empty() || fs::path(source.file).is_absolute()) {
+        throw Error(file.location(),
+                    "file is '" + source.file + "', but must be a path within the assets folder");
+    }
+    if (const Node* refineTo = node.find("refine_to")) {
+        source.refineTo = refineTo->asInteger();
+        if (*source.refineTo < 1) {
+            throw Error(refineTo->location(), "refine_to is " + refineTo->text() +
+                                                  "; allowed: a number of triangles, at least 1");
+        }
+        source.kind = Origin::Kind::StandIn;
+    }
+    return source;
+}
+
+SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
+    requireKeys(node, "source", {"generator", "params", "seed"});
+    SceneSource source;
+    const Node& generator = required(node, "source", "generator");
+    source.generator = findGenerator(generator.text(), generator.location()).name;
+    if (const Node* params = node.find("params")) source.params = *params;
+    if (const Node* seed = node.find("seed")) {
+        const long long value = seed->asInteger();
+        if (value < 0) {
+            throw Error(seed->location(), "seed is " + seed->text() + "; allowed: at least 0");
+        }
+        source.seed = static_cast<std::uint64_t>(value);
+    }
+    source.kind = isGenerated ? Origin::Kind::Generated : Origin::Kind::StandIn;
+    return source;
+}
+
+SceneSource readSource(const Node& node, bool isGenerated) {
+    if (!node.isMap()) {
+        throw Error(node.location(), "source is " + node.kindName() + ", but must be a map");
+    }
+    if (node.find("file") && node.find("generator")) {
+        throw Error(node.location(), "source: 'file' and 'generator' exclude each other");
+    }
+    const bool isFile = node.find("generator") == nullptr;
+    if (isFile && isGenerated) {
+        throw Error(node.location(), "source: a file cannot be the source of a generated scene");
+    }
+    SceneSource source = isFile ? readFileSource(node) : readGeneratorSource(node, isGenerated);
+    source.where = node.location();
+    return source;
+}
+
+SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
+    const Node root = config::parseYamlFile(path);
+    requireKeys(root, "scene entry", {"scene", "doc", "canonical", "generated", "sources"});
+    SceneEntry entry;
+    entry.path = path;
+    const Node& name = required(root, "scene entry", "scene");
+    entry.name = name.text();
+    if (entry.name != expectedName) {
+        throw Error(name.location(), "scene is '" + entry.name +
+                                         "', but the file's place names it '" + expectedName + "'");
+    }
+    entry.doc = required(root, "scene entry", "doc").text();
+    if (const Node* canonical = root.find("canonical")) entry.canonical = canonical->text();
+    const Node* generated = root.find("generated");
+    const bool isGenerated = generated && generated->asBool();
+    const Node& sources = required(root, "scene entry", "sources");
+    for (const Node& source : sources.items()) {
+        entry.sources.push_back(readSource(source, isGenerated));
+    }
+    if (entry.sources.empty()) {
+        throw Error(sources.location(), "sources is empty; an entry needs at least one");
+    }
+    return entry;
+}
+
+/// "file, refined to N triangles" or "generator g, seed n: {params}".
+std::string descriptionOf(const SceneSource& source) {
+    if (!source.generator.empty()) {
+        return "generator " + source.generator + ", seed " + std::to_string(source.seed) +
+               (source.params.isNull() ? "" : ": " + source.params.toFlowText());
+    }
+    return source.file + (source.refineTo
+                              ? ", refined to " + std::to_string(*source.refineTo) + " triangles"
+                              : "");
+}
+
+/// All instances as one mesh of the wanted count; materials and cameras stay.
+void refine(Scene& scene, const SceneSource& source) {
+    try {
+        Mesh mesh = refinedTo(flattened(scene), *source.refineTo);
+        scene.meshes.clear();
+        scene.meshes.push_back(std::move(mesh));
+        scene.instances = {Instance{}};
+    } catch (const Error& error) {
+        throw Error(source.where, source.file + ": " + error.what());
+    }
+}
+
+bool isUserFile(const std::string& reference) {
+    return fs::path(reference).has_extension();
+}
+
+}  // namespace
+
+Catalog::Catalog(const fs::path& scenesFolder, fs::path assetsFolder)
+    : assetsFolder_(std::move(assetsFolder)) {
+    std::vector<fs::path> files;
+    for (const auto& file : fs::recursive_directory_iterator(scenesFolder)) {
+        if (file.is_regular_file() && file.path().extension() == ".yaml") {
+            files.push_back(file.path());
+        }
+    }
+    std::sort(files.begin(), files.end());  // so that the first error does not depend on the disk
+    for (const fs::path& file : files) {
+        const std::string name =
+            file.lexically_relative(scenesFolder).replace_extension().generic_string();
+        entries_.emplace(name, readEntry(file, name));
+    }
+}
+
+const SceneEntry& Catalog::entryNamed(const Node& reference) const {
+    const auto found = entries_.find(reference.text());
+    if (found != entries_.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& [name, entry] : entries_) names.push_back(name);
+    throw Error(reference.location(), "unknown scene '" + reference.text() + "'" +
+                                          suggestion(reference.text(), names) +
+                                          " (`gfxrepro list scenes` prints all)");
+}
+
+SceneSource Catalog::resolve(const Node& reference) const {
+    const std::string& name = reference.text();
+    if (isUserFile(name)) {
+        SceneSource source;
+        source.file = fs::absolute(fs::path(reference.location().file).parent_path() / name)
+                          .lexically_normal();
+        source.where = reference.location();
+        if (fs::is_regular_file(source.file)) return source;
+        throw Error(reference.location(),
+                    "scene file '" + name + "' is not there; looked at " + source.file);
+    }
+    const SceneEntry& entry = entryNamed(reference);
+    std::string tried;
+    for (const SceneSource& source : entry.sources) {
+        if (!source.generator.empty()) return source;
+        const fs::path path = assetsFolder_ / source.file;
+        if (fs::is_regular_file(path)) return source;
+        tried += "\n  " + path.string();
+    }
+    throw Error(reference.location(),
+                "scene '" + name + "' is not at hand; looked at:" + tried + "\nget it with " +
+                    "scripts/fetch-assets" +
+                    (entry.canonical.empty() ? "" : " or from " + entry.canonical));
+}
+
+std::string Catalog::contentKey(const Node& reference) const {
+    const SceneSource source = resolve(reference);
+    if (!source.generator.empty()) {
+        return sha256("generator " + std::to_string(kGeneratorVersion) + ' ' + source.generator +
+                      ' ' + std::to_string(source.seed) + ' ' + source.params.toFlowText());
+    }
+    const fs::path path = assetsFolder_ / source.file;
+    FileDigest& digest = digests_[path];
+    const auto sizeBytes = fs::file_size(path);
+    const auto time = fs::last_write_time(path);
+    if (digest.sha256.empty() || digest.sizeBytes != sizeBytes || digest.time != time) {
+        digest = {sizeBytes, time, sha256OfFile(path)};
+    }
+    return sha256("file " + digest.sha256 + ' ' +
+                  (source.refineTo ? std::to_string(*source.refineTo) : "as it is"));
+}
+
+Scene Catalog::load(const Node& reference) const {
+    const SceneSource source = resolve(reference);
+    Scene scene;
+    std::string sha256;
+    if (source.generator.empty()) {
+        scene = loadScene(assetsFolder_ / source.file);
+        sha256 = scene.origin.sha256;
+        if (source.refineTo) refine(scene, source);
+    } else {
+        config::Params params(source.params, "generator '" + source.generator + "'");
+        scene = findGenerator(source.generator, source.where).generate(params, source.seed);
+    }
+    scene.name = reference.text();
+    scene.origin = {source.kind, descriptionOf(source), sha256};
+    return scene;
+}
+
+}  // namespace gfxrepro::scene

@@ -2,6 +2,7 @@
 // preference.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,7 +17,7 @@ namespace gfxrepro::scene {
 /// One way to get a scene: a file of the assets folder, possibly refined to a triangle count, or a
 /// generator.
 struct SceneSource {
-    std::string file;  // relative to the assets folder; empty: generated
+    std::string file;  // relative to the assets folder, or absolute; empty: generated
     std::optional<long long>
         refineTo;  // triangles: longest edges are split until the count is reached
     std::string generator;
@@ -29,7 +30,7 @@ struct SceneSource {
 struct SceneEntry {
     std::string name;  // "models/dragon" = configs/scenes/models/dragon.yaml
     std::string doc;
-    std::string canonical;  // where a user gets the real thing
+    std::string canonical;  // where a user gets the real thing; may be empty
     std::vector<SceneSource> sources;
     std::filesystem::path path;
 };
@@ -47,14 +48,23 @@ class Catalog {
     /// at hand (with where it looked and how to get it).
     SceneSource resolve(const config::Node& reference) const;
     /// Identity of the content: changes when the file or the generator's parameters change.
+    /// Remembers the digests of files by size and time, so not for several threads at once.
     std::string contentKey(const config::Node& reference) const;
     Scene load(const config::Node& reference) const;
 
     const std::filesystem::path& assetsFolder() const { return assetsFolder_; }
 
   private:
+    struct FileDigest {
+        std::uintmax_t sizeBytes = 0;
+        std::filesystem::file_time_type time;
+        std::string sha256;
+    };
+    const SceneEntry& entryNamed(const config::Node& reference) const;
+
     std::filesystem::path assetsFolder_;
     std::map<std::string, SceneEntry> entries_;
+    mutable std::map<std::filesystem::path, FileDigest> digests_;
 };
 
 }  // namespace gfxrepro::scene

@@ -10,8 +10,11 @@
 
 namespace gfxrepro::scene {
 
-/// A generator reads its parameters by declaration (so `describe` can print them) and returns a
-/// scene.
+/// Part of the identity of generated scenes: goes up when a generator's output changes.
+constexpr int kGeneratorVersion = 1;
+
+/// A generator reads its parameters by declaration (so `describe` can print them), refuses unknown
+/// ones, and returns a scene; its name and origin are the caller's to fill.
 struct GeneratorInfo {
     std::string_view name;
     std::string_view summary;

@@ -217,11 +217,11 @@ Shape blade(std::uint32_t) {
 
 Shape brain(std::uint32_t seed) {
     Shape brain;
-    brain.addPair(ellipsoid({0.34F, 0.14F, 0.02F}, {0.38F, 0.56F, 0.88F}), 0.03F);
+    brain.addPair(ellipsoid({0.31F, 0.14F, 0.02F}, {0.4F, 0.56F, 0.88F}), 0.03F);
     brain.addPair(ellipsoid({0.42F, -0.1F, 0.2F}, {0.3F, 0.28F, 0.5F}), 0.1F);        // temporal
     brain.addPair(ellipsoid({0.2F, -0.42F, -0.52F}, {0.3F, 0.2F, 0.28F}), 0.03F);     // cerebellum
     brain.add(capsule({0, -0.2F, -0.15F}, {0, -0.85F, -0.4F}, 0.17F, 0.11F), 0.08F);  // stem
-    brain.setRelief({Relief::Kind::Grooves, 0.075F, 4.2F, seed});
+    brain.setRelief({Relief::Kind::Grooves, 0.05F, 4.2F, seed});
     return brain;
 }
 
@@ -234,7 +234,7 @@ Shape dragon(std::uint32_t seed) {
         {{0.08F, 0.08F, -0.2F}, 0.24F},    {{0.0F, -0.2F, 0.08F}, 0.23F},
         {{-0.04F, -0.25F, 0.35F}, 0.22F},  {{0.0F, 0.05F, 0.58F}, 0.17F},
         {{0.03F, 0.4F, 0.55F}, 0.13F},     {{0.0F, 0.62F, 0.66F}, 0.12F}};
-    constexpr int kSteps = 4;
+    constexpr int kSteps = 3;
     Shape dragon;
     Station last = kSpine[0];
     for (std::size_t i = 0; i + 1 < std::size(kSpine); ++i) {
@@ -242,8 +242,8 @@ Shape dragon(std::uint32_t seed) {
             const Station now =
                 onSpline(kSpine, i, static_cast<float>(k) / static_cast<float>(kSteps));
             dragon.add(capsule(last.position, now.position, last.radius, now.radius),
-                       0.5F * now.radius);
-            if (k % 2 == 0) {  // a spike of the crest, upright and swept back
+                       0.2F * now.radius);
+            if (k != 2) {  // a spike of the crest, upright and swept back
                 const vec3 root = now.position + vec3(0, 0.8F * now.radius, 0);
                 dragon.add(capsule(root, root + vec3(0, 0.06F + 0.6F * now.radius, -0.09F),
                                    0.05F + 0.1F * now.radius, 0.012F),

@@ -87,10 +87,9 @@ float Primitive::distance(const glm::vec3& pointWorld) const {
             return (glm::length(p / size) - 1.0F) * smallest;
         }
         case Kind::Capsule: {
-            const float along = std::clamp(glm::dot(p, span) / glm::dot(span, span), 0.0F, 1.0F);
-            const float taper = endRadius - radius;
-            const float slope = std::sqrt(1.0F + taper * taper / glm::dot(span, span));
-            return (glm::length(p - along * span) - (radius + along * taper)) / slope;
+            const float along = std::clamp(glm::dot(p, span) * inverseSquaredSpan, 0.0F, 1.0F);
+            const float around = radius + along * (endRadius - radius);
+            return (glm::length(p - along * span) - around) * inverseSlope;
         }
         case Kind::Box: {
             const glm::vec3 q = glm::abs(p) - size + radius;
@@ -126,11 +125,16 @@ Primitive ball(const glm::vec3& centre, float radius) {
 }
 
 Primitive capsule(const glm::vec3& a, const glm::vec3& b, float radiusA, float radiusB) {
+    const glm::vec3 span = b - a;
+    const float inverseSquaredSpan = 1.0F / glm::dot(span, span);
+    const float taper = radiusB - radiusA;
     return {.kind = Primitive::Kind::Capsule,
             .centre = a,
-            .span = b - a,
+            .span = span,
+            .inverseSquaredSpan = inverseSquaredSpan,
             .radius = radiusA,
-            .endRadius = radiusB};
+            .endRadius = radiusB,
+            .inverseSlope = 1.0F / std::sqrt(1.0F + taper * taper * inverseSquaredSpan)};
 }
 
 Primitive box(const glm::vec3& centre, const glm::vec3& halfSides, float rounding) {
@@ -154,8 +158,9 @@ float Relief::at(const glm::vec3& point) const {
         case Kind::Grooves: {
             // Narrow folds along the zero set of the noise, which winds like the furrows of a
             // brain.
-            const float away = std::min(std::abs(noise(point * frequency, seed)) * 6.0F, 1.0F);
-            return height * (1.0F - away) * (1.0F - away);
+            const float value = noise(point * frequency, seed) * 5.0F;
+            const float inside = 1.0F - std::min(value * value, 1.0F);
+            return height * inside * inside;
         }
         case Kind::None:
             break;
@@ -196,18 +201,16 @@ float Shape::distance(const glm::vec3& point) const {
         distance = part.isCut ? -smoothMinimum(-distance, d, part.blend)
                               : smoothMinimum(distance, d, part.blend);
     }
-    if (relief_.kind != Relief::Kind::None) distance += relief_.at(point);
+    // Farther away relief cannot reach the surface.
+    if (std::abs(distance) <= relief_.height) distance += relief_.at(point);
     return distance;
 }
 
-glm::vec3 Shape::gradient(const glm::vec3& point, float step) const {
-    const glm::vec3 x(step, 0, 0);
-    const glm::vec3 y(0, step, 0);
-    const glm::vec3 z(0, 0, step);
-    return glm::vec3(distance(point + x) - distance(point - x),
-                     distance(point + y) - distance(point - y),
-                     distance(point + z) - distance(point - z)) /
-           (2.0F * step);
+glm::vec3 Shape::gradient(const glm::vec3& point, float here, float step) const {
+    return glm::vec3(distance(point + glm::vec3(step, 0, 0)) - here,
+                     distance(point + glm::vec3(0, step, 0)) - here,
+                     distance(point + glm::vec3(0, 0, step)) - here) /
+           step;
 }
 
 bool Shape::restrictTo(const glm::vec3& centre, float radius, Shape& near) const {

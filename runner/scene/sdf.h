@@ -30,8 +30,10 @@ struct Primitive {
     glm::mat3 axes{1.0F};
     glm::vec3 size{1.0F};  // ellipsoid: radii; box: half sides; torus: (radius, tube, –)
     glm::vec3 span{0.0F};  // capsule: from the first end to the second
-    float radius = 0.0F;   // capsule: at the first end; box: of the rounded edges
+    float inverseSquaredSpan = 0.0F;
+    float radius = 0.0F;  // capsule: at the first end; box: of the rounded edges
     float endRadius = 0.0F;
+    float inverseSlope = 1.0F;  // capsule: what makes the tapered distance a bound
     Field field = nullptr;
     bool isCut = false;
     float blend = 0.0F;
@@ -74,8 +76,8 @@ class Shape {
     Shape& setRelief(const Relief& relief);
 
     float distance(const glm::vec3& point) const;
-    /// Direction of steepest ascent times the slope, by central differences of this step.
-    glm::vec3 gradient(const glm::vec3& point, float step) const;
+    /// By forward differences of this step; `here` is distance(point).
+    glm::vec3 gradient(const glm::vec3& point, float here, float step) const;
 
     /// Stores in `near` what this shape is within `radius` around `centre`: parts that cannot
     /// matter there are left out, all values stay the same to the last bit. False when no surface

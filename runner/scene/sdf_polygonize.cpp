@@ -10,12 +10,17 @@ namespace gfxrepro::scene::sdf {
 
 namespace {
 
-constexpr int kBlockCells = 8;
+// Parts of the shape are sorted out for groups of blocks first, then for each block.
+constexpr int kGroupBlocks = 4;
+constexpr int kBlockCells = 4;
 constexpr int kBlockNodes = kBlockCells + 1;
 
 /// Vertices stay this share of an edge away from its ends, so that no triangle shrinks to nothing
 /// where the surface passes through a grid node.
 constexpr float kEndMargin = 0.12F;
+
+/// Of the grid, in cells: keeps its nodes off the planes of symmetry and the flat faces of shapes.
+constexpr glm::vec3 kShift(0.37F, 0.21F, 0.59F);
 
 /// Kuhn's division of a cube into six positively oriented tetrahedra. Corners are bit masks of x,
 /// y, z; every edge leads from a corner to one whose mask contains it, and neighbouring cubes agree
@@ -44,26 +49,41 @@ constexpr std::array<std::array<int, 4>, 16> kInsideFirst = {{{0, 1, 2, 3},
 class Polygonizer {
   public:
     Polygonizer(const Shape& shape, float extent, float spacing)
-        : shape_(shape), origin_(-extent), spacing_(spacing) {
-        blocks_ = static_cast<int>(std::ceil(2.0F * extent / (spacing * kBlockCells)));
+        : shape_(shape), origin_(-extent - kShift * spacing), spacing_(spacing) {
+        groups_ = static_cast<int>(
+            std::ceil((2.0F * extent + spacing) / (spacing * kGroupBlocks * kBlockCells)));
     }
 
     Mesh run() {
-        const float radius = 0.5F * std::sqrt(3.0F) * spacing_ * kBlockCells;
-        for (int z = 0; z < blocks_; ++z) {
-            for (int y = 0; y < blocks_; ++y) {
-                for (int x = 0; x < blocks_; ++x) {
-                    firstNode_ = glm::ivec3(x, y, z) * kBlockCells;
-                    const glm::vec3 centre = positionOf(firstNode_) + 0.5F * spacing_ * kBlockCells;
-                    // Twice the radius, for the steps that move vertices onto the surface.
-                    if (shape_.restrictTo(centre, 2.0F * radius, near_)) addBlock();
-                }
-            }
-        }
+        constexpr int kGroupCells = kGroupBlocks * kBlockCells;
+        forEachIn(groups_, [&](const glm::ivec3& group) {
+            if (!restrict(shape_, group * kGroupCells, kGroupCells, nearGroup_)) return;
+            forEachIn(kGroupBlocks, [&](const glm::ivec3& block) {
+                firstNode_ = group * kGroupCells + block * kBlockCells;
+                if (restrict(nearGroup_, firstNode_, kBlockCells, near_)) addBlock();
+            });
+        });
         return std::move(mesh_);
     }
 
   private:
+    /// Calls visit for every (x, y, z) in [0, count)³.
+    template <class Visit>
+    static void forEachIn(int count, const Visit& visit) {
+        for (int z = 0; z < count; ++z) {
+            for (int y = 0; y < count; ++y) {
+                for (int x = 0; x < count; ++x) visit(glm::ivec3(x, y, z));
+            }
+        }
+    }
+
+    /// What `shape` is in a cube of cells and around it, as far as onSurface() looks.
+    bool restrict(const Shape& shape, const glm::ivec3& firstNode, int cells, Shape& near) const {
+        const float halfSide = 0.5F * spacing_ * static_cast<float>(cells);
+        const float reach = std::sqrt(3.0F) * halfSide + 1.2F * spacing_;
+        return shape.restrictTo(positionOf(firstNode) + halfSide, reach, near);
+    }
+
     glm::vec3 positionOf(const glm::ivec3& node) const {
         return origin_ + spacing_ * glm::vec3(node);
     }
@@ -76,19 +96,10 @@ class Polygonizer {
     }
 
     void addBlock() {
-        for (int z = 0; z < kBlockNodes; ++z) {
-            for (int y = 0; y < kBlockNodes; ++y) {
-                for (int x = 0; x < kBlockNodes; ++x) {
-                    const glm::ivec3 local(x, y, z);
-                    valueAt(local) = near_.distance(positionOf(firstNode_ + local));
-                }
-            }
-        }
-        for (int z = 0; z < kBlockCells; ++z) {
-            for (int y = 0; y < kBlockCells; ++y) {
-                for (int x = 0; x < kBlockCells; ++x) addCell({x, y, z});
-            }
-        }
+        forEachIn(kBlockNodes, [&](const glm::ivec3& node) {
+            valueAt(node) = near_.distance(positionOf(firstNode_ + node));
+        });
+        forEachIn(kBlockCells, [&](const glm::ivec3& cell) { addCell(cell); });
     }
 
     void addCell(const glm::ivec3& cell) {
@@ -150,15 +161,17 @@ class Polygonizer {
         return index;
     }
 
-    /// Newton steps along the gradient, each at most half a cell.
+    /// Two Newton steps along the gradient, each at most half a cell.
     glm::vec3 onSurface(glm::vec3 p) const {
+        float distance = near_.distance(p);
+        const glm::vec3 slope = near_.gradient(p, distance, 0.05F * spacing_);
+        const glm::vec3 inverseSlope = slope / std::max(glm::dot(slope, slope), 0.01F);
         for (int step = 0; step < 2; ++step) {
-            const glm::vec3 slope = near_.gradient(p, 0.05F * spacing_);
-            const float squaredSlope = std::max(glm::dot(slope, slope), 0.01F);
-            glm::vec3 move = slope * (-near_.distance(p) / squaredSlope);
+            glm::vec3 move = -distance * inverseSlope;
             const float length = glm::length(move);
             if (length > 0.5F * spacing_) move *= 0.5F * spacing_ / length;
             p += move;
+            if (step == 0) distance = near_.distance(p);
         }
         return p;
     }
@@ -166,10 +179,11 @@ class Polygonizer {
     const Shape& shape_;
     glm::vec3 origin_;
     float spacing_;
-    int blocks_ = 0;
+    int groups_ = 0;
     Mesh mesh_;
     KeyTable<std::uint64_t> table_;
     // Of the block in progress:
+    Shape nearGroup_;
     Shape near_;
     glm::ivec3 firstNode_{0};
     std::array<float, static_cast<std::size_t>(kBlockNodes* kBlockNodes* kBlockNodes)> values_{};

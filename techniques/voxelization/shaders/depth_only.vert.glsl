@@ -1,3 +1,4 @@
+#version 450 core
 // The yardstick of speed: the mesh seen along z, depth only; there is no fragment stage.
 layout(location = POSITION_LOCATION) in vec3 positionWorld;
 

@@ -8,11 +8,11 @@
 
 uniform int axis;  // of projection: 0 x, 1 y, 2 z
 
-uint encodedValue(vec3 attribute) {
+uint encodedValue(vec3 meaning) {
 #if VALUE == 1
-    return encodeNormal(attribute);
+    return encodeNormal(meaning);
 #elif VALUE == 2
-    return encodeColor(attribute);
+    return encodeColor(meaning);
 #else
     return LANE_MASK;
 #endif

@@ -1,3 +1,4 @@
+#version 450 core
 // Exact rules, decided on the lattice in doubles that hold the integers exactly.
 //  RULE_THIN          the voxel in which the line through the pixel's centre crosses the triangle:
 //                     6-separating (Laine 2013: the target is the three unit segments through the

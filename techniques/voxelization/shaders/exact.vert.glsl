@@ -1,3 +1,4 @@
+#version 450 core
 // Exact rules: a rectangle of whole pixels around each triangle, six vertices by index, so that the
 // hardware only lists candidate pixels and its snapping of vertices decides nothing.
 #include "voxelization/worksheet.glsl"

@@ -1,3 +1,4 @@
+#version 450 core
 // Solid: along each scan line of a directional sheet the inside flag flips at every crossing.
 // [zju2005] Sec. 2.2.3. Within a word the flags are a prefix XOR, between words a carry.
 // Reads and writes a sheet of toggles; counts the scan lines whose flag does not return to outside

@@ -23,8 +23,8 @@ void appendFragment(int listAxis, ivec3 local, uint value) {
 uint fragmentTotal(int listAxis) { return min(fragmentCounts[listAxis], fragmentCapacity); }
 
 ivec3 fragmentLocal(uint index) {
-    uint packed = records[RECORD_WORDS * index];
-    return ivec3(packed & 1023u, (packed >> 10) & 1023u, packed >> 20);
+    uint word = records[RECORD_WORDS * index];
+    return ivec3(word & 1023u, (word >> 10) & 1023u, word >> 20);
 }
 
 uint fragmentValue(uint index) {

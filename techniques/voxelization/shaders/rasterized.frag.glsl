@@ -1,11 +1,12 @@
+#version 450 core
 // Rasterization by the hardware: the voxel at the pixel and the fragment's depth.
 // [zju2005] Sec. 2.2.1.
 #include "voxelization/emit_voxel.glsl"
 
 #if VALUE != 0
-in vec3 vertexAttribute;
+in vec3 vertexMeaning;
 #else
-const vec3 vertexAttribute = vec3(0.0);
+const vec3 vertexMeaning = vec3(0.0);
 #endif
 #ifdef SLICED
 uniform int slice;
@@ -16,5 +17,5 @@ void main() {
 #ifdef SLICED
     if (w != slice) return;
 #endif
-    emitVoxel(ivec3(ivec2(gl_FragCoord.xy), w), encodedValue(vertexAttribute));
+    emitVoxel(ivec3(ivec2(gl_FragCoord.xy), w), encodedValue(vertexMeaning));
 }

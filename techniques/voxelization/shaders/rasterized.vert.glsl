@@ -1,3 +1,4 @@
+#version 450 core
 // Rasterization by the hardware: projects a triangle along its axis onto N × N pixels; window z
 // times N is the depth in voxels. With SLICED, triangles wholly outside the slice are culled.
 // [zju2005] Sec. 2.2.1.
@@ -5,8 +6,8 @@
 
 layout(location = POSITION_LOCATION) in vec3 positionWorld;
 #if VALUE != 0
-layout(location = ATTRIBUTE_LOCATION) in vec3 attribute;  // normal or colour
-out vec3 vertexAttribute;
+layout(location = ATTRIBUTE_LOCATION) in vec3 meaning;  // normal or colour
+out vec3 vertexMeaning;
 #endif
 #ifdef SLICED
 uniform int slice;
@@ -21,7 +22,7 @@ void main() {
     vec3 local = localFromVolume(axis, (positionWorld - boxCentreWorld) * clipFromWorldScale);
     gl_Position = vec4(local, 1.0);
 #if VALUE != 0
-    vertexAttribute = attribute;
+    vertexMeaning = meaning;
 #endif
 #ifdef SLICED
     // Half a voxel of margin: the fragment shader decides by its own depth to which slice it goes.

@@ -1,3 +1,4 @@
+#version 450 core
 // Synthesis: merges the directional sheets of x and y into that of z, which becomes the grid.
 // [zju2005] Sec. 2.2.1, 2.3.2. A row of C invocations takes a tile of C × C × C voxels: the sheet of
 // x gives C texels along z for each y, that of y C texels along z for each x; transposed, each is C

@@ -1,3 +1,4 @@
+#version 450 core
 // Texelization: each fragment's voxel goes to its place in the directional sheet of its axis. The
 // cost depends on the fragments, hence on the resolution, not on the triangles.
 // [zju2005] Sec. 2.2.1, 2.2.2. Reads the fragment list, writes the sheet (cleared before).

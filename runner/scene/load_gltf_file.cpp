@@ -1,0 +1,166 @@
+#include "runner/scene/load_gltf_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/scene/load_texture.h"
+
+namespace gfxrepro::scene::gltf {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> kSupportedExtensions{
+    "EXT_mesh_gpu_instancing", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_transmission",
+    "KHR_materials_unlit",     "KHR_mesh_quantization",
+    "KHR_texture_transform"};
+
+/// tinygltf gives URIs, percent signs decoded, to these callbacks; they resolve them in the file's
+/// folder only.
+struct Folder {
+    std::filesystem::path path;
+    std::string refused;  // the first URI that leaves the folder
+
+    std::optional<std::filesystem::path> find(const std::string& uri) {
+        const auto inside = pathInside(path, uri);
+        if (!inside && refused.empty()) refused = uri;
+        std::error_code ignored;
+        return inside && std::filesystem::is_regular_file(*inside, ignored) ? inside : std::nullopt;
+    }
+};
+
+bool fileExists(const std::string& uri, void* folder) {
+    return static_cast<Folder*>(folder)->find(uri).has_value();
+}
+
+std::string sameUri(const std::string& uri, void*) {
+    return uri;
+}
+
+bool readWholeFile(std::vector<unsigned char>* content, std::string*, const std::string& uri,
+                   void* folder) {
+    const auto path = static_cast<Folder*>(folder)->find(uri);
+    if (!path) return false;
+    const MappedFile file(*path);
+    const auto* begin = reinterpret_cast<const unsigned char*>(file.bytes().data());
+    content->assign(begin, begin + file.bytes().size());
+    return true;
+}
+
+/// Keeps the encoded bytes of images with a URI. The range of one in a buffer has not been checked
+/// when tinygltf calls, so it is not touched here.
+bool keepEncoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                 const unsigned char* bytes, int size, void*) {
+    if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+    return true;
+}
+
+/// The JSON of either kind of file; empty when a binary file is too short for any.
+std::string_view jsonText(std::string_view content, bool isBinary) {
+    if (!isBinary) return content;
+    constexpr std::size_t kHeaderBytes = 20;
+    std::uint32_t length = 0;
+    if (content.size() < kHeaderBytes) return {};
+    std::memcpy(&length, content.data() + 12, sizeof(length));
+    return content.substr(kHeaderBytes, length);
+}
+
+/// The parser recurses over nested values; a deep enough file would overflow its stack.
+void checkNesting(std::string_view json, const std::string& name) {
+    constexpr int kMaxDepth = 256;
+    int depth = 0;
+    bool isString = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (isString) {
+            if (c == '\\') ++i;
+            if (c == '"') isString = false;
+        } else if (c == '"') {
+            isString = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > kMaxDepth) {
+                throw Error(fmt::format("{}: JSON nested deeper than {}", name, kMaxDepth));
+            }
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+}
+
+void checkExtensions(const tinygltf::Model& model, const std::string& name) {
+    std::vector<std::string> missing;
+    for (const std::string& extension : model.extensionsRequired) {
+        const bool isSupported = std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(),
+                                           extension) != kSupportedExtensions.end();
+        if (!isSupported) missing.push_back(extension);
+    }
+    if (missing.empty()) return;
+    throw Error(fmt::format("{}: requires the extension {}; supported are {}", name,
+                            joined(missing), fmt::join(kSupportedExtensions, ", ")));
+}
+
+bool parse(std::string_view content, bool isBinary, Folder& folder, tinygltf::Model& model,
+           std::string& message) {
+    tinygltf::TinyGLTF parser;
+    parser.SetFsCallbacks({fileExists, sameUri, readWholeFile, nullptr, &folder});
+    parser.SetImageLoader(keepEncoded, nullptr);
+    std::string ignoredWarnings;
+    const auto size = static_cast<unsigned int>(content.size());
+    const std::string noBaseFolder;  // so that the callbacks get URIs as they are
+    try {
+        return isBinary
+                   ? parser.LoadBinaryFromMemory(
+                         &model, &message, &ignoredWarnings,
+                         reinterpret_cast<const unsigned char*>(content.data()), size, noBaseFolder)
+                   : parser.LoadASCIIFromString(&model, &message, &ignoredWarnings, content.data(),
+                                                size, noBaseFolder);
+    } catch (const std::exception& error) {  // wrong JSON types, among others
+        message = error.what();
+        return false;
+    }
+}
+
+}  // namespace
+
+File readFile(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    const std::string_view content = mapped.text();
+    File file;
+    file.name = path.string();
+    if (content.size() > std::numeric_limits<unsigned int>::max()) {
+        throw Error(file.name + ": larger than 4 GiB");
+    }
+    const bool isBinary = content.starts_with("glTF");
+    checkNesting(jsonText(content, isBinary), file.name);
+
+    Folder folder{path.parent_path(), ""};
+    std::string message;
+    const bool isParsed = parse(content, isBinary, folder, file.model, message);
+    checkExtensions(file.model, file.name);  // the better reason, when it is one
+    if (!folder.refused.empty()) {
+        throw Error(
+            fmt::format("{}: the URI '{}' leaves the file's folder", file.name, folder.refused));
+    }
+    if (!isParsed) {
+        const std::string_view reason = trimmed(message);
+        throw Error(fmt::format("{}: {}", file.name, reason.substr(0, reason.find('\n'))));
+    }
+    if (!file.model.asset.version.starts_with("2.")) {
+        throw Error(
+            fmt::format("{}: glTF version '{}'; 2.0 is read", file.name, file.model.asset.version));
+    }
+    file.sizeBytes = content.size();
+    for (const tinygltf::Buffer& buffer : file.model.buffers) file.sizeBytes += buffer.data.size();
+    return file;
+}
+
+}  // namespace gfxrepro::scene::gltf

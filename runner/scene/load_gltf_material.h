@@ -1,0 +1,23 @@
+// Materials and textures of glTF files.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "runner/scene/load_gltf_accessor.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::scene::gltf {
+
+/// Which texture coordinates a material reads, and KHR_texture_transform's uv' = matrix · (uv, 1).
+struct TextureUse {
+    int texcoordSet = 0;
+    bool isTransformed = false;
+    glm::mat3x2 transform{1.0F};
+};
+
+/// Adds all materials, and the base colour textures that they use, to `scene`; returns how each
+/// reads its texture. Throws Error for textures and images that are not there or broken.
+std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene);
+
+}  // namespace gfxrepro::scene::gltf

@@ -1,0 +1,54 @@
+// The header of a PLY file: which elements follow, and how their rows are laid out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gfxrepro::scene::ply {
+
+enum class Type { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+
+std::size_t sizeBytes(Type type);
+bool isInteger(Type type);
+/// The spelling of PLY 1.0: "char" … "double".
+std::string_view nameOf(Type type);
+
+struct Property {
+    std::string name;
+    Type type = Type::Float32;
+    std::optional<Type> countType;  // of a list
+
+    bool isList() const { return countType.has_value(); }
+};
+
+struct Element {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<Property> properties;
+    int line = 0;  // where it is declared
+
+    bool hasLists() const;
+    /// What a row takes at least: lists are empty.
+    std::size_t minimumRowBytes(bool isAscii) const;
+};
+
+enum class Format { Ascii, LittleEndian, BigEndian };
+
+struct Header {
+    Format format = Format::Ascii;
+    std::vector<Element> elements;
+    std::size_t bodyAt = 0;  // bytes from the start of the file
+    int bodyLine = 0;
+
+    /// Null when there is no such element.
+    const Element* find(std::string_view name) const;
+};
+
+/// Throws Error("FILE:LINE: …").
+Header parseHeader(std::string_view text, const std::string& file);
+
+}  // namespace gfxrepro::scene::ply

@@ -1,0 +1,118 @@
+// What the worksheet method is measured against.
+#include "techniques/voxelization/bindings.h"
+#include "techniques/voxelization/mesh_voxelizer.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+/// The modern comparator: image atomics straight into the grid, no directional sheets.
+class DirectMethod : public MeshMethod {
+  public:
+    DirectMethod(technique::SetupContext& context, const MeshRequest& request)
+        : draw_(context.shaders, request, DrawTarget::Grid),
+          grid_{makeSheets(request.settings.layout), request.settings.layout, request.box} {}
+
+    void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
+        gl::GpuScope scope(profiler, "voxelization");
+        grid_.sheets.clearToZero();
+        grid_.sheets.bindImage(kSheetUnit, GL_READ_WRITE);
+        for (Axis axis : kAxes) draw_.draw(mesh, axis);
+        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                        GL_TEXTURE_UPDATE_BARRIER_BIT);
+    }
+    const VoxelGrid* grid() const override { return &grid_; }
+    void record(technique::Recorder&) override {}
+    std::size_t sizeBytes() const override { return grid_.sheets.sizeBytes(); }
+
+  private:
+    MeshDraw draw_;
+    VoxelGrid grid_;
+};
+
+/// [zju2005] Sec. 2.5.3: the whole mesh is drawn once a slice, N times in all.
+/// Departure [zju2005] Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a
+/// fragment's depth decides; clipping would move the edges, and each triangle keeps its own axis,
+/// so that the result is the same grid.
+class SlicesMethod : public MeshMethod {
+  public:
+    SlicesMethod(technique::SetupContext& context, const MeshRequest& request)
+        : draw_(context.shaders, request, DrawTarget::GridSlice),
+          grid_{makeSheets(request.settings.layout), request.settings.layout, request.box} {}
+
+    void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
+        gl::GpuScope scope(profiler, "voxelization");
+        grid_.sheets.clearToZero();
+        grid_.sheets.bindImage(kSheetUnit, GL_READ_WRITE);
+        for (int slice = 0; slice < grid_.layout.resolution(); ++slice) {
+            for (Axis axis : kAxes) draw_.drawSlice(mesh, axis, slice);
+        }
+        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                        GL_TEXTURE_UPDATE_BARRIER_BIT);
+    }
+    const VoxelGrid* grid() const override { return &grid_; }
+    void record(technique::Recorder&) override {}
+    std::size_t sizeBytes() const override { return grid_.sheets.sizeBytes(); }
+
+  private:
+    MeshDraw draw_;
+    VoxelGrid grid_;
+};
+
+/// The yardstick of speed: the mesh's depth along z in N × N pixels.
+class DepthOnlyMethod : public MeshMethod {
+  public:
+    DepthOnlyMethod(technique::SetupContext& context, const MeshRequest& request)
+        : program_(context.shaders, {"voxelization/depth_only.vert.glsl"},
+                   passDefines(request.settings.layout)),
+          depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F,
+                                     glm::ivec2(request.settings.layout.resolution()))),
+          framebuffer_({}, &depth_),
+          boxCentreWorld_(request.box.centre()),
+          clipFromWorldScale_(2.0F / request.box.size().x) {}
+
+    void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
+        gl::GpuScope scope(profiler, "draw_depth");
+        framebuffer_.bind();
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_LESS);
+        glDepthMask(GL_TRUE);
+        glDisable(GL_CULL_FACE);
+        framebuffer_.clearDepth(1.0F);
+        program_.use();
+        program_.set("boxCentreWorld", boxCentreWorld_);
+        program_.set("clipFromWorldScale", clipFromWorldScale_);
+        mesh.vertexArray.bind();
+        const TriangleRange last = mesh.ranges.back();
+        glDrawElements(GL_TRIANGLES, (last.first + last.count) * 3, GL_UNSIGNED_INT, nullptr);
+    }
+    const VoxelGrid* grid() const override { return nullptr; }
+    void record(technique::Recorder&) override {}
+    std::size_t sizeBytes() const override { return depth_.sizeBytes(); }
+
+  private:
+    gl::Program program_;
+    gl::Texture depth_;
+    gl::Framebuffer framebuffer_;
+    glm::vec3 boxCentreWorld_;
+    float clipFromWorldScale_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshMethod> makeBaseline(technique::SetupContext& context,
+                                         const MeshRequest& request, Method method) {
+    switch (method) {
+        case Method::Direct:
+            return std::make_unique<DirectMethod>(context, request);
+        case Method::Slices:
+            return std::make_unique<SlicesMethod>(context, request);
+        case Method::DepthOnly:
+            return std::make_unique<DepthOnlyMethod>(context, request);
+        case Method::Worksheet:
+            break;
+    }
+    GFXREPRO_ASSERT(false);
+    return nullptr;
+}
+
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,49 @@
+// The mesh under voxelization on the device, in the form that a rule needs.
+#pragma once
+
+#include <array>
+
+#include "techniques/voxelization/axis_split.h"
+#include "techniques/voxelization/grid_source.h"
+#include "techniques/voxelization/worksheet.h"
+
+namespace gfxrepro::voxelization {
+
+/// Which voxels a triangle fills.
+enum class Rule {
+    Rasterized,    // the thesis's: what the hardware rasterizer samples along the dominant axis
+    Thin,          // 6-separating
+    Conservative,  // every voxel whose closed cube meets the triangle
+};
+
+/// A mesh and how it is to become voxels. `mesh` must outlive what is made of this.
+struct MeshRequest {
+    const scene::Mesh& mesh;
+    scene::Box box;  // cubic, world space
+    GridSettings settings;
+    Rule rule = Rule::Rasterized;
+
+    bool isSolid() const { return settings.fill == Fill::Solid; }
+    /// Decided on the lattice, not by the hardware.
+    bool isExact() const { return rule != Rule::Rasterized || isSolid(); }
+    /// Every triangle is drawn along every axis, not only along its dominant one.
+    bool drawsAllAxes() const { return rule == Rule::Thin || isSolid(); }
+    /// The largest value of a voxel wins (its bits are not simply OR-ed).
+    bool hasValues() const { return settings.value != VoxelValue::Occupancy; }
+};
+
+struct DeviceMesh {
+    gl::Buffer positions;   // world space, or lattice units when the request is exact
+    gl::Buffer attributes;  // normals or colours; one element when voxels say occupancy only
+    gl::Buffer triangles;   // in the order of the split
+    gl::VertexArray vertexArray;
+    std::array<TriangleRange, 3> ranges;
+
+    /// Throws UnsupportedError for what does not fit a storage block of `limits`.
+    DeviceMesh(const MeshRequest& request, const AxisSplit& split, const gl::DeviceLimits& limits);
+    /// Replaces the indices: the dynamic index buffer of [zju2005] Sec. 2.3.1.
+    void update(const AxisSplit& split);
+    std::size_t sizeBytes() const;
+};
+
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,80 @@
+#include "techniques/voxelization/mesh_draw.h"
+
+#include "techniques/voxelization/bindings.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+gl::Defines drawDefines(const MeshRequest& request, DrawTarget target) {
+    gl::Defines defines = passDefines(request.settings.layout);
+    defines["VALUE"] = static_cast<int>(request.settings.value);
+    defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
+    if (request.isExact()) {
+        defines[request.isSolid()            ? "RULE_TOGGLE"
+                : request.rule == Rule::Thin ? "RULE_THIN"
+                                             : "RULE_CONSERVATIVE"] = 1;
+    }
+    if (target != DrawTarget::FragmentList) {
+        defines["EMIT_INTO_GRID"] = 1;
+        defines[request.hasValues() ? "ACCUMULATE_MAX" : "ACCUMULATE_OR"] = 1;
+    }
+    if (target == DrawTarget::GridSlice) defines["SLICED"] = 1;
+    return defines;
+}
+
+std::vector<std::string> drawFiles(bool isExact) {
+    const std::string name = isExact ? "voxelization/exact" : "voxelization/rasterized";
+    return {name + ".vert.glsl", name + ".frag.glsl"};
+}
+
+}  // namespace
+
+MeshDraw::MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target)
+    : program_(shaders, drawFiles(request.isExact()), drawDefines(request, target)),
+      framebuffer_(
+          gl::Framebuffer::withoutAttachments(glm::ivec2(request.settings.layout.resolution()))),
+      boxCentreWorld_(request.box.centre()),
+      clipFromWorldScale_(2.0F / request.box.size().x),
+      isExact_(request.isExact()),
+      drawsAllAxes_(request.drawsAllAxes()) {}
+
+void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
+    framebuffer_.bind();
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    program_.use();
+    program_.set("axis", static_cast<int>(axis));
+    if (isExact_) {
+        drawExact(mesh, axis);
+        return;
+    }
+    program_.set("boxCentreWorld", boxCentreWorld_);
+    program_.set("clipFromWorldScale", clipFromWorldScale_);
+    mesh.vertexArray.bind();
+    const TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
+    const std::size_t offsetBytes = static_cast<std::size_t>(range.first) * sizeof(glm::uvec3);
+    glDrawElements(GL_TRIANGLES, range.count * 3, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(offsetBytes));
+}
+
+void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice) const {
+    program_.set("slice", slice);
+    draw(mesh, axis);
+}
+
+void MeshDraw::drawExact(const DeviceMesh& mesh, Axis axis) const {
+    TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
+    if (drawsAllAxes_) range = {0, mesh.ranges[2].first + mesh.ranges[2].count};
+    mesh.positions.bindStorage(kPositionBinding);
+    mesh.triangles.bindStorage(kTriangleBinding);
+    mesh.attributes.bindStorage(kAttributeBinding);
+    noAttributes_.bind();
+    // gl_VertexID must not pass 2³¹: 6 vertices a triangle.
+    constexpr int kTrianglesPerDraw = 1 << 26;
+    for (int first = 0; first < range.count; first += kTrianglesPerDraw) {
+        program_.set("firstTriangle", range.first + first);
+        glDrawArrays(GL_TRIANGLES, 0, std::min(range.count - first, kTrianglesPerDraw) * 6);
+    }
+}
+
+}  // namespace gfxrepro::voxelization

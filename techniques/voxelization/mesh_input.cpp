@@ -1,0 +1,49 @@
+#include "techniques/voxelization/mesh_input.h"
+
+#include <algorithm>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+bool isPlain(const scene::Scene& scene) {
+    return scene.instances.size() == 1 && scene.instances[0].worldFromMesh == glm::mat4(1.0F);
+}
+
+/// The scene with a colour at every vertex.
+scene::Scene coloured(scene::Scene scene) {
+    for (scene::Mesh& mesh : scene.meshes) {
+        if (!mesh.colors.empty()) continue;
+        const scene::Material material =
+            mesh.material < 0 ? scene::Material{}
+                              : scene.materials[static_cast<std::size_t>(mesh.material)];
+        mesh.colors.assign(mesh.positions.size(), glm::vec3(material.baseColor));
+    }
+    return scene;
+}
+
+}  // namespace
+
+scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels) {
+    const glm::vec3 size = bounds.size();
+    const float longest = std::max({size.x, size.y, size.z});
+    const float edge = longest > 0.0F ? longest : 1.0F;  // a single point
+    const float half = 0.5F * edge * static_cast<float>(resolution) /
+                       static_cast<float>(resolution - 2 * paddingVoxels);
+    return {bounds.centre() - half, bounds.centre() + half};
+}
+
+MeshInput::MeshInput(const scene::Scene& scene, VoxelValue value) {
+    if (scene.triangleCount() == 0) {
+        throw Error("scene '" + scene.name + "' has no triangles to voxelize");
+    }
+    const bool needsColors = value == VoxelValue::Color;
+    if (isPlain(scene)) {
+        original_ = &scene.meshes[static_cast<std::size_t>(scene.instances[0].mesh)];
+        if (!needsColors || !original_->colors.empty()) return;
+    }
+    copy_ = scene::flattened(needsColors ? coloured(scene) : scene);
+}
+
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,31 @@
+// Voxelization on the CPU, slow and exact: what the rules are compared with. It works on the
+// snapped mesh (lattice.h) and visits every voxel or scan line of a triangle's box.
+#pragma once
+
+#include "techniques/voxelization/lattice.h"
+#include "techniques/voxelization/worksheet.h"
+
+namespace gfxrepro::voxelization::reference {
+
+/// Every voxel whose closed cube meets a triangle: 13 separating axes (Akenine-Möller 2001).
+DenseGrid conservative(const LatticeMesh& mesh, int resolution);
+
+/// Every voxel in which one of the three axis-parallel lines through voxel centres crosses a
+/// triangle. 6-separating (Laine 2013). Lines that meet an edge are shifted by (ε, ε², ε³).
+DenseGrid thin(const LatticeMesh& mesh, int resolution);
+
+/// Voxels whose centre lies inside on two of three axes, by the parity of the crossings before it.
+struct Solid {
+    DenseGrid grid;
+    std::size_t ambiguousScanLines = 0;  // over the three axes: an odd number of crossings
+    std::size_t disagreeingVoxels = 0;   // where the axes differ
+};
+Solid solid(const LatticeMesh& mesh, int resolution);
+
+/// Empty voxels that a path over faces of empty voxels joins to the grid's boundary.
+DenseGrid outside(const DenseGrid& surface);
+
+/// Number of voxels that are full in `expected` and empty in `grid`.
+std::size_t countMissing(const DenseGrid& expected, const DenseGrid& grid);
+
+}  // namespace gfxrepro::voxelization::reference

@@ -1,0 +1,32 @@
+// Stage 3: the directional sheets become one grid of the z layout; solid filling before it.
+// [zju2005] Sec. 2.2.1, 2.2.3.
+#pragma once
+
+#include "techniques/voxelization/texelization.h"
+
+namespace gfxrepro::voxelization {
+
+/// Solid only: turns the crossings in the sheets into inside flags, scan line by scan line.
+class SolidFill {
+  public:
+    SolidFill(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout);
+    void run(const Texelization& texelization, const DirectionalSheets& sheets,
+             const VoxelGrid& grid, gl::Buffer& statistics);
+
+  private:
+    gl::Program program_;
+    unsigned groupsAcross_;
+};
+
+/// Merges the sheets of x and y into the grid's: OR, the largest value, or the majority (solid).
+class Synthesis {
+  public:
+    Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request);
+    /// `statistics` holds SolidStatistics (used by solid only).
+    void run(const DirectionalSheets& sheets, const VoxelGrid& grid, const gl::Buffer& statistics);
+
+  private:
+    gl::Program program_;
+};
+
+}  // namespace gfxrepro::voxelization

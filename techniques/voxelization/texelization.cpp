@@ -1,0 +1,53 @@
+#include "techniques/voxelization/texelization.h"
+
+#include <algorithm>
+
+#include "techniques/voxelization/bindings.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+constexpr int kGroupSize = 64;
+constexpr unsigned kMaxGroups = 4096;  // beyond it an invocation takes several fragments
+
+gl::Defines texelizeDefines(const MeshRequest& request) {
+    gl::Defines defines = passDefines(request.settings.layout);
+    defines["GROUP_SIZE"] = kGroupSize;
+    defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
+    defines[request.isSolid()     ? "ACCUMULATE_XOR"
+            : request.hasValues() ? "ACCUMULATE_MAX"
+                                  : "ACCUMULATE_OR"] = 1;
+    return defines;
+}
+
+}  // namespace
+
+Texelization::Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request)
+    : program_(shaders, {"voxelization/texelize.comp.glsl"}, texelizeDefines(request)) {
+    const auto n = static_cast<std::size_t>(request.settings.layout.resolution());
+    for (gl::Buffer& lines : behind_) lines = gl::Buffer(request.isSolid() ? n * n / 8 : 4);
+}
+
+void Texelization::run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid) {
+    program_.use();
+    for (Axis axis : kAxes) {
+        gl::Texture& sheet = axis == Axis::X ? sheets.x : axis == Axis::Y ? sheets.y : grid.sheets;
+        gl::Buffer& behind = behind_[static_cast<std::size_t>(axis)];
+        const std::uint32_t capacity = fragments.capacities[static_cast<std::size_t>(axis)];
+        sheet.clearToZero();
+        behind.clear();
+        behind.bindStorage(kBehindBinding);
+        sheet.bindImage(kSheetUnit, GL_READ_WRITE);
+        fragments.bind(axis);
+        program_.set("axis", static_cast<int>(axis));
+        program_.set("fragmentCapacity", capacity);
+        glDispatchCompute(std::min((capacity + kGroupSize - 1) / kGroupSize, kMaxGroups), 1, 1);
+    }
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+std::size_t Texelization::sizeBytes() const {
+    return 3 * behind_[0].sizeBytes();
+}
+
+}  // namespace gfxrepro::voxelization

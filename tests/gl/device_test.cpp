@@ -1,0 +1,113 @@
+#include <gmock/gmock.h>
+
+#include "runner/gl/gl.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(DeviceTest, OpensSoftwareByNameAndByIndex) {
+    const gl::Device byName = gl::Device::open({"software", gl::DebugOutput::Off});
+    EXPECT_TRUE(byName.info().isSoftware);
+    EXPECT_THAT(byName.info().version, StartsWith("4.5"));
+    EXPECT_THAT(byName.info().version, HasSubstr("Mesa " + byName.info().mesaVersion));
+    EXPECT_FALSE(byName.info().mesaVersion.empty());
+    EXPECT_GT(byName.info().timerResolutionNs, 0.0);
+    EXPECT_LT(byName.info().timerResolutionNs, 1e6);
+
+    const std::string index = std::to_string(byName.info().index);
+    const gl::Device byIndex = gl::Device::open({index, gl::DebugOutput::Off});
+    EXPECT_EQ(byIndex.info().renderer, byName.info().renderer);
+    EXPECT_EQ(byIndex.info().index, byName.info().index);
+}
+
+TEST(DeviceTest, AutoPrefersHardware) {
+    bool hasHardware = false;
+    for (const gl::DeviceReport& report : gl::listDevices()) {
+        hasHardware |= report.problem.empty() && !report.info.isSoftware;
+    }
+    const gl::Device device = gl::Device::open({"auto", gl::DebugOutput::Off});
+    EXPECT_EQ(device.info().isSoftware, !hasHardware);
+}
+
+TEST(DeviceTest, NamesWhatItCannotOpen) {
+    EXPECT_EQ(errorText([] {
+                  gl::Device::open({"gpu", gl::DebugOutput::Off});
+              }),
+              "unknown device 'gpu'; allowed: auto, software, or an index as 'gfxrepro doctor' "
+              "lists them");
+    EXPECT_THROW(gl::Device::open({"gpu", gl::DebugOutput::Off}), UsageError);
+
+    const std::string count = std::to_string(gl::listDevices().size());
+    EXPECT_EQ(errorText([] {
+                  gl::Device::open({"99", gl::DebugOutput::Off});
+              }),
+              "no usable OpenGL 4.5 device for '99':\n  device 99: there are " + count +
+                  " ways to a device, counted from 0");
+    EXPECT_THROW(gl::Device::open({"-1", gl::DebugOutput::Off}), NoDeviceError);
+}
+
+TEST_F(GlTest, ListsDevicesAndKeepsTheCurrentContext) {
+    const std::vector<gl::DeviceReport> reports = gl::listDevices();
+    ASSERT_FALSE(reports.empty());
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        EXPECT_EQ(reports[i].info.index, static_cast<int>(i));
+    }
+    const gl::Buffer buffer(16);  // needs the fixture's context
+    EXPECT_TRUE(glIsBuffer(buffer.id()));
+}
+
+TEST_F(GlTest, ReportsLimitsAndExtensions) {
+    EXPECT_GE(device.limits().maxTextureSizePx, 16384);  // OpenGL 4.5, table 23.53
+    EXPECT_GE(device.limits().max3dTextureSizePx, 2048);
+    EXPECT_GE(device.limits().maxArrayLayers, 2048);
+    EXPECT_GE(device.limits().maxStorageBlockBytes, 1LL << 27);
+    EXPECT_GE(device.limits().maxTessellationLevel, 64);
+    EXPECT_GE(device.limits().maxComputeInvocations, 1024);
+    EXPECT_GE(device.limits().maxImageUnits, 8);
+    EXPECT_TRUE(device.hasExtension("GL_ARB_compute_shader"));
+    EXPECT_FALSE(device.hasExtension("GL_ARB_compute"));
+}
+
+TEST_F(GlTest, ThrowsARememberedMessageOnce) {
+    glEnable(GL_TEXTURE_2D);  // not an enable of the core profile
+    EXPECT_EQ(errorText([&] { device.checkDebug("clearing"); }),
+              "clearing: GL_INVALID_ENUM in glEnable(GL_TEXTURE_2D)");
+    EXPECT_EQ(errorText([&] { device.checkDebug("clearing"); }), "no error");
+    EXPECT_EQ(errorText([&] { device.finish("clearing"); }), "clearing: GL_INVALID_ENUM");
+    EXPECT_EQ(errorText([&] { device.finish("clearing"); }), "no error");
+}
+
+TEST(DeviceTest, FinishThrowsAPendingErrorWithoutDebugOutput) {
+    gl::Device device = gl::Device::open({"software", gl::DebugOutput::Off});
+    glEnable(GL_TEXTURE_2D);
+    EXPECT_EQ(errorText([&] { device.finish("drawing frame 3"); }),
+              "drawing frame 3: GL_INVALID_ENUM");
+}
+
+TEST(DeviceTest, LogsErrorsOnRequest) {
+    gl::Device device = gl::Device::open({"software", gl::DebugOutput::Log});
+    ::testing::internal::CaptureStderr();
+    glEnable(GL_TEXTURE_2D);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+              "OpenGL: GL_INVALID_ENUM in glEnable(GL_TEXTURE_2D)\n");
+}
+
+TEST(DeviceTest, MovesItsContext) {
+    gl::Device first = gl::Device::open({"software", gl::DebugOutput::Fatal});
+    gl::Device second = std::move(first);
+    glEnable(GL_TEXTURE_2D);
+    EXPECT_EQ(errorText([&] { second.checkDebug("moved"); }),
+              "moved: GL_INVALID_ENUM in glEnable(GL_TEXTURE_2D)");
+}
+
+TEST(ErrorTest, NamesErrors) {
+    EXPECT_EQ(gl::errorName(GL_INVALID_FRAMEBUFFER_OPERATION), "GL_INVALID_FRAMEBUFFER_OPERATION");
+    EXPECT_EQ(gl::errorName(0x1234), "0x1234");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

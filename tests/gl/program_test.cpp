@@ -1,0 +1,217 @@
+#include "runner/gl/program.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::StartsWith;
+
+/// Needs no device.
+class ShaderSourceTest : public ::testing::Test {
+  protected:
+    std::string assembleError(const std::string& file) const {
+        return errorText([&] { library.assemble(file, {}); }, folder.path());
+    }
+
+    TemporaryFolder folder;
+    gl::ShaderLibrary library{folder.path()};
+};
+
+TEST_F(ShaderSourceTest, PutsDefinesBehindVersionAndFilesInOnce) {
+    folder.write("shared/a.glsl", "int a;\n");
+    folder.write("shared/b.glsl", "#include \"shared/a.glsl\"\nint b;");
+    folder.write("t/x.frag.glsl",
+                 "#version 450 core\n"
+                 "  #include \"shared/b.glsl\"\n"
+                 "#include \"shared/a.glsl\"\r\n"
+                 "// #include \"shared/none.glsl\"\n"
+                 "#pragma snippet formula\n"
+                 "void main() {}\n");
+    const gl::ShaderSource source = library.assemble("t/x.frag.glsl",
+                                                     {{"kCount", 12},
+                                                      {"kBias", -0.5F},
+                                                      {"kBase", -3},
+                                                      {"kMask", 255U},
+                                                      {"kScale", 2.0F},
+                                                      {"kType", "vec3"}},
+                                                     {{"formula", "float f() {\nreturn 1.0; }\n"}});
+    EXPECT_EQ(source.text,
+              "#version 450 core\n"
+              "#define kBase (-3)\n"
+              "#define kBias (-0.5)\n"
+              "#define kCount 12\n"
+              "#define kMask 255u\n"
+              "#define kScale 2.0\n"
+              "#define kType vec3\n"
+              "int a;\n"
+              "int b;\n"
+              "// #include \"shared/none.glsl\"\n"
+              "float f() {\n"
+              "return 1.0; }\n"
+              "void main() {}\n");
+    std::vector<std::string> places;
+    for (const gl::ShaderSource::Line& line : source.lines) {
+        places.push_back(line.file + ":" + std::to_string(line.line));
+    }
+    EXPECT_EQ(places, (std::vector<std::string>{
+                          "t/x.frag.glsl:1", "define kBase:0", "define kBias:0", "define kCount:0",
+                          "define kMask:0", "define kScale:0", "define kType:0", "shared/a.glsl:1",
+                          "shared/b.glsl:2", "t/x.frag.glsl:4", "snippet formula:1",
+                          "snippet formula:2", "t/x.frag.glsl:6"}));
+}
+
+TEST_F(ShaderSourceTest, KeepsFloatsExactly) {
+    folder.write("x.frag.glsl", "#version 450 core\n");
+    for (const float value : {0.1F, 1.0F / 3.0F, 1e-30F, 3e30F, 16777216.0F}) {
+        const std::string text = library.assemble("x.frag.glsl", {{"k", value}}).text;
+        const std::string number = text.substr(text.find("#define k ") + 10);
+        EXPECT_EQ(std::stof(number), value) << number;
+        EXPECT_THAT(number, HasSubstr("."));  // an integer literal would be an int
+    }
+}
+
+TEST_F(ShaderSourceTest, NamesMissingFilesWithTheirChain) {
+    folder.write("a.frag.glsl", "#version 450 core\n\n#include \"b.glsl\"\n");
+    folder.write("b.glsl", "#include \"c.glsl\"\n");
+    EXPECT_EQ(assembleError("a.frag.glsl"),
+              "b.glsl:1: there is no shader file \"c.glsl\" in DIR\n"
+              "  included from a.frag.glsl:3");
+    EXPECT_EQ(assembleError("none.frag.glsl"), "there is no shader file \"none.frag.glsl\" in DIR");
+}
+
+TEST_F(ShaderSourceTest, RefusesCycles) {
+    folder.write("a.frag.glsl", "#version 450 core\n#include \"b.glsl\"\n");
+    folder.write("b.glsl", "\n#include \"c.glsl\"\n");
+    folder.write("c.glsl", "#include \"b.glsl\"\n");
+    EXPECT_EQ(assembleError("a.frag.glsl"),
+              "c.glsl:1: include cycle: \"b.glsl\" is being read\n"
+              "  included from b.glsl:2\n"
+              "  included from a.frag.glsl:2");
+}
+
+TEST_F(ShaderSourceTest, RefusesMalformedDirectives) {
+    folder.write("a.frag.glsl", "// first\n#version 450 core\n");
+    EXPECT_EQ(assembleError("a.frag.glsl"),
+              "a.frag.glsl:1: the first line must be '#version 450 core', found '// first'");
+    folder.write("empty.frag.glsl", "");
+    EXPECT_EQ(assembleError("empty.frag.glsl"),
+              "empty.frag.glsl:1: the first line must be '#version 450 core', found ''");
+    folder.write("b.frag.glsl", "#version 450 core\n#include <x.glsl>\n");
+    EXPECT_EQ(assembleError("b.frag.glsl"),
+              "b.frag.glsl:2: '#include' needs a path in double quotes, found '<x.glsl>'");
+    folder.write("c.frag.glsl", "#version 450 core\n#include \"v.glsl\"\n");
+    folder.write("v.glsl", "#version 450 core\n");
+    EXPECT_EQ(assembleError("c.frag.glsl"),
+              "v.glsl:1: '#version' is allowed in the first line of a stage's file only\n"
+              "  included from c.frag.glsl:2");
+    folder.write("d.frag.glsl", "#version 450 core\n#pragma snippet f\n");
+    EXPECT_EQ(assembleError("d.frag.glsl"), "d.frag.glsl:2: no snippet 'f' was given; given: none");
+    EXPECT_EQ(errorText([&] {
+                  library.assemble("d.frag.glsl", {}, {{"g", ""}, {"h", ""}});
+              }),
+              "d.frag.glsl:2: no snippet 'f' was given; given: g, h");
+}
+
+TEST_F(ShaderSourceTest, TranslatesTheLogsOfBothDrivers) {
+    gl::ShaderSource source;
+    source.lines = {{"a.frag.glsl", 1}, {"define k", 0}, {"shared/b.glsl", 7}};
+    EXPECT_EQ(gl::translateLog("0:3(12): error: `x' undeclared\n0:1(1): warning: odd\n", source),
+              "shared/b.glsl:7: error: `x' undeclared\na.frag.glsl:1: warning: odd");
+    EXPECT_EQ(gl::translateLog("0(3) : error C1503: undefined variable \"x\"\n", source),
+              "shared/b.glsl:7: error C1503: undefined variable \"x\"");
+    EXPECT_EQ(gl::translateLog("0:2(5): error: syntax error", source),
+              "define k: error: syntax error");
+    // What names no line of the text stays as it is.
+    EXPECT_EQ(gl::translateLog("0:4(1): error: end\nerror: no main", source),
+              "0:4(1): error: end\nerror: no main");
+}
+
+TEST_F(GlTest, TranslatesADriversErrorToFileAndLine) {
+    folder.write("shared/f.glsl", "\nvoid f() { undefinedName; }\n");
+    folder.write("t/x.frag.glsl",
+                 "#version 450 core\n#include \"shared/f.glsl\"\nvoid main() { f(); }\n");
+    EXPECT_EQ(errorText([&] {
+                  gl::Program(library, {"t/x.frag.glsl"}, {{"kUnused", 1}});
+              }),
+              "cannot compile t/x.frag.glsl:\n"
+              "shared/f.glsl:2: error: `undefinedName' undeclared");
+}
+
+TEST_F(GlTest, NamesTheFilesThatDoNotLink) {
+    folder.write(
+        "x.vert.glsl",
+        "#version 450 core\nout vec2 v;\nvoid main() { gl_Position = vec4(v = vec2(1), 0, 1); }\n");
+    folder.write("x.frag.glsl",
+                 "#version 450 core\nin vec3 v;\nout vec4 c;\nvoid main() { c = vec4(v, 1); }\n");
+    EXPECT_THAT(errorText([&] {
+                    gl::Program(library, {"x.vert.glsl", "x.frag.glsl"});
+                }),
+                StartsWith("cannot link x.vert.glsl + x.frag.glsl:\nerror: "));
+}
+
+TEST_F(GlTest, RefusesAFileWithoutAStage) {
+    folder.write("x.glsl", "#version 450 core\n");
+    EXPECT_EQ(errorText([&] { gl::Program(library, {"x.glsl"}); }),
+              "x.glsl: a stage's file ends in .vert.glsl, .tesc.glsl, .tese.glsl, .geom.glsl, "
+              ".frag.glsl or .comp.glsl");
+}
+
+TEST_F(GlTest, SetsUniformsOfEveryType) {
+    const gl::Program sum = program({{"sum.comp.glsl", R"(#version 450 core
+layout(local_size_x = 1) in;
+layout(std430, binding = kResult) writeonly buffer Result { float result[]; };
+uniform int i;
+uniform uint u;
+uniform float f;
+uniform vec2 v2;
+uniform vec3 v3;
+uniform vec4 v4;
+uniform ivec2 i2;
+uniform ivec3 i3;
+uniform uvec3 u3;
+uniform mat4 m;
+uniform float unused;
+void main() {
+    float values[] = float[](float(i), float(u), f, v2.y, v3.z, v4.w, float(i2.y), float(i3.z),
+                             float(u3.z), m[3][1]);
+    for (int k = 0; k < values.length(); ++k) result[k] = values[k];
+}
+)"}},
+                                    {{"kResult", 2}});
+    glm::mat4 matrix(0.0F);
+    matrix[3][1] = 10.0F;
+    sum.set("i", -1);
+    sum.set("u", 4000000000U);
+    sum.set("f", 3.5F);
+    sum.set("v2", glm::vec2(0, 4));
+    sum.set("v3", glm::vec3(0, 0, 5));
+    sum.set("v4", glm::vec4(0, 0, 0, 6));
+    sum.set("i2", glm::ivec2(0, -7));
+    sum.set("i3", glm::ivec3(0, 0, -8));
+    sum.set("u3", glm::uvec3(0, 0, 9));
+    sum.set("m", matrix);
+    EXPECT_TRUE(sum.isActive("m"));
+    EXPECT_FALSE(sum.isActive("unused"));
+    EXPECT_FALSE(sum.isActive("absent"));
+
+    const gl::Buffer result(40);
+    result.bindStorage(2);
+    sum.use();
+    glDispatchCompute(1, 1, 1);
+    EXPECT_EQ(result.read<float>(10), (std::vector<float>{-1, 4e9F, 3.5F, 4, 5, 6, -7, -8, 9, 10}));
+}
+
+TEST_F(GlTest, AnInactiveUniformStops) {
+    const gl::Program empty = program(
+        {{"e.comp.glsl", "#version 450 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n"}});
+    GTEST_FLAG_SET(death_test_style, "threadsafe");  // the driver has threads
+    EXPECT_DEATH(empty.set("absent", 1), "assertion failed: uniform is active: uniform absent");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

@@ -1,0 +1,50 @@
+"""check_layers and check_style find what they are there to find."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SCRIPTS = pathlib.Path(sys.argv[1])
+
+
+def run(script, files):
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in files.items():
+            path = root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        result = subprocess.run([sys.executable, SCRIPTS / script, folder],
+                                capture_output=True, text=True)
+        return result.returncode, result.stdout
+
+
+def expect(script, files, wanted):
+    code, output = run(script, files)
+    if code != 1 or wanted not in output:
+        sys.exit(f"{script} should have said {wanted!r}; exit {code}:\n{output}")
+
+
+GOOD = {"runner/scene/a.h": '#pragma once\n#include "runner/image/image.h"\n',
+        "runner/README.md": "", "runner/scene/README.md": ""}
+for name in ("check_layers", "check_style"):
+    code, output = run(name, GOOD)
+    if code != 0:
+        sys.exit(f"{name} found something in a good tree:\n{output}")
+
+expect("check_layers", {"runner/scene/a.h": '#include "runner/gl/device.h"\n'},
+       "runner/scene/a.h:1: runner/scene may not include runner/gl/device.h")
+expect("check_layers", {"runner/report/a.cpp": "#include <EGL/egl.h>\n"},
+       "runner/report/a.cpp:1: runner/report may not include EGL/egl.h")
+expect("check_layers", {"techniques/a/a.cpp": '#include "techniques/b/b.h"\n'},
+       "techniques/a/a.cpp:1: techniques/a may not include techniques/b/b.h")
+expect("check_layers", {"techniques/marching/x.h": "", "runner/core/a.cpp": "// marching\n"},
+       "runner/core/a.cpp: runner/ names the technique 'marching'")
+expect("check_layers", {"runner/core/a.cpp": '#include "error.h"\n'},
+       'runner/core/a.cpp:1: includes are root-relative, not "error.h"')
+expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")
+expect("check_style", {"runner/core/a.cpp": "\n" * 401}, "runner/core/a.cpp: 401 lines, at most 400")
+expect("check_style", {"runner/core/a.cpp": "// TO" + "DO later\n"}, "runner/core/a.cpp:1: unfinished")
+expect("check_style", {"runner/core/a.cpp": ""}, "runner/core: no README.md")
+print("checks find violations")
