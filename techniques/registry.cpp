@@ -1,1 +1,15 @@
+// Every technique, one line each. A table, not self-registration: a static library's unreferenced
+// objects are dropped by the linker.
 #include "runner/technique/technique.h"
+#include "techniques/template/template.h"
+
+namespace gfxrepro::technique {
+
+std::span<const TechniqueInfo> registeredTechniques() {
+    static const TechniqueInfo kTechniques[] = {
+        template_::kTemplate,
+    };
+    return kTechniques;
+}
+
+}  // namespace gfxrepro::technique

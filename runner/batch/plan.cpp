@@ -1,1 +1,288 @@
 #include "runner/batch/plan.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr int kPlanSchema = 1;
+
+/// A user's own scene file is named relative to the config; a worker gets the absolute path.
+config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
+    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
+    const fs::path path = reference.text();
+    if (!path.has_extension() || path.is_absolute()) return reference;
+    const fs::path folder = fs::path(reference.location().file).parent_path();
+    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
+                                reference.location());
+}
+
+/// The first 12 digits of the hash of everything that the case's results depend on.
+std::string contentId(const Case& item, const std::string& sceneKey, const Plan& plan) {
+    Json content = item.toJson();
+    content["scene"] = sceneKey;
+    content["device_class"] = plan.deviceClass;
+    content["build"] = plan.buildId;
+    return sha256(content.dump()).substr(0, 12);
+}
+
+std::string hashOf(const Plan& plan) {
+    Json content = {{"profile", plan.profile},
+                    {"device_class", plan.deviceClass},
+                    {"build", plan.buildId},
+                    {"seed", plan.seed}};
+    for (const Case& item : plan.cases) content["cases"].push_back(item.id);
+    for (const config::Experiment& experiment : plan.experiments) {
+        content["documents"].push_back(experiment.document.toJson());
+    }
+    return sha256(content.dump());
+}
+
+Json toJson(const config::Measure& measure) {
+    return {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
+            {"warmup", measure.warmup},
+            {"repeats", measure.repeats},
+            {"processes", measure.processes},
+            {"frames", measure.frames},
+            {"time_limit_s", measure.timeLimitS},
+            {"memory_limit_bytes", measure.memoryLimitBytes}};
+}
+
+const config::Node& required(const config::Node& map, const char* key) {
+    const config::Node* value = map.find(key);
+    if (!value) throw Error(map.location(), "the entry '" + std::string(key) + "' is missing");
+    return *value;
+}
+
+int requiredInt(const config::Node& map, const char* key) {
+    return static_cast<int>(required(map, key).asInteger());
+}
+
+config::Measure measureFrom(const config::Node& node) {
+    config::Measure measure;
+    measure.lane = required(node, "lane").text() == "timing" ? config::Measure::Lane::Timing
+                                                             : config::Measure::Lane::Quality;
+    measure.warmup = requiredInt(node, "warmup");
+    measure.repeats = requiredInt(node, "repeats");
+    measure.processes = requiredInt(node, "processes");
+    measure.frames = requiredInt(node, "frames");
+    measure.timeLimitS = required(node, "time_limit_s").asDouble();
+    measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
+    return measure;
+}
+
+std::vector<std::string> textsFrom(const config::Node& list) {
+    std::vector<std::string> texts;
+    for (const config::Node& item : list.items()) texts.push_back(item.text());
+    return texts;
+}
+
+}  // namespace
+
+std::string Case::title() const {
+    std::string title = experiment;
+    if (!axes.isMap()) return title;
+    for (const auto& [name, value] : axes.entries()) {
+        title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
+    }
+    return title;
+}
+
+std::string Case::slug() const {
+    std::string slug = experiment;
+    std::replace(slug.begin(), slug.end(), '/', '-');
+    return slug;
+}
+
+Json Case::toJson() const {
+    return {{"id", id},
+            {"experiment", experiment},
+            {"technique", technique},
+            {"scene", scene.toJson()},
+            {"params", params.toJson()},
+            {"axes", axes.toJson()},
+            {"output", {outputWidthPx, outputHeightPx}},
+            {"measure", batch::toJson(measure)},
+            {"seed", std::to_string(seed)}};
+}
+
+Case Case::fromJson(const config::Node& node) {
+    const config::Node::Sequence& output = required(node, "output").items();
+    if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
+    Case item;
+    item.id = required(node, "id").text();
+    item.experiment = required(node, "experiment").text();
+    item.technique = required(node, "technique").text();
+    item.scene = required(node, "scene");
+    item.params = required(node, "params");
+    item.axes = required(node, "axes");
+    item.outputWidthPx = static_cast<int>(output[0].asInteger());
+    item.outputHeightPx = static_cast<int>(output[1].asInteger());
+    item.measure = measureFrom(required(node, "measure"));
+    item.seed = std::stoull(required(node, "seed").text());
+    return item;
+}
+
+Json Plan::toJson() const {
+    Json json = {{"schema", kPlanSchema},
+                 {"hash", hash},
+                 {"build", buildId},
+                 {"profile", profile},
+                 {"device_class", deviceClass},
+                 {"seed", std::to_string(seed)},
+                 {"request",
+                  {{"configs", request.configs},
+                   {"sets", request.sets},
+                   {"sweeps", request.sweeps},
+                   {"device", request.device}}},
+                 {"scenes", Json::object()},
+                 {"experiments", Json::array()},
+                 {"cases", Json::array()}};
+    for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
+    for (const config::Experiment& experiment : experiments) {
+        json["experiments"].push_back(
+            {{"file", experiment.file.string()}, {"document", experiment.document.toJson()}});
+    }
+    for (const Case& item : cases) json["cases"].push_back(item.toJson());
+    return json;
+}
+
+Plan Plan::fromJsonFile(const fs::path& path) {
+    const config::Node node = config::parseYamlFile(path);
+    if (required(node, "schema").asInteger() != kPlanSchema) {
+        throw Error(path.string() + ": schema " + required(node, "schema").text() +
+                    "; this program reads schema " + std::to_string(kPlanSchema));
+    }
+    Plan plan;
+    plan.hash = required(node, "hash").text();
+    plan.buildId = required(node, "build").text();
+    plan.profile = required(node, "profile").text();
+    plan.deviceClass = required(node, "device_class").text();
+    plan.seed = std::stoull(required(node, "seed").text());
+    const config::Node& request = required(node, "request");
+    plan.request = {textsFrom(required(request, "configs")), textsFrom(required(request, "sets")),
+                    textsFrom(required(request, "sweeps")), required(request, "device").text()};
+    for (const auto& [reference, key] : required(node, "scenes").entries()) {
+        plan.sceneKeys[reference] = key.text();
+    }
+    for (const config::Node& item : required(node, "experiments").items()) {
+        plan.experiments.push_back(config::experimentFromDocument(
+            required(item, "document"), fs::path(required(item, "file").text())));
+    }
+    for (const config::Node& item : required(node, "cases").items()) {
+        plan.cases.push_back(Case::fromJson(item));
+    }
+    return plan;
+}
+
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed) {
+    const technique::TechniqueInfo& info = technique::findTechnique(
+        techniques, experiment.technique, {experiment.file.string(), 0, 0});
+    std::vector<Case> cases;
+    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
+        config::Params params(spec.params, "technique '" + std::string(info.name) + "'");
+        info.create(params);
+        params.finish();
+        Case item;
+        item.experiment = experiment.id;
+        item.technique = experiment.technique;
+        item.scene = absoluteReference(spec.scene, catalog);
+        item.params = params.resolved();
+        item.axes = config::Node::map({});
+        for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
+        item.outputWidthPx = spec.outputWidthPx;
+        item.outputHeightPx = spec.outputHeightPx;
+        item.measure = experiment.measure;
+        item.seed = seed;
+        if (!item.scene.isNull()) catalog.resolve(item.scene);  // throws when it is not at hand
+        cases.push_back(std::move(item));
+    }
+    return cases;
+}
+
+Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
+              std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
+              const std::string& deviceClass, std::uint64_t seed) {
+    Plan plan;
+    plan.profile = profile;
+    plan.deviceClass = deviceClass;
+    plan.seed = seed;
+    plan.buildId = programBuildId();
+    plan.experiments = experiments;
+    std::set<std::string> experimentIds;
+    std::set<std::string> caseIds;
+    for (const config::Experiment& experiment : experiments) {
+        if (!experimentIds.insert(experiment.id).second) {
+            throw Error(experiment.file.string() + ": the experiment '" + experiment.id +
+                        "' is given twice");
+        }
+        for (Case& item : resolveCases(experiment, catalog, techniques, seed)) {
+            std::string sceneKey;
+            if (!item.scene.isNull()) {
+                std::string& known = plan.sceneKeys[item.scene.text()];
+                if (known.empty()) known = catalog.contentKey(item.scene);
+                sceneKey = known;
+            }
+            item.id = contentId(item, sceneKey, plan);
+            if (!caseIds.insert(item.id).second) {
+                throw Error(experiment.file.string() + ": the sweep gives the case '" +
+                            item.title() + "' twice");
+            }
+            plan.cases.push_back(std::move(item));
+        }
+    }
+    plan.hash = hashOf(plan);
+    return plan;
+}
+
+std::string planDifference(const Plan& then, const Plan& now) {
+    if (then.hash == now.hash) return "";
+    if (then.buildId != now.buildId) {
+        return "the program or a shader changed (build " + then.buildId.substr(0, 12) + " then, " +
+               now.buildId.substr(0, 12) + " now)";
+    }
+    if (then.deviceClass != now.deviceClass) {
+        return "the run began on a " + then.deviceClass + " device, this one is a " +
+               now.deviceClass + " device";
+    }
+    for (const auto& [reference, key] : then.sceneKeys) {
+        const auto found = now.sceneKeys.find(reference);
+        if (found != now.sceneKeys.end() && found->second != key) {
+            return "the scene '" + reference + "' changed";
+        }
+    }
+    for (std::size_t i = 0; i < std::min(then.experiments.size(), now.experiments.size()); ++i) {
+        const config::Experiment& before = then.experiments[i];
+        if (before.document.toJson() != now.experiments[i].document.toJson()) {
+            return "the config " + before.file.string() + " changed";
+        }
+    }
+    return "the experiments are not the same";
+}
+
+std::string programBuildId() {
+    std::vector<fs::path> files;
+    const fs::path shaders = dataFolder("shaders");
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(shaders)) {
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::string content = sha256OfFile("/proc/self/exe");
+    for (const fs::path& file : files) {
+        content += '\n' + fs::relative(file, shaders).string() + ' ' + sha256OfFile(file);
+    }
+    return sha256(content);
+}
+
+}  // namespace gfxrepro::batch

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,15 +29,27 @@ struct Case {
     std::uint64_t seed = 0;
 
     std::string title() const;  // "zju2005/2.1 scene=models/duck"
+    std::string slug() const;   // "zju2005-2.1": for file names
     nlohmann::ordered_json toJson() const;
     static Case fromJson(const config::Node& node);
 };
 
+/// What was asked for, so that a resumed run can ask for the same again.
+struct Request {
+    std::vector<std::string> configs;  // absolute paths
+    std::vector<std::string> sets;     // --set, as written
+    std::vector<std::string> sweeps;   // --sweep, as written
+    std::string device = "auto";
+};
+
 struct Plan {
+    Request request;
     std::string profile;
     std::string deviceClass;  // "software" | "gpu"
     std::uint64_t seed = 1;
-    std::string hash;  // of everything that a result depends on
+    std::string hash;                              // of everything that a result depends on
+    std::string buildId;                           // of the program and its shaders
+    std::map<std::string, std::string> sceneKeys;  // scene reference → identity of its content
     std::vector<Case> cases;
     /// The experiments as loaded (file text after merging), so that tables can be made again from
     /// the run directory alone.
@@ -44,10 +59,22 @@ struct Plan {
     static Plan fromJsonFile(const std::filesystem::path& path);
 };
 
+/// The cases of one experiment with every parameter resolved; ids are still empty. Throws Error for
+/// unknown techniques, parameters and scenes. Needs no device.
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed);
+
 /// Expands, constructs each technique once a case (which validates all parameters), resolves
 /// scenes, and hashes. Throws Error for anything that is wrong in a config.
 Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
               std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
               const std::string& deviceClass, std::uint64_t seed);
+
+/// Why results under `now` may not be put beside those under `then`; empty when they may.
+std::string planDifference(const Plan& then, const Plan& now);
+
+/// Identity of the running program: SHA-256 over the executable and every shader file.
+std::string programBuildId();
 
 }  // namespace gfxrepro::batch

@@ -1,1 +1,96 @@
-#include "runner/batch/plan.h"
+#include "runner/batch/run_directory.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string utcTime(const char* format) {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof(text), format, &parts);
+    return text;
+}
+
+int openFile(const fs::path& path, int flags) {
+    const int fd = ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC, 0644);
+    if (fd < 0) throw Error("cannot write " + path.string() + ": " + std::strerror(errno));
+    return fd;
+}
+
+}  // namespace
+
+std::string utcTime() {
+    return utcTime("%Y-%m-%dT%H:%M:%SZ");
+}
+
+fs::path defaultRunPath(const std::string& slug) {
+    const fs::path base = "runs/" + utcTime("%Y%m%d-%H%M%S") + "-" + slug;
+    fs::path path = base;
+    for (int i = 2; fs::exists(path); ++i) path = base.string() + "-" + std::to_string(i);
+    return path;
+}
+
+RunDirectory::RunDirectory(const fs::path& path) : path_(path) {
+    lockFd_ = openFile(path_ / "lock", O_RDWR);
+    if (::flock(lockFd_, LOCK_EX | LOCK_NB) != 0) {
+        ::close(lockFd_);
+        throw Error(path.string() + ": another run is writing to this folder");
+    }
+    logFd_ = openFile(path_ / "log.jsonl", O_WRONLY | O_APPEND);
+}
+
+RunDirectory::RunDirectory(RunDirectory&& other) noexcept
+    : path_(std::move(other.path_)),
+      lockFd_(std::exchange(other.lockFd_, -1)),
+      logFd_(std::exchange(other.logFd_, -1)) {}
+
+RunDirectory::~RunDirectory() {
+    if (logFd_ >= 0) ::close(logFd_);
+    if (lockFd_ >= 0) ::close(lockFd_);
+}
+
+RunDirectory RunDirectory::create(const fs::path& path) {
+    std::error_code problem;
+    fs::create_directories(path, problem);
+    if (problem) throw Error("cannot make the folder " + path.string() + ": " + problem.message());
+    RunDirectory directory(path);
+    if (fs::exists(directory.planFile())) {
+        throw Error(path.string() + ": holds a run already; continue it with --resume " +
+                    path.string() + ", or give another folder");
+    }
+    return directory;
+}
+
+RunDirectory RunDirectory::open(const fs::path& path) {
+    if (!fs::exists(path / "plan.json")) {
+        throw Error(path.string() + ": is no run directory (it has no plan.json)");
+    }
+    return RunDirectory(path);
+}
+
+void RunDirectory::log(const nlohmann::ordered_json& event) const {
+    nlohmann::ordered_json line = {{"time", utcTime()}};
+    line.update(event);
+    const std::string text =
+        line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    // One write a line; a log that cannot be written (disk full) does not stop the measurement.
+    [[maybe_unused]] const ssize_t written = ::write(logFd_, text.data(), text.size());
+}
+
+}  // namespace gfxrepro::batch

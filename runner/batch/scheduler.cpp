@@ -1,1 +1,249 @@
-#include "runner/batch/plan.h"
+#include "runner/batch/scheduler.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <memory>
+
+namespace gfxrepro::batch {
+
+namespace {
+
+using Lane = config::Measure::Lane;
+using Clock = PhaseClock::Clock;
+constexpr std::chrono::milliseconds kTickInterval{250};
+
+/// Ctrl-C and SIGTERM as a descriptor to poll, for as long as the object lives.
+class SignalWatch {
+  public:
+    SignalWatch() {
+        sigset_t signals;
+        sigemptyset(&signals);
+        sigaddset(&signals, SIGINT);
+        sigaddset(&signals, SIGTERM);
+        ::sigprocmask(SIG_BLOCK, &signals, &before_);
+        fd_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+    }
+    ~SignalWatch() {
+        signalfd_siginfo ignored;
+        while (::read(fd_, &ignored, sizeof(ignored)) > 0) {
+        }
+        ::close(fd_);
+        ::sigprocmask(SIG_SETMASK, &before_, nullptr);
+    }
+    SignalWatch(const SignalWatch&) = delete;
+    SignalWatch& operator=(const SignalWatch&) = delete;
+    int fd() const { return fd_; }
+
+  private:
+    sigset_t before_;
+    int fd_;
+};
+
+class Scheduler {
+  public:
+    Scheduler(const std::vector<Unit>& units, const RunDirectory& directory,
+              const SchedulerOptions& options, PhaseClock& phases, Observer& observer)
+        : waiting_(units.begin(), units.end()),
+          directory_(directory),
+          options_(options),
+          phases_(phases),
+          observer_(observer),
+          records_(directory.recordsFile()) {}
+
+    RunOutcome run() {
+        while (!waiting_.empty() || busyCount() > 0) {
+            dispatch();
+            if (waitForEvents()) {
+                outcome_.isInterrupted = true;
+                break;
+            }
+            collect();
+            observer_.tick();
+        }
+        workers_.clear();
+        return std::move(outcome_);
+    }
+
+  private:
+    using Workers = std::vector<std::unique_ptr<WorkerHandle>>;
+
+    int busyCount() const {
+        return static_cast<int>(
+            std::count_if(workers_.begin(), workers_.end(), [](auto& w) { return w->isBusy(); }));
+    }
+
+    /// Gives out units in order, as far as the lanes allow.
+    void dispatch() {
+        while (!waiting_.empty()) {
+            const Lane lane = waiting_.front().item->measure.lane;
+            const bool timingRuns = std::any_of(workers_.begin(), workers_.end(), [](auto& w) {
+                return w->isBusy() && w->lane() == Lane::Timing;
+            });
+            const int allowed = lane == Lane::Timing || timingRuns ? 1 : options_.jobs;
+            if (busyCount() >= allowed) return;
+            start(waiting_.front());
+            waiting_.pop_front();
+        }
+    }
+
+    void start(const Unit& unit) {
+        const Lane lane = unit.item->measure.lane;
+        const bool needsOwn = unit.item->measure.processes > 1;
+        // Nothing beside a timing unit, and no memory held by the other lane.
+        std::erase_if(workers_, [&](auto& w) {
+            return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && needsOwn));
+        });
+        auto worker = std::find_if(workers_.begin(), workers_.end(),
+                                   [&](auto& w) { return !needsOwn && !w->isBusy(); });
+        if (worker == workers_.end()) {
+            workers_.push_back(std::make_unique<WorkerHandle>(
+                workerCommand(options_, lane, directory_.path()), lane, needsOwn, phases_));
+            worker = std::prev(workers_.end());
+        }
+        (*worker)->assign(unit);
+        observer_.unitBegan(unit);
+    }
+
+    /// Sleeps until a worker says something or a limit is due; true on Ctrl-C.
+    bool waitForEvents() const {
+        const Clock::time_point now = Clock::now();
+        Clock::time_point until = now + kTickInterval;
+        std::vector<pollfd> fds = {{signals_.fd(), POLLIN, 0}};
+        for (const auto& worker : workers_) {
+            until = std::min(until, worker->nextCheck(now));
+            fds.push_back({worker->process().messageFd(), POLLIN, 0});
+            fds.push_back({worker->process().outputFd(), POLLIN, 0});
+        }
+        const auto timeoutMs = std::chrono::ceil<std::chrono::milliseconds>(until - now).count();
+        ::poll(fds.data(), fds.size(), static_cast<int>(std::max<long long>(timeoutMs, 0)));
+        return (fds.front().revents & POLLIN) != 0;
+    }
+
+    void collect() {
+        for (auto& worker : workers_) {
+            std::optional<CaseResult> result = worker->receive();
+            if (!result) result = worker->checkLimits(Clock::now());
+            if (!result) continue;
+            const Unit unit = *worker->unit();
+            finish(unit, *result, worker->output());
+            if (!worker->release(*result)) worker.reset();
+        }
+        std::erase(workers_, nullptr);
+        std::erase_if(workers_, [](auto& w) { return w->isGone(); });
+    }
+
+    /// Images first: a unit whose rows are there is complete.
+    void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
+        const bool isOk = result.status == report::Status::Ok;
+        if (!result.images.empty()) report::appendImages(directory_.path(), result.images);
+        records_.append(recordsOf(unit, result));
+        Json event = {{"event", "case"},
+                      {"case", unit.item->id},
+                      {"title", unit.item->title()},
+                      {"process", unit.process},
+                      {"status", report::statusName(result.status)}};
+        if (!result.message.empty()) event["message"] = result.message;
+        if (!output.empty()) event["output"] = output;
+        directory_.log(event);
+        ++(isOk ? outcome_.finished : outcome_.failed);
+        outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
+        observer_.unitEnded(unit, result.status, result.message);
+    }
+
+    SignalWatch signals_;
+    std::deque<Unit> waiting_;
+    const RunDirectory& directory_;
+    const SchedulerOptions& options_;
+    PhaseClock& phases_;
+    Observer& observer_;
+    report::RecordWriter records_;
+    Workers workers_;
+    RunOutcome outcome_;
+};
+
+}  // namespace
+
+std::vector<Unit> unitsOf(const Plan& plan) {
+    std::vector<Unit> units;
+    for (std::size_t first = 0, next; first < plan.cases.size(); first = next) {
+        int processes = 0;
+        for (next = first; next < plan.cases.size() &&
+                           plan.cases[next].experiment == plan.cases[first].experiment;
+             ++next) {
+            processes = std::max(processes, plan.cases[next].measure.processes);
+        }
+        for (int process = 0; process < processes; ++process) {
+            for (std::size_t i = first; i < next; ++i) {
+                if (process < plan.cases[i].measure.processes) {
+                    units.push_back({&plan.cases[i], process});
+                }
+            }
+        }
+    }
+    return units;
+}
+
+std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lane,
+                                       const std::filesystem::path& runDir) {
+    return {"/proc/self/exe", "worker",
+            "--device",       options.device,
+            "--assets",       options.assetsFolder,
+            "--lane",         lane == Lane::Timing ? "timing" : "quality",
+            "--run",          runDir.string()};
+}
+
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases) {
+    WorkerHandle worker(workerCommand(options, Lane::Quality, "."), Lane::Quality, true, phases);
+    while (!worker.device() && !worker.isGone()) {
+        pollfd fds[] = {{worker.process().messageFd(), POLLIN, 0},
+                        {worker.process().outputFd(), POLLIN, 0}};
+        ::poll(fds, 2, -1);
+        worker.receive();
+    }
+    if (worker.device()) return *worker.device();
+    throw NoDeviceError(worker.startProblem());
+}
+
+RunOutcome runUnits(const std::vector<Unit>& units, const RunDirectory& directory,
+                    const SchedulerOptions& options, PhaseClock& phases, Observer& observer) {
+    return Scheduler(units, directory, options, phases, observer).run();
+}
+
+std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result) {
+    const Case& item = *unit.item;
+    report::Record row;
+    row.caseId = item.id;
+    row.table = item.experiment;
+    row.technique = item.technique;
+    if (const config::Node* method = item.params.find("method")) row.method = method->text();
+    if (!item.scene.isNull()) row.scene = item.scene.text();
+    row.params = item.params.toJson().dump();
+    row.process = unit.process;
+    row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";
+    row.status = result.status;
+    row.message = result.message;
+    if (result.status != report::Status::Ok) {
+        row.value = std::numeric_limits<double>::quiet_NaN();
+        return {row};
+    }
+    std::vector<report::Record> rows;
+    for (const Sample& sample : result.samples) {
+        row.frame = sample.frame;
+        row.repeat = sample.repeat;
+        row.pass = sample.pass;
+        row.metric = sample.metric;
+        row.unit = sample.unit;
+        row.value = sample.value;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+}  // namespace gfxrepro::batch

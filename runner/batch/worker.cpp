@@ -1,1 +1,105 @@
-#include "runner/batch/plan.h"
+#include "runner/batch/worker.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <new>
+
+#include "runner/batch/child_process.h"
+#include "runner/batch/measure.h"
+#include "runner/batch/process_memory.h"
+#include "runner/batch/protocol.h"
+#include "runner/core/files.h"
+
+namespace gfxrepro::batch {
+
+namespace {
+
+constexpr std::size_t kSceneBudgetBytes = std::size_t{2} << 30;
+
+void send(const Json& message) {
+    // Messages may quote files of any encoding; they arrive with replacement characters.
+    const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    std::string_view rest = text;
+    while (!rest.empty()) {
+        const ssize_t written = ::write(kMessageFd, rest.data(), rest.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            throw Error("the runner is gone: " + std::string(std::strerror(errno)));
+        }
+        rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+CaseResult failure(report::Status status, const std::string& message) {
+    CaseResult result;
+    result.status = status;
+    result.message = message;
+    return result;
+}
+
+/// The batch case loop's catch: whatever a case throws becomes its status.
+CaseResult resultOf(const Case& item, MeasureContext& context) {
+    try {
+        return measureCase(item, context);
+    } catch (const UnsupportedError& error) {
+        return failure(report::Status::Unsupported, error.what());
+    } catch (const DeviceLostError& error) {
+        return failure(report::Status::DeviceLost, error.what());
+    } catch (const std::bad_alloc&) {
+        return failure(report::Status::Oom, "out of memory");
+    } catch (const std::exception& error) {
+        return failure(report::Status::Error, error.what());
+    }
+}
+
+void serve(gl::Device& device, const WorkerOptions& options,
+           std::span<const technique::TechniqueInfo> techniques) {
+    const scene::Catalog catalog(dataFolder("configs") / "scenes", options.assetsFolder);
+    const gl::ShaderLibrary shaders(dataFolder("shaders"));
+    // A timing worker keeps nothing but the scene at hand, so that memory is the case's own.
+    SceneCache scenes(catalog,
+                      options.lane == config::Measure::Lane::Timing ? 0 : kSceneBudgetBytes);
+    MeasureContext context{device,
+                           shaders,
+                           scenes,
+                           techniques,
+                           options.runDir,
+                           residentBytes(::getpid()),
+                           [](std::string_view phase, bool isBegin) {
+                               send({{isBegin ? "begin" : "end", phase}});
+                           }};
+    send({{"ready", toJson(device.info())}});
+    std::string line;
+    while (std::getline(std::cin, line)) {
+        const config::Node request = config::parseYaml(line, "case");
+        const Case item = Case::fromJson(*request.find("case"));
+        const CaseResult result = resultOf(item, context);
+        std::cout.flush();
+        std::cerr.flush();
+        send({{"done", toJson(result)}});
+    }
+}
+
+}  // namespace
+
+void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques) {
+    if (::fcntl(kMessageFd, F_SETFD, FD_CLOEXEC) != 0) {
+        throw UsageError("the worker command is for the program's own use: descriptor 3 is closed");
+    }
+    send({{"begin", "device"}});
+    const gl::DebugOutput debug =
+        options.lane == config::Measure::Lane::Timing ? gl::DebugOutput::Off : gl::DebugOutput::Log;
+    try {
+        gl::Device device = gl::Device::open({options.device, debug});
+        send({{"end", "device"}});
+        serve(device, options, techniques);
+    } catch (const NoDeviceError& error) {
+        send({{"unavailable", error.what()}});
+    }
+}
+
+}  // namespace gfxrepro::batch

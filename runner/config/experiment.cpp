@@ -1,1 +1,305 @@
 #include "runner/config/experiment.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "runner/config/checks.h"
+#include "runner/config/params.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using Names = std::vector<std::string>;
+using Kind = Experiment::Kind;
+
+constexpr int kMaxOutputPx = 16384;
+
+struct Identity {
+    std::string_view key;
+    Kind kind;
+    std::string_view label;
+};
+constexpr Identity kIdentities[] = {{"table", Kind::Table, "Table"},
+                                    {"figure", Kind::Figure, "Figure"},
+                                    {"section", Kind::Section, "Section"},
+                                    {"sweep_of", Kind::Sweep, "Sweep"}};
+
+bool isName(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+    });
+}
+
+/// Sets kind and id from the one key that names the experiment.
+void readIdentity(const Node& document, Experiment& experiment) {
+    const Identity* found = nullptr;
+    for (const Identity& identity : kIdentities) {
+        if (!document.find(identity.key)) continue;
+        if (found) {
+            throw Error(document.keyLocation(identity.key),
+                        "both '" + std::string(found->key) + "' and '" + std::string(identity.key) +
+                            "' name the experiment; allowed: one");
+        }
+        found = &identity;
+    }
+    if (!found) {
+        throw Error(document.location(),
+                    "nothing names the experiment; allowed: one of " + joined(identityKeys()));
+    }
+    const Node& name = *document.find(found->key);
+    const std::string& text = lineOf(name, found->key);
+    const Names parts = split(text, '/');
+    experiment.kind = found->kind;
+    if (found->kind == Kind::Sweep) {
+        if (!isName(text)) throwNotAllowed(name, found->key, "letters, digits, - _ .");
+        experiment.id = "sweep/" + text;
+        return;
+    }
+    if (parts.size() != 2 || !isName(parts[0]) || !isName(parts[1])) {
+        throwNotAllowed(name, found->key, "PAPER/NUMBER, such as zju2005/2.1");
+    }
+    experiment.id = text;
+}
+
+int outputSize(const Node& value, const std::string& axis) {
+    const auto size = value.tryInteger();
+    if (!size || *size < 1 || *size > kMaxOutputPx) {
+        throwNotAllowed(value, axis, "a whole number, 1 … 16384 pixels");
+    }
+    return static_cast<int>(*size);
+}
+
+void requireAxisNames(const Node& sweep, const std::vector<AxisPoint>& points) {
+    std::set<std::string> names;
+    for (const AxisPoint& point : points) {
+        for (const auto& [name, value] : point) {
+            if (name.starts_with("output.")) {
+                if (name != "output.width" && name != "output.height") {
+                    throw Error(sweep.keyLocation(name),
+                                "axis '" + name + "'; allowed: output.width, output.height");
+                }
+                outputSize(value, name);
+            }
+        }
+    }
+}
+
+Vocabulary vocabularyOf(const Experiment& experiment, const std::vector<AxisPoint>& points,
+                        bool isComplete) {
+    Vocabulary vocabulary;
+    vocabulary.isComplete = isComplete;
+    std::set<std::string> seen;
+    for (const AxisPoint& point : points) {
+        for (const auto& [axis, value] : point) {
+            if (seen.insert(axis + "=" + contentKey(value)).second) {
+                vocabulary.axes[axis].push_back(value);
+            }
+        }
+    }
+    // What is not swept has the one value.
+    for (const auto& [name, value] : experiment.params.entries()) {
+        vocabulary.axes.try_emplace(name, Node::Sequence{value});
+    }
+    if (!experiment.scene.isNull()) {
+        vocabulary.axes.try_emplace("scene", Node::Sequence{experiment.scene});
+    }
+    return vocabulary;
+}
+
+std::vector<Assumption> readAssumptions(const Node& node) {
+    if (!node.isMap()) throwNotAllowed(node, "assumptions", "a map {name: assumption}");
+    std::vector<Assumption> assumptions;
+    for (const auto& [name, entry] : node.entries()) {
+        const std::string what = "assumption '" + name + "'";
+        requireKeys(entry, what, Names{"value", "range", "unit", "why"});
+        const Node* why = entry.find("why");
+        if (!why) throw Error(node.keyLocation(name), what + " needs 'why'");
+        Assumption assumption{name, {}, {}, {}, lineOf(*why, what + ": why")};
+        if (const Node* value = entry.find("value")) assumption.value = *value;
+        if (const Node* range = entry.find("range")) assumption.range = *range;
+        if (const Node* unit = entry.find("unit")) assumption.unit = lineOf(*unit, what + ": unit");
+        assumptions.push_back(std::move(assumption));
+    }
+    return assumptions;
+}
+
+/// A file without a technique measures nothing: it holds what the paper printed.
+void requireOnlyPrinted(const Node& document) {
+    for (const char* key : {"scene", "params", "output", "sweep", "measure", "layout", "claims"}) {
+        if (document.find(key)) {
+            throw Error(document.keyLocation(key),
+                        std::string("'") + key + "' without 'technique'");
+        }
+    }
+    if (!document.find("printed")) {
+        throw Error(document.location(),
+                    "neither 'technique' nor 'printed'; allowed: either or both");
+    }
+}
+
+void readMeasurement(const Node& document, Experiment& experiment) {
+    const auto section = [&](const char* key) {
+        const Node* node = document.find(key);
+        return node ? *node : Node();
+    };
+    experiment.technique = lineOf(*document.find("technique"), "technique");
+    experiment.params = section("params");
+    if (experiment.params.isNull()) experiment.params = Node::map({}, document.location());
+    if (!experiment.params.isMap()) throwNotAllowed(experiment.params, "params", "a map");
+    experiment.scene = section("scene");
+    experiment.sweep = section("sweep");
+    Params output(section("output"), "output");
+    std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
+    Params measure(section("measure"), "measure");
+    experiment.measure = readMeasure(measure);
+}
+
+/// Layout, printed values and claims, each checked against the one before.
+void readTable(const Node& document, bool isComplete, Experiment& experiment) {
+    const Node* printed = document.find("printed");
+    const Node* layout = document.find("layout");
+    const Node* claims = document.find("claims");
+    if (experiment.technique.empty()) {
+        experiment.printed = readPrinted(*printed, nullptr, nullptr);
+        return;
+    }
+    const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
+    requireAxisNames(experiment.sweep, points);
+    for (const char* key : {"printed", "claims"}) {
+        if (document.find(key) && !layout) {
+            throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
+        }
+    }
+    if (!layout) return;
+    const Vocabulary vocabulary = vocabularyOf(experiment, points, isComplete);
+    experiment.layout = readLayout(*layout, vocabulary);
+    const TableNames names = tableNames(experiment.layout, vocabulary);
+    if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
+    if (claims) experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty());
+}
+
+}  // namespace
+
+const Names& identityKeys() {
+    static const Names keys = {"table", "figure", "section", "sweep_of"};
+    return keys;
+}
+
+const Names& sectionKeys() {
+    static const Names keys = {"title",   "technique", "scene",   "params", "output",     "sweep",
+                               "measure", "layout",    "printed", "claims", "assumptions"};
+    return keys;
+}
+
+std::pair<int, int> readOutput(Params& params) {
+    const int width =
+        params.getInt("width", 512, {"width of the image", "pixels", 1, kMaxOutputPx});
+    const int height =
+        params.getInt("height", 512, {"height of the image", "pixels", 1, kMaxOutputPx});
+    params.finish();
+    return {width, height};
+}
+
+Measure readMeasure(Params& params) {
+    constexpr Choice<Measure::Lane> kLanes[] = {
+        {Measure::Lane::Quality, "quality", "may run beside others"},
+        {Measure::Lane::Timing, "timing", "runs alone"}};
+    constexpr double kMax = 1'000'000;
+    Measure measure;
+    measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
+    measure.warmup = params.getInt("warmup", measure.warmup,
+                                   {"iterations before the first measured one", "", 0, kMax});
+    measure.repeats = params.getInt("repeats", measure.repeats,
+                                    {"measured iterations in one process", "", 1, kMax});
+    measure.processes =
+        params.getInt("processes", measure.processes,
+                      {"runs of the case, each in a process of its own", "", 1, kMax});
+    measure.frames = params.getInt("frames", measure.frames,
+                                   {"frames of a path; each is repeated", "", 1, kMax});
+    measure.timeLimitS =
+        params.getDouble("time_limit_s", measure.timeLimitS,
+                         {"of the whole case, scene loading included", "seconds", 1e-3, 1e9});
+    const double bytes = params.getDouble("memory_limit_bytes", 0.0,
+                                          {"resident memory; 0: no limit", "bytes", 0, 1e15});
+    measure.memoryLimitBytes = std::llround(bytes);
+    params.finish();
+    return measure;
+}
+
+Experiment readExperiment(const Node& document, const std::filesystem::path& file,
+                          bool isComplete) {
+    Names allowed = identityKeys();
+    allowed.insert(allowed.end(), sectionKeys().begin(), sectionKeys().end());
+    allowed.emplace_back("profiles");
+    requireKeys(document, "config", allowed);
+    Experiment experiment;
+    experiment.file = file;
+    experiment.document = document;
+    experiment.params = Node::map({});
+    readIdentity(document, experiment);
+    const Node* title = document.find("title");
+    if (!title) throw Error(document.location(), "'title' is missing");
+    experiment.title = lineOf(*title, "title");
+    if (document.find("technique")) {
+        readMeasurement(document, experiment);
+    } else {
+        requireOnlyPrinted(document);
+    }
+    readTable(document, isComplete, experiment);
+    if (const Node* node = document.find("assumptions")) {
+        experiment.assumptions = readAssumptions(*node);
+    }
+    if (const Node* profiles = document.find("profiles")) {
+        for (const Node& name : profiles->items()) experiment.profiles.push_back(name.text());
+    }
+    return experiment;
+}
+
+Experiment experimentFromDocument(const Node& document, const std::filesystem::path& file) {
+    return readExperiment(document, file, false);
+}
+
+std::string Experiment::slug() const {
+    std::string text = id;
+    std::replace(text.begin(), text.end(), '/', '-');
+    return text;
+}
+
+std::string Experiment::label() const {
+    const auto identity = std::find_if(std::begin(kIdentities), std::end(kIdentities),
+                                       [&](const Identity& one) { return one.kind == kind; });
+    return std::string(identity->label) + " " + id.substr(id.find('/') + 1);
+}
+
+std::vector<CaseSpec> expandCases(const Experiment& experiment) {
+    std::vector<CaseSpec> cases;
+    if (experiment.technique.empty()) return cases;
+    for (AxisPoint& point : expandSweep(experiment.sweep)) {
+        CaseSpec spec{{},
+                      experiment.params,
+                      experiment.scene,
+                      experiment.outputWidthPx,
+                      experiment.outputHeightPx};
+        for (const auto& [axis, value] : point) {
+            if (axis == "scene") {
+                spec.scene = value;
+            } else if (axis == "output.width") {
+                spec.outputWidthPx = outputSize(value, axis);
+            } else if (axis == "output.height") {
+                spec.outputHeightPx = outputSize(value, axis);
+            } else {
+                spec.params.set(axis, value);
+            }
+        }
+        spec.axes = std::move(point);
+        cases.push_back(std::move(spec));
+    }
+    return cases;
+}
+
+}  // namespace gfxrepro::config

@@ -19,14 +19,18 @@ using AxisPoint = std::vector<std::pair<std::string, Node>>;
 /// The `sweep:` map. Each key is an axis: `scene`, `output.width`, or a technique's parameter.
 ///
 ///     sweep:
-///       scene: [models/duck, models/bunny]          # a list; axes multiply
-///       delta_s: {range: [1, 10]}                   # 1, 2, …, 10; {range: [0, 1, 0.25]} with a
-///       step resolution: {log2: [64, 512]}               # 64, 128, 256, 512 zip: # go together
-///         - {resolution: [64, 128], voxel_bits: [8, 16]}
-///       list:                                       # points spelt out; keys may differ
-///         - [{method: slices}, {method: worksheet, voxel_bits: 1}]
-///       exclude: [{scene: models/duck, resolution: 512}]
-///       when: {slices: {method: slices}}            # axis `slices` varies only there
+///       scene: [models/duck, models/bunny]   # a list; axes multiply in the order of the file
+///       delta_s: {range: [1, 10]}            # 1, 2, …, 10; a third number is the step
+///       resolution: {log2: [64, 512]}        # 64, 128, 256, 512
+///       zip:                                 # each block: axes that go together
+///         - {tile: [64, 128], voxel_bits: [8, 16]}
+///       list:                                # each block: points spelt out; keys may differ
+///         - [{method: slices}, {method: worksheet, packed: true}]
+///       exclude: [{scene: models/duck, resolution: 512}]  # points that match all pairs
+///       when: {slices: {method: slices}}     # elsewhere axis `slices` is left out of the point
+///
+/// A pair's value may be a list: any of these. Points made equal by `when` are one. Throws Error at
+/// the place of what is wrong, and for more than 1,000,000 points.
 std::vector<AxisPoint> expandSweep(const Node& sweep);
 
 /// How often and how a case is measured.
@@ -158,6 +162,11 @@ struct ExperimentOptions {
 /// file:line:column.
 Experiment loadExperiment(const std::filesystem::path& file, const ExperimentOptions& options,
                           const std::filesystem::path& configsFolder);
+
+/// The experiment of a `document` that loadExperiment made (perhaps stored in a plan as JSON in
+/// between); `file` is where it came from. Names that the profile took out of the sweep may still
+/// be printed and claimed.
+Experiment experimentFromDocument(const Node& document, const std::filesystem::path& file);
 
 /// The schema in words: every key, type, default and meaning (`gfxrepro describe config`).
 std::string describeConfig();

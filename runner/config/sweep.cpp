@@ -1,1 +1,277 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "runner/config/checks.h"
 #include "runner/config/experiment.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+constexpr double kMaxPoints = 1'000'000;
+
+/// Points that are chosen together: the values of one axis, or a zip or list block. A sweep is the
+/// product of its factors.
+using Factor = std::vector<AxisPoint>;
+
+double countOfRange(const Node& range, double first, double last, double step) {
+    if (step == 0.0) throwNotAllowed(range, "range", "a step that is not 0");
+    if ((last - first) * step < 0.0) {
+        throwNotAllowed(range, "range", "a step that leads from the first value to the last");
+    }
+    // Half a millionth of a step is forgiven: 1 is part of [0, 1, 0.1].
+    return std::floor((last - first) / step + 5e-7) + 1;
+}
+
+void requireCount(double count, const SourceLocation& where, const std::string& what) {
+    if (count > kMaxPoints) {
+        throw Error(where, fmt::format("{} has {:.0f} points; at most 1000000", what, count));
+    }
+}
+
+/// [first, last], [first, last, step]: both ends included.
+Node::Sequence valuesOfRange(const Node& range, const std::string& axis) {
+    if (!range.isSequence() || range.items().size() < 2 || range.items().size() > 3) {
+        throwNotAllowed(range, "range", "[first, last] or [first, last, step]");
+    }
+    const double first = range.items()[0].asDouble();
+    const double last = range.items()[1].asDouble();
+    const double step = range.items().size() == 3 ? range.items()[2].asDouble() : 1.0;
+    const double count = countOfRange(range, first, last, step);
+    requireCount(count, range.location(), "axis '" + axis + "'");
+    Node::Sequence values;
+    for (int i = 0; i < static_cast<int>(count); ++i) {
+        // Twelve digits: 0.3, not 0.30000000000000004.
+        const auto value = parseDouble(fmt::format("{:.12g}", first + i * step));
+        values.push_back(Node::number(value.value_or(first + i * step), range.location()));
+    }
+    return values;
+}
+
+/// [first, last]: powers of two, both ends included.
+Node::Sequence valuesOfLog2(const Node& ends) {
+    constexpr std::string_view kAllowed = "[first, last], powers of two, the smaller first";
+    if (!ends.isSequence() || ends.items().size() != 2) throwNotAllowed(ends, "log2", kAllowed);
+    const double first = ends.items()[0].asDouble();
+    const double last = ends.items()[1].asDouble();
+    for (const double end : {first, last}) {
+        int exponent = 0;
+        if (std::frexp(end, &exponent) != 0.5) throwNotAllowed(ends, "log2", kAllowed);
+    }
+    if (first > last) throwNotAllowed(ends, "log2", kAllowed);
+    Node::Sequence values;
+    for (double value = first; value <= last; value *= 2.0) {
+        values.push_back(Node::number(value, ends.location()));
+    }
+    return values;
+}
+
+/// The values of one axis: a list, {range: …} or {log2: …}.
+Node::Sequence valuesOfAxis(const std::string& axis, const Node& node) {
+    const std::string what = "axis '" + axis + "'";
+    Node::Sequence values;
+    if (node.isSequence()) {
+        values = node.items();
+    } else if (node.isMap() && node.entries().size() == 1 && node.find("range")) {
+        values = valuesOfRange(*node.find("range"), axis);
+    } else if (node.isMap() && node.entries().size() == 1 && node.find("log2")) {
+        values = valuesOfLog2(*node.find("log2"));
+    } else {
+        throwNotAllowed(node, what,
+                        "a list, {range: [first, last, step]} or {log2: [first, last]}");
+    }
+    if (values.empty()) throw Error(node.location(), what + " has no values");
+    return values;
+}
+
+void requireDifferent(const Node::Sequence& values, const std::string& axis) {
+    std::set<std::string> seen;
+    for (const Node& value : values) {
+        if (seen.insert(contentKey(value)).second) continue;
+        throw Error(value.location(),
+                    "axis '" + axis + "' has the value " + value.toFlowText() + " twice");
+    }
+}
+
+/// Gathers the factors and refuses an axis that two of them name.
+class Factors {
+  public:
+    void addAxis(const std::string& axis, const Node& node, const SourceLocation& where) {
+        claim(axis, where);
+        Node::Sequence values = valuesOfAxis(axis, node);
+        requireDifferent(values, axis);
+        Factor factor;
+        for (Node& value : values) factor.push_back({{axis, std::move(value)}});
+        factors_.push_back(std::move(factor));
+    }
+
+    void addZips(const Node& blocks) {
+        for (const Node& block : blocks.items()) {
+            if (!block.isMap() || block.entries().empty()) {
+                throwNotAllowed(block, "zip", "a list of maps, axis: values");
+            }
+            Factor factor;
+            for (const auto& [axis, node] : block.entries()) {
+                claim(axis, block.keyLocation(axis));
+                Node::Sequence values = valuesOfAxis(axis, node);
+                if (factor.empty()) factor.resize(values.size());
+                if (values.size() != factor.size()) {
+                    throw Error(
+                        node.location(),
+                        fmt::format("zip: axis '{}' has {} values, but '{}' has {}", axis,
+                                    values.size(), block.entries()[0].first, factor.size()));
+                }
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    factor[i].emplace_back(axis, std::move(values[i]));
+                }
+            }
+            factors_.push_back(std::move(factor));
+        }
+    }
+
+    void addLists(const Node& blocks) {
+        for (const Node& block : blocks.items()) {
+            if (!block.isSequence() || block.items().empty()) {
+                throwNotAllowed(block, "list",
+                                "a list of blocks, each a list of points {axis: value}");
+            }
+            Factor factor;
+            std::set<std::string> own;
+            for (const Node& point : block.items()) {
+                if (!point.isMap() || point.entries().empty()) {
+                    throwNotAllowed(point, "a point of a list", "a map {axis: value}");
+                }
+                for (const auto& entry : point.entries()) {
+                    if (own.insert(entry.first).second) {
+                        claim(entry.first, point.keyLocation(entry.first));
+                    }
+                }
+                factor.emplace_back(point.entries().begin(), point.entries().end());
+            }
+            factors_.push_back(std::move(factor));
+        }
+    }
+
+    const std::vector<std::string>& axes() const { return axes_; }
+
+    std::vector<AxisPoint> product(const SourceLocation& where) const {
+        double count = 1;
+        for (const Factor& factor : factors_) count *= static_cast<double>(factor.size());
+        requireCount(count, where, "the sweep");
+        std::vector<AxisPoint> points = {{}};
+        for (const Factor& factor : factors_) {
+            std::vector<AxisPoint> longer;
+            longer.reserve(points.size() * factor.size());
+            for (const AxisPoint& point : points) {
+                for (const AxisPoint& part : factor) {
+                    longer.push_back(point);
+                    longer.back().insert(longer.back().end(), part.begin(), part.end());
+                }
+            }
+            points = std::move(longer);
+        }
+        return points;
+    }
+
+  private:
+    void claim(const std::string& axis, const SourceLocation& where) {
+        if (std::find(axes_.begin(), axes_.end(), axis) != axes_.end()) {
+            throw Error(where, "axis '" + axis + "' stands in the sweep twice");
+        }
+        axes_.push_back(axis);
+    }
+
+    std::vector<Factor> factors_;
+    std::vector<std::string> axes_;
+};
+
+const Node* valueAt(const AxisPoint& point, std::string_view axis) {
+    for (const auto& [name, value] : point) {
+        if (name == axis) return &value;
+    }
+    return nullptr;
+}
+
+bool matchesAll(const AxisPoint& point, const Node& conditions) {
+    return std::all_of(conditions.entries().begin(), conditions.entries().end(),
+                       [&](const auto& condition) {
+                           const Node* value = valueAt(point, condition.first);
+                           return value && matchesAny(*value, condition.second);
+                       });
+}
+
+/// Leaves out the axes whose condition is false. That may make further conditions false.
+void applyWhen(const Node& when, AxisPoint& point) {
+    for (std::size_t before = point.size() + 1; before != point.size();) {
+        before = point.size();
+        std::erase_if(point, [&, whole = point](const auto& axis) {
+            const Node* conditions = when.find(axis.first);
+            return conditions && !matchesAll(whole, *conditions);
+        });
+    }
+}
+
+void requireConditions(const Node& conditions, std::string_view what,
+                       const std::vector<std::string>& axes) {
+    requireKeys(conditions, what, axes);
+    if (conditions.entries().empty()) throwNotAllowed(conditions, what, "a map {axis: value}");
+}
+
+void dropDuplicates(std::vector<AxisPoint>& points) {
+    std::set<std::string> seen;
+    std::erase_if(points, [&](const AxisPoint& point) {
+        std::string key;
+        for (const auto& [axis, value] : point) key += axis + "=" + contentKey(value) + "\n";
+        return !seen.insert(std::move(key)).second;
+    });
+}
+
+}  // namespace
+
+std::vector<AxisPoint> expandSweep(const Node& sweep) {
+    if (sweep.isNull()) return {{}};
+    if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
+    Factors factors;
+    for (const auto& [key, node] : sweep.entries()) {
+        if (key == "zip") {
+            factors.addZips(node);
+        } else if (key == "list") {
+            factors.addLists(node);
+        } else if (key != "exclude" && key != "when") {
+            factors.addAxis(key, node, sweep.keyLocation(key));
+        }
+    }
+    const Node* when = sweep.find("when");
+    const Node* exclude = sweep.find("exclude");
+    if (when) {
+        requireKeys(*when, "when", factors.axes());
+        for (const auto& [axis, conditions] : when->entries()) {
+            requireConditions(conditions, "when", factors.axes());
+        }
+    }
+    if (exclude) {
+        for (const Node& pairs : exclude->items()) {
+            requireConditions(pairs, "exclude", factors.axes());
+        }
+    }
+
+    std::vector<AxisPoint> points = factors.product(sweep.location());
+    if (when) {
+        for (AxisPoint& point : points) applyWhen(*when, point);
+        dropDuplicates(points);
+    }
+    if (exclude) {
+        for (const Node& pairs : exclude->items()) {
+            std::erase_if(points, [&](const AxisPoint& point) { return matchesAll(point, pairs); });
+        }
+        if (points.empty())
+            throw Error(exclude->location(), "exclude leaves no point of the sweep");
+    }
+    return points;
+}
+
+}  // namespace gfxrepro::config

@@ -1,5 +1,6 @@
 // YAML text → Node, from yaml-cpp's events: its own tree forgets duplicate keys and the style of
 // scalars.
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -218,6 +219,26 @@ void requireText(std::string_view text, const std::string& fileName) {
     }
 }
 
+/// yaml-cpp's message in the right place.
+[[noreturn]] void rethrow(const YAML::Exception& error, std::string_view text,
+                          const std::string& fileName) {
+    const std::vector<std::string> lines = split(text, '\n');
+    SourceLocation where{fileName, error.mark.line + 1, error.mark.column + 1};
+    if (error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW ||
+        error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW) {
+        // A bracket that is never closed is noticed at the end, and reported at the beginning.
+        where.line = static_cast<int>(lines.size());
+        where.column = static_cast<int>(lines.back().size()) + 1;
+    }
+    const std::string& line = lines[std::min(lines.size(), std::size_t(where.line)) - 1];
+    const std::size_t tab = line.find('\t');
+    if (tab != std::string::npos && line.find_first_not_of(" \t") > tab) {
+        where.column = static_cast<int>(tab) + 1;
+        throw Error(where, "a tab in the indentation; use spaces");
+    }
+    throw Error(where, error.msg);
+}
+
 }  // namespace
 
 Node parseYaml(std::string_view text, const std::string& fileName) {
@@ -231,7 +252,7 @@ Node parseYaml(std::string_view text, const std::string& fileName) {
         while (parser.HandleNextDocument(builder)) {
         }
     } catch (const YAML::Exception& error) {
-        throw Error({fileName, error.mark.line + 1, error.mark.column + 1}, error.msg);
+        rethrow(error, text, fileName);
     }
     return builder.takeRoot();
 }

@@ -12,26 +12,6 @@ namespace {
 constexpr int kBaseColorTexture = 0;  // texture unit
 constexpr glm::vec4 kBackground{0.18F, 0.20F, 0.24F, 1.0F};
 
-/// The mesh itself when it has normals; else one with three vertices of its own for each triangle,
-/// which carry the triangle's normal.
-scene::Mesh withNormals(const scene::Mesh& mesh) {
-    if (!mesh.normals.empty()) return mesh;
-    scene::Mesh flat;
-    flat.positions.reserve(3 * mesh.triangles.size());
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        const auto first = static_cast<unsigned>(flat.positions.size());
-        for (int corner = 0; corner < 3; ++corner) {
-            flat.positions.push_back(mesh.positions[triangle[corner]]);
-            if (!mesh.texcoords.empty()) flat.texcoords.push_back(mesh.texcoords[triangle[corner]]);
-        }
-        const glm::vec3* corners = flat.positions.data() + first;
-        const glm::vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-        flat.normals.insert(flat.normals.end(), 3, normal);
-        flat.triangles.push_back({first, first + 1, first + 2});
-    }
-    return flat;
-}
-
 /// What is uploaded once and drawn by every instance that uses it.
 class Uploads {
   public:
@@ -41,7 +21,7 @@ class Uploads {
         auto found = meshes_.find(index);
         if (found == meshes_.end()) {
             const scene::Mesh& mesh = scene_.meshes[static_cast<std::size_t>(index)];
-            found = meshes_.emplace(index, withNormals(mesh)).first;
+            found = meshes_.emplace(index, mesh).first;
         }
         return found->second;
     }
@@ -78,6 +58,8 @@ void drawInstance(const scene::Scene& scene, const scene::Instance& instance, Up
     program.set("emissive", material.emissive);
     program.set("alphaCutoff", material.alphaCutoff);
     program.set("hasTexture", hasTexture ? 1 : 0);
+    // What a mesh without normals gives every vertex: the shader then takes the triangle's.
+    glVertexAttrib3f(kNormal, 0.0F, 0.0F, 0.0F);
     uploads.mesh(instance.mesh).draw();
 }
 

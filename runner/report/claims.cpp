@@ -1,1 +1,177 @@
-#include "runner/report/records.h"
+#include "runner/report/claims.h"
+
+#include <map>
+#include <optional>
+
+#include "runner/core/text.h"
+#include "runner/report/claim_parts.h"
+#include "runner/report/claim_reader.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+using config::ClaimSpec;
+
+/// From best to worst: what a claim comes to is the worst of its groups.
+int severity(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::Holds:
+            return 0;
+        case Verdict::NotApplicable:
+            return 1;
+        case Verdict::Ambiguous:
+            return 2;
+        case Verdict::Unmeasured:
+            return 3;
+        case Verdict::Fails:
+            return 4;
+    }
+    return 4;
+}
+
+/// What one part came to in one group.
+struct Outcome {
+    Judgement judgement;
+    std::string reason;
+};
+
+bool isWorse(const Outcome& a, const Outcome& b) {
+    const int left = severity(a.judgement.verdict);
+    const int right = severity(b.judgement.verdict);
+    return left != right ? left > right : a.judgement.margin < b.judgement.margin;
+}
+
+Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
+                   const std::string& groupName, std::size_t groupCount) {
+    Outcome outcome;
+    const bool isNamed = groupCount > 1 && !groupName.empty();
+    if (!reading.problem.empty()) {
+        outcome.reason = reading.problem;
+        return outcome;
+    }
+    outcome.judgement = judge(reading.group, part.quantity, part.requirement);
+    std::vector<std::string> reasons;
+    if (isNamed) reasons.push_back("least at " + groupName);
+    switch (outcome.judgement.verdict) {
+        case Verdict::Ambiguous:
+            reasons.emplace_back("the interval straddles the bound");
+            break;
+        case Verdict::Unmeasured:
+            reasons.emplace_back(
+                "not a number: zero, negative or equal values where the quantity "
+                "needs positive, different ones");
+            break;
+        default:
+            break;
+    }
+    if (outcome.judgement.isSingleSample) reasons.emplace_back("one sample");
+    outcome.reason = joined(reasons, "; ");
+    if (!part.measuredName.empty() && !outcome.judgement.measured.empty()) {
+        outcome.judgement.measured = part.measuredName + " " + outcome.judgement.measured;
+    }
+    return outcome;
+}
+
+Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups) {
+    std::optional<Outcome> worst;
+    for (const Rows& rows : groups) {
+        const ClaimReader::Reading reading = reader.read(part, rows);
+        if (reading.rows.empty() && reading.problem.empty()) continue;
+        Outcome outcome = judgeGroup(part, reading, reader.groupName(rows), groups.size());
+        if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
+    }
+    if (worst) return *worst;
+    Outcome none;
+    none.reason = part.needsExpected && !groups.empty()
+                      ? "no printed number to compare with"
+                      : "this run has no row that the claim reads";
+    return none;
+}
+
+/// Why the claim is not to be judged here; empty if it is.
+std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& context) {
+    if (claim.device == ClaimSpec::Device::Gpu && context.deviceClass != "gpu") {
+        return "claims about a GPU are not judged on a " + context.deviceClass + " device";
+    }
+    if (claim.profile && *claim.profile != context.profile) {
+        return "judged in the profile '" + *claim.profile + "' only";
+    }
+    return "";
+}
+
+ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
+    ClaimReader reader(claim, table);
+    const std::vector<ClaimPart> parts = partsOf(claim);
+    ClaimResult result;
+    result.id = claim.id;
+    result.table = table.id;
+    result.text = claim.text;
+    std::vector<std::string> required;
+    for (const ClaimPart& part : parts) required.push_back(part.requirement.text);
+    result.required = joined(required, "; ");
+    result.reason = whyNotApplicable(claim, context);
+    if (!result.reason.empty()) {
+        result.verdict = Verdict::NotApplicable;
+        return result;
+    }
+    const std::vector<Rows> groups = reader.groups();
+    std::vector<std::string> measured;
+    std::optional<Outcome> worst;
+    for (const ClaimPart& part : parts) {
+        Outcome outcome = judgePart(part, reader, groups);
+        if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
+        if (worst && !isWorse(outcome, *worst)) continue;
+        result.margin = outcome.judgement.verdict == Verdict::Unmeasured
+                            ? ""
+                            : quantityText(outcome.judgement.margin, part.requirement);
+        worst = std::move(outcome);
+    }
+    result.measured = joined(measured, "; ");
+    result.verdict = worst->judgement.verdict;
+    result.reason = worst->reason;
+    return result;
+}
+
+}  // namespace
+
+std::string_view verdictName(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::Holds:
+            return "holds";
+        case Verdict::Fails:
+            return "fails";
+        case Verdict::Ambiguous:
+            return "ambiguous";
+        case Verdict::NotApplicable:
+            return "not-applicable";
+        case Verdict::Unmeasured:
+            return "unmeasured";
+    }
+    return "";
+}
+
+std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,
+                                        const ReportContext& context) {
+    std::vector<ClaimResult> results;
+    for (const ClaimSpec& claim : experiment.claims) {
+        results.push_back(evaluate(claim, table, context));
+    }
+    return results;
+}
+
+std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
+    if (results.empty()) return "no claims";
+    std::map<Verdict, int> counts;
+    for (const ClaimResult& result : results) ++counts[result.verdict];
+    std::vector<std::string> parts;
+    for (const auto& [verdict, count] : counts) {
+        std::string word(verdictName(verdict));
+        if (verdict == Verdict::Holds && count != 1) word = "hold";
+        if (verdict == Verdict::Fails && count != 1) word = "fail";
+        parts.push_back(std::to_string(count) + " " + word);
+    }
+    return joined(parts);
+}
+
+}  // namespace gfxrepro::report

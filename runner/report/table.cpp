@@ -1,1 +1,167 @@
-#include "runner/report/records.h"
+#include "runner/report/table.h"
+
+#include <algorithm>
+#include <set>
+
+#include "runner/core/text.h"
+#include "runner/report/cell_builder.h"
+#include "runner/report/csv.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+/// Numbers compare as numbers: "64.0" is 64.
+std::string canonicalText(const std::string& text) {
+    const auto number = parseDouble(trimmed(text));
+    return number ? shortestText(*number) : std::string(trimmed(text));
+}
+
+std::vector<std::string> axisNames(const std::vector<config::LayoutAxis>& axes) {
+    std::vector<std::string> names;
+    for (const config::LayoutAxis& axis : axes) names.push_back(axis.name);
+    return names;
+}
+
+void buildCells(const config::Layout& layout, const LayoutCases& cases,
+                const std::vector<Key>& columns, Table& table) {
+    std::vector<std::set<std::string>> units(columns.size());
+    std::uint64_t seed = 0;  // one a cell, so that the draws of cells are independent
+    for (TableRow& row : table.rows) {
+        row.source = sceneSourceOf(layout, row.labels, cases);
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            BuiltCell built = buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed);
+            row.cells.push_back(std::move(built.cell));
+            if (!built.unit.empty()) units[i].insert(built.unit);
+        }
+    }
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        if (units[i].size() == 1) table.columns[i].unit = *units[i].begin();
+    }
+}
+
+/// The columns of `printed` that name row axes and table columns.
+struct PrintedColumns {
+    std::vector<std::optional<std::size_t>> axes;     // beside the row axes
+    std::vector<std::optional<std::size_t>> columns;  // beside the table's columns
+};
+
+PrintedColumns findColumns(const config::Printed& printed, const Table& table) {
+    PrintedColumns found;
+    const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
+        const auto at = std::find(printed.header.begin(), printed.header.end(), name);
+        if (at == printed.header.end()) return std::nullopt;
+        return static_cast<std::size_t>(at - printed.header.begin());
+    };
+    for (const std::string& axis : table.rowAxes) found.axes.push_back(find(axis));
+    for (const TableColumn& column : table.columns) found.columns.push_back(find(column.label));
+    for (const std::string& name : printed.header) {
+        const bool isColumn = std::any_of(table.columns.begin(), table.columns.end(),
+                                          [&](const auto& column) { return column.label == name; });
+        const bool isAxis =
+            std::find(table.rowAxes.begin(), table.rowAxes.end(), name) != table.rowAxes.end();
+        if (isColumn || isAxis) continue;
+        std::vector<std::string> known = table.rowAxes;
+        for (const TableColumn& column : table.columns) known.push_back(column.label);
+        throw Error(printed.location, "printed column '" + name +
+                                          "' is neither a row axis nor a column" +
+                                          suggestion(name, known) + " (" + joined(known) + ")");
+    }
+    return found;
+}
+
+bool isRowOf(const std::vector<std::string>& printedRow, const PrintedColumns& found,
+             const TableRow& row) {
+    for (std::size_t i = 0; i < found.axes.size(); ++i) {
+        if (found.axes[i] && canonicalText(printedRow[*found.axes[i]]) != row.labels[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void layPrintedBeside(const config::Experiment& experiment, const std::vector<Key>& columns,
+                      Table& table) {
+    const config::Printed& printed = experiment.printed;
+    if (printed.rows.empty()) return;
+    const PrintedColumns found = findColumns(printed, table);
+    for (const std::vector<std::string>& printedRow : printed.rows) {
+        bool isPlaced = false;
+        for (TableRow& row : table.rows) {
+            if (!isRowOf(printedRow, found, row)) continue;
+            isPlaced = true;
+            for (std::size_t i = 0; i < columns.size(); ++i) {
+                if (!found.columns[i] || printedRow[*found.columns[i]].empty()) continue;
+                Cell& cell = row.cells[i];
+                cell.printed = printedRow[*found.columns[i]];
+                cell.printedValues = makeQuery(experiment.layout, row.labels, columns[i])
+                                         .format.parse(*cell.printed);
+            }
+        }
+        if (!isPlaced) {
+            table.notes.push_back("printed, but not part of this run: " + joined(printedRow));
+        }
+    }
+}
+
+}  // namespace
+
+const Measured* Cell::find(const std::string& statistic) const {
+    for (const Measured& candidate : values) {
+        if (statistic.empty() || candidate.statistic == statistic) return &candidate;
+    }
+    return nullptr;
+}
+
+std::string_view sceneSourceName(SceneSource source) {
+    switch (source) {
+        case SceneSource::Real:
+            return "real";
+        case SceneSource::Generated:
+            return "generated";
+        case SceneSource::StandIn:
+            return "stand-in";
+        case SceneSource::Unknown:
+            break;
+    }
+    return "";
+}
+
+bool Table::hasSources() const {
+    return std::any_of(rows.begin(), rows.end(),
+                       [](const TableRow& row) { return row.source != SceneSource::Unknown; });
+}
+
+std::string Table::rowName(std::size_t row) const {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < rowAxes.size(); ++i) {
+        const std::string& value = rows[row].labels[i];
+        parts.push_back(rowAxes[i].empty() ? value : rowAxes[i] + "=" + value);
+    }
+    return joined(parts);
+}
+
+Table buildTable(const config::Experiment& experiment, const std::vector<Record>& records) {
+    Table table;
+    table.id = experiment.id;
+    table.slug = experiment.slug();
+    table.label = experiment.label();
+    table.title = experiment.title;
+    table.hardware = experiment.printed.hardware;
+    table.remark = experiment.printed.remark;
+    if (!experiment.layout.isGiven) return table;
+
+    const config::Layout& layout = experiment.layout;
+    const LayoutCases cases = gatherCases(experiment, records);
+    const std::vector<Key> columns = collectKeys(layout.columns, cases);
+    table.rowAxes = axisNames(layout.rows);
+    for (const Key& column : columns) table.columns.push_back({joined(column, "_"), ""});
+    for (Key& row : collectKeys(layout.rows, cases)) {
+        table.rows.push_back({std::move(row), SceneSource::Unknown, {}});
+    }
+    buildCells(layout, cases, columns, table);
+    layPrintedBeside(experiment, columns, table);
+    return table;
+}
+
+}  // namespace gfxrepro::report

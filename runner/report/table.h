@@ -1,10 +1,9 @@
 // Tables of measurements: records gathered into the rows and columns that the experiment lays out.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "runner/config/experiment.h"
@@ -13,48 +12,46 @@
 
 namespace gfxrepro::report {
 
-/// Bootstrap resamples behind every interval.
-inline constexpr int kDrawCount = 1000;
-
 /// One statistic of a cell, in the unit that is shown (scaled).
 struct Measured {
     std::string statistic;  // "median", "max", … as in the format
     double value = 0.0;
     metrics::Interval interval;  // 95 %
-    std::vector<double> draws;   // kDrawCount resampled values; empty when there is one sample
+    std::vector<double> draws;   // resampled values; empty when there is one sample
 };
 
 /// What stands at a row and a column.
 struct Cell {
-    Status status = Status::Missing;
-    std::string message;           // why it is not ok, or in what it is not whole
-    bool isPartial = false;        // some of the cases that it gathers failed; it is of the others
-    int sampleCount = 0;           // repeats, over processes and frames
-    std::vector<Measured> values;  // in the order of the format; empty without a measurement
-    std::string measured;          // formatted; the status word without a measurement
+    bool isPlanned = true;   // the sweep has such cases; if not, the cell is blank, not missing
+    bool isPartial = false;  // some of the cases that it gathers failed; its values are the others'
+    Status status = Status::Missing;  // the worst of its records
+    std::string message;              // why it is not ok
+    std::vector<Measured> values;     // in the order of the format; empty without a measurement
+    std::string measured;             // formatted; the status word without a measurement
+    std::string low, high;            // the interval's ends, formatted likewise; empty without one
     std::optional<std::string> printed;
+    std::vector<std::optional<double>> printedValues;  // beside the format's statistics
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
     const Measured* find(const std::string& statistic) const;
 };
 
-/// Where a row's scene comes from.
-enum class SceneSource { Unknown, Real, StandIn, Generated };
+/// Where a row's scene comes from: metric `scene_source` of its cases (0 real, 1 stand-in, 2
+/// generated). Of several the last of these counts.
+enum class SceneSource { Unknown, Real, Generated, StandIn };
 /// "real", "stand-in", "generated"; empty for Unknown.
 std::string_view sceneSourceName(SceneSource source);
 
 struct TableRow {
-    /// The value of each row axis, beside Table::rowAxes.
-    std::vector<config::Node> keys;
-    std::vector<std::string> labels;
+    std::vector<std::string> labels;  // the value of each row axis, beside Table::rowAxes
     SceneSource source = SceneSource::Unknown;
     std::vector<Cell> cells;  // beside Table::columns
 };
 
 struct TableColumn {
-    std::string label;  // "rasterization_ms"; several column axes are joined by " · "
-    std::string unit;   // of the records, if they agree
+    std::string label;  // "rasterization_ms"; several column axes are joined by "_"
+    std::string unit;   // of the records, if they agree and are not scaled
 };
 
 struct Table {
@@ -70,6 +67,8 @@ struct Table {
     std::vector<std::string> notes;  // printed rows that found no place, and the like
 
     bool hasSources() const;
+    /// "scene=models/duck, step=1"; "" for a table of one row.
+    std::string rowName(std::size_t row) const;
 };
 
 /// Gathers the records of one experiment (others are passed over).

@@ -1,1 +1,234 @@
-#include "runner/report/records.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/report/csv.h"
+#include "runner/report/markup.h"
+#include "runner/report/report.h"
+
+namespace gfxrepro::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The statistics of a column, of all its rows, in the order of their formats.
+std::vector<std::string> statisticsOf(const Table& table, std::size_t column) {
+    std::vector<std::string> names;
+    for (const TableRow& row : table.rows) {
+        for (const Measured& measured : row.cells[column].values) {
+            if (std::find(names.begin(), names.end(), measured.statistic) == names.end()) {
+                names.push_back(measured.statistic);
+            }
+        }
+    }
+    if (names.empty()) names.emplace_back("");
+    return names;
+}
+
+std::string tableCsv(const Table& table) {
+    std::string text;
+    std::vector<std::vector<std::string>> statistics;
+    CsvRow header(text);
+    for (const std::string& axis : table.rowAxes) header.text(axis);
+    if (table.hasSources()) header.text("source");
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const std::string& label = table.columns[i].label;
+        statistics.push_back(statisticsOf(table, i));
+        header.text(label + "_printed");
+        for (const std::string& statistic : statistics[i]) {
+            const std::string name = label + (statistics[i].size() > 1 ? "_" + statistic : "");
+            header.text(name + "_measured").text(name + "_low").text(name + "_high");
+        }
+        header.text(label + "_status");
+    }
+    header.end();
+    for (const TableRow& row : table.rows) {
+        CsvRow line(text);
+        for (const std::string& label : row.labels) line.text(label);
+        if (table.hasSources()) line.text(sceneSourceName(row.source));
+        for (std::size_t i = 0; i < row.cells.size(); ++i) {
+            const Cell& cell = row.cells[i];
+            line.text(cell.printed.value_or(""));
+            for (const std::string& statistic : statistics[i]) {
+                const Measured* measured = cell.find(statistic);
+                if (measured) {
+                    line.number(measured->value);
+                    line.number(measured->interval.low).number(measured->interval.high);
+                } else {
+                    line.text("").text("").text("");
+                }
+            }
+            line.text(cell.isPlanned ? statusName(cell.status) : "");
+        }
+        line.end();
+    }
+    return text;
+}
+
+std::string markdownCell(const Cell& cell) {
+    std::string text;
+    if (cell.printed) text += escapeMarkdown(*cell.printed) + " → ";
+    text += cell.isPlanned ? escapeMarkdown(cell.measured) : "";
+    if (!cell.low.empty() && cell.low != cell.high) {
+        text += fmt::format(" [{}, {}]", escapeMarkdown(cell.low), escapeMarkdown(cell.high));
+    }
+    return text;
+}
+
+std::string tableMarkdown(const Table& table) {
+    std::string text = fmt::format("# {}\n\n", escapeMarkdown(table.label + ". " + table.title));
+    text += "Printed → measured [95 % interval].";
+    if (!table.hardware.empty())
+        text += fmt::format(" Printed: {}.", escapeMarkdown(table.hardware));
+    text += "\n\n|";
+    std::string rule = "|";
+    for (const std::string& axis : table.rowAxes) {
+        text += fmt::format(" {} |", escapeMarkdown(axis));
+        rule += " --- |";
+    }
+    if (table.hasSources()) {
+        text += " source |";
+        rule += " --- |";
+    }
+    for (const TableColumn& column : table.columns) {
+        text += fmt::format(" {} |", escapeMarkdown(column.label));
+        rule += " ---: |";
+    }
+    text += "\n" + rule + "\n";
+    for (const TableRow& row : table.rows) {
+        text += "|";
+        for (const std::string& label : row.labels)
+            text += fmt::format(" {} |", escapeMarkdown(label));
+        if (table.hasSources()) text += fmt::format(" {} |", sceneSourceName(row.source));
+        for (const Cell& cell : row.cells) text += fmt::format(" {} |", markdownCell(cell));
+        text += "\n";
+    }
+    if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
+    for (const std::string& note : table.notes)
+        text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
+    return text;
+}
+
+std::string latexCell(const Cell& cell) {
+    if (!cell.isPlanned) return "";
+    std::string text = escapeLatex(cell.measured);
+    if (!cell.low.empty() && cell.low != cell.high) {
+        text +=
+            fmt::format(" {{\\scriptsize[{}, {}]}}", escapeLatex(cell.low), escapeLatex(cell.high));
+    }
+    return text;
+}
+
+/// Printed and measured stand in columns of their own, so that numbers align.
+std::string tableLatex(const Table& table) {
+    std::string text = "\\begin{tabular}{";
+    text += std::string(table.rowAxes.size() + (table.hasSources() ? 1 : 0), 'l');
+    text += std::string(2 * table.columns.size(), 'r') + "}\n\\toprule\n";
+    std::vector<std::string> head, subhead;
+    for (const std::string& axis : table.rowAxes) head.push_back(escapeLatex(axis));
+    if (table.hasSources()) head.emplace_back("source");
+    subhead.resize(head.size());
+    for (const TableColumn& column : table.columns) {
+        head.push_back(fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", escapeLatex(column.label)));
+        subhead.insert(subhead.end(), {"printed", "measured"});
+    }
+    text += joined(head, " & ") + " \\\\\n" + joined(subhead, " & ") + " \\\\\n\\midrule\n";
+    for (const TableRow& row : table.rows) {
+        std::vector<std::string> cells;
+        for (const std::string& label : row.labels) cells.push_back(escapeLatex(label));
+        if (table.hasSources()) cells.emplace_back(sceneSourceName(row.source));
+        for (const Cell& cell : row.cells) {
+            cells.push_back(escapeLatex(cell.printed.value_or("")));
+            cells.push_back(latexCell(cell));
+        }
+        text += joined(cells, " & ") + " \\\\\n";
+    }
+    return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportContext& context) {
+    std::string text = "claim,table,device,profile,verdict,measured,required,margin,reason\n";
+    for (const ClaimResult& result : results) {
+        CsvRow row(text);
+        row.text(result.id).text(result.table).text(context.device).text(context.profile);
+        row.text(verdictName(result.verdict)).text(result.measured).text(result.required);
+        row.text(result.margin).text(result.reason).end();
+    }
+    return text;
+}
+
+std::string junitXml(const std::vector<ClaimResult>& results) {
+    const auto count = [&](const std::function<bool(Verdict)>& isCounted) {
+        return std::count_if(results.begin(), results.end(),
+                             [&](const ClaimResult& result) { return isCounted(result.verdict); });
+    };
+    const auto isFailure = [](Verdict verdict) { return verdict == Verdict::Fails; };
+    const auto isSkipped = [](Verdict verdict) {
+        return verdict != Verdict::Fails && verdict != Verdict::Holds;
+    };
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<testsuite name=\"claims\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
+        results.size(), count(isFailure), count(isSkipped));
+    for (const ClaimResult& result : results) {
+        text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escapeXml(result.table),
+                            escapeXml(result.id));
+        if (result.verdict == Verdict::Holds) {
+            text += "/>\n";
+            continue;
+        }
+        const std::string message =
+            fmt::format("{}: measured {}, required {}{}", verdictName(result.verdict),
+                        result.measured.empty() ? "nothing" : result.measured, result.required,
+                        result.reason.empty() ? "" : fmt::format(" ({})", result.reason));
+        text += fmt::format("><{} message=\"{}\"/></testcase>\n",
+                            isFailure(result.verdict) ? "failure" : "skipped", escapeXml(message));
+    }
+    return text + "</testsuite>\n";
+}
+
+}  // namespace
+
+std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
+                               const std::vector<Record>& records) {
+    std::vector<Table> tables;
+    for (const config::Experiment& experiment : experiments) {
+        tables.push_back(buildTable(experiment, records));
+    }
+    return tables;
+}
+
+void writeTables(const fs::path& runDir, const std::vector<Table>& tables) {
+    for (const Table& table : tables) {
+        if (table.columns.empty()) continue;
+        const fs::path folder = runDir / "tables";
+        writeFileAtomic(folder / (table.slug + ".csv"), tableCsv(table));
+        writeFileAtomic(folder / (table.slug + ".md"), tableMarkdown(table));
+        writeFileAtomic(folder / (table.slug + ".tex"), tableLatex(table));
+    }
+}
+
+std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
+                                        const std::vector<Table>& tables,
+                                        const ReportContext& context) {
+    GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
+    std::vector<ClaimResult> results;
+    for (std::size_t i = 0; i < experiments.size(); ++i) {
+        for (ClaimResult& result : evaluateClaims(experiments[i], tables[i], context)) {
+            results.push_back(std::move(result));
+        }
+    }
+    return results;
+}
+
+void writeClaims(const fs::path& runDir, const std::vector<ClaimResult>& results,
+                 const ReportContext& context) {
+    writeFileAtomic(runDir / "claims.csv", claimsCsv(results, context));
+    writeFileAtomic(runDir / "junit.xml", junitXml(results));
+}
+
+}  // namespace gfxrepro::report

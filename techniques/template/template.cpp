@@ -1,1 +1,111 @@
-#include "runner/technique/technique.h"
+#include "techniques/template/template.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <numeric>
+#include <optional>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/program.h"
+#include "runner/gpu_scene/gpu_mesh.h"
+
+namespace gfxrepro::template_ {
+
+namespace {
+
+// The methods that are compared: the paper's, its baseline, its ablations.
+enum class Method { Gradient, Silhouette };
+
+constexpr config::Choice<Method> kMethods[] = {
+    {Method::Gradient, "gradient", "a horizontal ramp from black to white"},
+    {Method::Silhouette, "silhouette", "white where the scene covers a pixel"},
+};
+
+glm::mat4 clipFromWorld(const scene::Camera& camera, float aspect) {
+    return glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
+           glm::lookAt(camera.position, camera.target, camera.up);
+}
+
+class TemplateTechnique : public technique::Technique {
+  public:
+    // Every parameter is declared here, once: default, meaning, unit and range. No GL, so that
+    // `gfxrepro check` validates a config on any machine.
+    explicit TemplateTechnique(config::Params& params)
+        : method_(params.getEnum("method", Method::Gradient, kMethods, {"what is drawn"})),
+          brightness_(static_cast<float>(
+              params.getDouble("brightness", 1.0, {"value of a white pixel", "1", 0.0, 1.0}))) {
+        params.finish();
+    }
+
+    // Compile, allocate, upload. The runner times it as set-up.
+    void setup(technique::SetupContext& context) override {
+        size_ = context.outputSizePx;
+        colour_ = gl::Texture::make2D(GL_R32F, size_);
+        const gl::Texture* attachments[] = {&colour_};
+        framebuffer_ = gl::Framebuffer(attachments);
+        if (method_ == Method::Gradient) {
+            program_ = gl::Program(
+                context.shaders, {"template/fullscreen.vert.glsl", "template/gradient.frag.glsl"});
+            withoutAttributes_.emplace();
+            return;
+        }
+        if (!context.scene) throw Error("method 'silhouette' needs a scene");
+        const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
+        clipFromWorld_ =
+            clipFromWorld(scene::framingCamera(context.scene->bounds(), aspect), aspect);
+        mesh_.emplace(scene::flattened(*context.scene));
+        program_ = gl::Program(context.shaders,
+                               {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
+                               {{"POSITION", static_cast<int>(gpu_scene::kPosition)}});
+    }
+
+    // One measured iteration. Each pass stands in a scope with the paper's step name.
+    void render(technique::FrameContext& context) override {
+        const gl::GpuScope scope(context.profiler, "draw");
+        framebuffer_.bind();
+        framebuffer_.clearColour(0, glm::vec4(0.0F));
+        glDisable(GL_DEPTH_TEST);  // a pass sets all state that it relies on
+        glDisable(GL_CULL_FACE);
+        program_.use();
+        program_.set("brightness", brightness_);
+        if (method_ == Method::Gradient) {
+            program_.set("widthPx", static_cast<float>(size_.x));
+            withoutAttributes_->bind();
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        } else {
+            program_.set("clipFromWorld", clipFromWorld_);
+            mesh_->draw();
+        }
+    }
+
+    // Read back and report: metrics with their units, and images.
+    void record(technique::Recorder& recorder) override {
+        const image::ImageF image = colour_.readImage(1);
+        const auto values = image.values();
+        const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+        recorder.metric("mean_brightness", sum / static_cast<double>(values.size()), "1");
+        recorder.image("result", image);
+    }
+
+  private:
+    Method method_;
+    float brightness_;
+
+    glm::ivec2 size_{0};
+    glm::mat4 clipFromWorld_{1.0F};
+    gl::Texture colour_;
+    gl::Framebuffer framebuffer_;
+    gl::Program program_;
+    std::optional<gpu_scene::GpuMesh> mesh_;
+    std::optional<gl::VertexArray> withoutAttributes_;
+};
+
+std::unique_ptr<technique::Technique> create(config::Params& params) {
+    return std::make_unique<TemplateTechnique>(params);
+}
+
+}  // namespace
+
+const technique::TechniqueInfo kTemplate{
+    "template", "the skeleton for new techniques: a ramp or a silhouette", create};
+
+}  // namespace gfxrepro::template_

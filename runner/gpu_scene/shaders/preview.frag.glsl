@@ -16,10 +16,16 @@ layout(binding = kBaseColorTexture) uniform sampler2D baseColorTexture;
 layout(location = 0) out vec4 radiance;
 
 void main() {
+    // Without a vertex normal, the triangle's own: by positions relative to the camera, which keep
+    // their precision however far from the origin the scene lies. Taken before any branch, since
+    // derivatives are undefined where neighbours branch differently.
+    vec3 triangleNormal = cross(dFdx(toCameraWorld), dFdy(toCameraWorld));
+    vec3 normal = normalWorld == vec3(0.0) ? triangleNormal : normalWorld;
+
     vec4 base = baseColor;
     // One level without mipmaps: the ray traced look has no footprint to choose a level by.
     if (hasTexture != 0) base *= textureLod(baseColorTexture, uv, 0.0);
     if (base.a < alphaCutoff) discard;
-    float facing = abs(dot(normalize(normalWorld), normalize(toCameraWorld)));
+    float facing = abs(dot(normalize(normal), normalize(toCameraWorld)));
     radiance = vec4(base.rgb * (0.15 + 0.85 * facing) + emissive, 1.0);
 }

@@ -1,0 +1,122 @@
+#include "runner/batch/child_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::batch {
+
+namespace {
+
+void makeChannel(int (&ends)[2]) {
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        throw Error("cannot make a channel to a worker: " + std::string(std::strerror(errno)));
+    }
+}
+
+/// In the child, between fork and exec: only calls that are safe there.
+[[noreturn]] void becomeProgram(char* const* arguments, int input, int messages, int output,
+                                pid_t parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(127);  // the runner died before the line above
+    ::setpgid(0, 0);
+    sigset_t none;
+    sigemptyset(&none);
+    ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    // Above the targets first, so that no dup2 overwrites an end that is still needed; dup2 clears
+    // close-on-exec.
+    const int safeInput = ::fcntl(input, F_DUPFD_CLOEXEC, 10);
+    const int safeMessages = ::fcntl(messages, F_DUPFD_CLOEXEC, 10);
+    const int safeOutput = ::fcntl(output, F_DUPFD_CLOEXEC, 10);
+    ::dup2(safeInput, STDIN_FILENO);
+    ::dup2(safeOutput, STDOUT_FILENO);
+    ::dup2(safeOutput, STDERR_FILENO);
+    ::dup2(safeMessages, kMessageFd);
+    ::execv(arguments[0], arguments);
+    ::_exit(127);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
+    std::vector<char*> pointers;
+    for (const std::string& argument : arguments) {
+        pointers.push_back(const_cast<char*>(argument.c_str()));
+    }
+    pointers.push_back(nullptr);
+    int input[2];
+    int messages[2];
+    int output[2];
+    makeChannel(input);
+    makeChannel(messages);
+    makeChannel(output);
+    const pid_t parent = ::getpid();
+    pid_ = ::fork();
+    if (pid_ == 0) becomeProgram(pointers.data(), input[1], messages[1], output[1], parent);
+    const int reason = errno;
+    for (const int childEnd : {input[1], messages[1], output[1]}) ::close(childEnd);
+    inputFd_ = input[0];
+    messageFd_ = messages[0];
+    outputFd_ = output[0];
+    if (pid_ < 0) {
+        for (const int end : {inputFd_, messageFd_, outputFd_}) ::close(end);
+        throw Error("cannot start a worker: " + std::string(std::strerror(reason)));
+    }
+    ::setpgid(pid_, pid_);  // here too: kill() may come before the child has done it
+    ::fcntl(messageFd_, F_SETFL, O_NONBLOCK);
+    ::fcntl(outputFd_, F_SETFL, O_NONBLOCK);
+}
+
+ChildProcess::~ChildProcess() {
+    kill();
+    for (const int fd : {inputFd_, messageFd_, outputFd_}) ::close(fd);
+}
+
+bool ChildProcess::sendLine(std::string_view line) const {
+    std::string text(line);
+    text += '\n';
+    std::string_view rest = text;
+    while (!rest.empty()) {
+        const ssize_t sent = ::send(inputFd_, rest.data(), rest.size(), MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0) return false;
+        rest.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return true;
+}
+
+int ChildProcess::wait() {
+    while (!isReaped_) {
+        if (::waitpid(pid_, &waitStatus_, 0) >= 0 || errno != EINTR) isReaped_ = true;
+    }
+    return waitStatus_;
+}
+
+int ChildProcess::kill() {
+    if (!isReaped_) ::kill(-pid_, SIGKILL);
+    return wait();
+}
+
+bool readAvailable(int fd, std::string& text) {
+    char buffer[65536];
+    while (true) {
+        const ssize_t count = ::read(fd, buffer, sizeof(buffer));
+        if (count > 0) {
+            text.append(buffer, static_cast<std::size_t>(count));
+        } else if (count == 0) {
+            return false;
+        } else if (errno != EINTR) {
+            return errno == EAGAIN;
+        }
+    }
+}
+
+}  // namespace gfxrepro::batch

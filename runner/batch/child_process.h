@@ -1,0 +1,48 @@
+// A child process that takes lines on its standard input and answers lines on descriptor 3.
+#pragma once
+
+#include <sys/types.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gfxrepro::batch {
+
+/// The descriptor on which a worker answers.
+inline constexpr int kMessageFd = 3;
+
+/// Owns the process: it is killed and reaped when the object goes. The child is in a process group
+/// of its own (a Ctrl-C on the terminal reaches the runner alone) and dies with the runner.
+class ChildProcess {
+  public:
+    /// Starts `arguments[0]`. Throws Error when no process can be made.
+    explicit ChildProcess(const std::vector<std::string>& arguments);
+    ~ChildProcess();
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    pid_t pid() const { return pid_; }
+    int messageFd() const { return messageFd_; }  // not blocking
+    int outputFd() const { return outputFd_; }    // standard output and error, not blocking
+
+    /// Sends `line` and a newline; false when the child is gone.
+    bool sendLine(std::string_view line) const;
+
+    /// Waits for the end and returns the status of waitpid; later calls return the same.
+    int wait();
+    /// SIGKILL to the process group, then wait().
+    int kill();
+
+  private:
+    pid_t pid_ = -1;
+    int inputFd_ = -1;
+    int messageFd_ = -1;
+    int outputFd_ = -1;
+    bool isReaped_ = false;
+    int waitStatus_ = 0;
+};
+
+/// Appends what can be read now to `text`; false at the end of the stream.
+bool readAvailable(int fd, std::string& text);
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,97 @@
+#include "runner/batch/manifest.h"
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include "gfxrepro_commit.h"
+#include "runner/batch/run_directory.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::batch {
+
+namespace {
+
+constexpr int kManifestSchema = 1;
+
+std::string cpuModel() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("model name")) {
+            return std::string(trimmed(line.substr(line.find(':') + 1)));
+        }
+    }
+    return "unknown";
+}
+
+long long memoryBytes() {
+    return static_cast<long long>(::sysconf(_SC_PHYS_PAGES)) * ::sysconf(_SC_PAGESIZE);
+}
+
+}  // namespace
+
+std::string programCommit() {
+    return GFXREPRO_COMMIT;
+}
+
+std::string programBuild() {
+#if defined(__clang__)
+    const std::string compiler = "Clang " + std::string(__clang_version__);
+#else
+    const std::string compiler = "GCC " + std::string(__VERSION__);
+#endif
+    return std::string(GFXREPRO_BUILD_TYPE) + ", " + compiler;
+}
+
+Json newManifest(const Plan& plan, const gl::DeviceInfo& device) {
+    return {{"schema", kManifestSchema},
+            {"commit", programCommit()},
+            {"build", programBuild()},
+            {"build_id", plan.buildId},
+            {"plan", plan.hash},
+            {"profile", plan.profile},
+            {"started", utcTime()},
+            {"cpu", cpuModel()},
+            {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
+            {"memory_bytes", memoryBytes()},
+            {"device_class", plan.deviceClass},
+            {"gl", toJson(device)},
+            {"scenes", Json::object()},
+            {"sessions", Json::array()}};
+}
+
+void beginSession(Json& manifest, const std::string& commandLine) {
+    manifest["sessions"].push_back(Json{{"command", commandLine}, {"started", utcTime()}});
+}
+
+void endSession(Json& manifest, const PhaseClock& phases, double wallS) {
+    Json& session = manifest["sessions"].back();
+    session["ended"] = utcTime();
+    session["wall_s"] = wallS;
+    Json& totals = session["phases_s"] = Json::object();
+    for (const char* phase : {"device", "load", "setup", "render", "record"}) {
+        const auto found = phases.totalsS().find(phase);
+        totals[phase] = found == phases.totalsS().end() ? 0.0 : found->second;
+    }
+    session["overhead_s"] = wallS - phases.busyS();
+    session["overhead_share"] = (wallS - phases.busyS()) / wallS;
+}
+
+void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
+    for (const SceneUse& use : scenes) {
+        manifest["scenes"][use.reference] = {
+            {"kind", use.kind}, {"description", use.description}, {"sha256", use.sha256}};
+    }
+}
+
+report::ReportContext reportContext(const Json& manifest) {
+    report::ReportContext context;
+    context.device = manifest.at("gl").at("renderer").get<std::string>();
+    context.deviceClass = manifest.at("device_class").get<std::string>();
+    context.profile = manifest.at("profile").get<std::string>();
+    context.commit = manifest.at("commit").get<std::string>();
+    context.command = manifest.at("sessions").at(0).at("command").get<std::string>();
+    return context;
+}
+
+}  // namespace gfxrepro::batch

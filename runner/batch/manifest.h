@@ -1,0 +1,34 @@
+// manifest.json: with what, on what and when a run was made.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runner/batch/phase_clock.h"
+#include "runner/batch/plan.h"
+#include "runner/batch/protocol.h"
+#include "runner/report/claims.h"
+
+namespace gfxrepro::batch {
+
+/// Commit, build, machine, device and profile; no session and no scene yet.
+Json newManifest(const Plan& plan, const gl::DeviceInfo& device);
+
+/// A session is one start of the program on the run; a resumed run has several.
+void beginSession(Json& manifest, const std::string& commandLine);
+/// Adds end, wall time, phase totals and the runner's own share to the last session: the wall time
+/// in which no worker was inside of a phase.
+void endSession(Json& manifest, const PhaseClock& phases, double wallS);
+
+/// Adds what workers loaded, one entry a reference.
+void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
+
+/// What claims and the report ask of the run.
+report::ReportContext reportContext(const Json& manifest);
+
+/// Of the program: commit, "Release, GCC 12.2.0".
+std::string programCommit();
+std::string programBuild();
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,164 @@
+#include "runner/batch/measure.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "runner/batch/process_memory.h"
+#include "runner/batch/recorder.h"
+
+namespace gfxrepro::batch {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// Says when a phase begins and ends; at an exception too.
+class PhaseScope {
+  public:
+    PhaseScope(const MeasureContext& context, std::string_view phase)
+        : context_(context), phase_(phase) {
+        context_.onPhase(phase_, true);
+    }
+    ~PhaseScope() { context_.onPhase(phase_, false); }
+    PhaseScope(const PhaseScope&) = delete;
+    PhaseScope& operator=(const PhaseScope&) = delete;
+
+  private:
+    const MeasureContext& context_;
+    std::string_view phase_;
+};
+
+void recordPasses(gl::Profiler& profiler, RunRecorder& recorder) {
+    for (const gl::PassTime& time : profiler.collect()) {
+        const bool isGpu = time.clock == gl::PassTime::Clock::Gpu;
+        recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", time.timeMs, "ms", time.pass);
+    }
+}
+
+std::string kindName(scene::Origin::Kind kind) {
+    switch (kind) {
+        case scene::Origin::Kind::Real:
+            return "real";
+        case scene::Origin::Kind::StandIn:
+            return "stand-in";
+        case scene::Origin::Kind::Generated:
+            break;
+    }
+    return "generated";
+}
+
+/// 0 real, 1 stand-in, 2 generated, as scene_source in records.csv.
+int kindNumber(scene::Origin::Kind kind) {
+    switch (kind) {
+        case scene::Origin::Kind::Real:
+            return 0;
+        case scene::Origin::Kind::StandIn:
+            return 1;
+        case scene::Origin::Kind::Generated:
+            break;
+    }
+    return 2;
+}
+
+void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
+    const scene::Scene& scene = entry.scene;
+    recorder.metric("triangles", static_cast<double>(scene.triangleCount()), "triangle", "");
+    recorder.metric("vertices", static_cast<double>(scene.vertexCount()), "vertex", "");
+    recorder.metric("scene_source", kindNumber(scene.origin.kind), "enum", "");
+    recorder.metric("load_time_ms", entry.loadTimeMs, "ms", "");
+}
+
+void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
+                  RunRecorder& recorder) {
+    const long long peakBytes = std::max(peakResidentBytes(), entry.peakResidentBytes);
+    const auto otherBytes = static_cast<long long>(context.scenes.otherBytes());
+    recorder.metric("peak_memory_bytes", static_cast<double>(peakBytes - otherBytes), "byte", "");
+    recorder.metric("baseline_memory_bytes", static_cast<double>(context.baselineMemoryBytes),
+                    "byte", "");
+}
+
+/// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is recorded.
+void renderAndRecord(const Case& item, technique::Technique& technique, gl::Profiler& profiler,
+                     const MeasureContext& context, RunRecorder& recorder) {
+    const int frames = item.measure.frames;
+    for (int frame = 0; frame < frames; ++frame) {
+        technique::FrameContext frameContext{frame, frames, profiler};
+        {
+            const PhaseScope phase(context, "render");
+            for (int i = 0; frame == 0 && i < item.measure.warmup; ++i) {
+                technique.render(frameContext);
+                context.device.finish("warming up");
+                profiler.collect();
+            }
+            for (int repeat = 0; repeat < item.measure.repeats; ++repeat) {
+                recorder.setIteration(frame, repeat);
+                const Clock::time_point begin = Clock::now();
+                technique.render(frameContext);
+                context.device.finish("rendering");
+                const double wallTimeMs = millisecondsSince(begin);
+                recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
+                recordPasses(profiler, recorder);
+            }
+        }
+        const PhaseScope phase(context, "record");
+        recorder.setIteration(frame, 0);
+        technique.record(recorder);
+        context.device.finish("recording");
+        profiler.collect();
+    }
+}
+
+}  // namespace
+
+CaseResult measureCase(const Case& item, MeasureContext& context) {
+    CaseResult result;
+    RunRecorder recorder(context.runDir, item, result);
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(context.techniques, item.technique, {});
+    config::Params params(item.params, "technique '" + item.technique + "'");
+
+    const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();
+    context.scenes.beginCase(sceneName);
+    resetPeakResident();
+    const std::unique_ptr<technique::Technique> technique = info.create(params);
+    const SceneCache::Entry* scene = nullptr;
+    if (!sceneName.empty()) {
+        const PhaseScope phase(context, "load");
+        scene = &context.scenes.get(sceneName);
+        recordScene(*scene, recorder);
+    }
+
+    gl::Profiler profiler(context.device.info().isSoftware);
+    technique::SetupContext setup{context.device,
+                                  context.shaders,
+                                  context.scenes,
+                                  scene ? &scene->scene : nullptr,
+                                  {item.outputWidthPx, item.outputHeightPx},
+                                  item.seed,
+                                  profiler};
+    {
+        const PhaseScope phase(context, "setup");
+        const Clock::time_point begin = Clock::now();
+        technique->setup(setup);
+        context.device.finish("setting up");
+        recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
+        recordPasses(profiler, recorder);
+    }
+    renderAndRecord(item, *technique, profiler, context, recorder);
+    recorder.setIteration(0, 0);
+    if (scene) recordMemory(context, *scene, recorder);
+
+    for (const SceneCache::Entry& entry : context.scenes.entries()) {
+        if (!entry.isOfThisCase) continue;
+        const scene::Origin& origin = entry.scene.origin;
+        result.scenes.push_back(
+            {entry.reference, kindName(origin.kind), origin.description, origin.sha256});
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::batch

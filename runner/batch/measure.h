@@ -1,0 +1,33 @@
+// The measured flow of one case, in the process that holds the device.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "runner/batch/plan.h"
+#include "runner/batch/protocol.h"
+#include "runner/batch/scene_cache.h"
+
+namespace gfxrepro::batch {
+
+/// What a worker has at hand for every case.
+struct MeasureContext {
+    gl::Device& device;
+    const gl::ShaderLibrary& shaders;
+    SceneCache& scenes;
+    std::span<const technique::TechniqueInfo> techniques;
+    std::filesystem::path runDir;
+    long long baselineMemoryBytes;  // resident before the first scene was loaded
+    /// Told at the begin (true) and end (false) of load, setup, render and record.
+    std::function<void(std::string_view phase, bool isBegin)> onPhase;
+};
+
+/// Constructor → load → set-up → warm-ups → frames × repeats → record. Beside the technique's own
+/// metrics it gives wall_time_ms, setup_time_ms, gpu_time_ms and cpu_time_ms a pass, and for a case
+/// with a scene load_time_ms, triangles, vertices, scene_source, peak_memory_bytes (highest
+/// resident size from loading to recording, less what other cached scenes hold) and
+/// baseline_memory_bytes. Throws what the technique throws.
+CaseResult measureCase(const Case& item, MeasureContext& context);
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,63 @@
+#include "runner/batch/protocol.h"
+
+namespace gfxrepro::batch {
+
+Json toJson(const gl::DeviceInfo& info) {
+    return {{"index", info.index},
+            {"platform", info.platform},
+            {"vendor", info.vendor},
+            {"renderer", info.renderer},
+            {"version", info.version},
+            {"mesa_version", info.mesaVersion},
+            {"is_software", info.isSoftware},
+            {"timer_resolution_ns", info.timerResolutionNs}};
+}
+
+gl::DeviceInfo deviceInfoFromJson(const Json& json) {
+    gl::DeviceInfo info;
+    json.at("index").get_to(info.index);
+    json.at("platform").get_to(info.platform);
+    json.at("vendor").get_to(info.vendor);
+    json.at("renderer").get_to(info.renderer);
+    json.at("version").get_to(info.version);
+    json.at("mesa_version").get_to(info.mesaVersion);
+    json.at("is_software").get_to(info.isSoftware);
+    json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
+    return info;
+}
+
+Json toJson(const CaseResult& result) {
+    Json json = {{"status", report::statusName(result.status)},
+                 {"message", result.message},
+                 {"samples", Json::array()},
+                 {"images", Json::array()},
+                 {"scenes", Json::array()}};
+    for (const Sample& s : result.samples) {
+        json["samples"].push_back({s.frame, s.repeat, s.pass, s.metric, s.unit, s.value});
+    }
+    for (const report::ImageEntry& i : result.images) {
+        json["images"].push_back({i.caseId, i.table, i.frame, i.name, i.png, i.exr, i.title});
+    }
+    for (const SceneUse& s : result.scenes) {
+        json["scenes"].push_back({s.reference, s.kind, s.description, s.sha256});
+    }
+    return json;
+}
+
+CaseResult caseResultFromJson(const Json& json) {
+    CaseResult result;
+    result.status = report::statusFromName(json.at("status").get<std::string>());
+    json.at("message").get_to(result.message);
+    for (const Json& s : json.at("samples")) {
+        result.samples.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5)});
+    }
+    for (const Json& i : json.at("images")) {
+        result.images.push_back({i.at(0), i.at(1), i.at(2), i.at(3), i.at(4), i.at(5), i.at(6)});
+    }
+    for (const Json& s : json.at("scenes")) {
+        result.scenes.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::batch

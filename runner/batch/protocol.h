@@ -1,0 +1,53 @@
+// What a worker and the runner say to each other: one JSON object a line.
+//
+//   runner → worker   {"case": {…}, "process": 0}
+//   worker → runner   {"ready": {device}}  or  {"unavailable": "reason"}, once, after its start
+//                     {"begin": "load"}, {"end": "load"}: load, setup, render, record
+//                     {"done": {status, message, samples, images, scenes}}
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runner/gl/device.h"
+#include "runner/report/images.h"
+#include "runner/report/records.h"
+
+namespace gfxrepro::batch {
+
+using Json = nlohmann::ordered_json;
+
+/// What tells a record from the others of its case.
+struct Sample {
+    int frame = 0;
+    int repeat = 0;
+    std::string pass;
+    std::string metric;
+    std::string unit;
+    double value = 0.0;
+};
+
+/// A scene that a case used.
+struct SceneUse {
+    std::string reference;
+    std::string kind;  // "real" | "stand-in" | "generated"
+    std::string description;
+    std::string sha256;
+};
+
+/// How a case ended in one process.
+struct CaseResult {
+    report::Status status = report::Status::Ok;
+    std::string message;
+    std::vector<Sample> samples;
+    std::vector<report::ImageEntry> images;
+    std::vector<SceneUse> scenes;
+};
+
+Json toJson(const gl::DeviceInfo& info);
+gl::DeviceInfo deviceInfoFromJson(const Json& json);
+Json toJson(const CaseResult& result);
+CaseResult caseResultFromJson(const Json& json);
+
+}  // namespace gfxrepro::batch

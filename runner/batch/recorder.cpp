@@ -1,0 +1,78 @@
+#include "runner/batch/recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "runner/image/exr_io.h"
+#include "runner/image/png_io.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void checkFileName(std::string_view name) {
+    const bool isPlain =
+        !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                   c == '_' || c == '-' || c == '.';
+        });
+    if (!isPlain) {
+        throw Error("'" + std::string(name) + "' is no file name: letters, digits, '_', '-', '.'");
+    }
+}
+
+}  // namespace
+
+void RunRecorder::metric(std::string_view metric, double value, std::string_view unit,
+                         std::string_view pass) {
+    if (!std::isfinite(value)) {
+        throw Error("metric '" + std::string(metric) + "' is " + std::to_string(value) +
+                    "; a metric is a finite number");
+    }
+    result_.samples.push_back(
+        {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value});
+}
+
+void RunRecorder::image(std::string_view name, const image::ImageF& image) {
+    static const std::vector<std::string> kChannels[] = {
+        {}, {"Y"}, {}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    const int channels = image.channels();
+    if (channels != 1 && channels != 3 && channels != 4) {
+        throw Error("image '" + std::string(name) + "' has " + std::to_string(channels) +
+                    " channels; 1, 3 or 4 are allowed");
+    }
+    image::ExrImage exr;
+    exr.add(image, kChannels[channels]);
+    this->image(name, exr, image);
+}
+
+void RunRecorder::image(std::string_view name, const image::ExrImage& image,
+                        const image::ImageF& preview) {
+    checkFileName(name);
+    std::string stem = "images/" + item_.slug() + "/" + item_.id + "-" + std::string(name);
+    if (item_.measure.frames > 1) {
+        char frame[16];
+        std::snprintf(frame, sizeof(frame), "-f%04d", frame_);
+        stem += frame;
+    }
+    fs::create_directories((runDir_ / stem).parent_path());
+    image::ExrImage exr = image;
+    exr.attributes["case"] = item_.id;
+    exr.attributes["title"] = item_.title();
+    image::writeExr(runDir_ / (stem + ".exr"), exr);
+    image::writePng(runDir_ / (stem + ".png"), image::toSrgb8(preview));
+    result_.images.push_back({item_.id, item_.experiment, frame_, std::string(name), stem + ".png",
+                              stem + ".exr", item_.title()});
+}
+
+fs::path RunRecorder::artifact(std::string_view fileName) {
+    checkFileName(fileName);
+    const fs::path folder = runDir_ / "artifacts" / item_.slug();
+    fs::create_directories(folder);
+    return folder / (item_.id + "-" + std::string(fileName));
+}
+
+}  // namespace gfxrepro::batch

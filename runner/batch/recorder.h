@@ -1,0 +1,40 @@
+// Takes what a technique reports and puts its files into the run directory.
+#pragma once
+
+#include <filesystem>
+
+#include "runner/batch/plan.h"
+#include "runner/batch/protocol.h"
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::batch {
+
+/// Metrics and images go into `result`; files are written atomically. Throws Error for values that
+/// are not finite and for names that are no file names.
+class RunRecorder : public technique::Recorder {
+  public:
+    RunRecorder(const std::filesystem::path& runDir, const Case& item, CaseResult& result)
+        : runDir_(runDir), item_(item), result_(result) {}
+
+    /// Where in the case the next calls belong.
+    void setIteration(int frame, int repeat) {
+        frame_ = frame;
+        repeat_ = repeat;
+    }
+
+    void metric(std::string_view metric, double value, std::string_view unit,
+                std::string_view pass) override;
+    void image(std::string_view name, const image::ImageF& image) override;
+    void image(std::string_view name, const image::ExrImage& image,
+               const image::ImageF& preview) override;
+    std::filesystem::path artifact(std::string_view fileName) override;
+
+  private:
+    std::filesystem::path runDir_;
+    const Case& item_;
+    CaseResult& result_;
+    int frame_ = 0;
+    int repeat_ = 0;
+};
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,98 @@
+#include "runner/batch/run.h"
+
+#include <map>
+#include <utility>
+
+#include "runner/core/files.h"
+#include "runner/report/report.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using UnitKey = std::pair<std::string, int>;  // case id, process
+
+/// Every unit that has rows, and whether all are `ok`.
+std::map<UnitKey, bool> recordedUnits(const std::vector<report::Record>& records) {
+    std::map<UnitKey, bool> units;
+    for (const report::Record& row : records) {
+        const auto [unit, isNew] = units.try_emplace({row.caseId, row.process}, true);
+        unit->second = unit->second && row.status == report::Status::Ok;
+    }
+    return units;
+}
+
+}  // namespace
+
+std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
+    if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
+    const std::vector<report::Record> records = report::readRecords(directory.recordsFile());
+    const std::map<UnitKey, bool> recorded = recordedUnits(records);
+    std::vector<report::Record> kept;
+    for (const report::Record& row : records) {
+        if (recorded.at({row.caseId, row.process})) kept.push_back(row);
+    }
+    if (kept.size() != records.size()) {
+        fs::path rewritten = directory.recordsFile();
+        rewritten += ".tmp";
+        fs::remove(rewritten);
+        report::RecordWriter(rewritten).append(kept);
+        fs::rename(rewritten, directory.recordsFile());
+    }
+    std::vector<Unit> remaining;
+    for (const Unit& unit : unitsOf(plan)) {
+        const auto found = recorded.find({unit.item->id, unit.process});
+        if (found == recorded.end() || !found->second) remaining.push_back(unit);
+    }
+    return remaining;
+}
+
+StoredRun readRun(const fs::path& runDir) {
+    if (!fs::exists(runDir / "plan.json")) {
+        throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
+    }
+    StoredRun run;
+    run.plan = Plan::fromJsonFile(runDir / "plan.json");
+    const fs::path manifestFile = runDir / "manifest.json";
+    run.manifest = Json::parse(readFile(manifestFile), nullptr, false);
+    if (!run.manifest.is_object()) throw Error(manifestFile.string() + ": is no JSON object");
+    if (fs::exists(runDir / "records.csv")) {
+        run.records = report::readRecords(runDir / "records.csv");
+    }
+    return run;
+}
+
+Completeness completeness(const StoredRun& run) {
+    const std::map<UnitKey, bool> recorded = recordedUnits(run.records);
+    Completeness counts;
+    for (const Unit& unit : unitsOf(run.plan)) {
+        const auto found = recorded.find({unit.item->id, unit.process});
+        if (found == recorded.end()) {
+            ++counts.missing;
+        } else if (!found->second) {
+            ++counts.failed;
+        }
+    }
+    return counts;
+}
+
+std::vector<report::ClaimResult> writeResults(const fs::path& runDir, const StoredRun& run,
+                                              const Results& which) {
+    const report::ReportContext context = reportContext(run.manifest);
+    const std::vector<report::Table> tables =
+        report::buildTables(run.plan.experiments, run.records);
+    std::vector<report::ClaimResult> claims;
+    if (which.tables) report::writeTables(runDir, tables);
+    if (which.claims) {
+        claims = report::evaluateClaims(run.plan.experiments, tables, context);
+        report::writeClaims(runDir, claims, context);
+    }
+    if (which.report) {
+        report::writeReport(runDir, run.plan.experiments, run.records, run.manifest, context);
+    }
+    return claims;
+}
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,49 @@
+// A run from its plan to its tables; what `run`, `reproduce` and the commands over a finished run
+// share.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/batch/manifest.h"
+#include "runner/batch/plan.h"
+#include "runner/batch/run_directory.h"
+#include "runner/batch/scheduler.h"
+#include "runner/report/claims.h"
+
+namespace gfxrepro::batch {
+
+/// The units that have no complete set of `ok` rows yet. Rows of failed units are taken out of
+/// records.csv: they are about to be made again.
+std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
+
+/// What a run directory holds, for tables, claims and report.
+struct StoredRun {
+    Plan plan;
+    Json manifest;
+    std::vector<report::Record> records;
+};
+/// Throws Error when the folder is no run.
+StoredRun readRun(const std::filesystem::path& runDir);
+
+/// Units without a row of any kind, and units that did not end `ok`.
+struct Completeness {
+    int missing = 0;
+    int failed = 0;
+};
+Completeness completeness(const StoredRun& run);
+
+/// Which of the derived files writeResults makes.
+struct Results {
+    bool tables = true;
+    bool claims = true;
+    bool report = true;
+};
+/// Makes tables/, claims.csv with junit.xml, report.html again from the records; gives the claims'
+/// verdicts (empty unless asked for).
+std::vector<report::ClaimResult> writeResults(const std::filesystem::path& runDir,
+                                              const StoredRun& run, const Results& which);
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,43 @@
+// A run directory: its files, and the lock that keeps a second run out.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace gfxrepro::batch {
+
+/// plan.json, manifest.json, records.csv, log.jsonl, images/, artifacts/, tables/, … under one
+/// folder, locked for writing as long as the object lives.
+class RunDirectory {
+  public:
+    /// Makes the folder. Throws Error when it holds a run already or when another run writes to it.
+    static RunDirectory create(const std::filesystem::path& path);
+    /// A run that was begun. Throws Error when there is none or when another run writes to it.
+    static RunDirectory open(const std::filesystem::path& path);
+    RunDirectory(RunDirectory&& other) noexcept;
+    RunDirectory& operator=(RunDirectory&&) = delete;
+    ~RunDirectory();
+
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path planFile() const { return path_ / "plan.json"; }
+    std::filesystem::path manifestFile() const { return path_ / "manifest.json"; }
+    std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
+
+    /// Appends one line to log.jsonl: "time" and the members of `event`.
+    void log(const nlohmann::ordered_json& event) const;
+
+  private:
+    explicit RunDirectory(const std::filesystem::path& path);
+
+    std::filesystem::path path_;
+    int lockFd_ = -1;
+    int logFd_ = -1;
+};
+
+/// "2026-11-21T03:14:00Z", for manifests and logs.
+std::string utcTime();
+/// "runs/20261121-031400-zju2005": where a run goes when no folder is given.
+std::filesystem::path defaultRunPath(const std::string& slug);
+
+}  // namespace gfxrepro::batch

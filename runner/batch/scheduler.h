@@ -1,0 +1,58 @@
+// Runs the units of a plan in worker processes: timing units alone, quality units side by side.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/batch/phase_clock.h"
+#include "runner/batch/plan.h"
+#include "runner/batch/protocol.h"
+#include "runner/batch/run_directory.h"
+#include "runner/batch/worker_handle.h"
+
+namespace gfxrepro::batch {
+
+/// Told about progress; called from the thread that runs the scheduler.
+class Observer {
+  public:
+    virtual ~Observer() = default;
+    virtual void unitBegan(const Unit& unit) = 0;
+    virtual void unitEnded(const Unit& unit, report::Status status, const std::string& message) = 0;
+    /// Now and then, for a display that shows time.
+    virtual void tick() = 0;
+};
+
+struct SchedulerOptions {
+    std::string device = "auto";  // passed through to the workers
+    std::string assetsFolder;
+    int jobs = 1;  // quality units at once
+};
+
+struct RunOutcome {
+    int finished = 0;  // units that ended `ok`
+    int failed = 0;
+    bool isInterrupted = false;  // by SIGINT or SIGTERM
+    std::vector<SceneUse> scenes;
+};
+
+/// The units of a plan in the order in which they run: experiment by experiment, process 0 of all
+/// its cases, then process 1 of all, …
+std::vector<Unit> unitsOf(const Plan& plan);
+
+/// The command of a worker process: this program, with `worker` and the options.
+std::vector<std::string> workerCommand(const SchedulerOptions& options, config::Measure::Lane lane,
+                                       const std::filesystem::path& runDir);
+
+/// Starts a worker for a moment to ask what the device is; a driver that crashes does not take the
+/// runner with it. Throws NoDeviceError.
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases);
+
+/// Runs `units`, appending records, images and log lines as each ends.
+RunOutcome runUnits(const std::vector<Unit>& units, const RunDirectory& directory,
+                    const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
+
+/// The rows of one unit: a row a sample, or one row with the status.
+std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result);
+
+}  // namespace gfxrepro::batch

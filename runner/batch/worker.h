@@ -1,0 +1,23 @@
+// The worker process: holds one device, takes cases from standard input, answers on descriptor 3.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "runner/config/experiment.h"
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::batch {
+
+struct WorkerOptions {
+    std::string device = "auto";
+    config::Measure::Lane lane = config::Measure::Lane::Quality;
+    std::string assetsFolder;
+    std::string runDir;
+};
+
+/// Runs until standard input ends. Every failure of a case becomes its status; nothing is thrown
+/// but for a broken channel to the runner.
+void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques);
+
+}  // namespace gfxrepro::batch

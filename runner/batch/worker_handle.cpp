@@ -1,0 +1,188 @@
+#include "runner/batch/worker_handle.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "runner/batch/process_memory.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::batch {
+
+namespace {
+
+constexpr std::chrono::seconds kStartLimit{60};
+constexpr std::chrono::milliseconds kMemoryCheckInterval{20};
+constexpr std::size_t kOutputTailBytes = 65536;
+
+CaseResult failure(report::Status status, std::string message) {
+    CaseResult result;
+    result.status = status;
+    result.message = std::move(message);
+    return result;
+}
+
+std::string signalName(int number) {
+    const char* name = ::sigabbrev_np(number);
+    return name ? "SIG" + std::string(name) : "signal " + std::to_string(number);
+}
+
+std::string secondsText(double seconds) {
+    std::string text = std::to_string(seconds);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text + " s";
+}
+
+std::string mebibytesText(long long sizeBytes) {
+    return std::to_string(sizeBytes >> 20) + " MiB";
+}
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+    return std::chrono::nanoseconds(static_cast<long long>(seconds * 1e9));
+}
+
+}  // namespace
+
+WorkerHandle::WorkerHandle(const std::vector<std::string>& command, config::Measure::Lane lane,
+                           bool isSingleUse, PhaseClock& phases)
+    : phases_(phases),
+      process_(command),
+      lane_(lane),
+      isSingleUse_(isSingleUse),
+      limit_(Clock::now() + kStartLimit) {}
+
+WorkerHandle::~WorkerHandle() {
+    endPhase();
+}
+
+void WorkerHandle::assign(const Unit& unit) {
+    unit_ = unit;
+    output_.clear();
+    if (device_) sendUnit();
+}
+
+void WorkerHandle::sendUnit() {
+    limit_ = Clock::now() + nanoseconds(unit_->item->measure.timeLimitS);
+    // A worker that is gone is noticed by receive().
+    process_.sendLine(Json{{"case", unit_->item->toJson()}, {"process", unit_->process}}.dump());
+}
+
+std::optional<CaseResult> WorkerHandle::receive() {
+    const bool isOpen = readAvailable(process_.messageFd(), messages_);
+    readAvailable(process_.outputFd(), output_);
+    if (output_.size() > kOutputTailBytes) output_.erase(0, output_.size() - kOutputTailBytes);
+    std::optional<CaseResult> result;
+    std::size_t lineBegin = 0;
+    for (std::size_t end; (end = messages_.find('\n', lineBegin)) != std::string::npos;
+         lineBegin = end + 1) {
+        const Json message = Json::parse(messages_.begin() + static_cast<std::ptrdiff_t>(lineBegin),
+                                         messages_.begin() + static_cast<std::ptrdiff_t>(end));
+        if (std::optional<CaseResult> given = handle(message)) result = std::move(given);
+    }
+    messages_.erase(0, lineBegin);
+    if (!isOpen && isAlive_) {
+        isAlive_ = false;
+        waitStatus_ = process_.wait();
+        readAvailable(process_.outputFd(), output_);
+        endPhase();
+        if (unit_ && !result) result = resultOfDeath();
+    }
+    return result;
+}
+
+std::optional<CaseResult> WorkerHandle::handle(const Json& message) {
+    if (message.contains("begin")) {
+        begin(message["begin"].get<std::string>());
+    } else if (message.contains("end")) {
+        endPhase();
+    } else if (message.contains("ready")) {
+        device_ = deviceInfoFromJson(message["ready"]);
+        if (unit_) sendUnit();
+    } else if (message.contains("unavailable")) {
+        unavailable_ = message["unavailable"].get<std::string>();
+    } else if (message.contains("done")) {
+        return caseResultFromJson(message["done"]);
+    }
+    return std::nullopt;
+}
+
+void WorkerHandle::begin(const std::string& phase) {
+    endPhase();
+    phase_ = phase;
+    phaseBegin_ = Clock::now();
+    phases_.begin(phaseBegin_);
+}
+
+void WorkerHandle::endPhase() {
+    if (!phase_.empty()) phases_.end(phase_, phaseBegin_, Clock::now());
+    phase_.clear();
+}
+
+CaseResult WorkerHandle::resultOfDeath() const {
+    if (!unavailable_.empty()) return failure(report::Status::Unsupported, unavailable_);
+    if (WIFSIGNALED(waitStatus_) && WTERMSIG(waitStatus_) == SIGKILL) {
+        return failure(report::Status::Oom,
+                       "SIGKILL from outside: most likely the system ran out of memory");
+    }
+    std::string message = WIFSIGNALED(waitStatus_) ? signalName(WTERMSIG(waitStatus_))
+                                                   : "the worker ended with exit code " +
+                                                         std::to_string(WEXITSTATUS(waitStatus_));
+    if (const std::string line = lastOutputLine(); !line.empty()) message += ": " + line;
+    return failure(report::Status::Crash, message);
+}
+
+std::string WorkerHandle::startProblem() const {
+    return resultOfDeath().message;
+}
+
+std::string WorkerHandle::lastOutputLine() const {
+    const std::string_view text = trimmed(output_);
+    const std::size_t at = text.rfind('\n');
+    return std::string(at == std::string_view::npos ? text : text.substr(at + 1));
+}
+
+std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
+    if (!unit_ || !isAlive_) return std::nullopt;
+    const config::Measure& measure = unit_->item->measure;
+    std::optional<CaseResult> result;
+    if (now >= limit_) {
+        result =
+            failure(report::Status::Timeout,
+                    device_ ? "not finished after " + secondsText(measure.timeLimitS) +
+                                  (phase_.empty() ? "" : " (in " + phase_ + ")")
+                            : "the worker was not ready after " + secondsText(kStartLimit.count()));
+    } else if (measure.memoryLimitBytes > 0) {
+        const long long usedBytes = residentBytes(process_.pid());
+        if (usedBytes > measure.memoryLimitBytes) {
+            result = failure(report::Status::Oom, "resident memory of " + mebibytesText(usedBytes) +
+                                                      " is over the limit of " +
+                                                      mebibytesText(measure.memoryLimitBytes));
+        }
+    }
+    if (result) {
+        isAlive_ = false;
+        process_.kill();
+        endPhase();
+    }
+    return result;
+}
+
+WorkerHandle::Clock::time_point WorkerHandle::nextCheck(Clock::time_point now) const {
+    if (!unit_) return Clock::time_point::max();
+    if (unit_->item->measure.memoryLimitBytes > 0) {
+        return std::min(limit_, now + kMemoryCheckInterval);
+    }
+    return limit_;
+}
+
+bool WorkerHandle::release(const CaseResult& result) {
+    unit_.reset();
+    const bool isDamaged =
+        result.status == report::Status::DeviceLost || result.status == report::Status::Oom;
+    return isAlive_ && !isSingleUse_ && !isDamaged;
+}
+
+}  // namespace gfxrepro::batch

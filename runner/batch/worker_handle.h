@@ -1,0 +1,85 @@
+// One worker, seen from the runner: what it is doing and how it ended.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/batch/child_process.h"
+#include "runner/batch/phase_clock.h"
+#include "runner/batch/plan.h"
+#include "runner/batch/protocol.h"
+
+namespace gfxrepro::batch {
+
+/// One execution of a case: the unit of work. With `processes: n` a case has n of them.
+struct Unit {
+    const Case* item = nullptr;
+    int process = 0;
+};
+
+/// A worker process and the unit that it is on.
+class WorkerHandle {
+  public:
+    using Clock = PhaseClock::Clock;
+
+    /// Starts the process; `isSingleUse` workers are not given a second unit.
+    WorkerHandle(const std::vector<std::string>& command, config::Measure::Lane lane,
+                 bool isSingleUse, PhaseClock& phases);
+    ~WorkerHandle();
+    WorkerHandle(const WorkerHandle&) = delete;
+    WorkerHandle& operator=(const WorkerHandle&) = delete;
+
+    const ChildProcess& process() const { return process_; }
+    config::Measure::Lane lane() const { return lane_; }
+    bool isSingleUse() const { return isSingleUse_; }
+    /// The process has ended.
+    bool isGone() const { return !isAlive_; }
+    /// Why it ended before it was ready.
+    std::string startProblem() const;
+    bool isBusy() const { return unit_.has_value(); }
+    const std::optional<Unit>& unit() const { return unit_; }
+    const std::optional<gl::DeviceInfo>& device() const { return device_; }
+    /// What the present case wrote to standard output and error (the last 64 KiB).
+    const std::string& output() const { return output_; }
+
+    /// The unit is sent as soon as the worker is ready; its time limit runs from there.
+    void assign(const Unit& unit);
+
+    /// Reads what has arrived. A result when the unit is over — done, or failed because the worker
+    /// is gone.
+    std::optional<CaseResult> receive();
+    /// Kills the worker when the unit broke its time or memory limit, and gives that result.
+    std::optional<CaseResult> checkLimits(Clock::time_point now);
+    /// When checkLimits() should be called again.
+    Clock::time_point nextCheck(Clock::time_point now) const;
+
+    /// Takes the unit away after its result; false when the worker can take no more.
+    bool release(const CaseResult& result);
+
+  private:
+    std::optional<CaseResult> handle(const Json& message);
+    void begin(const std::string& phase);
+    void endPhase();
+    void sendUnit();
+    CaseResult resultOfDeath() const;
+    std::string lastOutputLine() const;
+
+    PhaseClock& phases_;
+    ChildProcess process_;
+    config::Measure::Lane lane_;
+    bool isSingleUse_;
+    std::optional<Unit> unit_;
+    std::optional<gl::DeviceInfo> device_;
+    std::string unavailable_;  // why there is no device
+    bool isAlive_ = true;
+    int waitStatus_ = 0;       // once it is not alive
+    Clock::time_point limit_;  // of the start, then of the unit
+    std::string phase_;        // empty between phases
+    Clock::time_point phaseBegin_;
+    std::string messages_;
+    std::string output_;
+};
+
+}  // namespace gfxrepro::batch

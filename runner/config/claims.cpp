@@ -1,0 +1,356 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "runner/config/checks.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using Names = std::vector<std::string>;
+using Type = ClaimSpec::Type;
+
+/// A kind of claim: the key that names it, and the keys that say more.
+struct Kind {
+    std::string_view key;
+    Type type;
+    std::array<std::string_view, 4> further;
+};
+constexpr std::array<Kind, 8> kKinds = {{
+    {"order", Type::Order, {}},
+    {"ratio", Type::Ratio, {"at_least", "at_most", "between"}},
+    {"trend", Type::Trend, {"over", "exponent", "direction", "strictly"}},
+    {"independent", Type::Independent, {"of", "within"}},
+    {"bound", Type::Bound, {"above", "below"}},
+    {"exact", Type::Exact, {"equals"}},
+    {"tolerance", Type::Tolerance, {"within"}},
+    {"crossover", Type::Crossover, {"over", "between"}},
+}};
+
+std::string kindNames() {
+    Names names;
+    for (const Kind& kind : kKinds) names.emplace_back(kind.key);
+    return joined(names);
+}
+
+const Kind& kindOf(const Node& claim, const std::string& what, const SourceLocation& where) {
+    if (!claim.isMap()) throwNotAllowed(claim, what, "a map");
+    const Kind* found = nullptr;
+    for (const Kind& kind : kKinds) {
+        if (!claim.find(kind.key)) continue;
+        if (found) {
+            throw Error(claim.keyLocation(kind.key), what + " is of two types, '" +
+                                                         std::string(found->key) + "' and '" +
+                                                         std::string(kind.key) + "'");
+        }
+        found = &kind;
+    }
+    if (!found) throw Error(where, what + " has no type; allowed: " + kindNames());
+    return *found;
+}
+
+/// Reads one claim. `what_` begins the messages: "claim 'V1'".
+class ClaimReader {
+  public:
+    ClaimReader(std::string id, const Node& node, const SourceLocation& where,
+                const TableNames& names, bool hasPrinted)
+        : node_(node), names_(names), hasPrinted_(hasPrinted), what_("claim '" + id + "'") {
+        claim_.id = std::move(id);
+        claim_.location = where;
+    }
+
+    ClaimSpec read() {
+        const Kind& kind = kindOf(node_, what_, claim_.location);
+        Names allowed = {"says", "at", "statistic", "device", "profile"};
+        allowed.emplace_back(kind.key);
+        for (const std::string_view key : kind.further) {
+            if (!key.empty()) allowed.emplace_back(key);
+        }
+        requireKeys(node_, what_, allowed);
+        claim_.type = kind.type;
+        readCommon();
+        readOperands(*node_.find(kind.key));
+        readRequired();
+        return std::move(claim_);
+    }
+
+  private:
+    const Node& require(std::string_view key) const {
+        const Node* value = node_.find(key);
+        if (!value) throw Error(claim_.location, what_ + " needs '" + std::string(key) + "'");
+        return *value;
+    }
+
+    void readCommon() {
+        claim_.text = lineOf(require("says"), what_ + ": says");
+        if (const Node* statistic = node_.find("statistic")) {
+            requireStatistic(*statistic);
+            claim_.statistic = statistic->text();
+        }
+        if (const Node* device = node_.find("device")) {
+            const bool isGpu = device->isScalar() && device->text() == "gpu";
+            const bool isAny = device->isScalar() && device->text() == "any";
+            if (!isGpu && !isAny) throwNotAllowed(*device, what_ + ": device", "any | gpu");
+            claim_.device = isGpu ? ClaimSpec::Device::Gpu : ClaimSpec::Device::Any;
+        }
+        if (const Node* profile = node_.find("profile")) {
+            const std::string name = profile->isScalar() ? profile->text() : "";
+            if (name != "quick" && name != "full" && name != "paper") {
+                throwNotAllowed(*profile, what_ + ": profile", "quick | full | paper");
+            }
+            claim_.profile = name;
+        }
+        if (const Node* at = node_.find("at")) readAt(*at);
+    }
+
+    void readAt(const Node& at) {
+        requireKeys(at, what_ + ": at", names_.rowAxes);
+        for (const auto& [axis, value] : at.entries()) {
+            const std::vector<Node> wanted =
+                value.isSequence() ? value.items() : Node::Sequence{value};
+            const auto known = names_.rowValues.find(axis);
+            for (const Node& item : wanted) {
+                if (known == names_.rowValues.end()) break;
+                const Node all = Node::sequence(known->second);
+                if (matchesAny(item, all)) continue;
+                Names texts;
+                for (const Node& one : known->second) texts.push_back(one.toFlowText());
+                throwNotAllowed(item, what_ + ": at." + axis, joined(texts, " | "));
+            }
+            claim_.at.emplace_back(axis, wanted);
+        }
+    }
+
+    void readOperands(const Node& node) {
+        switch (claim_.type) {
+            case Type::Order:
+                addOperands(node, split(lineOf(node, what_ + ": order"), '<'));
+                if (claim_.operands.size() < 2)
+                    throwNotAllowed(node, what_ + ": order", "a < b < …");
+                break;
+            case Type::Ratio:
+                addOperands(node, splitRatio(node));
+                break;
+            case Type::Independent:
+            case Type::Crossover: {
+                const Node::Sequence items =
+                    node.isSequence() ? node.items() : Node::Sequence{node};
+                for (const Node& item : items) addOperands(item, {lineOf(item, what_)});
+                if (claim_.type == Type::Crossover && claim_.operands.size() != 2) {
+                    throwNotAllowed(node, what_ + ": crossover", "[a, b]");
+                }
+                if (claim_.operands.empty()) throwNotAllowed(node, what_, "a column, or a list");
+                break;
+            }
+            default:
+                addOperands(node, {lineOf(node, what_)});
+        }
+    }
+
+    /// The two sides of the one " / " outside of parentheses.
+    Names splitRatio(const Node& node) const {
+        const std::string& text = lineOf(node, what_ + ": ratio");
+        int depth = 0;
+        Names sides = {""};
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+            if (depth == 0 && text.compare(i, 3, " / ") == 0) {
+                sides.emplace_back();
+                i += 2;
+            } else {
+                sides.back() += text[i];
+            }
+        }
+        if (sides.size() != 2) throwNotAllowed(node, what_ + ": ratio", "a / b");
+        return sides;
+    }
+
+    void addOperands(const Node& node, const Names& texts) {
+        for (const std::string& text : texts) {
+            const std::string operand(trimmed(text));
+            if (operand.empty()) throwNotAllowed(node, what_, "an expression over columns");
+            requireColumns(operand, node);
+            claim_.operands.push_back(operand);
+        }
+    }
+
+    bool isColumn(const std::string& name) const {
+        return std::find(names_.columns.begin(), names_.columns.end(), name) !=
+               names_.columns.end();
+    }
+
+    /// Every name in an expression is a column, unless it is called: "max(a, b)".
+    void requireColumns(const std::string& operand, const Node& node) const {
+        if (!names_.hasAllColumns || isColumn(operand)) return;
+        const auto isStart = [](char c) {
+            return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+        };
+        const auto isPart = [&](char c) { return isStart(c) || (c >= '0' && c <= '9'); };
+        for (std::size_t i = 0; i < operand.size();) {
+            if (!isPart(operand[i])) {
+                ++i;
+                continue;
+            }
+            std::size_t end = i;
+            while (end < operand.size() && isPart(operand[end])) ++end;
+            const std::string name = operand.substr(i, end - i);
+            const std::size_t next = operand.find_first_not_of(' ', end);
+            const bool isCall = next != std::string::npos && operand[next] == '(';
+            if (isStart(name[0]) && !isCall && !isColumn(name)) {
+                const std::string near = suggestion(name, names_.columns);
+                throw Error(node.location(),
+                            what_ + ": unknown column '" + name + "'" +
+                                (near.empty() ? "; allowed: " + joined(names_.columns) : near));
+            }
+            i = end;
+        }
+    }
+
+    void readRequired() {
+        switch (claim_.type) {
+            case Type::Order:
+                break;
+            case Type::Ratio:
+                readBound("at_least", claim_.low);
+                readBound("at_most", claim_.high);
+                readPair("between");
+                requireSome("at_least, at_most or between");
+                break;
+            case Type::Trend:
+                readOver("over");
+                readPair("exponent");
+                readDirection();
+                break;
+            case Type::Independent:
+                readOver("of");
+                readWithin();
+                break;
+            case Type::Bound:
+                readBound("above", claim_.low);
+                readBound("below", claim_.high);
+                requireSome("above or below");
+                break;
+            case Type::Exact:
+                readEquals();
+                break;
+            case Type::Tolerance:
+                requirePrinted();
+                readWithin();
+                break;
+            case Type::Crossover:
+                readOver("over");
+                require("between");
+                readPair("between");
+                break;
+        }
+    }
+
+    void readBound(std::string_view key, std::optional<double>& bound) {
+        if (const Node* value = node_.find(key)) bound = value->asDouble();
+        if (claim_.low && claim_.high && *claim_.low > *claim_.high) {
+            throw Error(node_.find(key)->location(), what_ + ": the lower bound exceeds the upper");
+        }
+    }
+
+    void readPair(std::string_view key) {
+        const Node* pair = node_.find(key);
+        if (!pair) return;
+        const std::string what = what_ + ": " + std::string(key);
+        if (claim_.low || claim_.high) throw Error(pair->location(), what + " beside other bounds");
+        if (!pair->isSequence() || pair->items().size() != 2) {
+            throwNotAllowed(*pair, what, "[low, high]");
+        }
+        claim_.low = pair->items()[0].asDouble();
+        claim_.high = pair->items()[1].asDouble();
+        if (*claim_.low > *claim_.high) throwNotAllowed(*pair, what, "[low, high], low first");
+    }
+
+    void requireSome(const std::string& keys) const {
+        if (!claim_.low && !claim_.high) throw Error(claim_.location, what_ + " needs " + keys);
+    }
+
+    void readOver(std::string_view key) {
+        const Node& over = require(key);
+        const std::string& name = lineOf(over, what_ + ": " + std::string(key));
+        Names known = names_.rowAxes;
+        known.insert(known.end(), names_.columns.begin(), names_.columns.end());
+        const bool isKnown = std::find(known.begin(), known.end(), name) != known.end();
+        if (!isKnown && names_.hasAllColumns) {
+            throw Error(over.location(), what_ + ": '" + name +
+                                             "' is neither a row axis nor a column" +
+                                             suggestion(name, known));
+        }
+        claim_.over = name;
+    }
+
+    void readDirection() {
+        if (const Node* direction = node_.find("direction")) {
+            const std::string name = direction->isScalar() ? direction->text() : "";
+            claim_.direction = name == "increasing" ? 1 : name == "decreasing" ? -1 : 0;
+            if (claim_.direction == 0) {
+                throwNotAllowed(*direction, what_ + ": direction", "increasing | decreasing");
+            }
+        }
+        if (const Node* strictly = node_.find("strictly")) {
+            claim_.isStrict = strictly->asBool();
+            if (claim_.direction == 0) {
+                throw Error(strictly->location(), what_ + ": strictly needs 'direction'");
+            }
+        }
+        if (claim_.direction == 0) requireSome("exponent or direction");
+    }
+
+    /// "25%" or 0.25.
+    void readWithin() {
+        const Node& within = require("within");
+        const std::string text = within.isScalar() ? within.text() : "";
+        std::optional<double> fraction = within.tryDouble();
+        if (text.ends_with('%')) {
+            fraction = parseDouble(trimmed(std::string_view(text).substr(0, text.size() - 1)));
+            if (fraction) *fraction /= 100.0;
+        } else if (fraction && *fraction > 1.0) {
+            fraction.reset();  // 25 for 25% is a likely slip
+        }
+        if (!fraction || *fraction < 0.0) {
+            throwNotAllowed(within, what_ + ": within", "a percentage as 25%, or a fraction 0 … 1");
+        }
+        claim_.high = fraction;
+    }
+
+    void readEquals() {
+        const Node& equals = require("equals");
+        if (equals.isScalar() && equals.text() == "printed") {
+            requirePrinted();
+            return;
+        }
+        if (!equals.tryDouble())
+            throwNotAllowed(equals, what_ + ": equals", "a number, or printed");
+        claim_.low = claim_.high = equals.tryDouble();
+    }
+
+    void requirePrinted() const {
+        if (!hasPrinted_) throw Error(claim_.location, what_ + " needs printed values");
+    }
+
+    const Node& node_;
+    const TableNames& names_;
+    bool hasPrinted_;
+    std::string what_;
+    ClaimSpec claim_;
+};
+
+}  // namespace
+
+std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted) {
+    if (!node.isMap()) throwNotAllowed(node, "claims", "a map {id: claim}");
+    std::vector<ClaimSpec> claims;
+    for (const auto& [id, claim] : node.entries()) {
+        claims.push_back(ClaimReader(id, claim, node.keyLocation(id), names, hasPrinted).read());
+    }
+    return claims;
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "runner/config/checks.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Case axes, and `frame`: the frames of a path.
+Names referableAxes(const Vocabulary& vocabulary) {
+    Names names = vocabulary.axisNames();
+    names.emplace_back("frame");
+    return names;
+}
+
+Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
+    Selection selection;
+    selection.location = node.location();
+    if (node.isScalar()) {
+        selection.metric = lineOf(node, "metric");
+        return selection;
+    }
+    requireKeys(node, "a cell's selection", Names{"metric", "pass", "format", "scale", "where"});
+    if (const Node* metric = node.find("metric")) selection.metric = lineOf(*metric, "metric");
+    if (const Node* pass = node.find("pass")) selection.pass = lineOf(*pass, "pass");
+    if (const Node* format = node.find("format")) {
+        requireCellFormat(*format);
+        selection.format = format->text();
+    }
+    if (const Node* scale = node.find("scale")) selection.scale = scale->asDouble();
+    if (const Node* where = node.find("where")) {
+        requireKeys(*where, "where", referableAxes(vocabulary));
+        selection.where.assign(where->entries().begin(), where->entries().end());
+    }
+    return selection;
+}
+
+/// The cell's text is its format; elsewhere text is a metric.
+Selection readCell(const Node& node, const Vocabulary& vocabulary) {
+    if (!node.isScalar()) return readSelection(node, vocabulary);
+    requireCellFormat(node);
+    Selection cell;
+    cell.location = node.location();
+    cell.format = node.text();
+    return cell;
+}
+
+LayoutAxis readLabels(const std::string& name, const Node& node, const Vocabulary& vocabulary) {
+    if (!node.isMap() || node.entries().empty()) {
+        throwNotAllowed(node, "labels", "a map {label: selection}");
+    }
+    LayoutAxis axis{name, {}};
+    for (const auto& [label, selection] : node.entries()) {
+        axis.labels.emplace_back(label, readSelection(selection, vocabulary));
+    }
+    return axis;
+}
+
+/// Reads `rows` and `columns`, which draw on the same declared axes.
+class AxisReader {
+  public:
+    AxisReader(const Node* axes, const Vocabulary& vocabulary) : vocabulary_(vocabulary) {
+        if (!axes) return;
+        for (const auto& [name, labels] : axes->entries()) {
+            if (vocabulary.axes.contains(name)) {
+                throw Error(axes->keyLocation(name),
+                            "layout: axis '" + name + "' is an axis of the cases already");
+            }
+            declared_.push_back(readLabels(name, labels, vocabulary));
+            places_.push_back(axes->keyLocation(name));
+        }
+    }
+
+    std::vector<LayoutAxis> read(const Node& node) {
+        if (node.isMap()) return {readLabels("", node, vocabulary_)};
+        if (node.isScalar()) return {named(node)};
+        std::vector<LayoutAxis> axes;
+        for (const Node& name : node.items()) axes.push_back(named(name));
+        return axes;
+    }
+
+    void requireAllUsed() const {
+        for (std::size_t i = 0; i < declared_.size(); ++i) {
+            if (isUsed(declared_[i].name)) continue;
+            throw Error(places_[i], "layout: axis '" + declared_[i].name +
+                                        "' is neither in rows nor in columns");
+        }
+    }
+
+  private:
+    bool isUsed(const std::string& name) const {
+        return std::find(used_.begin(), used_.end(), name) != used_.end();
+    }
+
+    LayoutAxis named(const Node& node) {
+        const std::string& name = lineOf(node, "axis");
+        if (isUsed(name)) {
+            throw Error(node.location(), "layout: axis '" + name + "' is used twice");
+        }
+        used_.push_back(name);
+        Names known = referableAxes(vocabulary_);
+        for (const LayoutAxis& axis : declared_) {
+            if (axis.name == name) return axis;
+            known.push_back(axis.name);
+        }
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            const std::string near = suggestion(name, known);
+            throw Error(node.location(), "layout: unknown axis '" + name + "'" +
+                                             (near.empty() ? "; allowed: " + joined(known) : near));
+        }
+        return {name, {}};
+    }
+
+    const Vocabulary& vocabulary_;
+    std::vector<LayoutAxis> declared_;
+    std::vector<SourceLocation> places_;
+    Names used_;
+};
+
+bool hasMetricEverywhere(const Layout& layout) {
+    if (layout.cell.metric) return true;
+    for (const auto* axes : {&layout.rows, &layout.columns}) {
+        for (const LayoutAxis& axis : *axes) {
+            const bool isComplete =
+                !axis.isSweepAxis() &&
+                std::all_of(axis.labels.begin(), axis.labels.end(),
+                            [](const auto& label) { return label.second.metric.has_value(); });
+            if (isComplete) return true;
+        }
+    }
+    return false;
+}
+
+/// All combinations of the columns' axes, joined by "_".
+Names combine(const Names& heads, const Names& tails) {
+    Names names;
+    for (const std::string& head : heads) {
+        for (const std::string& tail : tails) {
+            names.push_back(head.empty() ? tail : head + "_" + tail);
+        }
+    }
+    return names;
+}
+
+}  // namespace
+
+Names Vocabulary::axisNames() const {
+    Names names;
+    for (const auto& axis : axes) names.push_back(axis.first);
+    return names;
+}
+
+Layout readLayout(const Node& node, const Vocabulary& vocabulary) {
+    requireKeys(node, "layout", Names{"axes", "rows", "columns", "cell"});
+    Layout layout;
+    layout.isGiven = true;
+    layout.cell.location = node.location();
+    AxisReader reader(node.find("axes"), vocabulary);
+    if (const Node* rows = node.find("rows")) layout.rows = reader.read(*rows);
+    if (const Node* columns = node.find("columns")) layout.columns = reader.read(*columns);
+    reader.requireAllUsed();
+    if (layout.rows.empty() && layout.columns.empty()) {
+        throw Error(node.location(), "layout has neither rows nor columns");
+    }
+    if (const Node* cell = node.find("cell")) layout.cell = readCell(*cell, vocabulary);
+    if (!layout.cell.format) layout.cell.format = "{median:.4g}";
+    if (!hasMetricEverywhere(layout)) {
+        throw Error(layout.cell.location,
+                    "layout: some cell has no metric; allowed: a metric in `cell`, or in every "
+                    "label of one axis");
+    }
+    return layout;
+}
+
+TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary) {
+    TableNames names;
+    const auto valuesOf = [&](const LayoutAxis& axis) {
+        Node::Sequence values;
+        for (const auto& label : axis.labels) values.push_back(Node::scalar(label.first, {}, true));
+        const auto known = vocabulary.axes.find(axis.name);
+        return axis.isSweepAxis() && known != vocabulary.axes.end() ? known->second : values;
+    };
+    for (const LayoutAxis& axis : layout.rows) {
+        names.rowAxes.push_back(axis.name);
+        const bool isKnown = !axis.isSweepAxis() || (vocabulary.isComplete && axis.name != "frame");
+        if (isKnown) names.rowValues[axis.name] = valuesOf(axis);
+    }
+    Names columns = {""};
+    for (const LayoutAxis& axis : layout.columns) {
+        if (axis.isSweepAxis() && (!vocabulary.isComplete || axis.name == "frame")) {
+            names.hasAllColumns = false;
+        }
+        Names values;
+        for (const Node& value : valuesOf(axis)) {
+            values.push_back(value.isScalar() ? value.text() : value.toFlowText());
+        }
+        columns = combine(columns, values);
+    }
+    if (!layout.columns.empty()) names.columns = std::move(columns);
+    return names;
+}
+
+void requireStatistic(const Node& name) {
+    static constexpr std::array<std::string_view, 6> kStatistics = {"median", "mean", "min",
+                                                                    "max",    "sum",  "count"};
+    if (std::find(kStatistics.begin(), kStatistics.end(), lineOf(name, "statistic")) ==
+        kStatistics.end()) {
+        throwNotAllowed(name, "statistic", "median, mean, min, max, sum, count");
+    }
+}
+
+void requireCellFormat(const Node& format) {
+    const std::string& text = lineOf(format, "format");
+    int count = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isDoubled = i + 1 < text.size() && text[i + 1] == text[i];
+        if (text[i] == '}' && !isDoubled)
+            throwNotAllowed(format, "format", "} only after {, or }}");
+        if ((text[i] == '{' || text[i] == '}') && isDoubled) {
+            ++i;
+            continue;
+        }
+        if (text[i] != '{') continue;
+        const std::size_t end = text.find('}', i);
+        if (end == std::string::npos) throwNotAllowed(format, "format", "a } for every {");
+        const std::string inside = text.substr(i + 1, end - i - 1);
+        const std::size_t colon = std::min(inside.find(':'), inside.size());
+        requireStatistic(Node::scalar(inside.substr(0, colon), format.location(), true));
+        // Short, so that a width cannot be absurd.
+        constexpr std::size_t kMaxSpecLength = 6;
+        const std::string spec = inside.substr(colon);
+        try {
+            if (spec.size() > kMaxSpecLength) throw fmt::format_error("too long");
+            (void)fmt::format(fmt::runtime("{" + spec + "}"), 1.0);
+        } catch (const fmt::format_error& error) {
+            throwNotAllowed(
+                format, "format",
+                "number formats such as {mean:.2f} (" + std::string(error.what()) + ")");
+        }
+        ++count;
+        i = end;
+    }
+    if (count == 0) throwNotAllowed(format, "format", "a statistic in braces, as {median:.4g}");
+}
+
+const std::string& lineOf(const Node& node, std::string_view what) {
+    if (!node.isScalar() || trimmed(node.text()).empty() ||
+        node.text().find('\n') != std::string::npos) {
+        throwNotAllowed(node, what, "one line of text");
+    }
+    return node.text();
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,260 @@
+// From a file on disk to the one document that is read: extends, profile, overrides, scene files.
+#include <algorithm>
+
+#include "runner/config/checks.h"
+#include "runner/config/experiment.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// A file with what it extends. Profiles stay apart: their nulls remove keys only once the profile
+/// is laid over the whole.
+struct Merged {
+    Node document;
+    std::vector<std::pair<std::string, Node>> profiles;  // in order; later ones win
+};
+
+class Reader {
+  public:
+    explicit Reader(fs::path configsFolder) : configsFolder_(std::move(configsFolder)) {}
+
+    Merged read(const fs::path& file) {
+        const Node whole = parseYamlFile(file);
+        if (!whole.isMap()) {
+            throw Error(SourceLocation{file.string(), 0, 0},
+                        "a config is a map, found " + whole.kindName());
+        }
+        requireFileKeys(whole);
+        open_.push_back(fs::weakly_canonical(file));
+        Merged result{Node::map({}, whole.location()), {}};
+        if (const Node* extends = whole.find("extends")) {
+            const Node::Sequence names =
+                extends->isSequence() ? extends->items() : Node::Sequence{*extends};
+            for (const Node& name : names) {
+                Merged preset = read(find(name, file));
+                result.document = merged(result.document, preset.document);
+                std::move(preset.profiles.begin(), preset.profiles.end(),
+                          std::back_inserter(result.profiles));
+            }
+        }
+        addProfiles(whole, result);
+        Node own = whole;
+        own.erase("extends");
+        own.erase("profiles");
+        result.document = merged(result.document, own);
+        open_.pop_back();
+        return result;
+    }
+
+  private:
+    void requireFileKeys(const Node& whole) const {
+        Names allowed = sectionKeys();
+        allowed.insert(allowed.end(), identityKeys().begin(), identityKeys().end());
+        allowed.insert(allowed.end(), {"extends", "profiles"});
+        requireKeys(whole, "config", allowed);
+        if (open_.empty()) return;
+        for (const std::string& key : identityKeys()) {
+            if (!whole.find(key)) continue;
+            throw Error(whole.keyLocation(key),
+                        "'" + key +
+                            "' in a file that is extended; only the experiment's own file "
+                            "names it");
+        }
+    }
+
+    fs::path find(const Node& name, const fs::path& file) const {
+        const fs::path relative = lineOf(name, "extends");
+        for (const fs::path& folder : {configsFolder_, file.parent_path()}) {
+            const fs::path candidate = folder / relative;
+            if (!fs::is_regular_file(candidate)) continue;
+            const fs::path real = fs::weakly_canonical(candidate);
+            if (std::find(open_.begin(), open_.end(), real) != open_.end()) {
+                throw Error(name.location(),
+                            "extends: '" + relative.string() + "' extends this file in turn");
+            }
+            return candidate;
+        }
+        throw Error(name.location(), "extends: no file '" + relative.string() + "' in " +
+                                         configsFolder_.string() + " or " +
+                                         file.parent_path().string());
+    }
+
+    static void addProfiles(const Node& whole, Merged& result) {
+        const Node* profiles = whole.find("profiles");
+        if (!profiles) return;
+        requireKeys(*profiles, "profiles", Names{"quick", "paper"});
+        for (const auto& [name, overlay] : profiles->entries()) {
+            if (!overlay.isNull()) {
+                requireKeys(overlay, "profile '" + name + "'", sectionKeys());
+            }
+            result.profiles.emplace_back(name, overlay.isNull() ? Node::map({}) : overlay);
+        }
+    }
+
+    fs::path configsFolder_;
+    std::vector<fs::path> open_;
+};
+
+/// A reference with a file extension is a file beside the one that names it.
+Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder = {}) {
+    if (reference.isSequence()) {
+        Node::Sequence items;
+        for (const Node& item : reference.items()) items.push_back(withSceneFile(item, folder));
+        return Node::sequence(std::move(items), reference.location());
+    }
+    if (!reference.isScalar() || !fs::path(reference.text()).has_extension()) return reference;
+    const fs::path beside = folder ? *folder : fs::path(reference.location().file).parent_path();
+    const fs::path file = fs::absolute(beside / reference.text()).lexically_normal();
+    return Node::scalar(file.string(), reference.location(), true);
+}
+
+/// The same for every key `scene` below a node whose maps go by axis (`isAxisMap`), or below the
+/// selectors `where` and `at`.
+Node withSceneFiles(const Node& node, bool isAxisMap) {
+    if (node.isSequence()) {
+        Node::Sequence items;
+        for (const Node& item : node.items()) items.push_back(withSceneFiles(item, isAxisMap));
+        return Node::sequence(std::move(items), node.location());
+    }
+    if (!node.isMap()) return node;
+    Node result = node;
+    for (const auto& [key, value] : node.entries()) {
+        const bool isReference = isAxisMap && key == "scene" && !value.isMap();
+        const bool isSelector = key == "where" || key == "at";
+        result.set(
+            key,
+            isReference ? withSceneFile(value) : withSceneFiles(value, isAxisMap || isSelector),
+            node.keyLocation(key));
+    }
+    return result;
+}
+
+void resolveScenes(Node& document) {
+    if (Node* scene = document.find("scene")) *scene = withSceneFile(*scene);
+    if (Node* sweep = document.find("sweep")) *sweep = withSceneFiles(*sweep, true);
+    for (const char* key : {"layout", "claims"}) {
+        if (Node* section = document.find(key)) *section = withSceneFiles(*section, false);
+    }
+}
+
+Node relocated(const Node& node, const SourceLocation& where) {
+    if (node.isSequence()) {
+        Node::Sequence items;
+        for (const Node& item : node.items()) items.push_back(relocated(item, where));
+        return Node::sequence(std::move(items), where);
+    }
+    if (node.isMap()) {
+        Node map = Node::map({}, where);
+        for (const auto& [key, value] : node.entries())
+            map.set(key, relocated(value, where), where);
+        return map;
+    }
+    if (node.isNull()) return Node::null(where);
+    const bool isText = !node.tryDouble() && !node.tryBool();
+    return Node::scalar(node.text(), where, isText);
+}
+
+std::string parameterName(const std::string& key) {
+    constexpr std::string_view kPrefix = "params.";
+    return key.starts_with(kPrefix) ? key.substr(kPrefix.size()) : key;
+}
+
+/// `64,128` is a list; a list or {range: …} stands for itself.
+Node axisOf(const Override& sweep) {
+    if (!sweep.value.isScalar()) return sweep.value;
+    const SourceLocation& where = sweep.value.location();
+    return relocated(parseYaml("[" + sweep.value.text() + "]", where.file), where);
+}
+
+void applySweeps(const std::vector<Override>& sweeps, Node& document) {
+    for (const Override& given : sweeps) {
+        const std::string axis = parameterName(given.key);
+        Node values = axisOf(given);
+        if (axis == "scene") values = withSceneFile(values, fs::current_path());
+        if (!document.find("sweep")) document.set("sweep", Node::map({}, values.location()));
+        Node& sweep = *document.find("sweep");
+        if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
+        sweep.set(axis, std::move(values));
+    }
+}
+
+void requireNotSwept(const Override& given, const std::string& name, const Node& document) {
+    const Node* sweep = document.find("sweep");
+    if (!sweep) return;
+    for (const AxisPoint& point : expandSweep(*sweep)) {
+        for (const auto& [axis, value] : point) {
+            if (axis != name) continue;
+            throw Error(given.value.location(),
+                        "'" + name + "' is swept here; allowed: --sweep " + name + "=VALUES");
+        }
+    }
+}
+
+void applySets(const std::vector<Override>& sets, Node& document) {
+    for (const Override& given : sets) {
+        const std::string first = given.key.substr(0, given.key.find('.'));
+        const auto& sections = sectionKeys();
+        const bool isPath = std::find(sections.begin(), sections.end(), first) != sections.end();
+        const std::string path = isPath ? given.key : "params." + given.key;
+        requireNotSwept(given, parameterName(path), document);
+        const Node value =
+            path == "scene" ? withSceneFile(given.value, fs::current_path()) : given.value;
+        document.setPath(path, value);
+    }
+    // A key that is set to nothing goes.
+    document = merged(Node::map({}, document.location()), document);
+}
+
+}  // namespace
+
+Override parseOverride(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty()) {
+        throw UsageError("'" + text + "' on the command line; allowed: key=value");
+    }
+    const SourceLocation where{"command line, " + text, 0, 0};
+    const Node value = parseYaml(text.substr(equals + 1), where.file);
+    return {std::string(trimmed(text.substr(0, equals))), relocated(value, where)};
+}
+
+Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options,
+                          const fs::path& configsFolder) {
+    const std::string& profile = options.profile;
+    if (profile != "quick" && profile != "full" && profile != "paper") {
+        throw UsageError("profile '" + profile + "'; allowed: quick, full, paper");
+    }
+    auto [document, overlays] = Reader(configsFolder).read(file);
+    Node::Sequence declared;
+    for (const char* name : {"quick", "paper"}) {
+        const bool isDeclared = std::any_of(overlays.begin(), overlays.end(),
+                                            [&](const auto& one) { return one.first == name; });
+        if (isDeclared) declared.push_back(Node::scalar(name));
+    }
+    document.set("profiles", Node::sequence(std::move(declared)));
+
+    // The file as it stands must be right whatever is chosen: only there are all names known.
+    Node asItStands = document;
+    resolveScenes(asItStands);
+    Experiment experiment = readExperiment(asItStands, file, true);
+
+    bool isChanged = !options.sets.empty() || !options.sweeps.empty();
+    for (const auto& [name, overlay] : overlays) {
+        if (name != profile) continue;
+        document = merged(document, overlay);
+        isChanged = true;
+    }
+    if (!isChanged) return experiment;
+    applySweeps(options.sweeps, document);
+    applySets(options.sets, document);
+    resolveScenes(document);
+    return readExperiment(document, file, false);
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "runner/config/checks.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+/// The trimmed cells of one line.
+std::vector<std::string> cellsOf(const std::string& line) {
+    std::vector<std::string> cells = split(line, ',');
+    for (std::string& cell : cells) cell = std::string(trimmed(cell));
+    return cells;
+}
+
+template <class Range>
+bool contains(const Range& range, const std::string& name) {
+    return std::find(range.begin(), range.end(), name) != range.end();
+}
+
+void requireHeader(const std::vector<std::string>& header, const TableNames* names,
+                   const SourceLocation& where) {
+    std::set<std::string> seen;
+    for (const std::string& name : header) {
+        if (name.empty()) throw Error(where, "printed: a column has no name");
+        if (!seen.insert(name).second) {
+            throw Error(where, "printed: column '" + name + "' stands twice");
+        }
+        if (!names || !names->hasAllColumns) continue;
+        std::vector<std::string> known = names->rowAxes;
+        known.insert(known.end(), names->columns.begin(), names->columns.end());
+        if (contains(known, name)) continue;
+        const std::string near = suggestion(name, known);
+        throw Error(where, "printed: '" + name + "' is neither a row axis nor a column" +
+                               (near.empty() ? "; allowed: " + joined(known) : near));
+    }
+    if (!names) return;
+    for (const std::string& axis : names->rowAxes) {
+        if (!axis.empty() && !contains(header, axis)) {
+            throw Error(where, "printed: row axis '" + axis + "' has no column");
+        }
+    }
+}
+
+/// Whether two rows stand for the same place in the table.
+std::string keyOfRow(const std::vector<std::string>& row, const std::vector<std::string>& header,
+                     const TableNames& names) {
+    std::string key;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        if (contains(names.rowAxes, header[i])) key += row[i] + ",";
+    }
+    return key;
+}
+
+/// Labels are known by heart; values of a sweep may be printed without being measured.
+void requireLabels(const std::vector<std::string>& row, const std::vector<std::string>& header,
+                   const Layout& layout, const SourceLocation& where) {
+    for (const LayoutAxis& axis : layout.rows) {
+        const auto at = std::find(header.begin(), header.end(), axis.name);
+        if (axis.isSweepAxis() || at == header.end()) continue;
+        const std::string& value = row[static_cast<std::size_t>(at - header.begin())];
+        std::vector<std::string> labels;
+        for (const auto& label : axis.labels) labels.push_back(label.first);
+        if (contains(labels, value)) continue;
+        throw Error(where, fmt::format("printed: {} is '{}'; allowed: {}", axis.name, value,
+                                       joined(labels, " | ")));
+    }
+}
+
+}  // namespace
+
+Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names) {
+    requireKeys(node, "printed", std::vector<std::string>{"hardware", "remark", "values"});
+    Printed printed;
+    printed.location = node.location();
+    if (const Node* hardware = node.find("hardware")) printed.hardware = hardware->text();
+    if (const Node* remark = node.find("remark")) printed.remark = trimmed(remark->text());
+    const Node* values = node.find("values");
+    if (!values) return printed;
+    printed.location = values->location();
+    const std::vector<std::string> lines = split(values->text(), '\n');
+    std::set<std::string> keys;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string_view line = trimmed(lines[i]);
+        if (line.empty() || line.front() == '#') continue;
+        const SourceLocation where = values->lineLocation(i);
+        std::vector<std::string> row = cellsOf(lines[i]);
+        if (printed.header.empty()) {
+            requireHeader(row, names, where);
+            printed.header = std::move(row);
+            continue;
+        }
+        if (row.size() != printed.header.size()) {
+            throw Error(where, fmt::format("printed: {} cells in a row; the header has {}",
+                                           row.size(), printed.header.size()));
+        }
+        if (layout) requireLabels(row, printed.header, *layout, where);
+        if (names && !keys.insert(keyOfRow(row, printed.header, *names)).second) {
+            throw Error(where, "printed: the row '" + std::string(line) + "' stands twice");
+        }
+        printed.rows.push_back(std::move(row));
+    }
+    if (printed.rows.empty()) throw Error(values->location(), "printed: values has no rows");
+    return printed;
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,61 @@
+// The sections of a config, one reader each; private to this module.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/config/node.h"
+
+namespace gfxrepro::config {
+
+/// What the other sections may refer to.
+struct Vocabulary {
+    /// Every axis that a case has: swept ones, fixed parameters, `scene`; with its values in order.
+    std::map<std::string, Node::Sequence> axes;
+    /// The file as it stands: values and columns that it does not have are mistakes. Not so under
+    /// a profile or overrides, which make the sweep smaller.
+    bool isComplete = true;
+
+    std::vector<std::string> axisNames() const;
+};
+
+Layout readLayout(const Node& node, const Vocabulary& vocabulary);
+
+/// The names of the row axes and of the columns (several column axes are joined by "_"), against
+/// which printed values and claims are checked.
+struct TableNames {
+    std::vector<std::string> rowAxes;
+    std::map<std::string, std::vector<Node>> rowValues;  // of those row axes whose values are known
+    std::vector<std::string> columns;
+    bool hasAllColumns = true;  // false: further columns may exist
+};
+TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary);
+
+/// `layout` and `names` are null for a table that is only printed: then any header will do.
+Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names);
+
+std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted);
+
+/// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".
+void requireCellFormat(const Node& format);
+/// Throws Error unless it is one of median, mean, min, max, sum, count.
+void requireStatistic(const Node& name);
+
+/// `text` of one line that is not empty.
+const std::string& lineOf(const Node& node, std::string_view what);
+
+/// The keys of a config that a profile may change.
+const std::vector<std::string>& sectionKeys();
+/// table, figure, section, sweep_of.
+const std::vector<std::string>& identityKeys();
+
+/// `isComplete` as in Vocabulary.
+Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
+
+/// The `measure` and `output` sections; the declarations feed describeConfig.
+Measure readMeasure(class Params& params);
+std::pair<int, int> readOutput(class Params& params);
+
+}  // namespace gfxrepro::config

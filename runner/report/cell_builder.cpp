@@ -1,0 +1,283 @@
+#include "runner/report/cell_builder.h"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <set>
+
+#include "runner/core/text.h"
+#include "runner/report/sampling.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+constexpr std::string_view kDefaultFormat = "{median:.4g}";
+
+using Where = std::map<std::string, std::vector<std::string>>;
+
+void layOver(const config::Selection& part, config::Selection& selection, Where& where) {
+    if (part.metric) selection.metric = part.metric;
+    if (part.pass) selection.pass = part.pass;
+    if (part.format) selection.format = part.format;
+    if (part.scale) selection.scale = part.scale;
+    if (part.location.line > 0) selection.location = part.location;
+    for (const auto& [axis, value] : part.where) {
+        std::vector<std::string> allowed = {canonicalText(value)};
+        if (value.isSequence()) {
+            for (const config::Node& item : value.items()) allowed.push_back(canonicalText(item));
+        }
+        where[axis] = std::move(allowed);
+    }
+}
+
+/// Lays the parts of the labels of one dimension; a sweep axis asks for its own value.
+void layKeyOver(const std::vector<config::LayoutAxis>& axes, const Key& key,
+                config::Selection& selection, Where& where) {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (axes[i].isSweepAxis()) {
+            where[axes[i].name] = {key[i]};
+            continue;
+        }
+        for (const auto& [label, part] : axes[i].labels) {
+            if (label == key[i]) layOver(part, selection, where);
+        }
+    }
+}
+
+/// Whether a case lies where the query looks. What is not known of a planned case may match.
+bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
+             bool isUnknownMatching) {
+    for (const auto& [axis, allowed] : where) {
+        if (axis == "frame") continue;
+        const auto& value = values[cases.indexOf(axis)];
+        const bool isMatching =
+            value ? std::find(allowed.begin(), allowed.end(), *value) != allowed.end()
+                  : isUnknownMatching;
+        if (!isMatching) return false;
+    }
+    return true;
+}
+
+bool matchesFrame(const Where& where, int frame) {
+    const auto found = where.find("frame");
+    if (found == where.end()) return true;
+    const std::string text = std::to_string(frame);
+    return std::find(found->second.begin(), found->second.end(), text) != found->second.end();
+}
+
+bool isTiming(const std::string& metric) {
+    return metric.ends_with("_time_ms") || metric.ends_with("frame_rate");
+}
+
+/// What the records of a cell came to.
+struct Gathered {
+    Samples samples;
+    Status worst = Status::Ok;
+    std::string message;
+    std::set<std::string> units;
+    std::size_t caseCount = 0;
+    bool hasMatch = false;  // of a case, whether or not it has the metric
+
+    void note(Status status, const std::string& why) {
+        if (status > worst) {
+            worst = status;
+            message = why;
+        }
+    }
+};
+
+void takeRow(const Record& record, const CellQuery& query, int unit,
+             std::map<int, std::vector<double>>& process, Gathered& gathered) {
+    if (isTiming(query.metric) && record.lane == "quality") {
+        gathered.note(Status::Ambiguous,
+                      "measured in the quality lane, where cases run side by "
+                      "side; a time needs the timing lane");
+        return;
+    }
+    if (record.status != Status::Ok) {
+        gathered.note(record.status, record.message);
+        return;
+    }
+    if (std::isnan(record.value)) {
+        gathered.note(Status::Error, "case " + record.caseId + " recorded not-a-number");
+        return;
+    }
+    gathered.units.insert(record.unit);
+    process[unit].push_back(record.value * query.scale);
+}
+
+void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
+              int& unitCount, Gathered& gathered) {
+    for (const auto& [number, attempt] : run.processes) {
+        if (attempt.failure) {
+            gathered.note(attempt.failure->status, attempt.failure->message);
+            continue;
+        }
+        std::map<int, std::vector<double>> process;
+        const CaseRecords::Place first{query.metric, query.pass, INT_MIN, INT_MIN};
+        for (auto row = attempt.rows.lower_bound(first);
+             row != attempt.rows.end() && row->first.metric == query.metric &&
+             row->first.pass == query.pass;
+             ++row) {
+            if (!matchesFrame(query.where, row->first.frame)) continue;
+            const auto [unit, isNew] = unitOfFrame.try_emplace(row->first.frame, unitCount);
+            if (isNew) ++unitCount;
+            takeRow(*row->second, query, unit->second, process, gathered);
+        }
+        if (!process.empty()) gathered.samples.processes.push_back(std::move(process));
+    }
+}
+
+Gathered gather(const CellQuery& query, const LayoutCases& cases) {
+    Gathered gathered;
+    int unitCount = 0;
+    for (const CaseRecords& run : cases.run) {
+        if (!matches(run.axes, cases, query.where, false)) continue;
+        ++gathered.caseCount;
+        std::map<int, int> unitOfFrame;
+        takeCase(run, query, unitOfFrame, unitCount, gathered);
+    }
+    return gathered;
+}
+
+/// The passes for which the matching cases recorded the metric: for the message when the one that
+/// was asked for is not among them.
+std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
+    std::set<std::string> passes;
+    for (const CaseRecords& run : cases.run) {
+        if (!matches(run.axes, cases, query.where, false)) continue;
+        for (const auto& [number, attempt] : run.processes) {
+            for (const auto& [place, record] : attempt.rows) {
+                if (place.metric == query.metric) {
+                    passes.insert(place.pass.empty() ? "none" : std::string(place.pass));
+                }
+            }
+        }
+    }
+    return joined(std::vector<std::string>(passes.begin(), passes.end()));
+}
+
+std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
+    const std::string wanted =
+        "'" + query.metric + "'" + (query.pass.empty() ? "" : " of pass '" + query.pass + "'");
+    const std::string passes = passesWith(query, cases);
+    return "no " + wanted + " was recorded" +
+           (passes.empty() ? "" : "; it is there for pass: " + passes);
+}
+
+std::size_t plannedCount(const CellQuery& query, const LayoutCases& cases) {
+    std::set<std::string_view> identities;
+    for (const PlannedCase& planned : cases.planned) {
+        if (matches(planned.axes, cases, query.where, true)) identities.insert(planned.identity);
+    }
+    return identities.size();
+}
+
+/// Whether the plan knows all that the query asks, so that the number of cases can be counted on.
+bool isPlanComplete(const CellQuery& query, const LayoutCases& cases) {
+    for (const PlannedCase& planned : cases.planned) {
+        if (matches(planned.axes, cases, query.where, true) &&
+            !matches(planned.axes, cases, query.where, false)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void fillValues(const CellQuery& query, const Samples& samples, std::uint64_t seed, Cell& cell) {
+    std::vector<metrics::Statistic> statistics;
+    for (const auto& placeholder : query.format.placeholders()) {
+        statistics.push_back(placeholder.statistic);
+    }
+    std::vector<std::vector<double>> draws = drawSummaries(samples, statistics, seed);
+    std::vector<double> values, lows, highs;
+    for (std::size_t i = 0; i < statistics.size(); ++i) {
+        Measured measured;
+        measured.statistic = query.format.placeholders()[i].name;
+        measured.value = summarize(samples, statistics[i]);
+        measured.interval = {measured.value, measured.value};
+        if (!draws[i].empty()) measured.interval = metrics::centralInterval(draws[i]);
+        measured.draws = std::move(draws[i]);
+        values.push_back(measured.value);
+        lows.push_back(measured.interval.low);
+        highs.push_back(measured.interval.high);
+        cell.values.push_back(std::move(measured));
+    }
+    cell.measured = query.format.format(values);
+    if (!cell.values[0].draws.empty()) {
+        cell.low = query.format.format(lows);
+        cell.high = query.format.format(highs);
+    }
+}
+
+}  // namespace
+
+CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {
+    config::Selection selection;
+    Where where;
+    layOver(layout.cell, selection, where);
+    layKeyOver(layout.rows, row, selection, where);
+    layKeyOver(layout.columns, column, selection, where);
+    if (!selection.metric) {
+        throw Error(selection.location, "no metric is given for the cell of row '" +
+                                            joined(row, "_") + "', column '" + joined(column, "_") +
+                                            "'; add `metric:` to its column, its row or `cell`");
+    }
+    return {*selection.metric,
+            selection.pass.value_or(""),
+            CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
+            selection.scale.value_or(1.0),
+            selection.scale.has_value(),
+            std::move(where)};
+}
+
+BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
+    BuiltCell built;
+    Cell& cell = built.cell;
+    Gathered gathered = gather(query, cases);
+    const std::size_t planned = plannedCount(query, cases);
+    const bool hasSamples = !gathered.samples.processes.empty();
+    if (gathered.caseCount == 0) {
+        cell.isPlanned = planned > 0;
+        gathered.note(Status::Missing, "not run");
+    } else if (isPlanComplete(query, cases) && planned > gathered.caseCount) {
+        gathered.note(Status::Missing, std::to_string(planned - gathered.caseCount) + " of " +
+                                           std::to_string(planned) + " cases were not run");
+    }
+    if (!hasSamples && gathered.worst == Status::Ok) {
+        gathered.note(Status::Missing, whyNothing(query, cases));
+    }
+    cell.status = gathered.worst;
+    cell.message = gathered.message;
+    if (gathered.units.size() == 1 && !query.isScaled) built.unit = *gathered.units.begin();
+    if (hasSamples) fillValues(query, gathered.samples, seed, cell);
+    const std::string word(statusName(cell.status));
+    cell.isPartial = hasSamples && cell.status != Status::Ok;
+    if (cell.isPartial) cell.measured += " (partial: " + word + ")";
+    if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
+    return built;
+}
+
+SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases) {
+    config::Selection selection;
+    Where where;
+    layKeyOver(layout.rows, row, selection, where);
+    SceneSource source = SceneSource::Unknown;
+    for (const CaseRecords& run : cases.run) {
+        if (!matches(run.axes, cases, where, false)) continue;
+        for (const auto& [number, attempt] : run.processes) {
+            const CaseRecords::Place first{"scene_source", "", INT_MIN, INT_MIN};
+            const auto found = attempt.rows.lower_bound(first);
+            if (found == attempt.rows.end() || found->first.metric != "scene_source") continue;
+            const double value = found->second->value;
+            const SceneSource here = value == 1.0   ? SceneSource::StandIn
+                                     : value == 2.0 ? SceneSource::Generated
+                                                    : SceneSource::Real;
+            source = std::max(source, here);
+        }
+    }
+    return source;
+}
+
+}  // namespace gfxrepro::report

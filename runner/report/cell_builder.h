@@ -1,0 +1,39 @@
+// One cell: which records it takes, and what they give.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/report/cell_format.h"
+#include "runner/report/table.h"
+#include "runner/report/table_axes.h"
+
+namespace gfxrepro::report {
+
+/// What a cell shows, after the parts of its column, its row and `cell` are laid over one another.
+struct CellQuery {
+    std::string metric;
+    std::string pass;
+    CellFormat format;
+    double scale = 1.0;
+    bool isScaled = false;
+    std::map<std::string, std::vector<std::string>> where;  // axis → any of these values
+};
+
+/// Throws Error at the selection's place when no part gives a metric, or for a bad format.
+CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column);
+
+struct BuiltCell {
+    Cell cell;
+    std::string unit;  // of the records; empty if they disagree
+};
+BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed);
+
+/// Where the scenes come from of the cases that a row takes.
+SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases);
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,199 @@
+#include "runner/report/claim_quantity.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gfxrepro::report {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+double relativeDifference(double left, double right) {
+    if (left == right) return 0.0;
+    return (right - left) / std::max(std::abs(left), std::abs(right));
+}
+
+/// The rows in ascending x.
+std::vector<std::size_t> rowsByX(const GroupPoint& group) {
+    std::vector<std::size_t> order(group.x.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return group.x[a] < group.x[b]; });
+    return order;
+}
+
+bool arePositive(const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+}
+
+GroupPoint pointOf(const Group& group, const std::function<double(const Sampled&)>& pick) {
+    GroupPoint point;
+    for (const auto& operand : group.operands) {
+        std::vector<double>& values = point.operands.emplace_back();
+        for (const Sampled& sampled : operand) values.push_back(pick(sampled));
+    }
+    for (const Sampled& sampled : group.x) point.x.push_back(pick(sampled));
+    return point;
+}
+
+std::size_t drawCount(const Group& group) {
+    std::size_t count = 0;
+    for (const auto& operand : group.operands) {
+        for (const Sampled& sampled : operand) count = std::max(count, sampled.draws.size());
+    }
+    for (const Sampled& sampled : group.x) count = std::max(count, sampled.draws.size());
+    return count;
+}
+
+Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement) {
+    const bool isAboveLow = requirement.isLowExcluded ? interval.low > requirement.low
+                                                      : interval.low >= requirement.low;
+    const bool isBelowLow = requirement.isLowExcluded ? interval.high <= requirement.low
+                                                      : interval.high < requirement.low;
+    // A crossing that is not there is infinite: outside of any range, an open one too.
+    const bool isAbsent = std::isinf(interval.low) && interval.low == interval.high;
+    if (isBelowLow || interval.low > requirement.high || isAbsent) return Verdict::Fails;
+    if (isAboveLow && interval.high <= requirement.high && std::isfinite(interval.low) &&
+        std::isfinite(interval.high)) {
+        return Verdict::Holds;
+    }
+    return Verdict::Ambiguous;
+}
+
+}  // namespace
+
+double smallestGap(const GroupPoint& group) {
+    double smallest = kInfinity;
+    for (std::size_t i = 1; i < group.operands.size(); ++i) {
+        for (std::size_t row = 0; row < group.operands[i].size(); ++row) {
+            smallest = std::min(
+                smallest, relativeDifference(group.operands[i - 1][row], group.operands[i][row]));
+        }
+    }
+    return smallest;
+}
+
+double firstRatio(const GroupPoint& group) {
+    return group.operands[0][0] / group.operands[1][0];
+}
+
+double exponent(const GroupPoint& group) {
+    const std::vector<double>& y = group.operands[0];
+    if (!arePositive(group.x) || !arePositive(y)) return kNan;
+    const auto count = static_cast<double>(y.size());
+    double meanX = 0.0, meanY = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        meanX += std::log(group.x[i]) / count;
+        meanY += std::log(y[i]) / count;
+    }
+    double covariance = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const double dx = std::log(group.x[i]) - meanX;
+        covariance += dx * (std::log(y[i]) - meanY);
+        variance += dx * dx;
+    }
+    return variance > 0.0 ? covariance / variance : kNan;
+}
+
+double smallestStep(const GroupPoint& group, int direction) {
+    const std::vector<std::size_t> rows = rowsByX(group);
+    double smallest = kInfinity;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const double step =
+            relativeDifference(group.operands[0][rows[i - 1]], group.operands[0][rows[i]]);
+        smallest = std::min(smallest, direction * step);
+    }
+    return smallest;
+}
+
+double spread(const GroupPoint& group) {
+    const std::vector<double>& values = group.operands[0];
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (*low == *high) return 0.0;
+    return (*high - *low) / std::abs(metrics::summarize(values, metrics::Statistic::Median));
+}
+
+double crossing(const GroupPoint& group) {
+    const std::vector<double>& a = group.operands[0];
+    const std::vector<double>& b = group.operands[1];
+    if (!arePositive(group.x) || !arePositive(a) || !arePositive(b)) return kNan;
+    const std::vector<std::size_t> rows = rowsByX(group);
+    const auto difference = [&](std::size_t i) { return std::log(a[rows[i]] / b[rows[i]]); };
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const double before = difference(i - 1);
+        const double after = difference(i);
+        if (before == 0.0) return group.x[rows[i - 1]];
+        if (after != 0.0 && (before < 0.0) == (after < 0.0)) continue;
+        return std::exp(std::lerp(std::log(group.x[rows[i - 1]]), std::log(group.x[rows[i]]),
+                                  before / (before - after)));
+    }
+    const bool isNearer = std::abs(difference(rows.size() - 1)) < std::abs(difference(0));
+    return isNearer ? kInfinity : -kInfinity;
+}
+
+double largestDifference(const GroupPoint& group) {
+    // A scale such as 1/1024² may round the last bit of a number that was measured exactly.
+    constexpr double kRounding = 1e-12;
+    double largest = 0.0;
+    for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
+        const double expected = group.operands[1][row];
+        const double difference = std::abs(group.operands[0][row] - expected);
+        if (difference > kRounding * std::abs(expected)) largest = std::max(largest, difference);
+    }
+    return largest;
+}
+
+double largestDeviation(const GroupPoint& group) {
+    double largest = 0.0;
+    for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
+        const double expected = group.operands[1][row];
+        const double difference = std::abs(group.operands[0][row] - expected);
+        if (difference > 0.0) largest = std::max(largest, difference / std::abs(expected));
+    }
+    return largest;
+}
+
+Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement) {
+    Judgement judgement;
+    const double point = quantity(pointOf(group, [](const Sampled& s) { return s.point; }));
+    if (std::isnan(point)) {
+        judgement.measured = "not a number";
+        return judgement;
+    }
+    std::vector<double> draws;
+    for (std::size_t draw = 0; draw < drawCount(group); ++draw) {
+        const double value = quantity(pointOf(group, [&](const Sampled& s) { return s.at(draw); }));
+        if (!std::isnan(value)) draws.push_back(value);
+    }
+    judgement.isSingleSample = draws.empty();
+    metrics::Interval interval{point, point};
+    if (!draws.empty()) interval = metrics::centralInterval(draws);
+    judgement.verdict = verdictOf(interval, requirement);
+    judgement.measured = quantityText(point, requirement);
+    if (!draws.empty()) {
+        judgement.measured += " [" + quantityText(interval.low, requirement) + ", " +
+                              quantityText(interval.high, requirement) + "]";
+    }
+    judgement.margin = std::min(point - requirement.low, requirement.high - point);
+    return judgement;
+}
+
+std::string quantityText(double value, const Requirement& requirement) {
+    if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
+    return requirement.isPercent ? fmt::format("{:.4g} %", value * 100.0)
+                                 : fmt::format("{:.4g}", value);
+}
+
+std::string rangeText(const Requirement& requirement) {
+    const std::string low = quantityText(requirement.low, requirement);
+    const std::string high = quantityText(requirement.high, requirement);
+    if (std::isinf(requirement.high)) return (requirement.isLowExcluded ? "> " : "≥ ") + low;
+    if (std::isinf(requirement.low)) return "≤ " + high;
+    return "in [" + low + ", " + high + "]";
+}
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,70 @@
+// Each type of claim as one number with a required range.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "runner/metrics/statistics.h"
+#include "runner/report/claims.h"
+#include "runner/report/operand.h"
+
+namespace gfxrepro::report {
+
+/// What a claim reads of a group of rows: each operand on each row, the abscissa, what is expected.
+template <class Value>
+struct GroupOf {
+    std::vector<std::vector<Value>> operands;  // [operand][row]
+    std::vector<Value> x;                      // [row]; empty without an abscissa
+};
+using Group = GroupOf<Sampled>;
+using GroupPoint = GroupOf<double>;
+
+/// The range that the quantity must lie in.
+struct Requirement {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool isLowExcluded = false;
+    std::string text;        // "exponent in [0.3, 1.2]"
+    bool isPercent = false;  // shown ×100 with a percent sign
+};
+
+using Quantity = std::function<double(const GroupPoint&)>;
+
+/// order a < b < …: the smallest (right − left) / max(|right|, |left|) over neighbours and rows.
+double smallestGap(const GroupPoint& group);
+/// ratio a / b of the only row.
+double firstRatio(const GroupPoint& group);
+/// trend: least-squares slope of log(operand) over log(x). Not-a-number unless all are positive.
+double exponent(const GroupPoint& group);
+/// trend: with the rows sorted by x, the smallest step (towards `direction`), relative to the
+/// larger of its ends.
+double smallestStep(const GroupPoint& group, int direction);
+/// independent: (max − min) / |median| over the rows.
+double spread(const GroupPoint& group);
+/// crossover: x where a − b changes its sign the first time, by interpolation of log(a/b) over
+/// log(x). Without a change, +∞ where the two come nearer with x, else −∞. Not-a-number unless all
+/// are positive.
+double crossing(const GroupPoint& group);
+
+/// exact: the largest |measured − expected| over the rows; operands are these two.
+double largestDifference(const GroupPoint& group);
+/// tolerance: the largest |measured − expected| / |expected|.
+double largestDeviation(const GroupPoint& group);
+
+/// The verdict on one quantity of one group.
+struct Judgement {
+    Verdict verdict = Verdict::Unmeasured;
+    std::string measured;
+    double margin = 0.0;  // to the nearest bound, negative outside
+    bool isSingleSample = false;
+};
+Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement);
+
+/// "in [0.3, 1.2]", "≥ 10", "≤ 25 %".
+std::string rangeText(const Requirement& requirement);
+/// "0.4123", "41.23 %".
+std::string quantityText(double value, const Requirement& requirement);
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,59 @@
+// Reads the values that a claim is about off a table.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/report/claim_parts.h"
+#include "runner/report/operand.h"
+#include "runner/report/table.h"
+
+namespace gfxrepro::report {
+
+using Rows = std::vector<std::size_t>;
+
+/// A claim made ready to be read off a table.
+class ClaimReader {
+  public:
+    /// Throws Error with the claim's place for operands and axes that the table has not. The claim
+    /// and the table must outlive the reader.
+    ClaimReader(const config::ClaimSpec& claim, const Table& table);
+
+    /// The rows that `at` leaves, parted into the groups that the claim is judged in.
+    std::vector<Rows> groups();
+    /// What `part` reads of a group, or why it cannot be read. Rows that the sweep has not, or
+    /// whose printed number is lost, are passed over.
+    struct Reading {
+        Group group;
+        Rows rows;  // those that were read
+        std::string problem;
+    };
+    Reading read(const ClaimPart& part, const Rows& rows);
+
+    /// The labels that the rows share: "scene=models/duck".
+    std::string groupName(const Rows& rows) const;
+
+  private:
+    [[noreturn]] void fail(const std::string& message) const {
+        throw Error(claim_.location, "claim '" + claim_.id + "': " + message);
+    }
+    Rows rows() const;
+    std::size_t rowAxis(const std::string& name, const char* key) const;
+    std::vector<bool> axesAlongX();
+    std::optional<double> expected(std::size_t operand, std::size_t row);
+    /// Empty if the operand can be read; else why not.
+    std::string problemOf(const Operand& operand, std::size_t row) const;
+    bool isPlanned(const ClaimPart& part, std::size_t row) const;
+    Sampled abscissa(std::size_t row);
+
+    const config::ClaimSpec& claim_;
+    const Table& table_;
+    std::string statistic_;
+    std::vector<Operand> operands_;
+    std::optional<std::size_t> overAxis_;
+    std::vector<Operand> overColumn_;  // one, or none
+};
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,127 @@
+#include "runner/report/markup.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace gfxrepro::report {
+
+std::string escapeXml(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+                out += "&#39;";
+                break;
+            case '\n':
+                out += "&#10;";
+                break;
+            case '\t':
+                out += "&#9;";
+                break;
+            default:
+                if (static_cast<unsigned char>(c) < 0x20) {
+                    out += "\xEF\xBF\xBD";
+                } else {
+                    out += c;
+                }
+        }
+    }
+    return out;
+}
+
+std::string escapeLatex(std::string_view text) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 26> kCommands = {{
+        {"\\", "\\textbackslash{}"},
+        {"{", "\\{"},
+        {"}", "\\}"},
+        {"$", "\\$"},
+        {"&", "\\&"},
+        {"#", "\\#"},
+        {"%", "\\%"},
+        {"_", "\\_"},
+        {"^", "\\textasciicircum{}"},
+        {"~", "\\textasciitilde{}"},
+        {"<", "\\textless{}"},
+        {">", "\\textgreater{}"},
+        {"|", "\\textbar{}"},
+        {"\"", "\\textquotedbl{}"},
+        {"\n", " "},
+        {"\r", " "},
+        {"\t", " "},
+        {"→", "$\\rightarrow$"},
+        {"×", "$\\times$"},
+        {"²", "$^2$"},
+        {"³", "$^3$"},
+        {"∞", "$\\infty$"},
+        {"≤", "$\\leq$"},
+        {"≥", "$\\geq$"},
+        {"−", "$-$"},
+        {"·", "$\\cdot$"},
+    }};
+    std::string out;
+    while (!text.empty()) {
+        std::size_t length = 1;
+        std::string_view replacement = text.substr(0, 1);
+        for (const auto& [symbol, command] : kCommands) {
+            if (!text.starts_with(symbol)) continue;
+            length = symbol.size();
+            replacement = command;
+        }
+        out += replacement;
+        text.remove_prefix(length);
+    }
+    return out;
+}
+
+std::string escapeMarkdown(std::string_view text) {
+    constexpr std::string_view kMarkup = "\\`*_{}[]<>#|~";
+    std::string out;
+    for (const char c : text) {
+        if (c == '\n' || c == '\r' || c == '\t') {
+            out += ' ';
+            continue;
+        }
+        if (c == '&') {
+            out += "&amp;";
+            continue;
+        }
+        if (kMarkup.find(c) != std::string_view::npos) out += '\\';
+        out += c;
+    }
+    return out;
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    out.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            const std::size_t at = i + j;
+            group = group << 8 | (at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U);
+        }
+        for (std::size_t j = 0; j < 4; ++j) {
+            const bool isPadding = i + j > bytes.size();
+            out += isPadding ? '=' : kDigits[group >> (18 - 6 * j) & 63U];
+        }
+    }
+    return out;
+}
+
+}  // namespace gfxrepro::report

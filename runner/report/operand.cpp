@@ -1,0 +1,116 @@
+#include "runner/report/operand.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+bool isNameStart(char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+}
+bool isNamePart(char c) {
+    return isNameStart(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
+}
+
+/// The column whose label stands at the head of `text`, the longest of several.
+std::optional<std::size_t> columnAt(std::string_view text, const Table& table) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const std::string& label = table.columns[i].label;
+        const bool isWhole = text.starts_with(label) &&
+                             (text.size() == label.size() || !isNamePart(text[label.size()]));
+        const bool isNumber = parseDouble(label).has_value();
+        if (!isWhole || label.empty() || isNumber) continue;
+        if (!best || label.size() > table.columns[*best].label.size()) best = i;
+    }
+    return best;
+}
+
+}  // namespace
+
+Operand::Operand(const std::string& text, const Table& table, const SourceLocation& where,
+                 const std::string& owner)
+    : text_(trimmed(text)) {
+    const std::string expression = translated(table, where, owner);
+    slots_.resize(columns_.size());
+    try {
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            parser_.DefineVar(fmt::format("v{}", i), &slots_[i]);
+        }
+        parser_.SetExpr(expression);
+        parser_.Eval();
+    } catch (const mu::Parser::exception_type& error) {
+        throw Error(where, owner + ": '" + text_ + "' is no expression: " + error.GetMsg());
+    }
+}
+
+std::string Operand::variableOf(std::size_t column) {
+    const auto found = std::find(columns_.begin(), columns_.end(), column);
+    const auto index = found - columns_.begin();
+    if (found == columns_.end()) columns_.push_back(column);
+    return fmt::format("v{}", index);
+}
+
+std::string Operand::translated(const Table& table, const SourceLocation& where,
+                                const std::string& owner) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (table.columns[i].label == text_) return variableOf(i);
+    }
+    std::string expression;
+    for (std::size_t i = 0; i < text_.size();) {
+        const std::string_view rest = std::string_view(text_).substr(i);
+        if (const auto column = columnAt(rest, table)) {
+            expression += variableOf(*column);
+            i += table.columns[*column].label.size();
+            continue;
+        }
+        std::size_t length = 1;
+        if (isNamePart(text_[i])) {
+            while (i + length < text_.size() && isNamePart(text_[i + length])) ++length;
+        }
+        const std::string word(rest.substr(0, length));
+        const bool isCall = trimmed(rest.substr(length)).starts_with('(');
+        if (isNameStart(word[0]) && !isCall) {
+            std::vector<std::string> labels;
+            for (const TableColumn& column : table.columns) labels.push_back(column.label);
+            throw Error(where, owner + ": '" + word + "' is no column" + suggestion(word, labels) +
+                                   " (columns: " + joined(labels) + ")");
+        }
+        expression += word;
+        i += length;
+    }
+    return expression;
+}
+
+double Operand::evaluate(std::span<const double> values) {
+    std::copy(values.begin(), values.end(), slots_.begin());
+    return parser_.Eval();
+}
+
+Sampled Operand::evaluate(const TableRow& row, const std::string& statistic) {
+    std::vector<const Measured*> cells;
+    std::vector<double> values;
+    std::size_t drawCount = 0;
+    for (const std::size_t column : columns_) {
+        cells.push_back(row.cells[column].find(statistic));
+        values.push_back(cells.back()->value);
+        drawCount = std::max(drawCount, cells.back()->draws.size());
+    }
+    Sampled result;
+    result.point = evaluate(values);
+    for (std::size_t draw = 0; draw < drawCount; ++draw) {
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (!cells[i]->draws.empty()) values[i] = cells[i]->draws[draw];
+        }
+        result.draws.push_back(evaluate(values));
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,53 @@
+// The arithmetic of claims: expressions over the columns of a table ("rasterization_ms + draw_ms").
+#pragma once
+
+#include <muParser.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/core/error.h"
+#include "runner/report/table.h"
+
+namespace gfxrepro::report {
+
+/// A value and its bootstrap draws (none: it is taken as certain).
+struct Sampled {
+    double point = 0.0;
+    std::vector<double> draws;
+
+    double at(std::size_t draw) const { return draws.empty() ? point : draws[draw]; }
+};
+
+class Operand {
+  public:
+    /// Columns are written by their labels, whatever characters these have; a label that is a
+    /// number means a column only where it is the whole expression. Throws Error at `where`, its
+    /// message begun with `owner`, for a name that is no column and for bad syntax.
+    Operand(const std::string& text, const Table& table, const SourceLocation& where,
+            const std::string& owner);
+    Operand(Operand&&) = default;
+    Operand& operator=(Operand&&) = delete;
+
+    const std::string& text() const { return text_; }
+    /// The table's columns that are read.
+    const std::vector<std::size_t>& columns() const { return columns_; }
+    /// `values` lies beside columns().
+    double evaluate(std::span<const double> values);
+    /// On the cells of a row, all of which must have the statistic.
+    Sampled evaluate(const TableRow& row, const std::string& statistic);
+
+  private:
+    std::string translated(const Table& table, const SourceLocation& where,
+                           const std::string& owner);
+    std::string variableOf(std::size_t column);
+
+    std::string text_;
+    std::vector<std::size_t> columns_;
+    std::vector<double> slots_;  // the parser points at them
+    mu::Parser parser_;
+};
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,10 @@
+// Writes `brightness` where the mesh covers the pixel's centre.
+#version 450 core
+
+layout(location = 0) out float value;
+
+uniform float brightness;
+
+void main() {
+    value = brightness;
+}

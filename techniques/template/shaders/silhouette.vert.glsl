@@ -1,0 +1,10 @@
+// Takes the mesh to clip space. POSITION is the attribute location that gpu_scene uses.
+#version 450 core
+
+layout(location = POSITION) in vec3 positionWorld;
+
+uniform mat4 clipFromWorld;
+
+void main() {
+    gl_Position = clipFromWorld * vec4(positionWorld, 1.0);
+}

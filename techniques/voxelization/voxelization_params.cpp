@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "techniques/voxelization/voxelization.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+constexpr config::Choice<Method> kMethods[] = {
+    {Method::Worksheet, "worksheet", "rasterization, texelization and synthesis of worksheets"},
+    {Method::Direct, "direct", "one pass with image atomics into the grid"},
+    {Method::Slices, "slices", "the mesh is drawn once a slice (section 2.5.3)"},
+    {Method::DepthOnly, "depth_only", "no grid: a depth-only draw, the yardstick of speed"},
+};
+constexpr config::Choice<Rule> kRules[] = {
+    {Rule::Rasterized, "rasterized", "pixels that the hardware samples, as the thesis"},
+    {Rule::Thin, "thin", "6-separating: no path over faces leaks through"},
+    {Rule::Conservative, "conservative", "every voxel whose closed cube meets a triangle"},
+};
+constexpr config::Choice<Fill> kFills[] = {
+    {Fill::Surface, "surface", "voxels of the surface"},
+    {Fill::Solid, "solid", "voxels whose centre lies inside, by scan-line parity on three axes"},
+};
+constexpr config::Choice<VoxelValue> kValues[] = {
+    {VoxelValue::Occupancy, "occupancy", "full or empty"},
+    {VoxelValue::Normal, "normal", "octahedral normal"},
+    {VoxelValue::Color, "color", "the vertices' or the material's colour"},
+};
+constexpr config::Choice<Split> kSplits[] = {
+    {Split::Once, "once", "a static model: split at set-up"},
+    {Split::EveryFrame, "every_frame", "a deforming model: split and uploaded every frame"},
+};
+constexpr config::Choice<OpenMesh> kOpenMeshes[] = {
+    {OpenMesh::Refuse, "refuse", "an error with the number of ambiguous scan lines"},
+    {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
+};
+
+/// An integer that is one of `allowed`.
+template <std::size_t N>
+int getOneOf(config::Params& params, std::string_view name, int fallback,
+             const std::array<int, N>& allowed, const config::ParamSpec& spec) {
+    const int value = params.getInt(name, fallback, spec);
+    std::string list;
+    for (int candidate : allowed) {
+        if (candidate == value) return value;
+        list += fmt::format("{}{}", list.empty() ? "" : ", ", candidate);
+    }
+    throw Error(params.locationOf(name),
+                fmt::format("{}: {} is not allowed; allowed: {}", name, value, list));
+}
+
+std::optional<scene::Box> readBox(config::Params& params) {
+    const auto low = params.getOptionalVector(
+        "box_min", 3, {"lowest corner of the grid; with box_max", "scene units"});
+    const auto high = params.getOptionalVector(
+        "box_max", 3, {"highest corner of the grid, which must be cubic", "scene units"});
+    if (!low && !high) return std::nullopt;
+    if (!low || !high) {
+        throw Error(params.locationOf(low ? "box_min" : "box_max"),
+                    "box_min and box_max must be given together");
+    }
+    const auto vector = [](const std::vector<double>& v) { return glm::dvec3(v[0], v[1], v[2]); };
+    const glm::dvec3 size = vector(*high) - vector(*low);
+    const double longest = std::max({size.x, size.y, size.z});
+    const double shortest = std::min({size.x, size.y, size.z});
+    // A millionth: what decimal fractions lose as floats.
+    if (!(shortest > 0.0) || longest - shortest > 1e-6 * longest) {
+        throw Error(params.locationOf("box_max"),
+                    fmt::format("the box must be cubic and not empty; it is {:g} × {:g} × {:g}",
+                                size.x, size.y, size.z));
+    }
+    const glm::vec3 minimum(vector(*low));
+    return scene::Box{minimum, minimum + static_cast<float>(longest)};
+}
+
+/// Solids are decided by crossings of scan lines, in the worksheets, and say occupancy only.
+void checkSolid(const config::Params& params, const MeshVoxelizerSettings& settings) {
+    if (settings.grid.fill != Fill::Solid) return;
+    if (params.isGiven("rule") && settings.rule != Rule::Thin) {
+        throw Error(params.locationOf("rule"),
+                    "'fill: solid' decides by crossings of scan lines; leave 'rule' out or give "
+                    "'thin'");
+    }
+    if (settings.method != Method::Worksheet) {
+        throw Error(params.locationOf("method"), "'fill: solid' needs 'method: worksheet'");
+    }
+    if (settings.grid.value != VoxelValue::Occupancy) {
+        throw Error(params.locationOf("value"), "'fill: solid' needs 'value: occupancy'");
+    }
+}
+
+MeshVoxelizerSettings readVoxelizer(config::Params& params) {
+    MeshVoxelizerSettings settings;
+    const int resolution =
+        getOneOf(params, "resolution", 256, std::array{32, 64, 128, 256, 512, 1024},
+                 {"voxels along each axis, a power of two", "voxels", 32, 1024});
+    const int voxelBits = getOneOf(params, "voxel_bits", 1, std::array{1, 8, 16, 32},
+                                   {"bits a voxel: 1, 8, 16 or 32", "bits", 1, 32});
+    settings.grid.layout = WorksheetLayout(resolution, voxelBits);
+    settings.grid.value = params.getEnum("value", VoxelValue::Occupancy, kValues,
+                                         {"what a voxel says; more than occupancy needs 8 bits"});
+    settings.grid.fill = params.getEnum("fill", Fill::Surface, kFills, {"which voxels are full"});
+    settings.method = params.getEnum("method", Method::Worksheet, kMethods, {"what is measured"});
+    settings.rule = params.getEnum("rule", Rule::Rasterized, kRules,
+                                   {"which voxels a triangle fills (surface)"});
+    settings.split =
+        params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
+    settings.openMesh = params.getEnum("open_mesh", OpenMesh::Report, kOpenMeshes,
+                                       {"solids of meshes that are not closed"});
+    if (settings.grid.value != VoxelValue::Occupancy && voxelBits == 1) {
+        throw Error(params.locationOf("value"),
+                    "a voxel of 1 bit says occupancy only; allowed with 'value: normal' and "
+                    "'value: color': voxel_bits 8, 16 or 32");
+    }
+    const bool isRasterizedOnly =
+        settings.method == Method::Slices || settings.method == Method::DepthOnly;
+    if (isRasterizedOnly && settings.rule != Rule::Rasterized) {
+        throw Error(params.locationOf("rule"),
+                    "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
+    }
+    checkSolid(params, settings);
+    return settings;
+}
+
+}  // namespace
+
+VoxelizationParams::VoxelizationParams(config::Params& params)
+    : voxelizer(readVoxelizer(params)),
+      paddingVoxels(params.getInt(
+          "padding", 1, {"free voxels around the mesh where no box is given", "voxels", 0, 8})),
+      box(readBox(params)),
+      readsBack(params.getBool("read_back", false,
+                               {"copy the worksheet to the CPU each frame, timed as read_back"})),
+      comparesWithReference(params.getBool("compare", false,
+                                           {"count what the rule misses, against the CPU "
+                                            "references of thin and conservative"})),
+      exportsBinvox(params.getBool("export_binvox", false, {"write grid.binvox"})),
+      showsSlices(params.getBool("show_slices", false, {"save the three middle slices"})) {}
+
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,641 @@
+#include "runner/config/experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/support.h"
+
+namespace gfxrepro::config {
+namespace {
+
+using test::errorText;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kTiming =
+    "measure: {lane: timing, warmup: 3, repeats: 10, processes: 3}\n"
+    "profiles: {quick: {measure: {repeats: 2, processes: 1}}}\n";
+
+constexpr const char* kVoxelization = R"(table: zju2005/2.1
+title: Voxelization time by model at 256³
+extends: [presets/timing.yaml]
+technique: voxelization
+params: {resolution: 256, voxel: byte, method: worksheet}
+sweep:
+  scene: [models/duck, models/hugo, models/bunny, models/dragon, models/buddha, models/blade]
+layout:
+  rows: scene
+  columns:
+    triangles: triangles
+    vertices: {metric: vertices}
+    rasterization_ms: {metric: gpu_time_ms, pass: rasterization}
+    texelization_ms: {metric: gpu_time_ms, pass: texelization}
+    synthesis_ms: {metric: gpu_time_ms, pass: synthesis}
+    preprocess_ms: {metric: cpu_time_ms, pass: preprocess, scale: 1e-3, format: "{median:.1f}"}
+printed:
+  hardware: Radeon 9800 Pro, Pentium 4 2.4 GHz
+  values: |
+    scene,triangles,vertices,rasterization_ms,texelization_ms,synthesis_ms,preprocess_ms
+    models/duck, 1254, 947, 9.0, 8.0, 10, 0.8
+    # Hugo's time is lost
+    models/hugo, 16928, 8634, , 8.3, 10, 7.0
+claims:
+  V1:
+    says: rasterization grows slower than the number of triangles
+    trend: rasterization_ms
+    over: triangles
+    exponent: [0.3, 1.2]
+  V1b:
+    says: the image-space steps do not depend on the model
+    independent: [texelization_ms, synthesis_ms]
+    of: triangles
+    within: 25%
+  V7:
+    says: real time even for the largest model
+    bound: rasterization_ms + max(texelization_ms, synthesis_ms)
+    at: {scene: models/blade}
+    below: 16.6
+    device: gpu
+assumptions:
+  voxel_padding: {value: 1, range: [0, 2], unit: voxels, why: the thesis does not say how the box is fitted}
+)";
+
+constexpr const char* kSoftShadows = R"(table: xie2017/10
+title: Soft-shadow error against light size
+technique: soft_shadows
+params: {reference_size: 1024, light_samples: [16, 16]}
+sweep:
+  scene: [bird_nest, grass, city, tree]
+  light_ratio: [0.25, 0.5, 1, 2, 4]   # light diagonal : scene diagonal
+  method: [non_redundant, conventional, depth_peeling]
+profiles:
+  quick:
+    params: {reference_size: 256, light_samples: [8, 8]}
+    output: {width: 128, height: 96}
+    sweep: {light_ratio: null, method: [non_redundant, depth_peeling]}
+layout:
+  axes: {error: {intensity: intensity_error, visibility: {metric: visibility_error}}}
+  rows: [scene, error, light_ratio]
+  columns: method
+  cell: "{mean:.2f}/{max:.0f}"
+printed:
+  remark: the non-redundant cell of ratio 2 is lost
+  values: |
+    scene,error,light_ratio,non_redundant,conventional,depth_peeling
+    bird_nest,intensity,0.25,3.22/133,6.42/141,2.90/108
+    bird_nest,visibility,0.25,5.94/143,7.13/141,6.17/117
+claims:
+  R3a:
+    says: the non-redundant images beat depth peeling on the city
+    order: non_redundant < depth_peeling
+    statistic: mean
+    at: {scene: city, light_ratio: [0.5, 1, 2, 4]}
+  R3b: {says: by far, ratio: depth_peeling / non_redundant, at: {scene: city, light_ratio: 1.0}, at_least: 3}
+)";
+
+constexpr const char* kTerrain = R"(table: zhang2012/1
+title: Frame rate and triangles against ΔS
+extends: presets/timing.yaml
+technique: terrain_tessellation
+scene: terrain/puget_sound
+params: {method: adaptive, block: 32, tile_patches: 8, tau: 4}
+output: {width: 1280, height: 800}
+sweep:
+  delta_s: {range: [1, 10]}
+layout:
+  rows: delta_s
+  columns: {fps: frame_rate, triangles: primitives}
+printed:
+  hardware: GeForce GTX 460
+  values: |
+    delta_s,fps,triangles
+    1,68.63,7213870
+    2,147.57,2005672
+claims:
+  T1: {says: fewer triangles, trend: triangles, over: delta_s, exponent: [-2.2, -1.5], direction: decreasing, strictly: true}
+  T3: {says: real time, bound: fps, at: {delta_s: 1}, above: 60, device: gpu}
+  T4: {says: as printed, tolerance: triangles, within: 0.05}
+  T5: {says: as printed, exact: triangles, equals: printed, profile: paper}
+  T6: {says: cross, crossover: [fps, triangles / 1000], over: delta_s, between: [2, 4]}
+)";
+
+class ExperimentTest : public testing::Test {
+  protected:
+    void SetUp() override { folder.write("presets/timing.yaml", kTiming); }
+
+    Experiment load(const std::string& text, const ExperimentOptions& options = {}) const {
+        return loadExperiment(folder.write("zju/a.yaml", text), options, folder.path());
+    }
+    std::string loadError(const std::string& text, const ExperimentOptions& options = {}) const {
+        return errorText([&] { load(text, options); }, folder.path());
+    }
+    /// Of a small file that is right but for `more`.
+    std::string errorWith(const std::string& more) const {
+        return loadError("table: p/1\ntitle: t\ntechnique: x\n" + more);
+    }
+    /// Of a file with rows scene (a, b), columns a and b, and these claims.
+    std::string claimError(const std::string& claim) const {
+        return errorWith(
+            "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {aa: m, bb: m}}\n"
+            "claims:\n  C: " +
+            claim);
+    }
+
+    test::TemporaryFolder folder;
+};
+
+TEST_F(ExperimentTest, VoxelizationTable) {
+    const Experiment table = load(kVoxelization);
+    EXPECT_EQ(table.id, "zju2005/2.1");
+    EXPECT_EQ(table.slug(), "zju2005-2.1");
+    EXPECT_EQ(table.label(), "Table 2.1");
+    EXPECT_EQ(table.title, "Voxelization time by model at 256³");
+    EXPECT_EQ(table.technique, "voxelization");
+    EXPECT_EQ(table.measure.lane, Measure::Lane::Timing);
+    EXPECT_EQ(table.measure.repeats, 10);
+    EXPECT_EQ(table.measure.timeLimitS, 120.0);
+    EXPECT_THAT(table.profiles, ElementsAre("quick"));
+    const auto cases = expandCases(table);
+    ASSERT_EQ(cases.size(), 6U);
+    EXPECT_EQ(cases[2].scene.text(), "models/bunny");
+    EXPECT_EQ(cases[2].params.toFlowText(), "{resolution: 256, voxel: byte, method: worksheet}");
+    EXPECT_EQ(cases[2].outputWidthPx, 512);
+
+    ASSERT_EQ(table.layout.rows.size(), 1U);
+    EXPECT_TRUE(table.layout.rows[0].isSweepAxis());
+    ASSERT_EQ(table.layout.columns.size(), 1U);
+    EXPECT_EQ(table.layout.columns[0].name, "");
+    const auto& columns = table.layout.columns[0].labels;
+    ASSERT_EQ(columns.size(), 6U);
+    EXPECT_EQ(columns[0].second.metric, "triangles");
+    EXPECT_EQ(columns[3].second.pass, "texelization");
+    EXPECT_EQ(columns[5].second.scale, 1e-3);
+    EXPECT_EQ(table.layout.cell.format, "{median:.4g}");
+
+    EXPECT_THAT(table.printed.rows[1],
+                ElementsAre("models/hugo", "16928", "8634", "", "8.3", "10", "7.0"));
+    EXPECT_EQ(table.printed.hardware, "Radeon 9800 Pro, Pentium 4 2.4 GHz");
+
+    ASSERT_EQ(table.claims.size(), 3U);
+    EXPECT_EQ(table.claims[0].type, ClaimSpec::Type::Trend);
+    EXPECT_EQ(table.claims[0].over, "triangles");
+    EXPECT_EQ(table.claims[0].low, 0.3);
+    EXPECT_EQ(table.claims[0].high, 1.2);
+    EXPECT_THAT(table.claims[1].operands, ElementsAre("texelization_ms", "synthesis_ms"));
+    EXPECT_EQ(table.claims[1].low, std::nullopt);
+    EXPECT_EQ(table.claims[1].high, 0.25);
+    EXPECT_EQ(table.claims[2].device, ClaimSpec::Device::Gpu);
+    EXPECT_EQ(table.claims[2].high, 16.6);
+    EXPECT_EQ(table.claims[2].at[0].second[0].text(), "models/blade");
+    EXPECT_EQ(table.claims[2].location.line, 35);
+
+    ASSERT_EQ(table.assumptions.size(), 1U);
+    EXPECT_EQ(table.assumptions[0].unit, "voxels");
+    EXPECT_EQ(table.assumptions[0].range.toFlowText(), "[0, 2]");
+}
+
+TEST_F(ExperimentTest, SoftShadowTable) {
+    const Experiment table = load(kSoftShadows);
+    EXPECT_EQ(expandCases(table).size(), 60U);
+    ASSERT_EQ(table.layout.rows.size(), 3U);
+    EXPECT_EQ(table.layout.rows[1].name, "error");
+    EXPECT_EQ(table.layout.rows[1].labels[1].second.metric, "visibility_error");
+    EXPECT_EQ(table.layout.cell.format, "{mean:.2f}/{max:.0f}");
+    EXPECT_THAT(table.claims[0].operands, ElementsAre("non_redundant", "depth_peeling"));
+    EXPECT_EQ(table.claims[0].at[1].second.size(), 4U);
+    EXPECT_EQ(table.claims[1].low, 3.0);
+    EXPECT_EQ(table.claims[1].high, std::nullopt);
+    EXPECT_THAT(table.claims[1].operands, ElementsAre("depth_peeling", "non_redundant"));
+}
+
+TEST_F(ExperimentTest, TerrainTable) {
+    const Experiment table = load(kTerrain);
+    const auto cases = expandCases(table);
+    ASSERT_EQ(cases.size(), 10U);
+    EXPECT_EQ(cases[9].params.toFlowText(),
+              "{method: adaptive, block: 32, tile_patches: 8, tau: 4, delta_s: 10}");
+    EXPECT_EQ(cases[9].axes[0].second.asInteger(), 10);
+    EXPECT_EQ(cases[0].scene.text(), "terrain/puget_sound");
+    EXPECT_EQ(cases[0].outputHeightPx, 800);
+    EXPECT_TRUE(table.claims[0].isStrict);
+    EXPECT_EQ(table.claims[0].direction, -1);
+    EXPECT_EQ(table.claims[2].high, 0.05);
+    EXPECT_EQ(table.claims[3].low, std::nullopt);
+    EXPECT_EQ(table.claims[3].profile, "paper");
+    EXPECT_THAT(table.claims[4].operands, ElementsAre("fps", "triangles / 1000"));
+}
+
+TEST_F(ExperimentTest, ProfilesAreLaidOverTheWhole) {
+    // The light ratio leaves the sweep, yet the file names it in rows: it has to come back in
+    // params.
+    const std::string quickRatio = "    params: {reference_size: 256, light_ratio: 1,";
+    std::string text = kSoftShadows;
+    const std::string before = "    params: {reference_size: 256,";
+    text.replace(text.find(before), before.size(), quickRatio);
+    ExperimentOptions quick;
+    quick.profile = "quick";
+    const Experiment table = load(text, quick);
+    EXPECT_EQ(expandCases(table).size(), 8U);
+    EXPECT_EQ(table.outputWidthPx, 128);
+    EXPECT_EQ(table.params.toFlowText(),
+              "{reference_size: 256, light_samples: [8, 8], light_ratio: 1}");
+    EXPECT_EQ(load(kTerrain, quick).measure.repeats, 2);
+    EXPECT_EQ(load(kTerrain, quick).measure.warmup, 3);
+    quick.profile = "paper";
+    EXPECT_EQ(load(kTerrain, quick).measure.repeats, 10);
+    quick.profile = "fast";
+    EXPECT_EQ(loadError(kTerrain, quick), "profile 'fast'; allowed: quick, full, paper");
+    EXPECT_EQ(errorWith("profiles: {full: {}}"),
+              "DIR/zju/a.yaml:4:12: profiles: unknown key 'full'; allowed: quick, paper");
+    EXPECT_EQ(errorWith("profiles: {quick: {ouptut: {}}}"),
+              "DIR/zju/a.yaml:4:20: profile 'quick': unknown key 'ouptut'; did you mean 'output'?");
+}
+
+TEST_F(ExperimentTest, DocumentsRecreateTheExperiment) {
+    ExperimentOptions options;
+    options.sets = {parseOverride("measure.repeats=4")};
+    for (const char* text : {kVoxelization, kSoftShadows, kTerrain}) {
+        const Experiment first = load(text, options);
+        const std::string json = first.document.toJson().dump(1);
+        const Experiment again = experimentFromDocument(parseYaml(json, "plan.json"), first.file);
+        EXPECT_EQ(again.document.toJson().dump(1), json);
+        EXPECT_EQ(again.id, first.id);
+        EXPECT_EQ(again.measure.repeats, 4);
+        EXPECT_EQ(again.printed.rows, first.printed.rows);
+        EXPECT_EQ(again.profiles, first.profiles);
+        EXPECT_EQ(again.claims.size(), first.claims.size());
+        const auto cases = expandCases(first);
+        const auto casesAgain = expandCases(again);
+        ASSERT_EQ(casesAgain.size(), cases.size());
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            EXPECT_TRUE(casesAgain[i].params.sameContent(cases[i].params));
+            EXPECT_TRUE(casesAgain[i].scene.sameContent(cases[i].scene));
+        }
+    }
+}
+
+TEST_F(ExperimentTest, TablesThatAreOnlyPrinted) {
+    const Experiment table = load(
+        "table: xie2017/1\ntitle: Reductions of the plenoptic function\n"
+        "printed:\n  values: |\n    function,dimensions\n    light field,4\n");
+    EXPECT_TRUE(expandCases(table).empty());
+    EXPECT_THAT(table.printed.header, ElementsAre("function", "dimensions"));
+    EXPECT_EQ(loadError("table: p/1\ntitle: t\nprinted: {values: \"a\\n1\"}\nscene: s\n"),
+              "DIR/zju/a.yaml:4:1: 'scene' without 'technique'");
+    EXPECT_EQ(loadError("table: p/1\ntitle: t\n"),
+              "DIR/zju/a.yaml:1:1: neither 'technique' nor 'printed'; allowed: either or both");
+}
+
+TEST_F(ExperimentTest, NamesOfExperiments) {
+    const auto labelOf = [&](const std::string& name) {
+        const Experiment experiment = load(name + "\ntitle: t\ntechnique: x\n");
+        return experiment.id + " | " + experiment.label() + " | " + experiment.slug();
+    };
+    EXPECT_EQ(labelOf("figure: zju2005/2.6"), "zju2005/2.6 | Figure 2.6 | zju2005-2.6");
+    EXPECT_EQ(labelOf("section: zju2005/2.5.3"), "zju2005/2.5.3 | Section 2.5.3 | zju2005-2.5.3");
+    EXPECT_EQ(labelOf("sweep_of: speed"), "sweep/speed | Sweep speed | sweep-speed");
+    EXPECT_EQ(loadError("title: t\ntechnique: x\n"),
+              "DIR/zju/a.yaml:1:1: nothing names the experiment; allowed: one of table, figure, "
+              "section, sweep_of");
+    EXPECT_EQ(errorWith("figure: p/1"),
+              "DIR/zju/a.yaml:4:1: both 'table' and 'figure' name the experiment; allowed: one");
+    EXPECT_EQ(loadError("table: '10'\ntitle: t\n"),
+              "DIR/zju/a.yaml:1:8: table is \"10\"; allowed: PAPER/NUMBER, such as zju2005/2.1");
+    EXPECT_EQ(loadError("table: ../1/2\ntitle: t\n"),
+              "DIR/zju/a.yaml:1:8: table is ../1/2; allowed: PAPER/NUMBER, such as zju2005/2.1");
+    EXPECT_EQ(loadError("sweep_of: a/b\ntitle: t\n"),
+              "DIR/zju/a.yaml:1:11: sweep_of is a/b; allowed: letters, digits, - _ .");
+    EXPECT_EQ(loadError("table: p/1\ntechnique: x\n"), "DIR/zju/a.yaml:1:1: 'title' is missing");
+}
+
+TEST_F(ExperimentTest, ExtendsIsFollowedAndChecked) {
+    folder.write("presets/base.yaml", "params: {a: 1, b: 2}\nextends: timing.yaml\n");
+    folder.write("zju/near.yaml", "params: {b: 3}\n");
+    const Experiment table = load(
+        "table: p/1\ntitle: t\ntechnique: x\nextends: [presets/base.yaml, near.yaml]\n"
+        "params: {c: 4}\n");
+    EXPECT_EQ(table.params.toFlowText(), "{a: 1, b: 3, c: 4}");
+    EXPECT_EQ(table.measure.repeats, 10);
+    EXPECT_EQ(table.params.find("b")->location().file, (folder.path() / "zju/near.yaml").string());
+
+    EXPECT_EQ(errorWith("extends: none.yaml"),
+              "DIR/zju/a.yaml:4:10: extends: no file 'none.yaml' in DIR or DIR/zju");
+    folder.write("presets/loop.yaml", "extends: loop2.yaml\n");
+    folder.write("presets/loop2.yaml", "extends: [presets/loop.yaml]\n");
+    EXPECT_EQ(
+        errorWith("extends: presets/loop.yaml"),
+        "DIR/presets/loop2.yaml:1:11: extends: 'presets/loop.yaml' extends this file in turn");
+    folder.write("presets/table.yaml", "table: p/2\n");
+    EXPECT_EQ(errorWith("extends: presets/table.yaml"),
+              "DIR/presets/table.yaml:1:1: 'table' in a file that is extended; only the "
+              "experiment's own file names it");
+    folder.write("presets/bad.yaml", "\nmeasure: {repeats: 0}\n");
+    EXPECT_EQ(errorWith("extends: presets/bad.yaml"),
+              "DIR/presets/bad.yaml:2:20: measure: repeats is 0; allowed: 1 … 1000000");
+    EXPECT_EQ(loadError(""), "DIR/zju/a.yaml: a config is a map, found nothing");
+    EXPECT_EQ(errorText([&] { loadExperiment(folder.path() / "x.yaml", {}, folder.path()); },
+                        folder.path()),
+              "cannot read DIR/x.yaml: No such file or directory");
+}
+
+TEST_F(ExperimentTest, Overrides) {
+    ExperimentOptions options;
+    options.sets = {parseOverride("resolution=64"), parseOverride("output.width=100"),
+                    parseOverride("params.voxel="), parseOverride("measure.lane=quality")};
+    options.sweeps = {parseOverride("scene=models/duck, models/bunny"),
+                      parseOverride("slices={log2: [2, 8]}"), parseOverride("params.k=5")};
+    const Experiment table = load(kVoxelization, options);
+    EXPECT_EQ(table.params.toFlowText(), "{resolution: 64, method: worksheet}");
+    EXPECT_EQ(table.outputWidthPx, 100);
+    EXPECT_EQ(table.measure.lane, Measure::Lane::Quality);
+    const auto cases = expandCases(table);
+    ASSERT_EQ(cases.size(), 6U);
+    EXPECT_EQ(cases[5].scene.text(), "models/bunny");
+    EXPECT_EQ(cases[5].params.toFlowText(), "{resolution: 64, method: worksheet, slices: 8, k: 5}");
+
+    EXPECT_EQ(errorText([] { parseOverride("resolution"); }),
+              "'resolution' on the command line; allowed: key=value");
+    EXPECT_EQ(errorText([] { parseOverride("a=[1"); }),
+              "command line, a=[1:1:3: end of sequence flow not found");
+    options = {};
+    options.sets = {parseOverride("delta_s=3")};
+    EXPECT_EQ(loadError(kTerrain, options),
+              "command line, delta_s=3: 'delta_s' is swept here; allowed: --sweep delta_s=VALUES");
+    options.sets = {parseOverride("measure.repeats=0")};
+    EXPECT_EQ(loadError(kTerrain, options),
+              "command line, measure.repeats=0: measure: repeats is 0; allowed: 1 … 1000000");
+    options.sets = {parseOverride("technique.x=0")};
+    EXPECT_EQ(loadError(kTerrain, options),
+              "command line, technique.x=0: cannot set 'technique.x': 'technique' is text, not a "
+              "map");
+}
+
+TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
+    folder.write("presets/scene.yaml", "scene: mine.ply\n");
+    EXPECT_EQ(
+        load("table: p/1\ntitle: t\ntechnique: x\nextends: presets/scene.yaml\n").scene.text(),
+        (folder.path() / "presets/mine.ply").string());
+    const Experiment table = load(
+        "table: p/1\ntitle: t\ntechnique: x\n"
+        "sweep: {scene: [../m.obj, models/duck, /abs/m.glb], exclude: [{scene: /abs/m.glb}]}\n"
+        "layout: {rows: scene, columns: {a: {metric: m, where: {scene: ../m.obj}}}}\n"
+        "claims: {C: {says: s, bound: a, above: 1, at: {scene: ../m.obj}}}\n");
+    const auto cases = expandCases(table);
+    ASSERT_EQ(cases.size(), 2U);
+    const std::string file = (folder.path() / "m.obj").string();
+    EXPECT_EQ(cases[0].scene.text(), file);
+    EXPECT_EQ(cases[1].scene.text(), "models/duck");
+    EXPECT_EQ(table.claims[0].at[0].second[0].text(), file);
+    EXPECT_EQ(table.layout.columns[0].labels[0].second.where[0].second.text(), file);
+}
+
+TEST_F(ExperimentTest, SweptOutputSizes) {
+    const Experiment table = load(
+        "sweep_of: size\ntitle: t\ntechnique: x\n"
+        "sweep: {zip: [{output.width: [64, 128], output.height: [32, 64]}]}\n");
+    const auto cases = expandCases(table);
+    ASSERT_EQ(cases.size(), 2U);
+    EXPECT_EQ(cases[1].outputWidthPx, 128);
+    EXPECT_EQ(cases[1].outputHeightPx, 64);
+    EXPECT_EQ(cases[1].params.toFlowText(), "{}");
+    EXPECT_EQ(errorWith("sweep: {output.width: [0]}"),
+              "DIR/zju/a.yaml:4:24: output.width is 0; allowed: a whole number, 1 … 16384 pixels");
+    EXPECT_EQ(errorWith("sweep: {output.size: [1]}"),
+              "DIR/zju/a.yaml:4:9: axis 'output.size'; allowed: output.width, output.height");
+}
+
+TEST_F(ExperimentTest, BadSections) {
+    EXPECT_EQ(errorWith("tilte: u"),
+              "DIR/zju/a.yaml:4:1: config: unknown key 'tilte'; did you mean 'title'?");
+    EXPECT_EQ(errorWith("output: {width: 20000}"),
+              "DIR/zju/a.yaml:4:17: output: width is 20000; allowed: 1 … 16384 pixels");
+    EXPECT_EQ(errorWith("measure: {lane: fast}"),
+              "DIR/zju/a.yaml:4:17: measure: lane is 'fast'; allowed: quality | timing");
+    EXPECT_EQ(errorWith("measure: {repeat: 3}"),
+              "DIR/zju/a.yaml:4:11: measure: unknown parameter 'repeat'; did you mean 'repeats'?");
+    EXPECT_EQ(errorWith("params: [1]"), "DIR/zju/a.yaml:4:9: params is [1]; allowed: a map");
+    EXPECT_EQ(errorWith("assumptions: {a: {value: 1}}"),
+              "DIR/zju/a.yaml:4:15: assumption 'a' needs 'why'");
+    EXPECT_EQ(errorWith("assumptions: {a: {valeu: 1, why: w}}"),
+              "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valeu'; did you mean 'value'?");
+    EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
+}
+
+TEST_F(ExperimentTest, BadLayouts) {
+    const auto layoutError = [&](const std::string& layout) {
+        return errorWith("params: {method: m}\nsweep: {scene: [s]}\nlayout: " + layout);
+    };
+    const std::string head = "DIR/zju/a.yaml:6:";
+    EXPECT_EQ(layoutError("{rows: scnee, cell: {metric: m}}"),
+              head + "16: layout: unknown axis 'scnee'; allowed: method, scene, frame");
+    EXPECT_EQ(layoutError("{rows: [scene, methd], cell: {metric: m}}"),
+              head + "24: layout: unknown axis 'methd'; did you mean 'method'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: scene, cell: {metric: m}}"),
+              head + "32: layout: axis 'scene' is used twice");
+    EXPECT_EQ(layoutError("{cell: {metric: m}}"), head + "9: layout has neither rows nor columns");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m}, b: {pass: p}}}"),
+              head +
+                  "9: layout: some cell has no metric; allowed: a metric in `cell`, or in every "
+                  "label of one axis");
+    EXPECT_EQ(layoutError("{axes: {e: {a: m}}, rows: scene, cell: {metric: m}}"),
+              head + "17: layout: axis 'e' is neither in rows nor in columns");
+    EXPECT_EQ(layoutError("{axes: {scene: {a: m}}, rows: scene}"),
+              head + "17: layout: axis 'scene' is an axis of the cases already");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metrics: m}}}"),
+              head + "37: a cell's selection: unknown key 'metrics'; did you mean 'metric'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, where: {metod: x}}}}"),
+              head + "56: where: unknown key 'metod'; did you mean 'method'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {}}"),
+              head + "32: labels is {}; allowed: a map {label: selection}");
+    EXPECT_EQ(layoutError("{row: scene}"),
+              head + "10: layout: unknown key 'row'; did you mean 'rows'?");
+}
+
+TEST_F(ExperimentTest, CellFormats) {
+    const auto formatError = [&](const std::string& format) {
+        return errorWith("sweep: {scene: [s]}\nlayout: {rows: scene, columns: {a: m}, cell: '" +
+                         format + "'}");
+    };
+    for (const char* format :
+         {"{mean:.2f}/{max:.0f}", "{median}", "{{{count:.0f}}}", "{min:8.3e} ms"}) {
+        EXPECT_EQ(formatError(format), "no error") << format;
+    }
+    const std::string head = "DIR/zju/a.yaml:5:46: ";
+    EXPECT_EQ(formatError("{avg:.2f}"),
+              head + "statistic is avg; allowed: median, mean, min, max, sum, count");
+    EXPECT_EQ(formatError("{mean:.2d}"),
+              head +
+                  "format is \"{mean:.2d}\"; allowed: number formats such as {mean:.2f} "
+                  "(invalid type specifier)");
+    EXPECT_EQ(formatError("{mean:999999999f}"),
+              head +
+                  "format is \"{mean:999999999f}\"; allowed: number formats such as {mean:.2f} "
+                  "(too long)");
+    EXPECT_EQ(formatError("mean"),
+              head + "format is mean; allowed: a statistic in braces, as {median:.4g}");
+    EXPECT_EQ(formatError("{mean"), head + "format is \"{mean\"; allowed: a } for every {");
+    EXPECT_EQ(formatError("{mean} }"),
+              head + "format is \"{mean} }\"; allowed: } only after {, or }}");
+}
+
+TEST_F(ExperimentTest, BadPrintedValues) {
+    const auto printedError = [&](const std::string& lines) {
+        return errorWith(
+            "sweep: {scene: [s]}\n"
+            "layout: {axes: {e: {p: {pass: p}, q: {pass: q}}}, rows: [scene, e], columns: {time: "
+            "m}}\n"
+            "printed:\n  values: |\n" +
+            lines);
+    };
+    EXPECT_EQ(printedError("    # remark\n    scene,e,time\n\n    s,p,1\n    s,q,\n"), "no error");
+    EXPECT_EQ(printedError("    scene,e,tme\n    s,p,1\n"),
+              "DIR/zju/a.yaml:8: printed: 'tme' is neither a row axis nor a column; did you mean "
+              "'time'?");
+    EXPECT_EQ(printedError("    scene,e,speed\n    s,p,1\n"),
+              "DIR/zju/a.yaml:8: printed: 'speed' is neither a row axis nor a column; allowed: "
+              "scene, e, time");
+    EXPECT_EQ(printedError("    scene,time\n    s,1\n"),
+              "DIR/zju/a.yaml:8: printed: row axis 'e' has no column");
+    EXPECT_EQ(printedError("    scene,e,time,time\n"),
+              "DIR/zju/a.yaml:8: printed: column 'time' stands twice");
+    EXPECT_EQ(printedError("    scene,e,time\n    # x\n    s,p\n"),
+              "DIR/zju/a.yaml:10: printed: 2 cells in a row; the header has 3");
+    EXPECT_EQ(printedError("    scene,e,time\n    s,r,1\n"),
+              "DIR/zju/a.yaml:9: printed: e is 'r'; allowed: p | q");
+    EXPECT_EQ(printedError("    scene,e,time\n    s,p,1\n    s,p,2\n"),
+              "DIR/zju/a.yaml:10: printed: the row 's,p,2' stands twice");
+    EXPECT_EQ(printedError("    scene,e,time\n"),
+              "DIR/zju/a.yaml:7:11: printed: values has no rows");
+}
+
+TEST_F(ExperimentTest, ColumnsOfSeveralAxesAreJoined) {
+    const std::string text =
+        "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], method: [nr, dp], size: [512, "
+        "1024]}\n"
+        "layout: {rows: scene, columns: [method, size], cell: {metric: m}}\n"
+        "claims: {C: {says: s, ratio: (dp_512 + 1) / nr_512, between: [1, 2]}}\n"
+        "printed: {values: \"scene,nr_512,dp_1024\\ns,1,2\"}\n";
+    const Experiment table = load(text);
+    EXPECT_THAT(table.claims[0].operands, ElementsAre("(dp_512 + 1)", "nr_512"));
+    // What an override takes out of the sweep may still be printed and claimed.
+    ExperimentOptions options;
+    options.sweeps = {parseOverride("size=512")};
+    EXPECT_EQ(load(text, options).printed.header.size(), 3U);
+}
+
+TEST_F(ExperimentTest, BadClaims) {
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(claimError("{says: s, order: aa < bb}"), "no error");
+    EXPECT_EQ(claimError("{order: aa < bb}"), head + "3: claim 'C' needs 'says'");
+    EXPECT_EQ(claimError("{says: s}"),
+              head +
+                  "3: claim 'C' has no type; allowed: order, ratio, trend, independent, bound, "
+                  "exact, tolerance, crossover");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
+              head + "29: claim 'C' is of two types, 'order' and 'bound'");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
+              head +
+                  "29: claim 'C': unknown key 'above'; allowed: says, at, statistic, device, "
+                  "profile, order");
+    EXPECT_EQ(claimError("{says: s, order: aa}"),
+              head + "20: claim 'C': order is aa; allowed: a < b < …");
+    EXPECT_EQ(claimError("{says: s, order: aa < }"),
+              head + "20: claim 'C' is aa <; allowed: an expression over columns");
+    EXPECT_EQ(claimError("{says: s, order: aa < bc}"),
+              head + "20: claim 'C': unknown column 'bc'; did you mean 'bb'?");
+    EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
+              head + "20: claim 'C': ratio is aa; allowed: a / b");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
+              head + "3: claim 'C' needs at_least, at_most or between");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, at_most: 1}"),
+              head + "51: claim 'C': the lower bound exceeds the upper");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, between: [1, 2]}"),
+              head + "51: claim 'C': between beside other bounds");
+    EXPECT_EQ(claimError("{says: s, bound: aa}"), head + "3: claim 'C' needs above or below");
+    EXPECT_EQ(claimError("{says: s, trend: aa, exponent: [1, 2]}"),
+              head + "3: claim 'C' needs 'over'");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb}"),
+              head + "3: claim 'C' needs exponent or direction");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: scen, direction: decreasing}"),
+              head +
+                  "30: claim 'C': 'scen' is neither a row axis nor a column; did you mean "
+                  "'scene'?");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: down}"),
+              head + "45: claim 'C': direction is down; allowed: increasing | decreasing");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [1, 2], strictly: true}"),
+              head + "62: claim 'C': strictly needs 'direction'");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [2, 1]}"),
+              head + "44: claim 'C': exponent is [2, 1]; allowed: [low, high], low first");
+    for (const char* within : {"25", "x%", "-1%", "[1]"}) {
+        EXPECT_EQ(
+            claimError(std::string("{says: s, independent: aa, of: bb, within: ") + within + "}"),
+            head + "46: claim 'C': within is " + within +
+                "; allowed: a percentage as 25%, or a fraction 0 … 1");
+    }
+    EXPECT_EQ(claimError("{says: s, exact: aa}"), head + "3: claim 'C' needs 'equals'");
+    EXPECT_EQ(claimError("{says: s, exact: aa, equals: printed}"),
+              head + "3: claim 'C' needs printed values");
+    EXPECT_EQ(claimError("{says: s, tolerance: aa, within: 5%}"),
+              head + "3: claim 'C' needs printed values");
+    EXPECT_EQ(claimError("{says: s, crossover: [aa], over: scene, between: [1, 2]}"),
+              head + "24: claim 'C': crossover is [aa]; allowed: [a, b]");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scene: u}}"),
+              head + "46: claim 'C': at.scene is u; allowed: s | t");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scnene: s}}"),
+              head + "39: claim 'C': at: unknown key 'scnene'; did you mean 'scene'?");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, device: cpu}"),
+              head + "42: claim 'C': device is cpu; allowed: any | gpu");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, profile: fast}"),
+              head + "43: claim 'C': profile is fast; allowed: quick | full | paper");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, statistic: avg}"),
+              head + "45: statistic is avg; allowed: median, mean, min, max, sum, count");
+    EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, above: 1}"),
+              head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
+}
+
+TEST(DescribeConfig, NamesEveryKeyOnALine) {
+    const std::string text = describeConfig();
+    for (const char* key : {"table ",
+                            "figure ",
+                            "section ",
+                            "sweep_of ",
+                            "title ",
+                            "extends ",
+                            "technique ",
+                            "scene ",
+                            "params ",
+                            "sweep ",
+                            "sweep.zip ",
+                            "sweep.list ",
+                            "sweep.exclude ",
+                            "sweep.when ",
+                            "output.width ",
+                            "output.height ",
+                            "measure.lane ",
+                            "measure.warmup ",
+                            "measure.repeats ",
+                            "measure.processes ",
+                            "measure.frames ",
+                            "measure.time_limit_s ",
+                            "measure.memory_limit_bytes ",
+                            "profiles.quick ",
+                            "profiles.paper ",
+                            "layout.axes ",
+                            "layout.rows ",
+                            "layout.columns ",
+                            "layout.cell ",
+                            "printed.values ",
+                            "printed.hardware ",
+                            "printed.remark ",
+                            "claims.ID.order ",
+                            "claims.ID.crossover ",
+                            "assumptions.NAME "}) {
+        EXPECT_THAT("\n" + text, HasSubstr("\n" + std::string(key))) << key;
+    }
+    EXPECT_THAT(text, HasSubstr("1 … 16384 pixels"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::config
