@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include "techniques/voxelization/binvox.h"
+#include "techniques/voxelization/implicit.h"
+#include "techniques/voxelization/parametric.h"
+#include "techniques/voxelization/phantom.h"
 #include "techniques/voxelization/reference.h"
 
 namespace gfxrepro::voxelization {
@@ -12,41 +15,99 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
     return std::make_unique<Voxelization>(params);
 }
 
+/// Formulas are read with the parameters; a mesh comes at set-up, with the scene.
+std::unique_ptr<GridSource> makeFormulaSource(const VoxelizationParams& read,
+                                              config::Params& params) {
+    switch (read.input) {
+        case InputKind::Implicit:
+            return std::make_unique<ImplicitSource>(params, read.voxelizer.grid, read.box);
+        case InputKind::Parametric:
+            return std::make_unique<ParametricSource>(params, read.voxelizer.grid, read.box);
+        case InputKind::Mesh:
+            break;
+    }
+    return nullptr;
+}
+
 }  // namespace
 
-Voxelization::Voxelization(config::Params& params) : params_(params) {
+Voxelization::Voxelization(config::Params& params)
+    : params_(params),
+      source_(makeFormulaSource(params_, params)),
+      combination_(params_.combination),
+      drawing_(params_.drawing) {
     params.finish();
 }
 
 void Voxelization::setup(technique::SetupContext& context) {
+    const WorksheetLayout& layout = params_.voxelizer.grid.layout;
+    checkFitsDevice(layout, context.device.limits());
+    if (params_.input == InputKind::Mesh) {
+        setupMesh(context);
+        return;
+    }
+    source_->setup(context);
+    box_ = source_->grid()->box;
+    if (params_.drawing.isOn()) drawing_.setup(context, layout, box_, box_, false);
+}
+
+void Voxelization::setupMesh(technique::SetupContext& context) {
     const MeshVoxelizerSettings& settings = params_.voxelizer;
     const WorksheetLayout& layout = settings.grid.layout;
-    checkFitsDevice(layout, context.device.limits());
     if (!context.scene)
         throw Error("technique 'voxelization' needs a scene; the config names none");
     input_.emplace(*context.scene, settings.grid.value);
-    box_ = params_.box
-               ? *params_.box
-               : cubicBox(input_->mesh().bounds(), layout.resolution(), params_.paddingVoxels);
+    scene::Box bounds = input_->mesh().bounds();
+    if (params_.combination.needsSecond()) {
+        bounds.add(combination_.loadSecond(context, settings.grid.value));
+    }
+    const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
+    box_ = params_.box ? *params_.box
+           : isInHead  ? headBoxAround(bounds)
+                       : cubicBox(bounds, layout.resolution(), params_.paddingVoxels);
     source_ = std::make_unique<MeshVoxelizer>(settings, input_->mesh(), box_);
     source_->setup(context);
+    if (params_.combination.needsSecond()) combination_.setup(context, settings, box_);
+    if (params_.drawing.isOn()) {
+        const bool showsBoth =
+            params_.combination.findsCollision && !params_.combination.csg.has_value();
+        drawing_.setup(context, layout, box_, isInHead || params_.box ? box_ : bounds, showsBoth);
+    }
+}
+
+const VoxelGrid* Voxelization::grid() const {
+    return combination_.result() ? combination_.result() : source_->grid();
 }
 
 void Voxelization::render(technique::FrameContext& context) {
     source_->render(context.profiler);
-    if (!params_.readsBack || !source_->grid()) return;
-    gl::CpuScope scope(context.profiler, "read_back");
-    readSheets(source_->grid()->sheets);
+    if (params_.combination.needsSecond()) {
+        combination_.render(context.profiler, *source_->grid());
+    }
+    if (!grid()) return;
+    if (params_.readsBack) {
+        gl::CpuScope scope(context.profiler, "read_back");
+        readSheets(grid()->sheets);
+    }
+    if (params_.drawing.isOn()) {
+        const bool showsBoth = params_.combination.findsCollision && !combination_.result();
+        drawing_.render(context.profiler, *grid(), showsBoth ? &combination_.second() : nullptr);
+    }
 }
 
 void Voxelization::record(technique::Recorder& recorder) {
     const auto count = [&](const char* name, std::size_t value, const char* unit) {
         recorder.metric(name, static_cast<double>(value), unit);
     };
-    count("triangles", input_->mesh().triangles.size(), "triangle");
-    count("vertices", input_->mesh().positions.size(), "vertex");
+    if (input_) {
+        count("triangles", input_->mesh().triangles.size(), "triangle");
+        count("vertices", input_->mesh().positions.size(), "vertex");
+    }
     source_->record(recorder);
-    if (const VoxelGrid* grid = source_->grid()) recordGrid(recorder, grid->read());
+    combination_.record(recorder);
+    if (!grid()) return;
+    recordGrid(recorder, grid()->read());
+    if (params_.drawing.isOn()) drawing_.record(recorder);
 }
 
 void Voxelization::recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const {

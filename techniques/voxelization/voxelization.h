@@ -4,14 +4,22 @@
 #include <memory>
 #include <optional>
 
+#include "techniques/voxelization/combination.h"
+#include "techniques/voxelization/drawing.h"
 #include "techniques/voxelization/mesh_input.h"
 #include "techniques/voxelization/mesh_voxelizer.h"
 
 namespace gfxrepro::voxelization {
 
+/// What is voxelized.
+enum class InputKind { Mesh, Implicit, Parametric };
+
 /// Everything that a config may say of the grid and of the way to it.
 struct VoxelizationParams {
+    InputKind input = InputKind::Mesh;
     MeshVoxelizerSettings voxelizer;
+    CombinationSettings combination;
+    DrawingSettings drawing;
     int paddingVoxels = 1;
     std::optional<scene::Box> box;  // cubic; empty: around the mesh
     bool readsBack = false;
@@ -32,6 +40,8 @@ class Voxelization final : public technique::Technique {
     void record(technique::Recorder& recorder) override;
 
   private:
+    void setupMesh(technique::SetupContext& context);
+    const VoxelGrid* grid() const;
     void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const;
     void recordMisses(technique::Recorder& recorder, const DenseGrid& grid) const;
 
@@ -39,6 +49,8 @@ class Voxelization final : public technique::Technique {
     std::optional<MeshInput> input_;
     scene::Box box_;
     std::unique_ptr<GridSource> source_;
+    Combination combination_;
+    Drawing drawing_;
 };
 
 /// Throws UnsupportedError, with the numbers, when the sheets do not fit the device.

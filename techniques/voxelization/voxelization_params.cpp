@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -9,6 +10,11 @@
 namespace gfxrepro::voxelization {
 namespace {
 
+constexpr config::Choice<InputKind> kInputs[] = {
+    {InputKind::Mesh, "mesh", "the case's scene"},
+    {InputKind::Implicit, "implicit", "a surface f(x, y, z) = 0 (section 2.4.1)"},
+    {InputKind::Parametric, "parametric", "a surface (x, y, z)(u, v) (section 2.4.1)"},
+};
 constexpr config::Choice<Method> kMethods[] = {
     {Method::Worksheet, "worksheet", "rasterization, texelization and synthesis of worksheets"},
     {Method::Direct, "direct", "one pass with image atomics into the grid"},
@@ -125,10 +131,34 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
     return settings;
 }
 
+/// Formulas know neither triangles nor the ways to them.
+void checkInput(const config::Params& params, const VoxelizationParams& read) {
+    if (read.input == InputKind::Mesh) {
+        if (read.voxelizer.method != Method::DepthOnly) return;
+        for (const char* name : {"collision", "csg", "draw"}) {
+            if (!params.isGiven(name)) continue;
+            throw Error(params.locationOf(name),
+                        fmt::format("'method: depth_only' makes no grid for '{}'", name));
+        }
+        return;
+    }
+    for (const char* name : {"collision", "compare", "csg", "method", "offset_b", "open_mesh",
+                             "padding", "rule", "scene_b", "split"}) {
+        if (!params.isGiven(name)) continue;
+        throw Error(params.locationOf(name), fmt::format("'{}' needs 'input: mesh'", name));
+    }
+    if (read.drawing.draw.mode == DrawMode::Mixed) {
+        throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");
+    }
+}
+
 }  // namespace
 
 VoxelizationParams::VoxelizationParams(config::Params& params)
-    : voxelizer(readVoxelizer(params)),
+    : input(params.getEnum("input", InputKind::Mesh, kInputs, {"what is voxelized"})),
+      voxelizer(readVoxelizer(params)),
+      combination(params),
+      drawing(params, voxelizer.grid.value),
       paddingVoxels(params.getInt(
           "padding", 1, {"free voxels around the mesh where no box is given", "voxels", 0, 8})),
       box(readBox(params)),
@@ -138,6 +168,8 @@ VoxelizationParams::VoxelizationParams(config::Params& params)
                                            {"count what the rule misses, against the CPU "
                                             "references of thin and conservative"})),
       exportsBinvox(params.getBool("export_binvox", false, {"write grid.binvox"})),
-      showsSlices(params.getBool("show_slices", false, {"save the three middle slices"})) {}
+      showsSlices(params.getBool("show_slices", false, {"save the three middle slices"})) {
+    checkInput(params, *this);
+}
 
 }  // namespace gfxrepro::voxelization

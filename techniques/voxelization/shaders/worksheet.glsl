@@ -7,6 +7,7 @@
 ivec3 localFromVolume(int axis, ivec3 p) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }
 vec3 localFromVolume(int axis, vec3 p) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }
 ivec3 volumeFromLocal(int axis, ivec3 q) { return axis == 0 ? q.zxy : axis == 1 ? q.yzx : q; }
+vec3 volumeFromLocal(int axis, vec3 q) { return axis == 0 ? q.zxy : axis == 1 ? q.yzx : q; }
 
 // Corner texel (x, y, layer) of the patch that holds slab w / C.
 ivec3 worksheetPatch(int slab) {

@@ -1,0 +1,94 @@
+#include "techniques/voxelization/combination.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace gfxrepro::voxelization {
+
+namespace {
+
+using OptionalOperation = std::optional<CsgOperation>;
+constexpr config::Choice<OptionalOperation> kOperations[] = {
+    {std::nullopt, "none", "the first model alone"},
+    {CsgOperation::Union, "union", "voxels of either model"},
+    {CsgOperation::Intersection, "intersection", "voxels of both models"},
+    {CsgOperation::Difference, "difference", "voxels of the first model without the second"},
+};
+
+}  // namespace
+
+CombinationSettings::CombinationSettings(config::Params& params)
+    : csg(params.getEnum("csg", OptionalOperation(), kOperations,
+                         {"boolean operation with the second model"})),
+      findsCollision(params.getBool("collision", false,
+                                    {"count the voxels that both models fill, and show them red"})),
+      sceneB(params.getText("scene_b", "", {"the second model, of csg and collision"})) {
+    constexpr double kNowhere[] = {0.0, 0.0, 0.0};
+    const std::vector<double> offset =
+        params.getVector("offset_b", kNowhere, {"where the second model is put", "scene units"});
+    offsetB = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
+               static_cast<float>(offset[2])};
+    if (needsSecond() && sceneB.empty()) {
+        throw Error(params.locationOf(csg ? "csg" : "collision"),
+                    "'csg' and 'collision' need a second model, 'scene_b'");
+    }
+    if (!needsSecond() && !sceneB.empty()) {
+        throw Error(params.locationOf("scene_b"),
+                    "'scene_b' is used by 'csg' and 'collision' only, and neither is on");
+    }
+}
+
+scene::Box Combination::loadSecond(technique::SetupContext& context, VoxelValue value) {
+    secondInput_.emplace(context.scenes.load(settings_.sceneB), value);
+    const scene::Box bounds = secondInput_->mesh().bounds();
+    return {bounds.min + settings_.offsetB, bounds.max + settings_.offsetB};
+}
+
+void Combination::setup(technique::SetupContext& context, const MeshVoxelizerSettings& voxelizer,
+                        const scene::Box& box) {
+    // Moving the grid's box instead of the model saves a copy of it.
+    const scene::Box shifted{box.min - settings_.offsetB, box.max - settings_.offsetB};
+    secondSource_.emplace(voxelizer, secondInput_->mesh(), shifted);
+    secondSource_->setup(context);
+    const WorksheetLayout& layout = voxelizer.grid.layout;
+    if (settings_.csg) {
+        csgPass_.emplace(context.shaders, layout, *settings_.csg);
+        result_ = {makeSheets(layout), layout, box};
+    }
+    if (settings_.findsCollision) {
+        intersectionPass_.emplace(context.shaders, layout, CsgOperation::Intersection);
+        extentPass_.emplace(context.shaders, layout);
+        common_ = {makeSheets(layout), layout, box};
+    }
+}
+
+void Combination::render(gl::Profiler& profiler, const VoxelGrid& first) {
+    secondSource_->render(profiler);
+    const gl::Texture& second = secondSource_->grid()->sheets;
+    if (csgPass_) {
+        const gl::GpuScope scope(profiler, "csg");
+        csgPass_->run(first.sheets, second, result_.sheets);
+    }
+    if (intersectionPass_) {
+        const gl::GpuScope scope(profiler, "collision");
+        intersectionPass_->run(first.sheets, second, common_.sheets);
+        extentPass_->run(common_.sheets);
+    }
+}
+
+void Combination::record(technique::Recorder& recorder) const {
+    if (!extentPass_) return;
+    const GridExtent extent = extentPass_->read();
+    recorder.metric("collision_voxels", extent.count, "voxel");
+    if (extent.count == 0) return;
+    const scene::Box bounds = extent.bounds(common_);
+    constexpr std::array<char, 3> kAxisNames{'x', 'y', 'z'};
+    for (int i = 0; i < 3; ++i) {
+        const char axis = kAxisNames[static_cast<std::size_t>(i)];
+        recorder.metric(fmt::format("collision_min_{}", axis), bounds.min[i], "scene unit");
+        recorder.metric(fmt::format("collision_max_{}", axis), bounds.max[i], "scene unit");
+    }
+}
+
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,38 @@
+// The technique's pass "draw": what is shown of the grid, and from where.
+#pragma once
+
+#include <optional>
+
+#include "techniques/voxelization/volume_renderer.h"
+
+namespace gfxrepro::voxelization {
+
+struct DrawingSettings {
+    DrawSettings draw;
+    double azimuthDeg = 0.0;
+    double elevationDeg = 0.0;
+
+    /// Declares draw, opacity, azimuth_deg, elevation_deg, cut_min and cut_max.
+    DrawingSettings(config::Params& params, VoxelValue value);
+    bool isOn() const { return draw.mode != DrawMode::None; }
+};
+
+/// Life: setup → render, repeatedly → record.
+class Drawing {
+  public:
+    explicit Drawing(const DrawingSettings& settings) : settings_(settings) {}
+
+    /// `shown` is what the picture frames; `isCollision`: two grids are drawn, common voxels red.
+    void setup(technique::SetupContext& context, const WorksheetLayout& layout,
+               const scene::Box& box, const scene::Box& shown, bool isCollision);
+    void render(gl::Profiler& profiler, const VoxelGrid& grid, const VoxelGrid* second);
+    /// planes, and the image "draw".
+    void record(technique::Recorder& recorder) const;
+
+  private:
+    DrawingSettings settings_;
+    std::optional<VolumeRenderer> renderer_;
+    gl::Texture head_;
+};
+
+}  // namespace gfxrepro::voxelization

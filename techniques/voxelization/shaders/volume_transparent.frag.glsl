@@ -1,0 +1,74 @@
+#version 450 core
+// Blends the voxels of one slice over what lies behind: planes come back to front. [zju2005]
+// Sec. 2.4.2. With HEAD, a CT/MR volume is blended plane by plane with them (figure 2.7, right).
+// Reads the worksheet and the volume; writes premultiplied colour.
+
+#include "voxelization/volume_lighting.glsl"
+#include "voxelization/volume_walk.glsl"
+#if HEAD
+#include "voxelization/head_transfer.glsl"
+#endif
+
+uniform float opacity;   // of a voxel that the ray passes along an axis
+uniform vec3 eyeVolume;  // voxels
+
+layout(location = 0) out vec4 color;
+
+// Outward normal of a voxel; a thin surface of bare occupancy has none (0).
+vec3 normalOf(ivec3 voxel, uint value) {
+#if NORMALS
+    return decodeNormal(value);
+#else
+    const ivec2 unit = ivec2(1, 0);
+    vec3 ahead = vec3(drawnVoxel(voxel + unit.xyy) == 0u, drawnVoxel(voxel + unit.yxy) == 0u,
+                      drawnVoxel(voxel + unit.yyx) == 0u);
+    vec3 behind = vec3(drawnVoxel(voxel - unit.xyy) == 0u, drawnVoxel(voxel - unit.yxy) == 0u,
+                       drawnVoxel(voxel - unit.yyx) == 0u);
+    return ahead - behind;
+#endif
+}
+
+vec3 shaded(ivec3 voxel, uint value, vec3 towardsEye) {
+    vec3 normal = normalOf(voxel, value);
+    if (normal == vec3(0.0)) normal = towardsEye;
+    return lit(albedoOf(voxel, value), faceForward(normalize(normal), towardsEye), towardsEye);
+}
+
+// `below` lies under what is already there.
+void blendUnder(inout vec4 above, vec3 albedo, float alpha) {
+    above += (1.0 - above.a) * alpha * vec4(albedo, 1.0);
+}
+
+void main() {
+    vec3 direction = rayDirection();
+    vec2 slope = direction.xy / direction.z;
+    float front = float(slice + (direction.z > 0.0 ? 0 : 1));
+    float back = float(slice + (direction.z > 0.0 ? 1 : 0));
+    vec2 entry = atPlane(slope, front);
+    vec2 exit = atPlane(slope, back);
+    vec3 towardsEye = -normalize(volumeFromLocal(AXIS, direction));
+    float pathLength = length(vec3(slope, 1.0));  // of the ray in the slice, in voxels
+
+    vec4 sum = vec4(0.0);
+    Walk walk = beginWalk(entry, exit);
+    float from = 0.0;
+    for (;;) {
+        float to = exitOf(walk);
+        ivec3 voxel = volumeFromLocal(AXIS, ivec3(walk.cell, slice));
+        uint value = drawnVoxel(voxel);
+        if (value != 0u) {
+            float alpha = 1.0 - pow(1.0 - opacity, (to - from) * pathLength);
+            blendUnder(sum, shaded(voxel, value, towardsEye), alpha);
+        }
+        if (isLast(walk)) break;
+        from = to;
+        advance(walk);
+    }
+#if HEAD
+    vec3 middle = volumeFromLocal(AXIS, vec3(0.5 * (entry + exit), float(slice) + 0.5));
+    vec4 tissue = headTissue(middle / float(RESOLUTION), towardsEye);
+    blendUnder(sum, tissue.rgb, 1.0 - pow(1.0 - tissue.a, pathLength * 128.0 / float(RESOLUTION)));
+#endif
+    if (sum.a == 0.0) discard;
+    color = sum;
+}

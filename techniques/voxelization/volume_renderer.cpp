@@ -1,0 +1,211 @@
+#include "techniques/voxelization/volume_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::voxelization {
+
+namespace {
+
+enum TextureUnit { kSheetsUnit = 0, kSecondUnit = 1, kHeadUnit = 2, kHitsUnit = 3 };
+
+/// Right, up and backwards, unit, world space.
+glm::mat3 frameOf(const scene::Camera& camera) {
+    const glm::vec3 backwards = glm::normalize(camera.position - camera.target);
+    const glm::vec3 right = glm::normalize(glm::cross(camera.up, backwards));
+    return {right, glm::cross(backwards, right), backwards};
+}
+
+/// From the upper left behind the eye.
+glm::vec3 headlight(const scene::Camera& camera) {
+    return frameOf(camera) * glm::normalize(glm::vec3(-0.5F, 0.7F, 1.0F));
+}
+
+glm::mat4 clipFromWorld(const scene::Camera& camera, float aspect) {
+    return glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
+           glm::lookAt(camera.position, camera.target, camera.up);
+}
+
+}  // namespace
+
+scene::Camera orbitCamera(const scene::Box& box, double azimuthDeg, double elevationDeg,
+                          float aspect) {
+    constexpr float kFovRad = 0.5F;
+    constexpr float kMargin = 1.03F;
+    const auto azimuth = static_cast<float>(glm::radians(azimuthDeg));
+    const auto elevation = static_cast<float>(glm::radians(elevationDeg));
+    scene::Camera camera;
+    camera.target = box.centre();
+    camera.position =
+        camera.target + glm::vec3(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                                  std::cos(azimuth) * std::cos(elevation));
+    // Straight from above or below, the picture's upper side is where the azimuth would look to.
+    if (std::abs(std::cos(elevation)) < 1e-3F) {
+        camera.up = {-std::sin(azimuth), 0.0F, -std::cos(azimuth)};
+    }
+    camera.verticalFovRad = kFovRad;
+
+    const glm::mat3 frame = frameOf(camera);
+    const float tangentY = std::tan(0.5F * kFovRad) / kMargin;
+    const glm::vec2 tangent(tangentY * aspect, tangentY);
+    float distance = 0.0F;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::vec3 local =
+            glm::transpose(frame) * (glm::mix(box.min, box.max, side) - camera.target);
+        distance = std::max({distance, local.z + std::abs(local.x) / tangent.x,
+                             local.z + std::abs(local.y) / tangent.y});
+    }
+    const float radius = 0.5F * glm::length(box.size());
+    camera.position = camera.target + distance * frame[2];
+    camera.nearM = std::max(distance - 4.0F * radius, 0.01F * distance);
+    camera.farM = distance + 4.0F * radius;
+    return camera;
+}
+
+PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int resolution,
+                      glm::ivec2 sizePx) {
+    const float voxelSize = box.size().x / static_cast<float>(resolution);
+    const float aspect = static_cast<float>(sizePx.x) / static_cast<float>(sizePx.y);
+    const glm::vec3 eye = (camera.position - box.min) / voxelSize;
+    const glm::vec3 towardsCentre = glm::abs(0.5F * static_cast<float>(resolution) - eye);
+
+    PlaneView view;
+    view.axis = Axis::X;
+    if (towardsCentre.y > towardsCentre.x) view.axis = Axis::Y;
+    if (towardsCentre.z > std::max(towardsCentre.x, towardsCentre.y)) view.axis = Axis::Z;
+    view.eye = localFromVolume(view.axis, eye);
+    GFXREPRO_ASSERT(view.eye.z < 0.0F || view.eye.z > static_cast<float>(resolution));
+    view.clipFromVoxel = clipFromWorld(camera, aspect) * glm::translate(glm::mat4(1.0F), box.min) *
+                         glm::scale(glm::mat4(1.0F), glm::vec3(voxelSize));
+
+    const glm::mat3 frame = frameOf(camera);
+    const float halfHeight = std::tan(0.5F * camera.verticalFovRad);
+    const glm::vec3 right = frame[0] * halfHeight * aspect;
+    const glm::vec3 up = frame[1] * halfHeight;
+    view.rayOrigin = localFromVolume(view.axis, -frame[2] - right - up);
+    view.rayRight = localFromVolume(view.axis, right) * (2.0F / static_cast<float>(sizePx.x));
+    view.rayUp = localFromVolume(view.axis, up) * (2.0F / static_cast<float>(sizePx.y));
+    return view;
+}
+
+VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout,
+                               const scene::Box& box, const scene::Camera& camera,
+                               glm::ivec2 sizePx, const DrawSettings& settings)
+    : layout_(layout),
+      settings_(settings),
+      view_(planeViewOf(camera, box, layout.resolution(), sizePx)),
+      eyeVolume_(volumeFromLocal(view_.axis, view_.eye)),
+      light_(headlight(camera)) {
+    GFXREPRO_ASSERT(settings.mode != DrawMode::None);
+    const bool isOpaque = settings.mode == DrawMode::Opaque;
+    gl::Defines defines = layout.defines();
+    defines["AXIS"] = static_cast<int>(view_.axis);
+    defines["COLORS"] = settings.value == VoxelValue::Color ? 1 : 0;
+    defines["CUT"] = settings.cut ? 1 : 0;
+    defines["FRONT_TO_BACK"] = isOpaque ? 1 : 0;
+    defines["HEAD"] = settings.mode == DrawMode::Mixed ? 1 : 0;
+    defines["HEAD_UNIT"] = kHeadUnit;
+    defines["HITS_UNIT"] = kHitsUnit;
+    defines["NORMALS"] = settings.value == VoxelValue::Normal ? 1 : 0;
+    defines["SECOND"] = settings.hasSecond ? 1 : 0;
+    defines["SECOND_UNIT"] = kSecondUnit;
+    defines["SHEETS_UNIT"] = kSheetsUnit;
+    planes_ = gl::Program(shaders,
+                          {"voxelization/proxy_plane.vert.glsl",
+                           isOpaque ? "voxelization/volume_opaque.frag.glsl"
+                                    : "voxelization/volume_transparent.frag.glsl"},
+                          defines);
+    color_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
+    const std::array<const gl::Texture*, 1> color{&color_};
+    colorTarget_ = gl::Framebuffer(color);
+    if (!isOpaque) return;
+    shade_ = gl::Program(
+        shaders, {"voxelization/fullscreen.vert.glsl", "voxelization/volume_shade.frag.glsl"},
+        defines);
+    hits_ = gl::Texture::make2D(GL_R32UI, sizePx);
+    depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
+    const std::array<const gl::Texture*, 1> hits{&hits_};
+    hitTarget_ = gl::Framebuffer(hits, &depth_);
+}
+
+void VolumeRenderer::draw(const gl::Texture& sheets, const gl::Texture* second,
+                          const gl::Texture* head) {
+    sheets.bind(kSheetsUnit);
+    GFXREPRO_ASSERT(settings_.hasSecond == (second != nullptr));
+    if (second) second->bind(kSecondUnit);
+    GFXREPRO_ASSERT((settings_.mode == DrawMode::Mixed) == (head != nullptr));
+    if (head) head->bind(kHeadUnit);
+    vertexArray_.bind();
+    glDisable(GL_CULL_FACE);
+    if (settings_.mode == DrawMode::Opaque) {
+        drawOpaque();
+    } else {
+        drawTransparent();
+    }
+}
+
+void VolumeRenderer::drawOpaque() {
+    hits_.clearToZero();
+    hitTarget_.clearDepth(1.0F);
+    hitTarget_.bind();
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    drawPlanes(planes_);
+
+    colorTarget_.bind();
+    glDisable(GL_DEPTH_TEST);
+    hits_.bind(kHitsUnit);
+    shade_.use();
+    setView(shade_);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+// [zju2005] Sec. 2.4.2: alpha blending, back to front; premultiplied, since a slice may blend
+// several voxels.
+void VolumeRenderer::drawTransparent() {
+    colorTarget_.clearColour(0, glm::vec4(1.0F));
+    colorTarget_.bind();
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    drawPlanes(planes_);
+    glDisable(GL_BLEND);
+}
+
+void VolumeRenderer::drawPlanes(const gl::Program& program) const {
+    program.use();
+    setView(program);
+    program.set("clipFromVoxel", view_.clipFromVoxel);
+    program.set("eye", view_.eye);
+    program.set("rayOrigin", view_.rayOrigin);
+    program.set("rayRight", view_.rayRight);
+    program.set("rayUp", view_.rayUp);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, planeCount());
+}
+
+/// What the shaders use, each its part.
+void VolumeRenderer::setView(const gl::Program& program) const {
+    if (program.isActive("light")) program.set("light", light_);
+    if (program.isActive("eyeVolume")) program.set("eyeVolume", eyeVolume_);
+    if (program.isActive("opacity")) program.set("opacity", settings_.opacity);
+    if (!settings_.cut) return;
+    const auto n = static_cast<float>(layout_.resolution());
+    if (program.isActive("cutLow"))
+        program.set("cutLow", glm::ivec3(glm::round(settings_.cut->min * n)));
+    if (program.isActive("cutHigh"))
+        program.set("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
+}
+
+std::vector<std::uint32_t> VolumeRenderer::readHits() const {
+    return hits_.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+}
+
+}  // namespace gfxrepro::voxelization

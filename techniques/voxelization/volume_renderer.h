@@ -1,0 +1,84 @@
+// Draws a worksheet by proxy planes. [zju2005] Sec. 2.2.2, 2.3.3, 2.4.2; figures 2.6 to 2.10.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "runner/gl/program.h"
+#include "runner/image/image.h"
+#include "runner/scene/scene.h"
+#include "techniques/voxelization/grid_source.h"
+
+namespace gfxrepro::voxelization {
+
+enum class DrawMode {
+    None,
+    Opaque,       // the first voxel of each ray, shaded
+    Transparent,  // all voxels blended, Sec. 2.4.2
+    Mixed,        // the same together with a CT/MR volume that fills the grid's box
+};
+
+/// What a drawing shows beside the grid.
+struct DrawSettings {
+    DrawMode mode = DrawMode::Opaque;
+    VoxelValue value = VoxelValue::Occupancy;
+    float opacity = 0.1F;           // of a voxel that a ray passes along an axis
+    std::optional<scene::Box> cut;  // left out; in fractions of the grid's box
+    bool hasSecond = false;         // a second grid is drawn too, common voxels red (figure 2.8)
+};
+
+/// A perspective view of the whole box: azimuth 0 looks along −z, 90 along −x; elevation from
+/// above.
+scene::Camera orbitCamera(const scene::Box& box, double azimuthDeg, double elevationDeg,
+                          float aspect);
+
+/// The camera in the terms of the proxy planes.
+struct PlaneView {
+    Axis axis;  // of the planes' normals: nearest to the view direction
+    glm::mat4 clipFromVoxel{1.0F};
+    // Local to the axis, in voxels.
+    glm::vec3 eye{0.0F};
+    glm::vec3 rayOrigin{0.0F};  // direction through the window's lower left corner
+    glm::vec3 rayRight{0.0F};   // what a pixel to the right adds
+    glm::vec3 rayUp{0.0F};
+};
+/// The eye must lie before all planes or behind all of them: asserted. orbitCamera() sees to it.
+PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int resolution,
+                      glm::ivec2 sizePx);
+
+class VolumeRenderer {
+  public:
+    /// For grids of this layout and box, seen by this camera.
+    VolumeRenderer(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout,
+                   const scene::Box& box, const scene::Camera& camera, glm::ivec2 sizePx,
+                   const DrawSettings& settings);
+
+    /// `second` is needed with hasSecond, `head` (RGBA8 3D, see phantom.h) with DrawMode::Mixed.
+    void draw(const gl::Texture& sheets, const gl::Texture* second, const gl::Texture* head);
+
+    int planeCount() const { return layout_.resolution(); }
+    const PlaneView& view() const { return view_; }
+    /// Linear RGB; waits for the device.
+    image::ImageF readImage() const { return color_.readImage(3); }
+    /// Opaque only: a word a pixel, rows from the bottom. 0: nothing hit; else
+    /// x | y << 10 | z << 20 of the voxel | (axis of the face entered + 1) << 30.
+    std::vector<std::uint32_t> readHits() const;
+
+  private:
+    void drawPlanes(const gl::Program& program) const;
+    void drawOpaque();
+    void drawTransparent();
+    void setView(const gl::Program& program) const;
+
+    WorksheetLayout layout_;
+    DrawSettings settings_;
+    PlaneView view_;
+    glm::vec3 eyeVolume_{0.0F};  // voxels
+    glm::vec3 light_{0.0F};
+    gl::Program planes_, shade_;
+    gl::Texture hits_, depth_, color_;
+    gl::Framebuffer hitTarget_, colorTarget_;
+    gl::VertexArray vertexArray_;
+};
+
+}  // namespace gfxrepro::voxelization
