@@ -140,7 +140,7 @@ void print(const Json& found) {
                found["assets"]["exists"].get<bool>() ? "" : " (not there)");
     for (const char* state : {"real", "stand-in", "generated", "missing"}) {
         const std::vector<std::string> names = namesInState(found["scenes"], state);
-        if (!names.empty()) fmt::print("  {:<9}{}\n", state, fmt::join(names, ", "));
+        if (!names.empty()) fmt::print("  {:<11}{}\n", state, fmt::join(names, ", "));
     }
     fmt::print("disk       {:.1f} GiB free here\n",
                found["free_disk_bytes"].get<double>() / kBytesPerGib);

@@ -46,7 +46,8 @@ Rows configs() {
 
 Rows scenes(const std::string& assets) {
     Rows rows;
-    for (const auto& [name, entry] : openCatalog(assets).entries()) {
+    const scene::Catalog catalog = openCatalog(assets);
+    for (const auto& [name, entry] : catalog.entries()) {
         rows.push_back({name, entry.doc});
     }
     return rows;

@@ -129,5 +129,43 @@ TEST(Run, ResumeRefusesAChangedConfig) {
                                " changed; start a new run instead\n");
 }
 
+/// `reproduce` over a data folder with one paper whose claim asks for `minimum`.
+ProcessResult reproduceDemo(const TemporaryFolder& folder, const std::string& minimum,
+                            const std::string& behaviours) {
+    folder.write("configs/scenes/README.md", "empty");
+    folder.write(
+        "configs/demo2026/table-1.yaml",
+        "table: demo2026/1\ntitle: A demonstration\ntechnique: mock\n"
+        "params: {number: 5}\nsweep: {behaviour: " +
+            behaviours +
+            "}\n"
+            "layout:\n  rows: behaviour\n  columns:\n    n: {metric: number, format: "
+            "\"{median:.0f}\"}\n"
+            "claims:\n  D1: {says: the number is large, bound: n, at: {behaviour: ok}, above: " +
+            minimum + "}\n");
+    return runProgram({GFXREPRO_MOCK_PROGRAM, "reproduce", "demo2026/1", "--device", "software",
+                       "--quiet", "--out", (folder.path() / "run").string()},
+                      {"GFXREPRO_DATA=" + folder.path().string()});
+}
+
+TEST(Reproduce, ExitCodesFollowClaimsAndCases) {
+    const TemporaryFolder holds;
+    const ProcessResult well = reproduceDemo(holds, "4", "[ok]");
+    EXPECT_EQ(well.exitCode, 0) << well.err;
+    EXPECT_NE(well.out.find("claims: 1 holds\n"), std::string::npos) << well.out;
+    for (const char* file : {"records.csv", "claims.csv", "junit.xml", "report.html",
+                             "tables/demo2026-1.csv", "tables/demo2026-1.md"}) {
+        EXPECT_TRUE(fs::exists(holds.path() / "run" / file)) << file;
+    }
+    const TemporaryFolder fails;
+    const ProcessResult failing = reproduceDemo(fails, "6", "[ok]");
+    EXPECT_EQ(failing.exitCode, 1) << failing.err;
+    EXPECT_NE(failing.out.find("demo2026/1 D1 fails: the number is large; measured 5"),
+              std::string::npos)
+        << failing.out;
+    const TemporaryFolder incomplete;
+    EXPECT_EQ(reproduceDemo(incomplete, "4", "[ok, throw]").exitCode, 4);
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

@@ -67,8 +67,8 @@ TEST(Usage, UnknownTechniqueAndScene) {
 
 TEST(Usage, UnknownPaperAndKind) {
     const TemporaryFolder folder;
-    EXPECT_EQ(refusal({"reproduce", "zju2005/2.11"}, folder),
-              "gfxrepro: unknown paper or table 'zju2005/2.11'; did you mean 'zju2005/2.1'?; "
+    EXPECT_EQ(refusal({"reproduce", "zju2006/2.1"}, folder),
+              "gfxrepro: unknown paper or table 'zju2006/2.1'; did you mean 'zju2005/2.1'?; "
               "'gfxrepro list tables' shows all\n");
     EXPECT_EQ(refusal({"list", "scene"}, folder),
               "gfxrepro: list: unknown kind 'scene'; did you mean 'scenes'?; known: configs, "
