@@ -90,8 +90,12 @@ void expectRefusedOrLoaded(const Load& load, const fs::path& path, std::uintmax_
     } catch (const std::exception& error) {
         ADD_FAILURE() << "not an Error: " << error.what();
     }
-    constexpr std::size_t kAlwaysAllowedBytes = std::size_t{256} << 20;
-    EXPECT_LE(test::peakMemoryBytes(), kAlwaysAllowedBytes + 4000 * folderBytes);
+    // OpenEXR reserves what an unknown attribute declares, up to 2 GiB, and touches it only as far
+    // as the file reaches; attribute sizes that disagree with their types lead it to such a place.
+    const bool isExr = &load == &kReadExr;
+    const std::size_t alwaysAllowedBytes =
+        (std::size_t{256} << 20) + (isExr ? std::size_t{1} << 31 : 0);
+    EXPECT_LE(test::peakMemoryBytes(), alwaysAllowedBytes + 4000 * folderBytes);
 }
 
 std::string mutated(std::string content, Random& random) {
@@ -149,7 +153,7 @@ void fuzz(const Load& load, const fs::path& seed, std::uint64_t number, const fs
     expectRefusedOrLoaded(load, seed, content.size() + neighbours);
     if (content.size() > kMaxMutatedBytes) return;
     Random random(number);
-    const fs::path path = folder / ("mutated" + seed.extension().string());
+    const fs::path path = folder / ("mutated" + seed.filename().extension().string());
     for (int i = 0; i < kMutations; ++i) {
         const std::string variant = mutated(content, random);
         std::ofstream(path, std::ios::binary) << variant;
