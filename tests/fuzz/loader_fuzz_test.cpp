@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Load = std::function<void(const fs::path&)>;
 
-constexpr int kMutations = 6;
+constexpr int kMutations = 5;
 constexpr std::uintmax_t kMaxMutatedBytes = 200'000;  // larger seeds are loaded as they are only
 
 bool isFinite(const glm::vec3& v) {
@@ -89,8 +90,12 @@ void expectRefusedOrLoaded(const Load& load, const fs::path& path, std::uintmax_
     } catch (const std::exception& error) {
         ADD_FAILURE() << "not an Error: " << error.what();
     }
-    constexpr std::size_t kAlwaysAllowedBytes = std::size_t{256} << 20;
-    EXPECT_LE(test::peakMemoryBytes(), kAlwaysAllowedBytes + 4000 * folderBytes);
+    // OpenEXR reserves what an unknown attribute declares, up to 2 GiB, and touches it only as far
+    // as the file reaches; attribute sizes that disagree with their types lead it to such a place.
+    const bool isExr = &load == &kReadExr;
+    const std::size_t alwaysAllowedBytes =
+        (std::size_t{256} << 20) + (isExr ? std::size_t{1} << 31 : 0);
+    EXPECT_LE(test::peakMemoryBytes(), alwaysAllowedBytes + 4000 * folderBytes);
 }
 
 std::string mutated(std::string content, Random& random) {
@@ -126,31 +131,38 @@ std::string mutated(std::string content, Random& random) {
     return content;
 }
 
-/// The seed's neighbours, so that a mutated file still finds what it names.
-std::uintmax_t linkNeighbours(const fs::path& seed, const fs::path& folder) {
+/// The neighbours that the seed names, so that a mutated file still finds them.
+std::uintmax_t linkNeighbours(const fs::path& seed, const std::string& content,
+                              const fs::path& folder) {
     std::uintmax_t bytes = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(seed.parent_path())) {
-        if (!entry.is_regular_file() || entry.path() == seed) continue;
+        const bool isNamed = content.find(entry.path().filename().string()) != std::string::npos;
+        if (!isNamed || !entry.is_regular_file() || entry.path() == seed) continue;
+        fs::remove(folder / entry.path().filename());  // another seed's
         fs::create_symlink(entry.path(), folder / entry.path().filename());
         bytes += entry.file_size();
     }
     return bytes;
 }
 
-void fuzz(const Load& load, const fs::path& seed, std::uint64_t number, bool hasNeighbours) {
+/// Loads the seed and mutations of it, which are written into `folder`. What fails is kept.
+void fuzz(const Load& load, const fs::path& seed, std::uint64_t number, const fs::path& folder) {
+    if (testing::Test::HasFailure()) return;  // the first one is enough to look at
     const std::string content = readFile(seed);
-    const test::TemporaryFolder folder;
-    const std::uintmax_t neighbours = hasNeighbours ? linkNeighbours(seed, folder.path()) : 0;
+    const std::uintmax_t neighbours = linkNeighbours(seed, content, folder);
     expectRefusedOrLoaded(load, seed, content.size() + neighbours);
     if (content.size() > kMaxMutatedBytes) return;
     Random random(number);
+    const fs::path path = folder / ("mutated" + seed.filename().extension().string());
     for (int i = 0; i < kMutations; ++i) {
         const std::string variant = mutated(content, random);
-        const fs::path path = folder.write(seed.filename().string(), variant);
+        std::ofstream(path, std::ios::binary) << variant;
         expectRefusedOrLoaded(load, path, variant.size() + neighbours);
         if (testing::Test::HasFailure()) {
-            FAIL() << seed << " mutation " << i << " of seed " << number << ", " << variant.size()
-                   << " bytes";
+            const fs::path kept =
+                fs::temp_directory_path() / ("gfxrepro-fuzz" + path.extension().string());
+            fs::copy_file(path, kept, fs::copy_options::overwrite_existing);
+            FAIL() << seed << " mutation " << i << " of seed " << number << ", kept as " << kept;
         }
     }
 }
@@ -194,12 +206,13 @@ TEST(LoaderFuzz, Ply) {
               "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
               "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
               "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n");
+    const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed :
          seeds("ply", {own.path() / "binary.ply", own.path() / "ascii.ply"})) {
         if (hasExtension(seed, {".ply"})) {
             // These are small, and the format is our own parser's: more of them.
-            for (int round = 0; round < 4; ++round) fuzz(kLoadPly, seed, ++number, false);
+            for (int round = 0; round < 2; ++round) fuzz(kLoadPly, seed, ++number, work.path());
         }
     }
 }
@@ -211,10 +224,11 @@ TEST(LoaderFuzz, Obj) {
         own.write("a.obj",
                   "mtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\n"
                   "f 1/1/1 2/1/1 3/1/1\nf -1 -2 \\\n -3\nf 1//1 2//1 3//1\n");
+    const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& each : seeds("obj", {seed})) {
         if (hasExtension(each, {".obj"})) {
-            for (int round = 0; round < 3; ++round) fuzz(kLoadObj, each, ++number, true);
+            for (int round = 0; round < 2; ++round) fuzz(kLoadObj, each, ++number, work.path());
         }
     }
 }
@@ -222,20 +236,22 @@ TEST(LoaderFuzz, Obj) {
 TEST(LoaderFuzz, Gltf) {
     const test::TemporaryFolder own;
     scene::saveGlb(own.path() / "a.glb", smallScene());
+    const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("gltf", {own.path() / "a.glb"})) {
-        if (hasExtension(seed, {".gltf", ".glb"})) fuzz(kLoadGltf, seed, ++number, true);
+        if (hasExtension(seed, {".gltf", ".glb"})) fuzz(kLoadGltf, seed, ++number, work.path());
     }
     for (int round = 0; round < 100; ++round)
-        fuzz(kLoadGltf, own.path() / "a.glb", ++number, false);
+        fuzz(kLoadGltf, own.path() / "a.glb", ++number, work.path());
 }
 
 TEST(LoaderFuzz, Png) {
     const test::TemporaryFolder own;
     image::writePng(own.path() / "a.png", image::Image16(9, 5, 3, 1234));
+    const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("png", {own.path() / "a.png"})) {
-        fuzz(kReadPng, seed, ++number, false);
+        fuzz(kReadPng, seed, ++number, work.path());
     }
 }
 
@@ -244,9 +260,10 @@ TEST(LoaderFuzz, Exr) {
     image::ExrImage exr;
     exr.add(image::ImageF(9, 5, 3, 0.5F), {"R", "G", "B"});
     image::writeExr(own.path() / "a.exr", exr);
+    const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("exr", {own.path() / "a.exr"})) {
-        fuzz(kReadExr, seed, ++number, false);
+        fuzz(kReadExr, seed, ++number, work.path());
     }
 }
 
@@ -257,10 +274,11 @@ TEST(LoaderFuzz, AnythingToAnyLoader) {
     std::vector<fs::path> all = seeds("invalid_misc", {text, own.write("empty", "")});
     const std::vector<fs::path> others = seeds("stl", {});
     all.insert(all.end(), others.begin(), others.end());
+    const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : all) {
         for (const Load& load : {kLoadPly, kLoadObj, kLoadGltf, kReadPng, kReadExr}) {
-            fuzz(load, seed, ++number, false);
+            fuzz(load, seed, ++number, work.path());
         }
     }
 }
