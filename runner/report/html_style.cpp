@@ -68,11 +68,13 @@ pre { background: var(--panel); border: 1px solid var(--rule); padding: .5rem .7
 ul { margin: .4rem 0; padding-left: 1.2rem; } li { margin: .15rem 0; overflow-wrap: anywhere; }
 @media (max-width: 40rem) { main { padding: 1.2rem .8rem 3rem; } th, td { padding: .25rem .35rem; }
   .facts { grid-template-columns: 1fr; } .facts dd { margin-bottom: .35rem; } }
+@page { margin: 15mm; }
 @media print { :root { color-scheme: light; --paper: #fff; --ink: #000; --soft: #444; --rule: #bbb;
     --rule-strong: #000; --panel: #fff; --link: #000; --holds: #000; --fails: #000;
     --ambiguous: #000; --unmeasured: #000; --not-applicable: #000; --holds-bg: #eee;
     --fails-bg: #fff; --ambiguous-bg: #fff; --unmeasured-bg: #fff; }
-  body { font-size: 10pt; } main { max-width: none; padding: 0; } .scroll { overflow: visible; }
+  body { font-size: 10pt; } .results { font-size: 7.5pt; } .results th, .results td { padding: 2pt 3pt; }
+  main { max-width: none; padding: 0; } .scroll { overflow: visible; }
   tr, figure { break-inside: avoid; } h2, h3 { break-after: avoid; }
   .fails { border-color: #000; } section { margin-top: 1.6rem; } }
 )css";

@@ -68,7 +68,7 @@ TEST(Claims, Order) {
     result = judgePowers("order: a < b < c-c", records);  // b = c at n = 4
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "smallest gap 0 %");
-    EXPECT_EQ(result.reason, "least at n=4; one sample");
+    EXPECT_EQ(result.reason, "worst at n=4; one sample");
     EXPECT_EQ(judgePowers("order: b < a", records).verdict, Verdict::Fails);
     EXPECT_EQ(judgePowers("order: a < b < c-c, at: {n: [1, 2]}", records).verdict, Verdict::Holds);
 }
@@ -142,7 +142,7 @@ TEST(Claims, Bound) {
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "8.5");
     EXPECT_EQ(result.required, "a + b ≤ 8");
-    EXPECT_EQ(result.reason, "least at n=8; one sample");
+    EXPECT_EQ(result.reason, "worst at n=8; one sample");
 }
 
 TEST(Claims, ExactAndTolerance) {
@@ -249,7 +249,7 @@ claims:
     const ClaimResult result = judgeOne(body, maker.records());
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "exponent 0.5");
-    EXPECT_EQ(result.reason, "least at method=fast; one sample");
+    EXPECT_EQ(result.reason, "worst at method=fast; one sample");
 }
 
 std::string ratioBody(const std::string& between) {

@@ -159,6 +159,31 @@ TEST(Table, TimesOfTheQualityLaneStayOut) {
     EXPECT_EQ(table.rows[1].cells[0].measured, "7");
 }
 
+/// Voided by the equal-work guard, say: the number is there, but it is not shown.
+TEST(Table, DoubtfulMeasurementIsNoNumber) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").add("gpu_time_ms", {4.0, 5.0}, "draw");
+    std::vector<Record> records = maker.records();
+    for (Record& record : records) {
+        record.status = Status::Ambiguous;
+        record.message = "the image is blank";
+    }
+    const Table table = buildTable(experimentFrom(kPlain), records);
+    EXPECT_EQ(table.rows[1].cells[1].measured, "ambiguous");
+    EXPECT_EQ(table.rows[1].cells[1].message, "the image is blank");
+    EXPECT_TRUE(table.rows[1].cells[1].values.empty());
+    records[0].status = Status::Ok;
+    EXPECT_EQ(buildTable(experimentFrom(kPlain), records).rows[1].cells[1].measured,
+              "4.0 (partial: ambiguous)");
+}
+
+TEST(Table, OtherExperimentsArePassedOver) {
+    std::vector<Record> records = duckAndBunny().records();
+    for (Record& record : records) record.table = "zju2005/9.8";
+    const Table table = buildTable(experimentFrom(kPlain), records);
+    EXPECT_EQ(table.rows[0].cells[1].status, Status::Missing);
+}
+
 const char* const kMethods = R"(
 sweep:
   scene: [city, tree]

@@ -122,5 +122,16 @@ TEST(Writers, ReportIsOneSafeFile) {
     }
 }
 
+TEST(Writers, LargeGalleriesAreLinked) {
+    const Written run;
+    const auto image = run.folder.write("images/a b.png", "\x89PNG");
+    appendImages(run.folder.path(), {{"case", "zju2005/9.9", 0, "s", "images/a b.png", "", "t"}});
+    std::filesystem::resize_file(image, 20'000'001);
+    writeReport(run.folder.path(), {experiment()}, records(), {}, kContext);
+    const std::string html = run.read("report.html");
+    EXPECT_THAT(html, HasSubstr("<img src=\"images/a b.png\""));
+    EXPECT_LT(html.size(), 100'000u);
+}
+
 }  // namespace
 }  // namespace gfxrepro::report
