@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "techniques/voxelization/binvox.h"
 #include "techniques/voxelization/implicit.h"
 #include "techniques/voxelization/parametric.h"

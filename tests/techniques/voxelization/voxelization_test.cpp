@@ -1,1 +1,177 @@
-#include <gtest/gtest.h>
+// The technique as a whole: parameters, metrics, files.
+#include "techniques/voxelization/voxelization.h"
+
+#include <fstream>
+
+#include "techniques/voxelization/binvox.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+using test::errorText;
+
+config::Params paramsOf(const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'voxelization'");
+}
+
+class VoxelizationTest : public VoxelizerTest {
+  protected:
+    std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene,
+                                      const std::filesystem::path& folder = {}) {
+        config::Params params = paramsOf(yaml);
+        const auto technique = kVoxelization.create(params);
+        technique::SetupContext context = setupContext();
+        context.scene = &scene;
+        technique->setup(context);
+        technique::FrameContext frame{0, 1, profiler()};
+        technique->render(frame);
+        passes_ = profiler().collect();
+        MetricRecorder recorder(folder);
+        technique->record(recorder);
+        return recorder.metrics;
+    }
+    bool hasPass(const std::string& name, gl::PassTime::Clock clock) const {
+        for (const gl::PassTime& pass : passes_) {
+            if (pass.pass == name && pass.clock == clock) return true;
+        }
+        return false;
+    }
+
+    std::vector<gl::PassTime> passes_;
+    const scene::Scene sphere_ = scene::sceneOf(shapes::sphere(glm::vec3(0.0F), 1.0F, 3));
+};
+
+TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = paramsOf(yaml);
+            Voxelization technique(params);
+        });
+    };
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("resolution: 100"),
+              "case.yaml:1:13: resolution: 100 is not allowed; allowed: 32, 64, 128, 256, 512, "
+              "1024");
+    EXPECT_EQ(message("voxel_bits: 4"),
+              "case.yaml:1:13: voxel_bits: 4 is not allowed; allowed: 1, 8, 16, 32");
+    EXPECT_EQ(message("value: normal"),
+              "case.yaml:1:8: a voxel of 1 bit says occupancy only; allowed with 'value: normal' "
+              "and 'value: color': voxel_bits 8, 16 or 32");
+    EXPECT_EQ(message("{fill: solid, rule: conservative}"),
+              "case.yaml:1:21: 'fill: solid' decides by crossings of scan lines; leave 'rule' out "
+              "or give 'thin'");
+    EXPECT_EQ(message("{fill: solid, rule: thin}"), "no error");
+    EXPECT_EQ(message("{fill: solid, method: direct}"),
+              "case.yaml:1:23: 'fill: solid' needs 'method: worksheet'");
+    EXPECT_EQ(message("{fill: solid, voxel_bits: 8, value: normal}"),
+              "case.yaml:1:37: 'fill: solid' needs 'value: occupancy'");
+    EXPECT_EQ(message("{method: slices, rule: thin}"),
+              "case.yaml:1:24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'");
+    EXPECT_EQ(message("box_min: [0, 0, 0]"),
+              "case.yaml:1:10: box_min and box_max must be given together");
+    EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 2, 1]}"),
+              "case.yaml:1:31: the box must be cubic and not empty; it is 1 × 2 × 1");
+    EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 1, 1]}"), "no error");
+}
+
+TEST_F(VoxelizationTest, NeedsTriangles) {
+    EXPECT_EQ(errorText([&] { run("{}", scene::Scene{.name = "void"}); }),
+              "scene 'void' has no triangles to voxelize");
+}
+
+TEST_F(VoxelizationTest, RecordsTheGrid) {
+    const auto metrics = run("{resolution: 64, voxel_bits: 8, rule: thin, compare: true}", sphere_);
+    EXPECT_EQ(metrics.at("triangles"), 1280.0);
+    EXPECT_EQ(metrics.at("vertices"), 642.0);
+    EXPECT_EQ(metrics.at("voxel_bits"), 8.0);
+    EXPECT_EQ(metrics.at("worksheet_bytes"), 64.0 * 64 * 64);
+    EXPECT_EQ(metrics.at("missed_thin_voxels"), 0.0);
+    EXPECT_GT(metrics.at("missed_conservative_voxels"), 0.0);
+    EXPECT_EQ(metrics.at("added_conservative_voxels"), 0.0);
+    EXPECT_GT(metrics.at("memory_bytes"), 3.0 * 64 * 64 * 64);
+    for (const char* stage : {"rasterization", "texelization", "synthesis", "voxelization"}) {
+        EXPECT_TRUE(hasPass(stage, gl::PassTime::Clock::Gpu)) << stage;
+    }
+}
+
+TEST_F(VoxelizationTest, TimesPreprocessAndReadBackEachFrame) {
+    run("{resolution: 32, split: every_frame, read_back: true}", sphere_);
+    EXPECT_TRUE(hasPass("preprocess", gl::PassTime::Clock::Cpu));
+    EXPECT_TRUE(hasPass("read_back", gl::PassTime::Clock::Cpu));
+    const auto metrics = run("{resolution: 32, method: depth_only}", sphere_);
+    EXPECT_TRUE(hasPass("draw_depth", gl::PassTime::Clock::Gpu));
+    EXPECT_FALSE(metrics.contains("voxels"));
+}
+
+TEST_F(VoxelizationTest, DigestTellsGridsApart) {
+    const auto first = run("{resolution: 32}", sphere_);
+    EXPECT_EQ(run("{resolution: 32}", sphere_).at("digest"), first.at("digest"));
+    EXPECT_EQ(run("{resolution: 32, method: direct}", sphere_).at("digest"), first.at("digest"));
+    EXPECT_NE(run("{resolution: 32, fill: solid}", sphere_).at("digest"), first.at("digest"));
+}
+
+TEST_F(VoxelizationTest, WritesABinvoxFileOfTheGivenBox) {
+    const test::TemporaryFolder folder;
+    const auto metrics = run(
+        "{resolution: 64, fill: solid, export_binvox: true, box_min: [-2, -1.5, -1], box_max: [1, "
+        "1.5, 2]}",
+        sphere_, folder.path());
+    const BinvoxGrid file = readBinvox(folder.path() / "grid.binvox");
+    EXPECT_EQ(file.translate, glm::vec3(-2, -1.5F, -1));
+    EXPECT_EQ(file.scale, 3.0F);
+    EXPECT_EQ(static_cast<double>(file.grid.countFull()), metrics.at("voxels"));
+    EXPECT_TRUE(file.grid.isFull({42, 32, 21}));   // the origin
+    EXPECT_FALSE(file.grid.isFull({21, 32, 42}));  // axes exchanged: outside
+}
+
+TEST(BinvoxTest, ComesBackAsWritten) {
+    const test::TemporaryFolder folder;
+    DenseGrid grid(WorksheetLayout(32, 1));
+    Random random(1);
+    for (int i = 0; i < 5000; ++i) {
+        const auto x = random.index(32), y = random.index(32), z = random.index(32);
+        grid.set(glm::ivec3(x, y, z), 1);
+    }
+    writeBinvox(folder.path() / "a.binvox", grid, {glm::vec3(1, 2, 3), glm::vec3(5, 6, 7)});
+    const BinvoxGrid read = readBinvox(folder.path() / "a.binvox");
+    EXPECT_EQ(read.grid, grid);
+    EXPECT_EQ(read.translate, glm::vec3(1, 2, 3));
+    EXPECT_EQ(read.scale, 4.0F);
+}
+
+// y runs fastest, then z, then x.
+TEST(BinvoxTest, HasTheFormatsBytes) {
+    const test::TemporaryFolder folder;
+    DenseGrid grid(WorksheetLayout(32, 1));
+    grid.set({0, 2, 0}, 1);
+    grid.set({0, 0, 1}, 1);
+    writeBinvox(folder.path() / "a.binvox", grid, {glm::vec3(0.0F), glm::vec3(0.5F)});
+    const std::string content = readFile(folder.path() / "a.binvox");
+    const std::string header = "#binvox 1\ndim 32 32 32\ntranslate 0 0 0\nscale 0.5\ndata\n";
+    ASSERT_EQ(content.substr(0, header.size()), header);
+    EXPECT_EQ(content.substr(header.size(), 8), std::string("\0\2\1\1\0\35\1\1", 8));
+    EXPECT_EQ(content.substr(header.size() + 8, 2), std::string("\0\377", 2));
+}
+
+TEST(BinvoxTest, RefusesOtherFiles) {
+    const test::TemporaryFolder folder;
+    const auto message = [&](const std::string& content) {
+        const auto path = folder.write("a.binvox", content);
+        return errorText([&] { readBinvox(path); }, folder.path());
+    };
+    EXPECT_EQ(message("solid x\n"),
+              "DIR/a.binvox: the first line must be '#binvox 1', found 'solid x'");
+    EXPECT_EQ(message("#binvox 1\ndim 32 32 16\ndata\n"),
+              "DIR/a.binvox: dim must be three times one power of two, 32 … 1024; found 32 32 16");
+    EXPECT_EQ(message("#binvox 1\nsize 3\n"),
+              "DIR/a.binvox: unknown header line 'size'; dim, translate, scale and data are "
+              "allowed");
+    EXPECT_EQ(message("#binvox 1\ndim 32 32 32\ndata\n\1\5"),
+              "DIR/a.binvox: the data end after 5 of 32768 voxels");
+    EXPECT_EQ(message("#binvox 1\ndim 32 32 32\ndata\n\7\5"),
+              "DIR/a.binvox: byte 28: value 7 times 5 after 0 of 32768 voxels");
+}
+
+}  // namespace
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,241 @@
+// The rules of surface voxelization against the CPU references, voxel by voxel.
+#include <algorithm>
+
+#include "runner/scene/load.h"
+#include "techniques/voxelization/voxel_value.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+using RulesTest = VoxelizerTest;
+
+struct NamedMesh {
+    const char* name;
+    scene::Mesh mesh;
+};
+
+/// All closed.
+std::vector<NamedMesh> watertightMeshes() {
+    return {
+        {"cube", shapes::cube(glm::vec3(0.0F), glm::vec3(1.0F, 0.7F, 0.4F))},
+        {"sphere", shapes::sphere(glm::vec3(0.3F), 1.0F, 3)},
+        {"fine sphere", shapes::sphere(glm::vec3(0.1F, 0.2F, 0.3F), 1.0F, 5)},
+        {"torus", shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 60, 30)},
+        {"two spheres", shapes::joined(shapes::sphere(glm::vec3(0.0F), 0.6F, 3),
+                                       shapes::sphere(glm::vec3(0.5F, 0.4F, 0.1F), 0.5F, 2))},
+    };
+}
+
+std::vector<NamedMesh> allMeshes() {
+    std::vector<NamedMesh> meshes = watertightMeshes();
+    meshes.push_back({"random triangles", shapes::randomTriangles(400, 11)});
+    // In a box of 30 voxels' edge: every face on a voxel's face.
+    meshes.push_back({"cube on voxel faces", shapes::cube(glm::vec3(0.0F), glm::vec3(30.0F))});
+    scene::Mesh degenerate;
+    degenerate.positions = {{0, 0, 0}, {1, 1, 1}, {0.5F, 0.5F, 0.5F}, {0.2F, 0.9F, 0.1F}};
+    degenerate.triangles = {{0, 1, 2}, {3, 3, 3}, {0, 3, 3}};
+    meshes.push_back({"segments and a point", degenerate});
+    return meshes;
+}
+
+TEST_F(RulesTest, ConservativeIsTheExactSet) {
+    for (const NamedMesh& shape : allMeshes()) {
+        for (const int n : {32, 64}) {
+            const auto s = settings(n, Rule::Conservative);
+            const DenseGrid expected = reference::conservative(lattice(shape.mesh, s), n);
+            EXPECT_GT(expected.countFull(), 0U);
+            const DenseGrid grid = voxelize(shape.mesh, s).grid;
+            EXPECT_EQ(reference::countMissing(expected, grid), 0U) << shape.name << " " << n;
+            EXPECT_EQ(reference::countMissing(grid, expected), 0U) << shape.name << " " << n;
+        }
+    }
+}
+
+// 6 · 30² + … : a cube of 30 voxels' edge touches the two layers of voxels at each of its faces.
+TEST_F(RulesTest, ConservativeTakesBothSidesOfAVoxelFace) {
+    const scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(30.0F));
+    const DenseGrid grid = voxelize(mesh, settings(32, Rule::Conservative)).grid;
+    EXPECT_EQ(grid.countFull(), 32U * 32U * 32U - 28U * 28U * 28U);
+}
+
+TEST_F(RulesTest, ThinIsTheExactSet) {
+    for (const NamedMesh& shape : allMeshes()) {
+        for (const int n : {32, 128}) {
+            const auto s = settings(n, Rule::Thin);
+            const DenseGrid expected = reference::thin(lattice(shape.mesh, s), n);
+            const DenseGrid grid = voxelize(shape.mesh, s).grid;
+            EXPECT_EQ(reference::countMissing(expected, grid), 0U) << shape.name << " " << n;
+            EXPECT_EQ(reference::countMissing(grid, expected), 0U) << shape.name << " " << n;
+        }
+    }
+}
+
+TEST_F(RulesTest, ThinLeaksNowhere) {
+    for (const NamedMesh& shape : watertightMeshes()) {
+        for (const int n : {32, 64, 128}) {
+            const auto s = settings(n, Rule::Thin);
+            const DenseGrid surface = voxelize(shape.mesh, s).grid;
+            const DenseGrid inside = reference::solid(lattice(shape.mesh, s), n).grid;
+            const DenseGrid outside = reference::outside(surface);
+            std::size_t leaked = 0;
+            std::size_t enclosed = 0;
+            for (int z = 0; z < n; ++z) {
+                for (int y = 0; y < n; ++y) {
+                    for (int x = 0; x < n; ++x) {
+                        const bool isInside = inside.isFull({x, y, z});
+                        if (isInside && outside.isFull({x, y, z})) ++leaked;
+                        if (isInside && !surface.isFull({x, y, z})) ++enclosed;
+                    }
+                }
+            }
+            EXPECT_EQ(leaked, 0U) << shape.name << " " << n;
+            EXPECT_GT(enclosed, 0U) << shape.name << " " << n;
+        }
+    }
+}
+
+// Taking one triangle out lets the flood in: the test above can fail.
+TEST_F(RulesTest, AHoleLeaks) {
+    scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(1.0F));
+    const auto s = settings(32, Rule::Thin);
+    const LatticeMesh closed = lattice(mesh, s);
+    const DenseGrid inside = reference::solid(closed, 32).grid;
+    scene::Mesh open = mesh;
+    open.triangles.pop_back();
+    const DenseGrid outside = reference::outside(voxelize(open, s).grid);
+    EXPECT_TRUE(outside.isFull({16, 16, 16}));
+    EXPECT_TRUE(inside.isFull({16, 16, 16}));
+}
+
+TEST_F(RulesTest, RasterizedStaysWithinConservative) {
+    for (const NamedMesh& shape : watertightMeshes()) {
+        const int n = 64;
+        const auto s = settings(n, Rule::Rasterized);
+        const DenseGrid grid = voxelize(shape.mesh, s).grid;
+        const DenseGrid conservative = reference::conservative(lattice(shape.mesh, s), n);
+        const DenseGrid thin = reference::thin(lattice(shape.mesh, s), n);
+        // The hardware snaps vertices to 1/256 pixel on its own: a voxel in a thousand may differ.
+        EXPECT_LE(reference::countMissing(grid, conservative), grid.countFull() / 1000)
+            << shape.name;
+        const std::size_t missed = reference::countMissing(thin, grid);
+        RecordProperty(std::string(shape.name) + " missed thin", static_cast<int>(missed));
+        // The thesis's defect, bounded: it drops voxels, but not a quarter of them.
+        EXPECT_LT(missed, thin.countFull() / 4) << shape.name;
+    }
+}
+
+TEST_F(RulesTest, WorksheetDirectAndSlicesAgree) {
+    const scene::Mesh torus = shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 200, 100);
+    for (const int bits : {1, 8, 32}) {
+        auto s = settings(64, Rule::Rasterized, bits);
+        const DenseGrid worksheet = voxelize(torus, s).grid;
+        s.method = Method::Direct;
+        EXPECT_EQ(voxelize(torus, s).grid, worksheet) << bits;
+        s.method = Method::Slices;
+        EXPECT_EQ(voxelize(torus, s).grid, worksheet) << bits;
+    }
+}
+
+TEST_F(RulesTest, WidthsAgreeOnOccupancy) {
+    const scene::Mesh mesh = shapes::randomTriangles(200, 5);
+    for (const Rule rule : {Rule::Rasterized, Rule::Thin, Rule::Conservative}) {
+        const DenseGrid bits = voxelize(mesh, settings(64, rule, 1)).grid;
+        for (const int width : {8, 16, 32}) {
+            const DenseGrid grid = voxelize(mesh, settings(64, rule, width)).grid;
+            EXPECT_EQ(occupancyOf(grid), bits) << width;
+        }
+    }
+}
+
+TEST_F(RulesTest, ValuesDependOnNoOrder) {
+    scene::Mesh mesh = shapes::joined(shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 90, 60),
+                                      shapes::sphere(glm::vec3(0.2F), 0.7F, 4));
+    for (const glm::vec3& p : mesh.positions) mesh.colors.push_back(glm::abs(p));
+    mesh.normals = scene::vertexNormals(mesh);
+    scene::Mesh reversed = mesh;
+    std::ranges::reverse(reversed.triangles);
+    for (const VoxelValue value : {VoxelValue::Normal, VoxelValue::Color}) {
+        for (const int bits : {8, 16, 32}) {
+            for (const Rule rule : {Rule::Rasterized, Rule::Thin, Rule::Conservative}) {
+                auto s = settings(64, rule, bits);
+                s.grid.value = value;
+                const DenseGrid grid = voxelize(mesh, s).grid;
+                EXPECT_EQ(voxelize(reversed, s).grid, grid);
+                auto occupancy = settings(64, rule, 1);
+                EXPECT_EQ(occupancyOf(grid), voxelize(mesh, occupancy).grid);
+                if (rule == Rule::Conservative) continue;
+                s.method = Method::Direct;
+                EXPECT_EQ(voxelize(mesh, s).grid, grid);
+            }
+        }
+    }
+}
+
+TEST_F(RulesTest, NormalsPointOutwards) {
+    const scene::Mesh mesh = shapes::sphere(glm::vec3(0.0F), 1.0F, 5);
+    auto s = settings(64, Rule::Thin, 32);
+    s.grid.value = VoxelValue::Normal;
+    const DenseGrid grid = voxelize(mesh, s).grid;
+    double worst = 1.0;
+    for (int z = 0; z < 64; ++z) {
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                const std::uint32_t code = grid.value({x, y, z});
+                if (code == 0) continue;
+                const glm::vec3 centre = glm::vec3(x, y, z) + 0.5F - 32.0F;
+                worst = std::min<double>(worst,
+                                         glm::dot(decodeNormal(code, 32), glm::normalize(centre)));
+            }
+        }
+    }
+    EXPECT_GT(worst, 0.99);  // a voxel is 1/31 of the radius
+}
+
+TEST_F(RulesTest, DrawsOnceAFrameWhetherSplitOnceOrEachTime) {
+    const scene::Mesh mesh = shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 60, 30);
+    auto s = settings(64, Rule::Rasterized);
+    const Voxelized once = voxelize(mesh, s);
+    s.split = Split::EveryFrame;
+    const Voxelized each = voxelize(mesh, s);
+    EXPECT_EQ(each.grid, once.grid);
+    EXPECT_EQ(each.metrics.at("fragments"), once.metrics.at("fragments"));
+    EXPECT_GE(once.metrics.at("fragments"), static_cast<double>(once.grid.countFull()));
+}
+
+TEST_F(RulesTest, AGivenBoxCutsTheMesh) {
+    const scene::Mesh mesh = shapes::sphere(glm::vec3(0.0F), 1.0F, 4);
+    const scene::Box box{glm::vec3(0.0F), glm::vec3(0.75F)};
+    for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
+        const DenseGrid grid = voxelize(mesh, settings(64, rule), box).grid;
+        const LatticeMesh snappedMesh = snapped(mesh, box, 64);
+        EXPECT_EQ(grid, rule == Rule::Thin ? reference::thin(snappedMesh, 64)
+                                           : reference::conservative(snappedMesh, 64));
+        EXPECT_GT(grid.countFull(), 0U);
+    }
+    const DenseGrid rasterized = voxelize(mesh, settings(64, Rule::Rasterized), box).grid;
+    EXPECT_GT(rasterized.countFull(), 0U);
+    const DenseGrid conservative = reference::conservative(snapped(mesh, box, 64), 64);
+    EXPECT_LE(reference::countMissing(rasterized, conservative), rasterized.countFull() / 1000);
+}
+
+TEST_F(RulesTest, RefusesVerticesTooFarFromTheBox) {
+    const scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(3000.0F));
+    EXPECT_EQ(test::errorText([&] {
+                  voxelize(mesh, settings(32, Rule::Thin), {glm::vec3(0.0F), glm::vec3(1.0F)});
+              }),
+              "vertex 1 lies 96000 voxels from the grid's corner; the exact rules allow 65536");
+}
+
+TEST_F(RulesTest, RealBunnyAt64) {
+    const auto path = test::asset("bunny/bun_zipper.ply");
+    if (!path) GTEST_SKIP() << "GFXREPRO_ASSETS has no bunny/bun_zipper.ply";
+    const scene::Mesh mesh = scene::flattened(scene::loadPly(*path));
+    auto s = settings(64, Rule::Conservative);
+    EXPECT_EQ(voxelize(mesh, s).grid, reference::conservative(lattice(mesh, s), 64));
+    s.rule = Rule::Thin;
+    EXPECT_EQ(voxelize(mesh, s).grid, reference::thin(lattice(mesh, s), 64));
+}
+
+}  // namespace
+}  // namespace gfxrepro::voxelization

@@ -1,0 +1,268 @@
+#include "techniques/voxelization/worksheet.h"
+
+#include <fstream>
+
+#include "techniques/voxelization/axis_split.h"
+#include "techniques/voxelization/voxel_value.h"
+#include "techniques/voxelization/voxelization.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+constexpr int kVoxelBits[] = {1, 8, 16, 32};
+
+/// The shaders of the technique with one of the test's own beside them.
+class ShaderFolder {
+  public:
+    explicit ShaderFolder(const std::string& text) {
+        std::filesystem::copy(dataFolder("shaders") / "voxelization",
+                              folder_.path() / "voxelization");
+        folder_.write("test.comp.glsl", text);
+    }
+    gl::Program program(const gl::Defines& defines) const {
+        return gl::Program(gl::ShaderLibrary(folder_.path()), {"test.comp.glsl"}, defines);
+    }
+
+  private:
+    test::TemporaryFolder folder_;
+};
+
+TEST(WorksheetTest, EveryVoxelHasItsOwnBits) {
+    for (const int bits : kVoxelBits) {
+        for (const int n : {32, 64}) {
+            const WorksheetLayout layout(n, bits);
+            std::vector<std::uint32_t> words(layout.wordCount());
+            for (int w = 0; w < n; ++w) {
+                for (int v = 0; v < n; ++v) {
+                    for (int u = 0; u < n; ++u) {
+                        const std::uint32_t mask = layout.laneMask() << layout.shift(w);
+                        std::uint32_t& word = words.at(layout.wordIndex({u, v, w}));
+                        ASSERT_EQ(word & mask, 0U) << u << " " << v << " " << w;
+                        word |= mask;
+                    }
+                }
+            }
+            for (const std::uint32_t word : words) ASSERT_EQ(word, ~0U);
+        }
+    }
+}
+
+TEST(WorksheetTest, CapacityIsTheNumberOfVoxels) {
+    for (const int bits : kVoxelBits) {
+        for (int n = 32; n <= 1024; n *= 2) {
+            const WorksheetLayout layout(n, bits);
+            const glm::ivec2 size = layout.sheetSizePx();
+            EXPECT_LE(size.x, 2048);
+            EXPECT_LE(size.y, 2048);
+            const auto voxels = static_cast<std::size_t>(size.x) * size.y * layout.layers() *
+                                layout.voxelsPerTexel();
+            EXPECT_EQ(voxels, static_cast<std::size_t>(n) * n * n) << n << " " << bits;
+        }
+    }
+}
+
+// [zju2005] Sec. 2.2.1: one sheet of 2048² texels of 32 bits holds 512³ bits.
+TEST(WorksheetTest, TheThesisSheetHolds512CubedBits) {
+    const WorksheetLayout layout(512, 1);
+    EXPECT_EQ(layout.sheetSizePx(), glm::ivec2(2048));
+    EXPECT_EQ(layout.layers(), 1);
+    EXPECT_EQ(layout.patchesPerSheet(), 16);
+    EXPECT_EQ(layout.sizeBytes(), std::size_t{16} << 20);
+    EXPECT_EQ(layout.texel({3, 5, 32 * 6 + 7}), glm::ivec3(2 * 512 + 3, 512 + 5, 0));
+    EXPECT_EQ(layout.shift(32 * 6 + 7), 7);
+}
+
+TEST(WorksheetTest, AxesPermuteCyclically) {
+    const glm::ivec3 p(1, 2, 3);
+    EXPECT_EQ(localFromVolume(Axis::X, p), glm::ivec3(2, 3, 1));
+    EXPECT_EQ(localFromVolume(Axis::Y, p), glm::ivec3(3, 1, 2));
+    EXPECT_EQ(localFromVolume(Axis::Z, p), p);
+    for (Axis axis : kAxes) EXPECT_EQ(volumeFromLocal(axis, localFromVolume(axis, p)), p);
+}
+
+TEST(WorksheetTest, DenseGridHoldsValues) {
+    for (const int bits : kVoxelBits) {
+        DenseGrid grid(WorksheetLayout(32, bits));
+        const std::uint32_t value = grid.layout().laneMask();
+        grid.set({1, 2, 3}, value);
+        grid.set({31, 31, 31}, 1);
+        EXPECT_EQ(grid.value({1, 2, 3}), value);
+        EXPECT_EQ(grid.value({31, 31, 31}), 1U);
+        EXPECT_EQ(grid.value({1, 2, 4}), 0U);
+        EXPECT_EQ(grid.countFull(), 2U);
+        grid.set({1, 2, 3}, 0);
+        EXPECT_EQ(grid.countFull(), 1U);
+    }
+}
+
+TEST(WorksheetTest, RefusesWhatTheDeviceCannotHold) {
+    gl::DeviceLimits limits;
+    limits.maxTextureSizePx = 16384;
+    limits.maxArrayLayers = 2048;
+    EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(512, 32), limits));
+    EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(1024, 1), limits));
+    EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(1024, 8), limits));
+    EXPECT_EQ(test::errorText([&] { checkFitsDevice(WorksheetLayout(1024, 16), limits); }),
+              "1024³ voxels of 16 bits take 2147483648 bytes an axis; allowed: 1073741824");
+    limits.maxArrayLayers = 16;
+    EXPECT_EQ(test::errorText([&] { checkFitsDevice(WorksheetLayout(512, 32), limits); }),
+              "512³ voxels of 32 bits take 32 worksheets of 2048 × 2048 texels; the device holds "
+              "16 of 16384 × 16384");
+    EXPECT_THROW(checkFitsDevice(WorksheetLayout(512, 32), limits), UnsupportedError);
+}
+
+using WorksheetGlTest = VoxelizerTest;
+
+TEST_F(WorksheetGlTest, ShaderAddressesEqualTheCpus) {
+    const ShaderFolder folder(R"(#version 450 core
+#include "voxelization/worksheet.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer Out { ivec4 address[]; };
+void main() {
+    int i = int(gl_GlobalInvocationID.x);
+    ivec3 local = ivec3(i % RESOLUTION, i / RESOLUTION % RESOLUTION, i / RESOLUTION / RESOLUTION);
+    address[i] = ivec4(worksheetTexel(local), worksheetShift(local.z));
+}
+)");
+    for (const int bits : kVoxelBits) {
+        const WorksheetLayout layout(64, bits);
+        const int count = 64 * 64 * 64;
+        gl::Buffer buffer(static_cast<std::size_t>(count) * sizeof(glm::ivec4));
+        const gl::Program program = folder.program(layout.defines());
+        program.use();
+        buffer.bindStorage(0);
+        glDispatchCompute(count / 64, 1, 1);
+        const auto addresses = buffer.read<glm::ivec4>(static_cast<std::size_t>(count));
+        for (int i = 0; i < count; ++i) {
+            const glm::ivec3 local(i % 64, i / 64 % 64, i / 64 / 64);
+            ASSERT_EQ(addresses[static_cast<std::size_t>(i)],
+                      glm::ivec4(layout.texel(local), layout.shift(local.z)));
+        }
+    }
+}
+
+TEST_F(WorksheetGlTest, TransposesVoxelsOfWords) {
+    const ShaderFolder folder(R"(#version 450 core
+#include "voxelization/transpose.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer Words { uint data[]; };
+void main() {
+    uint words[VOXELS_PER_TEXEL];
+    for (int i = 0; i < VOXELS_PER_TEXEL; ++i) words[i] = data[i];
+    transpose(words);
+    for (int i = 0; i < VOXELS_PER_TEXEL; ++i) data[i] = words[i];
+}
+)");
+    Random random(7);
+    for (const int bits : kVoxelBits) {
+        const WorksheetLayout layout(32, bits);
+        const int c = layout.voxelsPerTexel();
+        std::vector<std::uint32_t> words;
+        for (int i = 0; i < c; ++i) words.push_back(random.next());
+        const gl::Buffer buffer = gl::Buffer::of(words);
+        const gl::Program program = folder.program(layout.defines());
+        program.use();
+        buffer.bindStorage(0);
+        glDispatchCompute(1, 1, 1);
+        const auto result = buffer.read<std::uint32_t>(static_cast<std::size_t>(c));
+        for (int i = 0; i < c; ++i) {
+            for (int j = 0; j < c; ++j) {
+                const auto lane = [&](std::uint32_t word, int k) {
+                    return (word >> (k * bits)) & layout.laneMask();
+                };
+                EXPECT_EQ(lane(result[static_cast<std::size_t>(i)], j),
+                          lane(words[static_cast<std::size_t>(j)], i));
+            }
+        }
+    }
+}
+
+TEST_F(WorksheetGlTest, ShaderValuesEqualTheCpus) {
+    const ShaderFolder folder(R"(#version 450 core
+#include "voxelization/voxel_value.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer In { float data[]; };
+layout(std430, binding = 1) buffer Out { uint codes[]; };
+layout(std430, binding = 2) buffer Decoded { float decoded[]; };
+void put(uint i, vec3 v) { for (int k = 0; k < 3; ++k) decoded[3u * i + k] = v[k]; }
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    vec3 v = vec3(data[3u * i], data[3u * i + 1u], data[3u * i + 2u]);
+    codes[2u * i] = encodeNormal(v);
+    codes[2u * i + 1u] = encodeColor(abs(v));
+    put(2u * i, decodeNormal(codes[2u * i]));
+    put(2u * i + 1u, decodeColor(codes[2u * i + 1u]));
+}
+)");
+    std::vector<glm::vec3> vectors = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {-1, 0, 0},
+                                      {0, -1, 0}, {0, 0, -1}, {0, 0, 0}};
+    Random random(3);
+    while (vectors.size() < 200) {
+        const float x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+        vectors.push_back(glm::normalize(glm::vec3(x, y, z)));
+    }
+    for (const int bits : {8, 16, 32}) {
+        const gl::Buffer in = gl::Buffer::of(vectors);
+        const gl::Buffer out(vectors.size() * 8);
+        const gl::Buffer back(vectors.size() * 24);
+        const gl::Program program = folder.program(WorksheetLayout(32, bits).defines());
+        program.use();
+        in.bindStorage(0);
+        out.bindStorage(1);
+        back.bindStorage(2);
+        glDispatchCompute(static_cast<unsigned>(vectors.size()), 1, 1);
+        const auto codes = out.read<std::uint32_t>(2 * vectors.size());
+        const auto decoded = back.read<glm::vec3>(2 * vectors.size());
+        // Half a level of the octahedron's 2 units, times what unfolding can stretch (√3).
+        const float tolerance = 2.0F / (bits == 8 ? 14.0F : bits == 16 ? 254.0F : 32766.0F);
+        int differing = 0;
+        for (std::size_t i = 0; i < vectors.size(); ++i) {
+            ASSERT_NE(codes[2 * i], 0U);
+            ASSERT_NE(codes[2 * i + 1], 0U);
+            // Dividing and rounding may differ by one level between device and CPU at 32 bits.
+            if (codes[2 * i] != encodeNormal(vectors[i], bits)) ++differing;
+            EXPECT_EQ(codes[2 * i + 1], encodeColor(glm::abs(vectors[i]), bits));
+            const glm::vec3 normal = decodeNormal(codes[2 * i], bits);
+            EXPECT_LT(glm::length(decoded[2 * i] - normal), 1e-5F);
+            EXPECT_LT(glm::length(decoded[2 * i + 1] - decodeColor(codes[2 * i + 1], bits)), 1e-5F);
+            if (i < 6) EXPECT_LT(glm::length(normal - vectors[i]), 1e-6F);
+            if (i != 6) EXPECT_LT(glm::length(normal - vectors[i]), tolerance);
+        }
+        EXPECT_LE(differing, bits == 32 ? 40 : 0);
+    }
+}
+
+TEST(AxisSplitTest, TakesTheLargestProjection) {
+    const glm::vec3 o(0.0F), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+    EXPECT_EQ(dominantAxis(o, y, z), Axis::X);
+    EXPECT_EQ(dominantAxis(o, x, z), Axis::Y);
+    EXPECT_EQ(dominantAxis(o, y, x), Axis::Z);
+    EXPECT_EQ(dominantAxis(o, x, x), Axis::Z);
+    EXPECT_EQ(dominantAxis(o, x + 0.9F * y, z), Axis::Y);
+    EXPECT_EQ(dominantAxis(o, 0.9F * x + y, z), Axis::X);
+}
+
+TEST(AxisSplitTest, KeepsEveryTriangleOnce) {
+    const scene::Mesh mesh = shapes::sphere(glm::vec3(0), 1.0F, 6);  // more than one chunk
+    AxisSplit split;
+    splitByAxis(mesh.positions, mesh.triangles, split);
+    std::size_t next = 0;
+    for (Axis axis : kAxes) {
+        const TriangleRange range = split.range(axis);
+        EXPECT_EQ(static_cast<std::size_t>(range.first), next);
+        next += static_cast<std::size_t>(range.count);
+        // In the mesh's order: the subsequence of the axis's triangles.
+        auto at = split.triangles.begin() + range.first;
+        for (const glm::uvec3& t : mesh.triangles) {
+            const Axis own =
+                dominantAxis(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
+            if (own == axis) ASSERT_EQ(*at++, t);
+        }
+        EXPECT_EQ(at, split.triangles.begin() + range.first + range.count);
+    }
+    EXPECT_EQ(next, mesh.triangles.size());
+}
+
+}  // namespace
+}  // namespace gfxrepro::voxelization
