@@ -57,24 +57,24 @@ Json newManifest(const Plan& plan, const gl::DeviceInfo& device) {
             {"device_class", plan.deviceClass},
             {"gl", toJson(device)},
             {"scenes", Json::object()},
-            {"sessions", Json::array()}};
+            {"invocations", Json::array()}};
 }
 
-void beginSession(Json& manifest, const std::string& commandLine) {
-    manifest["sessions"].push_back(Json{{"command", commandLine}, {"started", utcTime()}});
+void beginInvocation(Json& manifest, const std::string& commandLine) {
+    manifest["invocations"].push_back(Json{{"command", commandLine}, {"started", utcTime()}});
 }
 
-void endSession(Json& manifest, const PhaseClock& phases, double wallS) {
-    Json& session = manifest["sessions"].back();
-    session["ended"] = utcTime();
-    session["wall_s"] = wallS;
-    Json& totals = session["phases_s"] = Json::object();
+void endInvocation(Json& manifest, const PhaseClock& phases, double wallS) {
+    Json& invocation = manifest["invocations"].back();
+    invocation["ended"] = utcTime();
+    invocation["wall_s"] = wallS;
+    Json& totals = invocation["phases_s"] = Json::object();
     for (const char* phase : {"device", "load", "setup", "render", "record"}) {
         const auto found = phases.totalsS().find(phase);
         totals[phase] = found == phases.totalsS().end() ? 0.0 : found->second;
     }
-    session["overhead_s"] = wallS - phases.busyS();
-    session["overhead_share"] = (wallS - phases.busyS()) / wallS;
+    invocation["overhead_s"] = wallS - phases.busyS();
+    invocation["overhead_share"] = (wallS - phases.busyS()) / wallS;
 }
 
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
@@ -90,7 +90,7 @@ report::ReportContext reportContext(const Json& manifest) {
     context.deviceClass = manifest.at("device_class").get<std::string>();
     context.profile = manifest.at("profile").get<std::string>();
     context.commit = manifest.at("commit").get<std::string>();
-    context.command = manifest.at("sessions").at(0).at("command").get<std::string>();
+    context.command = manifest.at("invocations").at(0).at("command").get<std::string>();
     return context;
 }
 

@@ -12,14 +12,14 @@
 
 namespace gfxrepro::batch {
 
-/// Commit, build, machine, device and profile; no session and no scene yet.
+/// Commit, build, machine, device and profile; no invocation and no scene yet.
 Json newManifest(const Plan& plan, const gl::DeviceInfo& device);
 
-/// A session is one start of the program on the run; a resumed run has several.
-void beginSession(Json& manifest, const std::string& commandLine);
-/// Adds end, wall time, phase totals and the runner's own share to the last session: the wall time
+/// An invocation is one start of the program on the run; a resumed run has several.
+void beginInvocation(Json& manifest, const std::string& commandLine);
+/// Adds end, wall time, phase totals and the runner's own share to the last invocation: the wall time
 /// in which no worker was inside of a phase.
-void endSession(Json& manifest, const PhaseClock& phases, double wallS);
+void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
 
 /// Adds what workers loaded, one entry a reference.
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);

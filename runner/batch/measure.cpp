@@ -101,6 +101,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
                 context.device.finish("rendering");
                 const double wallTimeMs = millisecondsSince(begin);
                 recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
+                recorder.metric("frame_rate", 1000.0 / wallTimeMs, "1/s", "");
                 recordPasses(profiler, recorder);
             }
         }
@@ -119,7 +120,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     RunRecorder recorder(context.runDir, item, result);
     const technique::TechniqueInfo& info =
         technique::findTechnique(context.techniques, item.technique, {});
-    config::Params params(item.params, "technique '" + item.technique + "'");
+    config::Params params(item.given, "technique '" + item.technique + "'");
 
     const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();
     context.scenes.beginCase(sceneName);

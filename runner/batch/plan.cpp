@@ -108,6 +108,7 @@ Json Case::toJson() const {
             {"experiment", experiment},
             {"technique", technique},
             {"scene", scene.toJson()},
+            {"given", given.toJson()},
             {"params", params.toJson()},
             {"axes", axes.toJson()},
             {"output", {outputWidthPx, outputHeightPx}},
@@ -123,6 +124,7 @@ Case Case::fromJson(const config::Node& node) {
     item.experiment = required(node, "experiment").text();
     item.technique = required(node, "technique").text();
     item.scene = required(node, "scene");
+    item.given = required(node, "given");
     item.params = required(node, "params");
     item.axes = required(node, "axes");
     item.outputWidthPx = static_cast<int>(output[0].asInteger());
@@ -198,6 +200,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         item.experiment = experiment.id;
         item.technique = experiment.technique;
         item.scene = absoluteReference(spec.scene, catalog);
+        item.given = spec.params;
         item.params = params.resolved();
         item.axes = config::Node::map({});
         for (const auto& [name, value] : spec.axes) item.axes.set(name, value);

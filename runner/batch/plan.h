@@ -21,7 +21,8 @@ struct Case {
     std::string experiment;  // "zju2005/2.1"
     std::string technique;
     config::Node scene;   // null or a reference
-    config::Node params;  // every declared parameter with its value
+    config::Node given;   // the parameters that the config gives: a technique is made from these
+    config::Node params;  // every declared parameter with its value: what records say
     config::Node axes;    // the swept ones
     int outputWidthPx = 0;
     int outputHeightPx = 0;

@@ -227,7 +227,9 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
     const config::Node* sceneAxis = item.axes.find("scene");
     const config::Node& scene = sceneAxis ? *sceneAxis : item.scene;
     if (!scene.isNull()) row.scene = scene.text();
-    row.params = item.params.toJson().dump();
+    nlohmann::ordered_json params = item.params.toJson();
+    params["output"] = {{"width", item.outputWidthPx}, {"height", item.outputHeightPx}};
+    row.params = params.dump();
     row.process = unit.process;
     row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";
     row.status = result.status;

@@ -66,7 +66,7 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
         options.out.empty() ? batch::defaultRunPath(runSlug(plan)) : fs::path(options.out);
     batch::RunDirectory directory = batch::RunDirectory::create(path);
     batch::Json manifest = batch::newManifest(plan, device);
-    batch::beginSession(manifest, context.commandLine);
+    batch::beginInvocation(manifest, context.commandLine);
     // The plan last: a folder with a plan has all that a resumed run needs.
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
     writeFileAtomic(directory.planFile(), plan.toJson().dump(1) + '\n');
@@ -87,13 +87,13 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
         throw Error(options.resume + ": cannot be resumed: " + reason +
                     "; start a new run instead");
     }
-    batch::beginSession(stored.manifest, context.commandLine);
+    batch::beginInvocation(stored.manifest, context.commandLine);
     return {std::move(stored.plan), std::move(directory), std::move(stored.manifest), scheduler};
 }
 
 void saveManifest(const Context& context, Prepared& run, const batch::PhaseClock& phases) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - context.start;
-    batch::endSession(run.manifest, phases, wall.count());
+    batch::endInvocation(run.manifest, phases, wall.count());
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
 }
 

@@ -47,7 +47,7 @@ struct ParamInfo {
 class Params {
   public:
     /// `values` is a map or null. `owner` names the reader in messages ("technique
-    /// 'voxelization'").
+    /// 'marching'").
     Params(Node values, std::string owner);
 
     int getInt(std::string_view name, int fallback, const ParamSpec& spec);

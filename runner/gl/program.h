@@ -36,7 +36,7 @@ class ShaderLibrary {
     explicit ShaderLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// `file` is relative to the folder ("voxelization/rasterize.frag.glsl"). `snippets` replace
+    /// `file` is relative to the folder ("marching/trace.frag.glsl"). `snippets` replace
     /// lines `#pragma snippet NAME` (generated code, such as an implicit surface's formula). The
     /// file's first line is `#version …`; the defines follow it.
     /// Throws Error at file:line with the chain of including files for a missing file, an include
