@@ -1,3 +1,6 @@
-int main() {
-    return 0;
+#include "runner/cli/cli.h"
+#include "runner/technique/technique.h"
+
+int main(int argc, char** argv) {
+    return gfxrepro::cli::run(argc, argv, gfxrepro::technique::registeredTechniques());
 }

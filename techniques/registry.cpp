@@ -2,12 +2,14 @@
 // objects are dropped by the linker.
 #include "runner/technique/technique.h"
 #include "techniques/template/template.h"
+#include "techniques/voxelization/voxelization.h"
 
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
         template_::kTemplate,
+        voxelization::kVoxelization,
     };
     return kTechniques;
 }

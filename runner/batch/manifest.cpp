@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "gfxrepro_commit.h"
+#include "runner/batch/commit.h"  // made by the build
 #include "runner/batch/run_directory.h"
 #include "runner/core/text.h"
 

@@ -223,7 +223,10 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
     row.table = item.experiment;
     row.technique = item.technique;
     if (const config::Node* method = item.params.find("method")) row.method = method->text();
-    if (!item.scene.isNull()) row.scene = item.scene.text();
+    // As the config spells it: a user's own file is an absolute path in item.scene.
+    const config::Node* sceneAxis = item.axes.find("scene");
+    const config::Node& scene = sceneAxis ? *sceneAxis : item.scene;
+    if (!scene.isNull()) row.scene = scene.text();
     row.params = item.params.toJson().dump();
     row.process = unit.process;
     row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";

@@ -1,1 +1,236 @@
-#include "runner/batch/plan.h"
+#include "runner/cli/cli.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "runner/batch/manifest.h"
+#include "runner/batch/worker.h"
+#include "runner/cli/commands.h"
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::cli {
+
+namespace {
+
+/// All options of all commands, and the command that was chosen.
+struct Options {
+    Selection selection;
+    RunOptions run;
+    SceneOptions scene;
+    batch::WorkerOptions worker;
+    std::string name;  // of list and describe; a run directory
+    std::string imageA, imageB, imageOut;
+    std::string lane = "quality";
+    bool asJson = false;
+    std::function<int()> command;
+};
+
+void addAssets(CLI::App* app, std::string& assets) {
+    app->add_option("--assets", assets, "folder of real models");
+}
+
+void addSelection(CLI::App* app, Selection& selection) {
+    app->add_option("--profile", selection.profile, "quick | full | paper")
+        ->check(CLI::IsMember({"quick", "full", "paper"}));
+    app->add_option("--set", selection.sets, "key=value laid over every config")
+        ->allow_extra_args(false);
+    app->add_option("--sweep", selection.sweeps, "axis=a,b replaces or adds an axis")
+        ->allow_extra_args(false);
+    app->add_option("--device", selection.device, "auto | software | number from doctor");
+    addAssets(app, selection.assets);
+}
+
+void addRunOptions(CLI::App* app, RunOptions& options) {
+    addSelection(app, options.selection);
+    app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)");
+    app->add_option("--resume", options.resume, "continue this run directory");
+    app->add_option("--jobs", options.jobs, "quality cases at once")->check(CLI::Range(1, 256));
+    app->add_flag("--quiet", options.isQuiet, "print failures only");
+}
+
+void addQueries(CLI::App& app, const Context& context, Options& o) {
+    CLI::App* doctorApp = app.add_subcommand("doctor", "devices, limits, assets, disk");
+    addAssets(doctorApp, o.selection.assets);
+    doctorApp->add_flag("--json", o.asJson, "machine-readable");
+    doctorApp->callback(
+        [&] { o.command = [&] { return doctor(context, o.selection.assets, o.asJson); }; });
+
+    CLI::App* listApp =
+        app.add_subcommand("list", "tables | techniques | scenes | configs | generators");
+    listApp->add_option("what", o.name, "what to list")->required();
+    listApp->add_flag("--json", o.asJson, "machine-readable");
+    addAssets(listApp, o.selection.assets);
+    listApp->callback(
+        [&] { o.command = [&] { return list(context, o.name, o.selection.assets, o.asJson); }; });
+
+    CLI::App* describeApp = app.add_subcommand(
+        "describe", "a technique, scene, generator, table or config file; 'config': the schema");
+    describeApp->add_option("name", o.name, "what to describe")->required();
+    addAssets(describeApp, o.selection.assets);
+    describeApp->callback(
+        [&] { o.command = [&] { return describe(context, o.name, o.selection.assets); }; });
+
+    CLI::App* checkApp = app.add_subcommand("check", "validate configs; needs no device");
+    checkApp->add_option("configs", o.selection.names, "config files")->required();
+    addSelection(checkApp, o.selection);
+    checkApp->callback([&] { o.command = [&] { return check(context, o.selection); }; });
+
+    CLI::App* planApp = app.add_subcommand("plan", "list the cases of configs");
+    planApp->add_option("configs", o.selection.names, "config files")->required();
+    addSelection(planApp, o.selection);
+    planApp->add_flag("--json", o.asJson, "the plan as it would be frozen");
+    planApp->callback([&] { o.command = [&] { return plan(context, o.selection, o.asJson); }; });
+}
+
+void addRuns(CLI::App& app, const Context& context, Options& o) {
+    CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs: records.csv");
+    runApp->add_option("configs", o.run.selection.names, "config files");
+    addRunOptions(runApp, o.run);
+    runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
+
+    CLI::App* reproduceApp =
+        app.add_subcommand("reproduce", "run + tables + claims + report of papers or tables");
+    reproduceApp->add_option("names", o.run.selection.names,
+                             "PAPER or PAPER/TABLE; none: everything");
+    addRunOptions(reproduceApp, o.run);
+    reproduceApp->callback([&] { o.command = [&] { return reproduce(context, o.run); }; });
+
+    const auto addResult = [&](const char* name, const char* doc,
+                               int (*function)(const std::string&)) {
+        CLI::App* result = app.add_subcommand(name, doc);
+        result->add_option("dir", o.name, "run directory")->required();
+        result->callback(
+            [&o, function] { o.command = [&o, function] { return function(o.name); }; });
+    };
+    addResult("table", "make a run's tables again from its records", table);
+    addResult("claims", "judge a run's claims again", claims);
+    addResult("report", "make a run's report.html again", report);
+}
+
+void addTools(CLI::App& app, const Context& context, Options& o) {
+    CLI::App* imageApp = app.add_subcommand("image", "diff A B: MSE, PSNR, SSIM, maximum");
+    imageApp->require_subcommand(1);
+    CLI::App* diffApp = imageApp->add_subcommand("diff", "compare two EXR or two PNG files");
+    diffApp->add_option("a", o.imageA, "image")->required();
+    diffApp->add_option("b", o.imageB, "image")->required();
+    diffApp->add_option("--out", o.imageOut, "write the absolute difference (.exr or .png)");
+    diffApp->callback(
+        [&] { o.command = [&] { return imageDiff(o.imageA, o.imageB, o.imageOut); }; });
+
+    CLI::App* sceneApp = app.add_subcommand("scene", "look at a scene, or export it");
+    sceneApp->add_option("name", o.scene.name, "catalogue name or file")->required();
+    sceneApp->add_option("--export", o.scene.exportFile, "write .glb or .ply");
+    sceneApp->add_option("--render", o.scene.renderFile,
+                         "write f.png (rasterized) and f-raytraced.png");
+    sceneApp->add_option("--size", o.scene.sizePx, "pixels along each side of the render")
+        ->check(CLI::Range(16, 8192));
+    sceneApp->add_option("--device", o.scene.device, "auto | software | number from doctor");
+    addAssets(sceneApp, o.scene.assets);
+    sceneApp->callback([&] { o.command = [&] { return scene(o.scene); }; });
+
+    // The program starts itself with this; `group("")` keeps it out of the help.
+    CLI::App* workerApp = app.add_subcommand("worker", "")->group("");
+    workerApp->add_option("--device", o.worker.device);
+    workerApp->add_option("--assets", o.worker.assetsFolder);
+    workerApp->add_option("--lane", o.lane);
+    workerApp->add_option("--run", o.worker.runDir);
+    workerApp->callback([&] {
+        o.command = [&] {
+            o.worker.lane =
+                o.lane == "timing" ? config::Measure::Lane::Timing : config::Measure::Lane::Quality;
+            batch::runWorker(o.worker, context.techniques);
+            return kExitOk;
+        };
+    });
+}
+
+/// The innermost command that was named.
+const CLI::App* chosenCommand(const CLI::App& app) {
+    const auto chosen = app.get_subcommands();
+    return chosen.empty() ? &app : chosenCommand(*chosen.front());
+}
+
+std::vector<std::string> optionNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        if (!command->get_group().empty()) names.push_back(command->get_name());
+    }
+    return names;
+}
+
+/// One clear message for what the parser did not take.
+UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
+    const CLI::App& command = *chosenCommand(app);
+    const std::string name = command.get_name();
+    const std::vector<std::string> extras = app.remaining(true);
+    if (!extras.empty()) {
+        const std::string& extra = extras.front();
+        if (extra.starts_with("-")) {
+            const std::string option = extra.substr(0, extra.find('='));
+            return UsageError(name + ": unknown option '" + option + "'" +
+                              suggestion(option, optionNames(command)) + "; see '" + name +
+                              " --help'");
+        }
+        if (&command == &app) {
+            return UsageError("unknown command '" + extra + "'" +
+                              suggestion(extra, commandNames(app)) + "; see 'gfxrepro --help'");
+        }
+        return UsageError(name + ": unexpected argument '" + extra + "'");
+    }
+    return UsageError(name + ": " + problem.what());
+}
+
+/// Parses; empty command: help or version was printed.
+void parse(CLI::App& app, int argc, const char* const* argv) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {  // --help, --version: CLI11 answers them by throwing
+        app.exit(help);
+    } catch (const CLI::ParseError& problem) {
+        throw usageError(app, problem);
+    }
+}
+
+int runCommand(int argc, const char* const* argv,
+               std::span<const technique::TechniqueInfo> techniques) {
+    Context context{techniques, "gfxrepro", std::chrono::steady_clock::now()};
+    for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
+    Options options;
+    CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
+    app.set_version_flag("--version", "gfxrepro " + batch::programCommit());
+    addQueries(app, context, options);
+    addRuns(app, context, options);
+    addTools(app, context, options);
+    if (argc < 2) throw UsageError("no command; see 'gfxrepro --help'");
+    parse(app, argc, argv);
+    return options.command ? options.command() : kExitOk;
+}
+
+}  // namespace
+
+// The catch of the program stands here and not in main.cpp, so that a program with other techniques
+// (tests) has the same exit codes.
+int run(int argc, const char* const* argv, std::span<const technique::TechniqueInfo> techniques) {
+    try {
+        return runCommand(argc, argv, techniques);
+    } catch (const NoDeviceError& error) {
+        fmt::print(stderr, "gfxrepro: {}\n", error.what());
+        return kExitNoDevice;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "gfxrepro: {}\n", error.what());
+        return kExitUsage;
+    }
+}
+
+}  // namespace gfxrepro::cli

@@ -1,5 +1,7 @@
 // The schema in words.
-#include <fmt/format.h>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "runner/config/experiment.h"
 #include "runner/config/params.h"
@@ -124,9 +126,8 @@ std::string describeConfig() {
     add(lines, printedLines());
     add(lines, claimLines());
 
-    Line widest{"key", "type", "default", "meaning"};
+    lines.insert(lines.begin(), {"key", "type", "default", "meaning"});
     std::size_t key = 0, type = 0, fallback = 0;
-    lines.insert(lines.begin(), widest);
     for (const Line& line : lines) {
         key = std::max(key, widthOf(line.key));
         type = std::max(type, widthOf(line.type));

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "runner/config/checks.h"
 #include "runner/config/params.h"

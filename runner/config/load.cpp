@@ -1,5 +1,7 @@
 // From a file on disk to the one document that is read: extends, profile, overrides, scene files.
 #include <algorithm>
+#include <iterator>
+#include <optional>
 
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
@@ -71,7 +73,8 @@ class Reader {
 
     fs::path find(const Node& name, const fs::path& file) const {
         const fs::path relative = lineOf(name, "extends");
-        for (const fs::path& folder : {configsFolder_, file.parent_path()}) {
+        const fs::path beside = file.has_parent_path() ? file.parent_path() : fs::path(".");
+        for (const fs::path& folder : {configsFolder_, beside}) {
             const fs::path candidate = folder / relative;
             if (!fs::is_regular_file(candidate)) continue;
             const fs::path real = fs::weakly_canonical(candidate);
@@ -82,8 +85,7 @@ class Reader {
             return candidate;
         }
         throw Error(name.location(), "extends: no file '" + relative.string() + "' in " +
-                                         configsFolder_.string() + " or " +
-                                         file.parent_path().string());
+                                         configsFolder_.string() + " or " + beside.string());
     }
 
     static void addProfiles(const Node& whole, Merged& result) {

@@ -30,8 +30,13 @@ auto findKey(Entries& entries, std::string_view key) {
 
 /// Whether a plain scalar would be read as something else, or end early, inside [ ] or { }.
 bool needsQuotes(const std::string& text) {
-    return text.empty() || text == "null" || text == "~" || text.front() == ' ' ||
-           text.back() == ' ' || text.find_first_of(",[]{}:#&*!|>'\"%@`\n\t") != std::string::npos;
+    constexpr std::string_view kIndicators = "#&*!|>'\"%@`?:-";
+    const bool isIndicated = kIndicators.find(text.empty() ? ' ' : text[0]) != std::string::npos &&
+                             (text.size() == 1 || text[1] == ' ' || text[0] != '-');
+    return text.empty() || isIndicated || text == "null" || text == "~" || text.front() == ' ' ||
+           text.back() == ' ' || text.back() == ':' ||
+           text.find_first_of(",[]{}\n\t") != std::string::npos ||
+           text.find(": ") != std::string::npos || text.find(" #") != std::string::npos;
 }
 
 }  // namespace

@@ -1,14 +1,19 @@
 // The sections of a config, one reader each; private to this module.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runner/config/experiment.h"
 #include "runner/config/node.h"
 
 namespace gfxrepro::config {
+
+class Params;
 
 /// What the other sections may refer to.
 struct Vocabulary {
@@ -55,7 +60,7 @@ const std::vector<std::string>& identityKeys();
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 
 /// The `measure` and `output` sections; the declarations feed describeConfig.
-Measure readMeasure(class Params& params);
-std::pair<int, int> readOutput(class Params& params);
+Measure readMeasure(Params& params);
+std::pair<int, int> readOutput(Params& params);
 
 }  // namespace gfxrepro::config

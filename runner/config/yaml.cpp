@@ -128,7 +128,8 @@ class Builder : public YAML::EventHandler {
         rejectTag(mark, tag);
         requireDepth(mark, 1);
         if (!open_.empty() && open_.back().node.isMap() && !open_.back().key) {
-            throw Error(at(mark), "a key must be text, found " + node.kindName());
+            throw Error(at(mark), "a key must be text, found " + node.kindName() +
+                                      "; perhaps a bracket is not closed");
         }
         open_.push_back({std::move(node), anchor, {}, {}, {}});
     }

@@ -103,14 +103,11 @@ EGLContext createContext(EGLDisplay display, bool hasDebug, bool hasResetNotific
 Candidates findCandidates() {
     Candidates found;
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    if (extensions == nullptr) {
-        found.problems.push_back(
-            "EGL: libEGL found no vendor library (" + lastError() +
-            "); install a driver's EGL, or Mesa's (libegl-mesa0), which needs no GPU");
-        return found;
-    }
+    // GLVND's libEGL without any vendor library answers as well, with next to nothing.
     if (!hasExtension(extensions, "EGL_EXT_platform_base")) {
-        found.problems.push_back("EGL: the client extension EGL_EXT_platform_base is missing");
+        found.problems.push_back(
+            "EGL: libEGL found no driver (the client extension EGL_EXT_platform_base is missing); "
+            "install a GPU driver's EGL, or Mesa's (libegl-mesa0), which needs no GPU");
         return found;
     }
     if (!hasExtension(extensions, "EGL_EXT_device_enumeration") ||

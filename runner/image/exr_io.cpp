@@ -53,6 +53,33 @@ int sampledCount(int count, int sampling) {
     return (count + sampling - 1) / sampling;
 }
 
+/// Walks over the attributes of all headers: the library allocates what an attribute of a type that
+/// it does not know declares, before it reads it.
+void checkAttributeSizes(std::span<const std::byte> bytes, bool isMultiPart,
+                         const std::string& name) {
+    std::size_t at = 8;  // magic number and version
+    const auto skipText = [&] {
+        while (at < bytes.size() && bytes[at] != std::byte{0}) ++at;
+        if (at++ >= bytes.size()) throw Error(name + ": the file ends early");
+    };
+    while (true) {
+        if (at < bytes.size() && bytes[at] == std::byte{0}) {  // the end of a header
+            ++at;
+            if (!isMultiPart || (at < bytes.size() && bytes[at] == std::byte{0})) return;
+        }
+        skipText();  // the attribute's name
+        skipText();  // its type
+        std::uint32_t size = 0;
+        for (std::size_t i = 0; i < sizeof(size) && at + i < bytes.size(); ++i) {
+            size |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
+        }
+        if (at + sizeof(size) > bytes.size() || size > bytes.size() - at - sizeof(size)) {
+            throw Error(name + ": an attribute reaches beyond the end of the file");
+        }
+        at += sizeof(size) + size;
+    }
+}
+
 /// Checks what the first header declares before the library allocates for it.
 void checkHeader(std::span<const std::byte> bytes, const std::string& name) {
     unsigned char start[8];  // magic number and version, little-endian
@@ -69,6 +96,7 @@ void checkHeader(std::span<const std::byte> bytes, const std::string& name) {
         throw Error(name + ": OpenEXR version " + std::to_string(Imf::getVersion(version)) +
                     " with flags that are not supported; 2 is read");
     }
+    checkAttributeSizes(bytes, Imf::isMultiPart(version), name);
     MemoryStream stream(bytes, name);
     stream.seekg(sizeof(start));
     Imf::Header header;
@@ -82,10 +110,11 @@ void checkHeader(std::span<const std::byte> bytes, const std::string& name) {
     checkDeclaredSize(std::int64_t{window.max.x} - window.min.x + 1,
                       std::int64_t{window.max.y} - window.min.y + 1, channels * sizeof(float),
                       bytes.size(), name);
-    if (header.hasTileDescription()) {
+    if (header.hasTileDescription()) {  // the library holds a tile, and a whole row of them
         const Imf::TileDescription& tile = header.tileDescription();
-        checkDeclaredSize(tile.xSize, tile.ySize, channels * sizeof(float), bytes.size(),
-                          name + ": tile");
+        const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+        checkDeclaredSize(std::max<std::int64_t>(tile.xSize, width), tile.ySize,
+                          channels * sizeof(float), bytes.size(), name + ": tiles");
     }
 }
 

@@ -35,19 +35,9 @@ void guarded(png_structp png, const std::string& place, const std::string& messa
 
 class Reader {
   public:
-    Reader(std::span<const std::byte> bytes, const std::string& name) : rest_(bytes), name_(name) {
-        constexpr std::size_t kSignatureBytes = 8;
-        if (bytes.size() < kSignatureBytes ||
-            png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, kSignatureBytes) != 0) {
-            throw Error(name + ": not a PNG file");
-        }
-        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
-                                      ignoreWarning);
-        if (png_ != nullptr) info_ = png_create_info_struct(png_);
-        if (info_ == nullptr) {
-            png_destroy_read_struct(&png_, &info_, nullptr);
-            throw Error(name + ": libpng cannot be started");
-        }
+    /// Reads the header. It delegates so that the destructor runs when that throws.
+    Reader(std::span<const std::byte> bytes, const std::string& name)
+        : Reader(bytes, name, Unread{}) {
         png_set_read_fn(png_, this, take);
         guarded(png_, name_, message_, [this] { png_read_info(png_, info_); });
         checkDeclaredSize(png_get_image_width(png_, info_), png_get_image_height(png_, info_),
@@ -87,6 +77,23 @@ class Reader {
     }
 
   private:
+    struct Unread {};
+    Reader(std::span<const std::byte> bytes, const std::string& name, Unread)
+        : rest_(bytes), name_(name) {
+        constexpr std::size_t kSignatureBytes = 8;
+        if (bytes.size() < kSignatureBytes ||
+            png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, kSignatureBytes) != 0) {
+            throw Error(name + ": not a PNG file");
+        }
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
+                                      ignoreWarning);
+        if (png_ != nullptr) info_ = png_create_info_struct(png_);
+        if (info_ == nullptr) {
+            png_destroy_read_struct(&png_, &info_, nullptr);
+            throw Error(name + ": libpng cannot be started");
+        }
+    }
+
     static void take(png_structp png, png_bytep to, std::size_t count) {
         auto& rest = static_cast<Reader*>(png_get_io_ptr(png))->rest_;
         if (count > rest.size()) png_error(png, "the file ends early");

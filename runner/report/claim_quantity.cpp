@@ -170,6 +170,7 @@ Judgement judge(const Group& group, const Quantity& quantity, const Requirement&
         if (!std::isnan(value)) draws.push_back(value);
     }
     judgement.isSingleSample = draws.empty();
+    judgement.isAbsent = std::isinf(point);
     metrics::Interval interval{point, point};
     if (!draws.empty()) interval = metrics::centralInterval(draws);
     judgement.verdict = verdictOf(interval, requirement);

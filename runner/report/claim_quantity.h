@@ -59,6 +59,7 @@ struct Judgement {
     std::string measured;
     double margin = 0.0;  // to the nearest bound, negative outside
     bool isSingleSample = false;
+    bool isAbsent = false;  // the quantity is infinite: a crossing that is not there
 };
 Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement);
 

@@ -52,7 +52,8 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     }
     outcome.judgement = judge(reading.group, part.quantity, part.requirement);
     std::vector<std::string> reasons;
-    if (isNamed) reasons.push_back("least at " + groupName);
+    if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
+    if (isNamed) reasons.push_back("worst at " + groupName);
     switch (outcome.judgement.verdict) {
         case Verdict::Ambiguous:
             reasons.emplace_back("the interval straddles the bound");

@@ -52,15 +52,15 @@ std::string factsHtml(const ReportContext& context, const nlohmann::ordered_json
 }
 
 std::string countsHtml(const std::vector<ReportSection>& sections) {
-    std::map<Verdict, int> counts;
+    std::map<Verdict, std::vector<ClaimResult>> alike;
     for (const ReportSection& section : sections) {
-        for (const ClaimResult& claim : section.claims) ++counts[claim.verdict];
+        for (const ClaimResult& claim : section.claims) alike[claim.verdict].push_back(claim);
     }
     std::string html = "<p class=\"counts\">";
-    if (counts.empty()) html += "No claims.";
-    for (const auto& [verdict, count] : counts) {
-        html += fmt::format("<span class=\"badge {}\">{} {}</span>", verdictName(verdict), count,
-                            verdictName(verdict));
+    if (alike.empty()) html += "No claims.";
+    for (const auto& [verdict, claims] : alike) {
+        html += fmt::format("<span class=\"badge {}\">{}</span>", verdictName(verdict),
+                            claimSummaryLine(claims));
     }
     return html + "</p>\n";
 }

@@ -35,8 +35,10 @@ std::string headHtml(const Table& table) {
     }
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const TableColumn& column = table.columns[i];
+        // "draw_ms" and "triangles" say their unit already.
+        const bool isSaid = column.label.find(column.unit) != std::string::npos;
         const std::string unit =
-            column.unit.empty() || column.unit == "1"
+            isSaid || column.unit == "1"
                 ? ""
                 : fmt::format(" <span class=\"sub\">{}</span>", escapeXml(column.unit));
         const bool isPair = hasPrinted(table, i);
@@ -104,8 +106,8 @@ std::string claimsHtml(const std::vector<ClaimResult>& claims) {
         "<th>reason</th></tr></thead>\n<tbody>\n";
     for (const ClaimResult& claim : claims) {
         html += fmt::format(
-            "<tr><td class=\"id\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
-            "<td class=\"soft\">{}</td></tr>\n",
+            "<tr><td class=\"id\">{}</td><td>{}</td><td>{}</td><td>{}</td>"
+            "<td class=\"measured\">{}</td><td class=\"soft\">{}</td></tr>\n",
             escapeXml(claim.id), verdictBadge(claim.verdict), escapeXml(claim.text),
             escapeXml(claim.required), escapeXml(claim.measured), escapeXml(claim.reason));
     }

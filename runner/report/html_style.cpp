@@ -19,7 +19,7 @@ std::string_view reportStyle() {
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink);
   font: 16px/1.5 "Source Serif 4", "Charter", "Iowan Old Style", Georgia, serif; }
-main { max-width: 64rem; margin: 0 auto; padding: 2.5rem 1.25rem 4rem; }
+main { max-width: 80rem; margin: 0 auto; padding: 2.5rem 1.25rem 4rem; }
 h1 { font-size: 1.75rem; line-height: 1.2; font-weight: 600; margin: 0 0 .3rem; }
 h2 { font-size: 1.25rem; line-height: 1.3; font-weight: 600; margin: 0 0 .3rem; }
 h3 { font-size: .8rem; font-weight: 600; letter-spacing: .06em; text-transform: uppercase;
@@ -34,11 +34,11 @@ section { margin-top: 3.2rem; padding-top: 1.4rem; border-top: 1px solid var(--r
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums lining-nums;
   border-top: 2px solid var(--rule-strong); border-bottom: 2px solid var(--rule-strong); }
 th { font-weight: 600; vertical-align: bottom; text-align: left; }
-thead tr:last-child th { border-bottom: 1px solid var(--rule-strong); }
+thead + tbody tr:first-child > * { border-top: 1px solid var(--rule-strong); }
 th, td { padding: .28rem .55rem; }
 td { vertical-align: top; }
 tbody tr + tr td, tbody tr + tr th { border-top: 1px solid var(--rule); }
-tbody th { font-weight: 400; white-space: nowrap; }
+tbody th { font-weight: 400; white-space: nowrap; vertical-align: top; }
 .num { text-align: right; white-space: nowrap; }
 .results thead th { text-align: right; } .results thead th.axis { text-align: left; }
 .results thead th.group { text-align: center; padding-bottom: .1rem; }
@@ -47,7 +47,7 @@ tbody th { font-weight: 400; white-space: nowrap; }
 .interval { display: block; color: var(--soft); font-size: .76rem; line-height: 1.25; }
 .status { color: var(--fails); font-style: italic; }
 .claims td, .claims th { white-space: normal; } .claims { width: 100%; }
-.claims td.id { white-space: nowrap; }
+.claims td.id { white-space: nowrap; } .claims td.measured { min-width: 10rem; }
 .badge { display: inline-block; padding: 0 .5em; border-radius: .2em; font-size: .8rem;
   line-height: 1.6; white-space: nowrap; border: 1px solid transparent;
   font-family: system-ui, -apple-system, "Segoe UI", sans-serif; text-decoration: none; }
@@ -68,11 +68,13 @@ pre { background: var(--panel); border: 1px solid var(--rule); padding: .5rem .7
 ul { margin: .4rem 0; padding-left: 1.2rem; } li { margin: .15rem 0; overflow-wrap: anywhere; }
 @media (max-width: 40rem) { main { padding: 1.2rem .8rem 3rem; } th, td { padding: .25rem .35rem; }
   .facts { grid-template-columns: 1fr; } .facts dd { margin-bottom: .35rem; } }
+@page { margin: 15mm; }
 @media print { :root { color-scheme: light; --paper: #fff; --ink: #000; --soft: #444; --rule: #bbb;
     --rule-strong: #000; --panel: #fff; --link: #000; --holds: #000; --fails: #000;
     --ambiguous: #000; --unmeasured: #000; --not-applicable: #000; --holds-bg: #eee;
     --fails-bg: #fff; --ambiguous-bg: #fff; --unmeasured-bg: #fff; }
-  body { font-size: 10pt; } main { max-width: none; padding: 0; } .scroll { overflow: visible; }
+  body { font-size: 10pt; } .results { font-size: 7.5pt; } .results th, .results td { padding: 2pt 3pt; }
+  main { max-width: none; padding: 0; } .scroll { overflow: visible; }
   tr, figure { break-inside: avoid; } h2, h3 { break-after: avoid; }
   .fails { border-color: #000; } section { margin-top: 1.6rem; } }
 )css";

@@ -58,7 +58,7 @@ std::string escapeLatex(std::string_view text) {
         {"<", "\\textless{}"},
         {">", "\\textgreater{}"},
         {"|", "\\textbar{}"},
-        {"\"", "\\textquotedbl{}"},
+        {"\"", "''"},
         {"\n", " "},
         {"\r", " "},
         {"\t", " "},

@@ -96,19 +96,20 @@ Mesh cube() {
 /// Half the side of the grid's cube; every shape lies inside.
 constexpr float kExtent = 1.3F;
 
-/// A closed mesh with as many triangles as the grid can give without exceeding `most`; at least 40
-/// % of them, so that little is left to refinement.
+/// A closed mesh of at most `most` triangles, but not far below, so that little is left to
+/// refinement.
 Mesh polygonizedBelow(const sdf::Shape& shape, std::size_t most) {
-    // The count grows with the square of the resolution. Aim at 85 %, first from a coarse grid.
-    float spacing = 2.0F * kExtent / 40.0F;
-    for (int attempt = 0; attempt < 24; ++attempt) {
+    // The count grows with the square of the resolution, which a coarse grid is enough to
+    // calibrate; thin parts that it misses make the guess too high. A small mesh is worth several
+    // attempts.
+    constexpr float kCoarseSpacing = 2.0F * kExtent / 32.0F;
+    const auto coarseCount =
+        static_cast<float>(sdf::polygonized(shape, kExtent, kCoarseSpacing).triangles.size());
+    for (float share = most < 200'000 ? 0.95F : 0.5F; share > 0.05F; share *= 0.9F) {
+        const float spacing =
+            kCoarseSpacing * std::sqrt(coarseCount / (share * static_cast<float>(most)));
         Mesh mesh = sdf::polygonized(shape, kExtent, spacing);
-        const std::size_t count = mesh.triangles.size();
-        if (count <= most && 5 * count >= 2 * most) return mesh;
-        const float ratio = static_cast<float>(std::max<std::size_t>(count, 1)) /
-                            (0.85F * static_cast<float>(most));
-        spacing *= std::sqrt(std::clamp(ratio, 1e-6F, 1e6F));
-        spacing = std::min(spacing, 0.5F * kExtent);
+        if (!mesh.triangles.empty() && mesh.triangles.size() <= most) return mesh;
     }
     throw Error("no grid gives this shape with at most " + std::to_string(most) + " triangles");
 }

@@ -68,21 +68,21 @@ Shape torus(std::uint32_t) {
 
 Shape linkedTori(std::uint32_t) {
     return Shape()
-        .add(sdf::torus({-0.3F, 0, 0}, 0.5F, 0.15F))
-        .add(sdf::torus({0.3F, 0, 0}, 0.5F, 0.15F).pointing({0, 0, 1}));
+        .add(sdf::torus({-0.3F, 0, 0}, 0.5F, 0.12F))
+        .add(sdf::torus({0.3F, 0, 0}, 0.5F, 0.12F).pointing({0, 0, 1}));
 }
 
 Shape duck(std::uint32_t) {
     Shape duck;
     duck.add(ellipsoid({0, -0.42F, -0.1F}, {0.52F, 0.42F, 0.78F}));
     duck.add(ball({0, -0.35F, 0.4F}, 0.38F), 0.2F);                               // breast
-    duck.add(capsule({0, -0.3F, -0.6F}, {0, 0.02F, -1.0F}, 0.24F, 0.06F), 0.2F);  // tail
+    duck.add(capsule({0, -0.3F, -0.6F}, {0, 0.06F, -1.0F}, 0.26F, 0.11F), 0.2F);  // tail
     duck.addPair(ellipsoid({0.45F, -0.3F, -0.2F}, {0.1F, 0.26F, 0.5F}), 0.1F);    // wings
     duck.add(capsule({0, -0.1F, 0.42F}, {0, 0.35F, 0.45F}, 0.26F, 0.2F), 0.15F);  // neck
     duck.add(ball({0, 0.5F, 0.5F}, 0.33F), 0.1F);                                 // head
-    duck.add(ellipsoid({0, 0.47F, 0.85F}, {0.17F, 0.06F, 0.24F}), 0.06F);         // bill
-    duck.add(ellipsoid({0, 0.4F, 0.82F}, {0.13F, 0.05F, 0.18F}), 0.03F);
-    duck.addPair(ball({0.2F, 0.6F, 0.73F}, 0.06F), 0.02F);  // eyes
+    duck.add(ellipsoid({0, 0.46F, 0.88F}, {0.2F, 0.1F, 0.3F}), 0.06F);            // bill
+    duck.add(ellipsoid({0, 0.36F, 0.82F}, {0.15F, 0.08F, 0.22F}), 0.03F);
+    duck.addPair(ball({0.2F, 0.6F, 0.73F}, 0.08F), 0.02F);  // eyes
     return duck;
 }
 
@@ -121,8 +121,8 @@ Shape hugo(std::uint32_t) {
     man.addPair(capsule({0.27F, 0.54F, 0}, {0.35F, 0.22F, -0.02F}, 0.085F, 0.055F), 0.06F);
     man.addPair(capsule({0.35F, 0.2F, -0.02F}, {0.42F, -0.07F, 0.08F}, 0.06F, 0.036F), 0.03F);
     man.addPair(ellipsoid({0.435F, -0.14F, 0.1F}, {0.03F, 0.07F, 0.05F}), 0.03F);  // hands
-    man.addPair(capsule({0.43F, -0.18F, 0.1F}, {0.43F, -0.25F, 0.13F}, 0.03F, 0.018F), 0.02F);
-    man.addPair(capsule({0.41F, -0.1F, 0.13F}, {0.4F, -0.17F, 0.17F}, 0.02F, 0.015F), 0.02F);
+    man.addPair(capsule({0.43F, -0.18F, 0.1F}, {0.43F, -0.24F, 0.125F}, 0.035F, 0.025F), 0.02F);
+    man.addPair(capsule({0.42F, -0.1F, 0.12F}, {0.405F, -0.17F, 0.16F}, 0.03F, 0.022F), 0.03F);
     man.addPair(capsule({0.11F, -0.1F, 0}, {0.13F, -0.48F, 0.02F}, 0.12F, 0.075F), 0.06F);
     man.addPair(capsule({0.13F, -0.5F, 0.02F}, {0.14F, -0.9F, -0.03F}, 0.075F, 0.042F), 0.03F);
     man.addPair(ellipsoid({0.135F, -0.62F, -0.035F}, {0.06F, 0.13F, 0.06F}), 0.04F);  // calves
@@ -217,11 +217,11 @@ Shape blade(std::uint32_t) {
 
 Shape brain(std::uint32_t seed) {
     Shape brain;
-    brain.addPair(ellipsoid({0.31F, 0.14F, 0.02F}, {0.4F, 0.56F, 0.88F}), 0.03F);
+    brain.addPair(ellipsoid({0.28F, 0.14F, 0.02F}, {0.4F, 0.56F, 0.88F}), 0.03F);
     brain.addPair(ellipsoid({0.42F, -0.1F, 0.2F}, {0.3F, 0.28F, 0.5F}), 0.1F);        // temporal
     brain.addPair(ellipsoid({0.2F, -0.42F, -0.52F}, {0.3F, 0.2F, 0.28F}), 0.03F);     // cerebellum
     brain.add(capsule({0, -0.2F, -0.15F}, {0, -0.85F, -0.4F}, 0.17F, 0.11F), 0.08F);  // stem
-    brain.setRelief({Relief::Kind::Grooves, 0.05F, 4.2F, seed});
+    brain.setRelief({Relief::Kind::Grooves, 0.03F, 3.8F, seed});
     return brain;
 }
 

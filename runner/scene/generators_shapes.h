@@ -20,6 +20,6 @@ sdf::Shape wagner(std::uint32_t seed);
 // Bodies with known answers.
 sdf::Shape sphere(std::uint32_t seed);      // radius 1
 sdf::Shape torus(std::uint32_t seed);       // around y, radius 0.7, tube 0.3
-sdf::Shape linkedTori(std::uint32_t seed);  // radius 0.5, tube 0.15, through each other's hole
+sdf::Shape linkedTori(std::uint32_t seed);  // radius 0.5, tube 0.12, through each other's hole
 
 }  // namespace gfxrepro::scene::shapes

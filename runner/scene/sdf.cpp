@@ -158,7 +158,7 @@ float Relief::at(const glm::vec3& point) const {
         case Kind::Grooves: {
             // Narrow folds along the zero set of the noise, which winds like the furrows of a
             // brain.
-            const float value = noise(point * frequency, seed) * 5.0F;
+            const float value = noise(point * frequency, seed) * 3.5F;
             const float inside = 1.0F - std::min(value * value, 1.0F);
             return height * inside * inside;
         }

@@ -22,6 +22,11 @@ constexpr float kEndMargin = 0.12F;
 /// Of the grid, in cells: keeps its nodes off the planes of symmetry and the flat faces of shapes.
 constexpr glm::vec3 kShift(0.37F, 0.21F, 0.59F);
 
+/// Nodes nearer to the surface than this share of a cell count as outside: where a flat face lies
+/// in a plane of the grid, rounding alone would say on which side each node is, and vertices
+/// coincide.
+constexpr float kSnap = 1e-3F;
+
 /// Kuhn's division of a cube into six positively oriented tetrahedra. Corners are bit masks of x,
 /// y, z; every edge leads from a corner to one whose mask contains it, and neighbouring cubes agree
 /// on the diagonals of their common face.
@@ -107,7 +112,7 @@ class Polygonizer {
         int inside = 0;
         for (int c = 0; c < 8; ++c) {
             corners[static_cast<std::size_t>(c)] = valueAt(cell + offsetOf(c));
-            if (corners[static_cast<std::size_t>(c)] < 0.0F) inside |= 1 << c;
+            if (corners[static_cast<std::size_t>(c)] < -kSnap * spacing_) inside |= 1 << c;
         }
         if (inside == 0 || inside == 255) return;
         for (const std::array<int, 4>& tetrahedron : kTetrahedra) {

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <optional>
 
+#include "runner/gl/gl.h"
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "runner/gpu_scene/gpu_mesh.h"

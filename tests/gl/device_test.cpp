@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 #include "runner/gl/gl.h"
 #include "tests/gl/gl_fixture.h"
 
@@ -48,6 +51,38 @@ TEST(DeviceTest, NamesWhatItCannotOpen) {
               "no usable OpenGL 4.5 device for '99':\n  device 99: there are " + count +
                   " ways to a device, counted from 0");
     EXPECT_THROW(gl::Device::open({"-1", gl::DebugOutput::Off}), NoDeviceError);
+}
+
+/// In a process of its own, since EGL reads its environment once: exits with 3 after printing why
+/// no device serves.
+void openWith(const char* variable, const char* value) {
+    ::setenv(variable, value, 1);
+    try {
+        gl::Device::open({"software", gl::DebugOutput::Off});
+    } catch (const NoDeviceError& error) {
+        std::fputs(error.what(), stderr);
+        std::exit(3);
+    }
+    std::exit(0);
+}
+
+TEST(NoDeviceDeathTest, SaysThatNoDriverIsThere) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(openWith("__EGL_VENDOR_LIBRARY_FILENAMES", "/none.json"),
+                ::testing::ExitedWithCode(3),
+                "no usable OpenGL 4.5 device for 'software':\n"
+                "  EGL: libEGL found no driver \\(the client extension EGL_EXT_platform_base is "
+                "missing\\); install a GPU driver's EGL, or Mesa's \\(libegl-mesa0\\), which needs "
+                "no GPU");
+}
+
+TEST(NoDeviceDeathTest, SaysWhyEveryWayFailed) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    // The software device is Mesa's; what other drivers answer stands before or between.
+    EXPECT_EXIT(openWith("MESA_GL_VERSION_OVERRIDE", "4.1"), ::testing::ExitedWithCode(3),
+                "no usable OpenGL 4.5 device for 'software':\n  device 0 \\(device\\): .*"
+                "  device [0-9]+ \\(surfaceless\\): no OpenGL 4.5 core context "
+                "\\(eglCreateContext: EGL_BAD_MATCH\\)$");
 }
 
 TEST_F(GlTest, ListsDevicesAndKeepsTheCurrentContext) {

@@ -1,5 +1,5 @@
-// Covers the target with one triangle; needs no attributes.
 #version 450 core
+// Covers the target with one triangle; needs no attributes.
 
 void main() {
     vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);

@@ -1,5 +1,5 @@
-// Writes `brightness` where the mesh covers the pixel's centre.
 #version 450 core
+// Writes `brightness` where the mesh covers the pixel's centre.
 
 layout(location = 0) out float value;
 

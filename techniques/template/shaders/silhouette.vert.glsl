@@ -1,5 +1,5 @@
-// Takes the mesh to clip space. POSITION is the attribute location that gpu_scene uses.
 #version 450 core
+// Takes the mesh to clip space. POSITION is the attribute location that gpu_scene uses.
 
 layout(location = POSITION) in vec3 positionWorld;
 

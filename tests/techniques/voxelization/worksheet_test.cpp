@@ -214,8 +214,10 @@ void main() {
         glDispatchCompute(static_cast<unsigned>(vectors.size()), 1, 1);
         const auto codes = out.read<std::uint32_t>(2 * vectors.size());
         const auto decoded = back.read<glm::vec3>(2 * vectors.size());
-        // Half a level of the octahedron's 2 units, times what unfolding can stretch (√3).
-        const float tolerance = 2.0F / (bits == 8 ? 14.0F : bits == 16 ? 254.0F : 32766.0F);
+        // Half a level h moves the point of the octahedron by up to (h, h, 2h), which normalizing,
+        // by at least 1/√3, makes √18 h.
+        const float levels = bits == 8 ? 14.0F : bits == 16 ? 254.0F : 32766.0F;
+        const float tolerance = std::sqrt(18.0F) / levels;
         int differing = 0;
         for (std::size_t i = 0; i < vectors.size(); ++i) {
             ASSERT_NE(codes[2 * i], 0U);

@@ -84,10 +84,13 @@ TEST(Node, ParseErrorsSayWhere) {
     EXPECT_EQ(parseError("b: &b {x: 1}\na:\n  <<: *b\n"),
               "a.yaml:3:3: merge keys (<<) are not part of a config; use extends: [FILE] for what "
               "files share");
-    EXPECT_EQ(parseError("? [1]\n: 2\n"), "a.yaml:1:3: a key must be text, found a list");
+    EXPECT_EQ(parseError("? [1]\n: 2\n"),
+              "a.yaml:1:3: a key must be text, found a list; perhaps a bracket is not closed");
     EXPECT_EQ(parseError("~: 2\n"), "a.yaml:1:1: a key must be text, found nothing");
     EXPECT_EQ(parseError("a: 1\n---\nb: 2\n"), "a.yaml:2:1: a second document; one file holds one");
     EXPECT_EQ(parseError("a: [1, 2"), "a.yaml:1:9: end of sequence flow not found");
+    EXPECT_EQ(parseError("{a: 1"),
+              "a.yaml:1:1: a key must be text, found a map; perhaps a bracket is not closed");
     EXPECT_EQ(parseError("a: b: c"), "a.yaml:1:5: illegal map value");
     EXPECT_EQ(parseError("a: *b"), "a.yaml:1:4: the referenced anchor is not defined");
     EXPECT_EQ(parseError("a: &b [*b]"), "a.yaml:1:8: an alias inside of its own anchor");
@@ -167,6 +170,14 @@ TEST(Node, FlowTextIsOneLine) {
     EXPECT_EQ(parse("[1, 2]").toFlowText(), "[1, 2]");
     EXPECT_EQ(parse("a:\n  - x: 'y'\n  - '1'\n  - \"p, q\"\n  -\n").toFlowText(),
               R"({a: [{x: y}, "1", "p, q", null]})");
+    for (const char* text : {"25%", "a b", "../m.obj", "12px", "a:b", "x#y", "-z"}) {
+        EXPECT_EQ(Node::scalar(text, {}, true).toFlowText(), text);
+    }
+    for (const char* text : {"%25", "a: b", "a #b", "null", "", " a", "- a", "&a", "010:", "1"}) {
+        const std::string flow = Node::scalar(text, {}, true).toFlowText();
+        EXPECT_EQ(flow, "\"" + std::string(text) + "\"");
+        EXPECT_EQ(parse("[" + flow + "]").items()[0].text(), text);
+    }
 }
 
 TEST(Node, ContentIsComparedByMeaning) {

@@ -1,1 +1,224 @@
+#include "runner/image/image.h"
+
 #include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "runner/image/exr_io.h"
+#include "runner/image/png_io.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::image {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+template <class T>
+Image<T> noise(int width, int height, int channels) {
+    Random random(1);
+    Image<T> image(width, height, channels);
+    for (T& value : image.values()) value = static_cast<T>(random.next());
+    return image;
+}
+
+TEST(ToSrgb8, FollowsTheCurveAndKeepsAlphaLinear) {
+    ImageF linear(2, 1, 4);
+    const float values[] = {0.0F, 0.0031308F, 0.5F, 0.5F, 1.0F, 2.0F, -1.0F, 1.5F};
+    std::copy(std::begin(values), std::end(values), linear.values().begin());
+    const Image8 srgb = toSrgb8(linear);
+    const std::uint8_t expected[] = {0, 10, 188, 128, 255, 255, 0, 255};
+    EXPECT_TRUE(std::equal(std::begin(expected), std::end(expected), srgb.values().begin()));
+}
+
+TEST(ToSrgb8, MakesNotANumberBlack) {
+    ImageF linear(1, 1, 1, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(toSrgb8(linear).at(0, 0), 0);
+}
+
+TEST(Png, KeepsEightBitsOfEveryChannelCount) {
+    const TemporaryFolder folder;
+    for (int channels = 1; channels <= 4; ++channels) {
+        const Image8 image = noise<std::uint8_t>(13, 7, channels);
+        writePng(folder.path() / "a.png", image);
+        EXPECT_EQ(readPng8(folder.path() / "a.png"), image);
+        const std::string encoded = encodePng(image);
+        EXPECT_EQ(decodePng8(std::as_bytes(std::span(encoded)), "memory"), image);
+    }
+}
+
+TEST(Png, KeepsSixteenBits) {
+    const TemporaryFolder folder;
+    const Image16 image = noise<std::uint16_t>(5, 9, 3);
+    writePng(folder.path() / "a.png", image);
+    EXPECT_EQ(readPng16(folder.path() / "a.png"), image);
+    EXPECT_EQ(errorText([&] { readPng8(folder.path() / "a.png"); }, folder.path()),
+              "DIR/a.png: 16 bits a channel; at most 8 are allowed");
+}
+
+TEST(Png, WidensEightBits) {
+    const TemporaryFolder folder;
+    writePng(folder.path() / "a.png", Image8(1, 1, 1, 0xAB));
+    EXPECT_EQ(readPng16(folder.path() / "a.png").at(0, 0), 0xABAB);
+}
+
+TEST(Png, RefusesWhatIsNoPng) {
+    const TemporaryFolder folder;
+    const auto path = folder.write("a.png", "not a picture");
+    EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()), "DIR/a.png: not a PNG file");
+    EXPECT_EQ(errorText([&] { readPng8(folder.path() / "none.png"); }, folder.path()),
+              "cannot read DIR/none.png: No such file or directory");
+}
+
+TEST(Png, RefusesTruncatedFiles) {
+    const TemporaryFolder folder;
+    const std::string whole = encodePng(noise<std::uint8_t>(16, 16, 3));
+    for (std::size_t size = 8; size < whole.size(); size += 7) {
+        const auto path = folder.write("a.png", whole.substr(0, size));
+        EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()),
+                  "DIR/a.png: the file ends early");
+    }
+}
+
+TEST(Png, RefusesHeadersThatDeclareTooMuch) {
+    const TemporaryFolder folder;
+    // An IHDR of 30000 x 30000 grey pixels with its right checksum, and nothing else.
+    const std::string header("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\0\0\0\0",
+                             29);
+    const std::string rest("\x43\x4c\xa7\x66\0\0\0\0IDAT", 12);
+    const auto path = folder.write("a.png", header + rest);
+    EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()),
+              "DIR/a.png: the header declares 30000 x 30000 pixels of 4 bytes, too many for a file "
+              "of 41 bytes");
+}
+
+TEST(Png, RefusesImagesThatPngCannotHold) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(errorText([&] { writePng(folder.path() / "a.png", Image8(1, 1, 5)); }, folder.path()),
+              "cannot write DIR/a.png: 5 channels; PNG has 1 to 4");
+    EXPECT_EQ(errorText([&] { encodePng(Image8(1, 1, 5)); }),
+              "cannot encode a PNG: 5 channels; PNG has 1 to 4");
+}
+
+ExrImage exrNoise() {
+    Random random(2);
+    ImageF colour(17, 11, 4);
+    for (float& value : colour.values()) value = random.uniform(-100.0F, 100.0F);
+    colour.at(0, 0) = std::numeric_limits<float>::infinity();
+    colour.at(1, 0) = std::bit_cast<float>(0x7FC12345U);  // a not-a-number with a payload
+    colour.at(2, 0) = 1e-40F;                             // below the normal range
+    ExrImage exr;
+    exr.add(colour, {"R", "G", "B", "A"}, ExrPixelType::Float);
+    exr.attributes["command"] = "gfxrepro run smoke";
+    return exr;
+}
+
+TEST(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
+    const TemporaryFolder folder;
+    const ExrImage written = exrNoise();
+    writeExr(folder.path() / "a.exr", written);
+    const ExrImage read = readExr(folder.path() / "a.exr");
+    EXPECT_EQ(read.attributes, written.attributes);
+    ASSERT_EQ(read.channels.size(), 4U);
+    for (const ExrImage::Channel& channel : written.channels) {
+        const ImageF* values = read.find(channel.name);
+        ASSERT_NE(values, nullptr);
+        EXPECT_EQ(0, std::memcmp(values->values().data(), channel.values.values().data(),
+                                 values->values().size_bytes()));
+    }
+    EXPECT_EQ(read.find("Z"), nullptr);
+    EXPECT_EQ(read.colour().channels(), 4);
+    EXPECT_EQ(read.colour().at(5, 3, 2), written.colour().at(5, 3, 2));
+}
+
+TEST(Exr, RoundsHalvesToNearest) {
+    const TemporaryFolder folder;
+    ImageF image(4, 1, 1);
+    image.at(0, 0) = 1.0F + 0x1p-11F;      // a tie: to even, down
+    image.at(1, 0) = 1.0F + 3 * 0x1p-11F;  // a tie: to even, up
+    image.at(2, 0) = 65504.0F;             // the largest half
+    image.at(3, 0) = 1e6F;                 // beyond
+    ExrImage exr;
+    exr.add(image, {"Y"});
+    writeExr(folder.path() / "a.exr", exr);
+    const ExrImage read = readExr(folder.path() / "a.exr");
+    EXPECT_EQ(read.channels[0].type, ExrPixelType::Half);
+    const ImageF values = read.colour();
+    EXPECT_EQ(values.at(0, 0), 1.0F);
+    EXPECT_EQ(values.at(1, 0), 1.0F + 0x1p-9F);
+    EXPECT_EQ(values.at(2, 0), 65504.0F);
+    EXPECT_EQ(values.at(3, 0), std::numeric_limits<float>::infinity());
+}
+
+TEST(Exr, RefusesImagesWithoutColour) {
+    ExrImage exr;
+    exr.add(ImageF(1, 1, 1), {"id"});
+    EXPECT_EQ(errorText([&] { exr.colour(); }),
+              "the image has the channels 'id'; R, G, B or Y or Z are needed");
+}
+
+TEST(Exr, RefusesWhatAFileCannotHold) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "a.exr";
+    ExrImage exr;
+    EXPECT_EQ(errorText([&] { writeExr(path, exr); }, folder.path()),
+              "cannot write DIR/a.exr: the image has no pixels");
+    exr.add(ImageF(2, 2, 1), {"R"});
+    exr.add(ImageF(3, 2, 1), {"G"});
+    EXPECT_EQ(errorText([&] { writeExr(path, exr); }, folder.path()),
+              "cannot write DIR/a.exr: channel 'G' differs in size from the first");
+    exr.channels[1] = exr.channels[0];
+    EXPECT_EQ(errorText([&] { writeExr(path, exr); }, folder.path()),
+              "cannot write DIR/a.exr: channel 'R' is there twice");
+}
+
+TEST(Exr, RefusesBrokenFiles) {
+    const TemporaryFolder folder;
+    const auto path = folder.write("a.exr", "no picture");
+    EXPECT_EQ(errorText([&] { readExr(path); }, folder.path()), "DIR/a.exr: not an OpenEXR file");
+    writeExr(path, exrNoise());
+    const std::string whole = readFile(path);
+    for (std::size_t size = 8; size < whole.size(); size += 31) {
+        folder.write("a.exr", whole.substr(0, size));
+        EXPECT_EQ(errorText([&] { readExr(path); }, folder.path()).rfind("DIR/a.exr: ", 0), 0U)
+            << size;
+    }
+}
+
+TEST(Exr, RefusesHeadersThatDeclareTooMuch) {
+    const TemporaryFolder folder;
+    writeExr(folder.path() / "a.exr", exrNoise());
+    std::string content = readFile(folder.path() / "a.exr");
+    const std::string key("dataWindow\0box2i\0\x10\0\0\0", 21);
+    const std::size_t window = content.find(key);
+    ASSERT_NE(window, std::string::npos);
+    content.replace(window + key.size() + 8, 8, std::string("\xff\x74\0\0\xff\x74\0\0", 8));
+    const auto path = folder.write("a.exr", content);
+    EXPECT_EQ(
+        errorText([&] { readExr(path); }, folder.path()),
+        "DIR/a.exr: the header declares 29952 x 29952 pixels of 16 bytes, too many for a file "
+        "of " +
+            std::to_string(content.size()) + " bytes");
+}
+
+TEST(Exr, ReadsRealFiles) {
+    for (const char* name : {"BrightRings", "BrightRingsNanInf", "Garden", "PeriodicPattern",
+                             "RgbRampsDiagonal", "WideColorGamut", "t01"}) {
+        const auto path = test::asset(std::string("exr/") + name + ".exr");
+        if (!path) GTEST_SKIP() << "the asset exr/" << name << ".exr is missing";
+        const ImageF colour = readExr(*path).colour();
+        EXPECT_GT(colour.width(), 100) << name;
+        double sum = 0.0;
+        for (const float value : colour.values()) sum += std::isfinite(value) ? value : 0.0F;
+        EXPECT_GT(sum, 0.0) << name;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::image

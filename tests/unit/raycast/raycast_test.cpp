@@ -1,1 +1,244 @@
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "runner/config/params.h"
+#include "runner/core/random.h"
+#include "runner/raycast/ray_tracer.h"
+#include "runner/scene/generators.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::raycast {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// The square [-1, 1]² in the plane z = 0, facing +z.
+scene::Mesh square() {
+    scene::Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+scene::Scene body(const std::string& shape, int triangles = 20000) {
+    config::Node values;
+    values.set("shape", config::Node::scalar(shape));
+    values.set("triangles", config::Node::number(triangles));
+    config::Params params(values, "generator");
+    return scene::findGenerator("sdf_model", {}).generate(params, 1);
+}
+
+glm::vec3 randomPoint(Random& random, float reach) {
+    const float x = random.uniform(-reach, reach);
+    const float y = random.uniform(-reach, reach);
+    return {x, y, random.uniform(-reach, reach)};
+}
+
+TEST(RayTracer, MeetsAPlaneWhereItIs) {
+    const RayTracer tracer(scene::sceneOf(square()));
+    const auto hit = tracer.closestHit({0.5F, -0.25F, 3}, {0, 0, -7});
+    ASSERT_TRUE(hit);
+    EXPECT_FLOAT_EQ(hit->distance, 3.0F);  // along the unit direction
+    EXPECT_EQ(hit->position, glm::vec3(0.5F, -0.25F, 0));
+    EXPECT_EQ(hit->geometricNormal, glm::vec3(0, 0, 1));
+    EXPECT_EQ(hit->instance, 0U);
+    EXPECT_EQ(hit->triangle, 0U);
+    // 0.5 = -1·w0 + 1·w1 + 1·w2, -0.25 = -1·w0 - 1·w1 + 1·w2
+    EXPECT_NEAR(hit->barycentric.x, 0.375F, 1e-6F);
+    EXPECT_NEAR(hit->barycentric.y, 0.375F, 1e-6F);
+    EXPECT_FALSE(tracer.closestHit({1.5F, 0, 3}, {0, 0, -1}));
+    EXPECT_FALSE(tracer.closestHit({0.5F, 0, 3}, {0, 0, 1}));
+    EXPECT_FALSE(tracer.closestHit({0.5F, 0, 3}, {0, 0, -1}, 0.0F, 2.9F));
+    EXPECT_FALSE(tracer.closestHit({0.5F, 0, 3}, {0, 0, -1}, 3.1F));
+    EXPECT_EQ(tracer.closestHit({0.5F, 0, -3}, {0, 0, 1})->geometricNormal, glm::vec3(0, 0, 1));
+}
+
+TEST(RayTracer, OcclusionHasEnds) {
+    const RayTracer tracer(scene::sceneOf(square()));
+    EXPECT_TRUE(tracer.isOccluded({0.3F, 0, 1}, {0, 0, -10}, 0.0F, 2.0F));
+    EXPECT_FALSE(tracer.isOccluded({0.3F, 0, 1}, {0, 0, -10}, 0.0F, 0.99F));
+    EXPECT_FALSE(tracer.isOccluded({0.3F, 0, 1}, {0, 0, -10}, 1.01F, kInfinity));
+    EXPECT_FALSE(tracer.isOccluded({3, 0, 1}, {0, 0, -1}, 0.0F, kInfinity));
+}
+
+TEST(RayTracer, SphereDistancesMatchTheEquation) {
+    const RayTracer tracer(body("sphere", 100000));
+    Random random(7);
+    int hits = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::vec3 origin = 3.0F * glm::normalize(randomPoint(random, 1.0F));
+        const glm::vec3 direction = glm::normalize(randomPoint(random, 1.0F) - origin);
+        const float b = glm::dot(origin, direction);
+        const float discriminant = b * b - glm::dot(origin, origin) + 1.0F;
+        if (std::abs(discriminant) < 0.02F) continue;  // grazing: the facets decide
+        const auto hit = tracer.closestHit(origin, direction);
+        ASSERT_EQ(hit.has_value(), discriminant > 0.0F);
+        if (!hit) continue;
+        ++hits;
+        EXPECT_NEAR(hit->distance, -b - std::sqrt(discriminant), 5e-3F);
+        EXPECT_GT(glm::dot(hit->geometricNormal, hit->position), 0.99F);
+        EXPECT_TRUE(tracer.isOccluded(origin, direction, 0.0F, 6.0F));
+    }
+    EXPECT_GT(hits, 500);
+}
+
+TEST(RayTracer, InstancesKeepTheirNumbersAndTheirOutside) {
+    scene::Scene scene = scene::sceneOf(square());
+    const glm::mat4 moved = glm::translate(glm::mat4(1.0F), glm::vec3(10, 0, 0));
+    scene.instances.push_back({0, glm::scale(moved, glm::vec3(-2, 2, 2))});  // a mirror image
+    const RayTracer tracer(scene);
+    const auto hit = tracer.closestHit({11, 0.5F, 5}, {0, 0, -1});
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->instance, 1U);
+    // flattened() turns mirrored triangles, so that the mirrored square still faces +z.
+    EXPECT_EQ(hit->geometricNormal, glm::vec3(0, 0, 1));
+    const glm::uvec3 t = scene.meshes[0].triangles[hit->triangle];
+    const glm::vec2 b = hit->barycentric;
+    const auto& p = scene.meshes[0].positions;
+    const glm::vec3 inMesh = (1 - b.x - b.y) * p[t.x] + b.x * p[t.y] + b.y * p[t.z];
+    EXPECT_NEAR(inMesh.x, -0.5F, 1e-6F);
+    EXPECT_NEAR(inMesh.y, 0.25F, 1e-6F);
+}
+
+TEST(RayTracer, AllHitsCountEveryTriangleAndCrossingsEverySurface) {
+    const RayTracer cube(body("cube", 3072));
+    EXPECT_EQ(cube.crossings({-3, 0.123F, 0.231F}, {1, 0, 0}), (std::vector<float>{2, 4}));
+    EXPECT_EQ(cube.allHits({-3, 0.123F, 0.231F}, {1, 0, 0}), (std::vector<float>{2, 4}));
+    EXPECT_TRUE(cube.allHits({-3, 3, 0}, {1, 0, 0}).empty());
+
+    // Along the diagonal of two faces: the ray meets both triangles of the shared edge.
+    const RayTracer two(scene::sceneOf(square()));
+    EXPECT_GE(two.allHits({0, 0, 1}, {0, 0, -1}).size(), 1U);
+    EXPECT_EQ(two.crossings({0, 0, 1}, {0, 0, -1}).size(), 1U);
+    for (int i = 1; i < 100; ++i) {  // never through the crack, never twice
+        const float s = 0.019F * static_cast<float>(i) - 0.95F;
+        EXPECT_EQ(two.crossings({s, s, 1}, {0, 0, -1}).size(), 1U) << s;
+    }
+}
+
+TEST(RayTracer, InsideAndOutsideAgreeWithTheEquations) {
+    Random random(3);
+    const RayTracer sphere(body("sphere"));
+    const RayTracer cube(body("cube", 3072));
+    const RayTracer torus(body("torus"));
+    const auto agree = [&](const RayTracer& tracer, const auto& field) {
+        int inside = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const glm::vec3 p = randomPoint(random, 1.2F);
+            const float distance = field(p);
+            if (std::abs(distance) < 5e-3F) continue;  // facets are not the surface
+            ASSERT_EQ(tracer.isInside(p), distance < 0.0F) << p.x << ' ' << p.y << ' ' << p.z;
+            inside += distance < 0.0F ? 1 : 0;
+        }
+        EXPECT_GT(inside, 200);
+    };
+    agree(sphere, [](const glm::vec3& p) { return glm::length(p) - 1.0F; });
+    agree(cube, [](const glm::vec3& p) {
+        return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 1.0F;
+    });
+    agree(torus, [](const glm::vec3& p) {
+        const float ring = std::sqrt(p.x * p.x + p.z * p.z) - 0.7F;
+        return std::sqrt(ring * ring + p.y * p.y) - 0.3F;
+    });
+    EXPECT_TRUE(cube.isInside({0, 0, 0}));  // every axis through it meets edges
+}
+
+TEST(RayTracer, ColumnsThroughATorusCrossAnEvenNumberOfTimes) {
+    const RayTracer torus(body("torus", 4000));
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const glm::vec3 origin((static_cast<float>(x) + 0.5F) / 32.0F - 1.0F,
+                                   (static_cast<float>(y) + 0.5F) / 32.0F - 1.0F, -2.0F);
+            EXPECT_EQ(torus.crossings(origin, {0, 0, 1}).size() % 2, 0U);
+        }
+    }
+}
+
+TEST(RayTracer, EmptySceneHasNoHits) {
+    const RayTracer tracer{scene::Scene{}};
+    EXPECT_FALSE(tracer.closestHit({0, 0, 0}, {0, 0, 1}));
+    EXPECT_FALSE(tracer.isInside({0, 0, 0}));
+    EXPECT_TRUE(tracer.allHits({0, 0, 0}, {1, 0, 0}).empty());
+}
+
+scene::Camera cameraAt(float z) {
+    scene::Camera camera;
+    camera.position = {0, 0, z};
+    camera.target = {0, 0, 0};
+    camera.verticalFovRad = 2.0F * std::atan(0.5F);  // at distance 2 it sees [-1, 1]
+    return camera;
+}
+
+TEST(Preview, FollowsTheFormula) {
+    scene::Scene scene = scene::sceneOf(square());
+    scene.materials.resize(1);
+    scene.materials[0].baseColor = {0.5F, 0.25F, 1.0F, 1.0F};
+    scene.materials[0].emissive = {0.0F, 0.125F, 0.0F};
+    scene.meshes[0].material = 0;
+    const image::ImageF image = renderPreview(scene, cameraAt(4.0F), 64, 64);
+    // The square covers the middle half; behind it is background.
+    EXPECT_FLOAT_EQ(image.at(2, 2, 0), 0.18F);
+    EXPECT_FLOAT_EQ(image.at(2, 2, 1), 0.20F);
+    EXPECT_FLOAT_EQ(image.at(2, 2, 2), 0.24F);
+    for (const int x : {17, 32, 46}) {
+        const float s = (static_cast<float>(x) + 0.5F) / 32.0F - 1.0F;
+        const float sy = 1.0F - 32.5F / 32.0F;
+        const float facing = 1.0F / std::sqrt(1.0F + 0.25F * (s * s + sy * sy));
+        const float shade = 0.15F + 0.85F * facing;
+        EXPECT_NEAR(image.at(x, 32, 0), 0.5F * shade, 1e-5F);
+        EXPECT_NEAR(image.at(x, 32, 1), 0.25F * shade + 0.125F, 1e-5F);
+        EXPECT_NEAR(image.at(x, 32, 2), shade, 1e-5F);
+    }
+    EXPECT_FLOAT_EQ(image.at(15, 32, 0), 0.18F);
+}
+
+TEST(Preview, TexturesAreDecodedAndVPointsDown) {
+    scene::Scene scene = scene::sceneOf(square());
+    scene.materials.resize(1);
+    scene.materials[0].baseColor = glm::vec4(1.0F);
+    scene.materials[0].baseColorTexture = 0;
+    scene.meshes[0].material = 0;
+    image::Image8 texture(2, 2, 3, 0);
+    texture.at(0, 0, 0) = 255;  // top left red
+    texture.at(1, 1, 1) = 188;  // bottom right green; decodes to about 0.5
+    scene.textures.push_back(texture);
+    const image::ImageF image = renderPreview(scene, cameraAt(2.0F), 64, 64);
+    // A quarter of the image from the left the ray meets the first texel's centre, but for half a
+    // pixel.
+    const float weight = (1.0F - 1.0F / 64.0F) * (1.0F - 1.0F / 64.0F);
+    const float shade = 0.15F + 0.85F / std::sqrt(1.0F + 2.0F * 0.25F * 0.484375F * 0.484375F);
+    EXPECT_NEAR(image.at(16, 16, 0), weight * shade, 1e-4F);
+    EXPECT_NEAR(image.at(16, 16, 1), 0.502886F / (64.0F * 64.0F) * shade, 1e-4F);
+    EXPECT_NEAR(image.at(47, 47, 1), 0.502886F * weight * shade, 1e-4F);
+    EXPECT_NEAR(image.at(47, 47, 0), 1.0F / (64.0F * 64.0F) * shade, 1e-4F);
+}
+
+TEST(Preview, CutOutsShowWhatIsBehind) {
+    scene::Scene scene = scene::sceneOf(square());
+    scene.materials.resize(2);
+    scene.materials[0].baseColor = {1, 0, 0, 0.25F};
+    scene.materials[0].alphaCutoff = 0.5F;
+    scene.materials[1].baseColor = {0, 1, 0, 1};
+    scene.meshes[0].material = 0;
+    scene.meshes.push_back(square());
+    scene.meshes[1].material = 1;
+    scene.instances.push_back({1, glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, -0.5F))});
+    const image::ImageF through = renderPreview(scene, cameraAt(4.0F), 9, 9);
+    EXPECT_FLOAT_EQ(through.at(4, 4, 0), 0.0F);
+    EXPECT_FLOAT_EQ(through.at(4, 4, 1), 1.0F);
+    scene.materials[0].alphaCutoff = 0.25F;  // not below: it stays
+    EXPECT_FLOAT_EQ(renderPreview(scene, cameraAt(4.0F), 9, 9).at(4, 4, 0), 1.0F);
+}
+
+TEST(Preview, VertexNormalsShade) {
+    scene::Scene scene = scene::sceneOf(square());
+    scene.meshes[0].normals.assign(4, glm::vec3(0.6F, 0, 0.8F));
+    const image::ImageF image = renderPreview(scene, cameraAt(4.0F), 9, 9);
+    EXPECT_NEAR(image.at(4, 4, 0), 0.8F * (0.15F + 0.85F * 0.8F), 1e-5F);
+}
+
+}  // namespace
+}  // namespace gfxrepro::raycast

@@ -1,0 +1,23 @@
+#include <fmt/core.h>
+
+#include "runner/cli/commands.h"
+#include "runner/cli/experiments.h"
+
+namespace gfxrepro::cli {
+
+int check(const Context& context, const Selection& selection) {
+    const scene::Catalog catalog = openCatalog(selection.assets);
+    batch::Request request{{}, selection.sets, selection.sweeps, selection.device};
+    for (const std::string& file : selection.names) {
+        request.configs = {file};
+        const config::Experiment experiment = loadExperiments(request, selection.profile).front();
+        const std::size_t caseCount =
+            batch::resolveCases(experiment, catalog, context.techniques, 1).size();
+        fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
+                   caseCount == 1 ? "" : "s", experiment.claims.size(),
+                   experiment.claims.size() == 1 ? "" : "s");
+    }
+    return kExitOk;
+}
+
+}  // namespace gfxrepro::cli

@@ -1,0 +1,67 @@
+// Every command as a function: options in, exit code out. cli.cpp fills the options.
+#pragma once
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::cli {
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitClaimFailed = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitNoDevice = 3;
+inline constexpr int kExitIncomplete = 4;
+inline constexpr int kExitInterrupted = 130;
+
+/// What every command may ask for.
+struct Context {
+    std::span<const technique::TechniqueInfo> techniques;
+    std::string commandLine;  // as typed, for the manifest
+    std::chrono::steady_clock::time_point start;
+};
+
+/// Which experiments, and how they are changed.
+struct Selection {
+    std::vector<std::string> names;  // config files, or papers and tables for `reproduce`
+    std::string profile = "full";
+    std::vector<std::string> sets;
+    std::vector<std::string> sweeps;
+    std::string assets;
+    std::string device = "auto";
+};
+
+struct RunOptions {
+    Selection selection;
+    std::string out;
+    std::string resume;
+    int jobs = 0;  // 0: one on up to two cores, else half of them
+    bool isQuiet = false;
+};
+
+struct SceneOptions {
+    std::string name;
+    std::string exportFile;
+    std::string renderFile;
+    int sizePx = 512;
+    std::string assets;
+    std::string device = "auto";
+};
+
+int doctor(const Context& context, const std::string& assets, bool asJson);
+int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
+int describe(const Context& context, const std::string& name, const std::string& assets);
+int check(const Context& context, const Selection& selection);
+int plan(const Context& context, const Selection& selection, bool asJson);
+int run(const Context& context, const RunOptions& options);
+int reproduce(const Context& context, const RunOptions& options);
+int table(const std::string& runDir);
+int claims(const std::string& runDir);
+int report(const std::string& runDir);
+int imageDiff(const std::string& a, const std::string& b, const std::string& out);
+int scene(const SceneOptions& options);
+
+}  // namespace gfxrepro::cli

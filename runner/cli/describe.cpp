@@ -1,0 +1,125 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runner/cli/commands.h"
+#include "runner/cli/experiments.h"
+#include "runner/core/text.h"
+#include "runner/scene/generators.h"
+
+namespace gfxrepro::cli {
+
+namespace {
+
+void printParams(const config::Params& params) {
+    std::vector<std::vector<std::string>> rows = {
+        {"parameter", "type", "default", "range", "unit", "meaning"}};
+    for (const config::ParamInfo& info : params.declared()) {
+        rows.push_back({info.name, info.type, info.defaultValue, info.range, info.unit, info.doc});
+    }
+    fmt::print("\n{}", alignedColumns(rows));
+}
+
+void describeTechnique(const technique::TechniqueInfo& info) {
+    fmt::print("technique {}: {}\n", info.name, info.summary);
+    config::Params params({}, "technique '" + std::string(info.name) + "'");
+    info.create(params);
+    printParams(params);
+}
+
+void describeGenerator(const scene::GeneratorInfo& info) {
+    fmt::print("generator {}: {}\n", info.name, info.summary);
+    config::Params params({}, "generator '" + std::string(info.name) + "'");
+    info.generate(params, 1);
+    printParams(params);
+}
+
+void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
+    fmt::print("scene {}: {}\n", entry.name, entry.doc);
+    if (!entry.canonical.empty()) fmt::print("real one  {}\n", entry.canonical);
+    for (const scene::SceneSource& source : entry.sources) {
+        const char* kind = source.kind == scene::Origin::Kind::Real      ? "real"
+                           : source.kind == scene::Origin::Kind::StandIn ? "stand-in"
+                                                                         : "generated";
+        if (source.file.empty()) {
+            fmt::print("source    {}: generator {}, seed {}\n", kind, source.generator,
+                       source.seed);
+            continue;
+        }
+        const std::filesystem::path path = catalog.assetsFolder() / source.file;
+        fmt::print("source    {}: {}{}\n", kind, path.string(),
+                   std::filesystem::exists(path) ? "" : " (not there)");
+    }
+}
+
+void describeExperiment(const config::Experiment& experiment) {
+    fmt::print("{} ({}): {}\n", experiment.id, experiment.label(), experiment.title);
+    fmt::print("file       {}\n", experiment.file.string());
+    fmt::print("technique  {}\n", experiment.technique);
+    fmt::print("cases      {}\n", config::expandCases(experiment).size());
+    fmt::print("profiles   full{}\n",
+               experiment.profiles.empty() ? "" : ", " + joined(experiment.profiles));
+    if (!experiment.printed.hardware.empty()) {
+        fmt::print("printed    on {}\n", experiment.printed.hardware);
+    }
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        fmt::print("claim      {}: {}\n", claim.id, claim.text);
+    }
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        fmt::print("assumed    {} = {}: {}\n", assumption.name, assumption.value.toFlowText(),
+                   assumption.why);
+    }
+}
+
+template <class Infos>
+auto findNamed(const Infos& infos, const std::string& name) {
+    return std::find_if(infos.begin(), infos.end(),
+                        [&](const auto& info) { return info.name == name; });
+}
+
+}  // namespace
+
+int describe(const Context& context, const std::string& name, const std::string& assets) {
+    if (name == "config") {
+        fmt::print("{}", config::describeConfig());
+        return kExitOk;
+    }
+    std::vector<std::string> known = {"config"};
+    const auto technique = findNamed(context.techniques, name);
+    if (technique != context.techniques.end()) {
+        describeTechnique(*technique);
+        return kExitOk;
+    }
+    const auto generators = scene::generators();
+    const auto generator = findNamed(generators, name);
+    if (generator != generators.end()) {
+        describeGenerator(*generator);
+        return kExitOk;
+    }
+    const scene::Catalog catalog = openCatalog(assets);
+    const auto entry = catalog.entries().find(name);
+    if (entry != catalog.entries().end()) {
+        describeScene(entry->second, catalog);
+        return kExitOk;
+    }
+    batch::Request request;
+    for (const std::filesystem::path& file : paperConfigs()) {
+        request.configs.push_back(file.string());
+    }
+    if (name.ends_with(".yaml")) request.configs = {name};
+    for (const config::Experiment& experiment : loadExperiments(request, "full")) {
+        if (experiment.id == name || name.ends_with(".yaml")) {
+            describeExperiment(experiment);
+            return kExitOk;
+        }
+        known.push_back(experiment.id);
+    }
+    for (const technique::TechniqueInfo& info : context.techniques) known.emplace_back(info.name);
+    for (const scene::GeneratorInfo& info : generators) known.emplace_back(info.name);
+    for (const auto& [sceneName, unused] : catalog.entries()) known.push_back(sceneName);
+    throw UsageError("describe: nothing is called '" + name + "'" + suggestion(name, known) +
+                     "; see 'gfxrepro list tables|techniques|scenes|configs|generators'");
+}
+
+}  // namespace gfxrepro::cli

@@ -1,0 +1,119 @@
+#include "runner/cli/experiments.h"
+
+#include <algorithm>
+#include <set>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool isPaperFolder(const fs::path& folder) {
+    static const std::set<std::string> kOthers = {"scenes", "presets", "sweeps", "smoke"};
+    return fs::is_directory(folder) && !kOthers.contains(folder.filename().string());
+}
+
+std::string paperOf(const fs::path& file) {
+    return file.parent_path().filename().string();
+}
+
+/// "table-2.1.yaml" is table 2.1; "section-2.5.3.yaml" is 2.5.3.
+bool isTable(const fs::path& file, std::string_view table) {
+    const std::string stem = file.stem().string();
+    const std::size_t dash = stem.find('-');
+    return stem == table || (dash != std::string::npos && stem.substr(dash + 1) == table);
+}
+
+}  // namespace
+
+std::vector<fs::path> paperConfigs() {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& folder : fs::directory_iterator(dataFolder("configs"))) {
+        if (!isPaperFolder(folder.path())) continue;
+        for (const fs::directory_entry& file : fs::directory_iterator(folder.path())) {
+            if (file.path().extension() == ".yaml") files.push_back(fs::absolute(file.path()));
+        }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names) {
+    const std::vector<fs::path> all = paperConfigs();
+    std::vector<std::string> known;
+    for (const fs::path& file : all) {
+        const std::string stem = file.stem().string();
+        if (known.empty() || !known.back().starts_with(paperOf(file) + "/")) {
+            known.push_back(paperOf(file));
+        }
+        known.push_back(paperOf(file) + "/" + stem.substr(stem.find('-') + 1));
+    }
+    std::vector<std::string> found;
+    for (const std::string& name : names) {
+        const std::size_t slash = name.find('/');
+        const std::string paper = name.substr(0, slash);
+        const std::size_t before = found.size();
+        for (const fs::path& file : all) {
+            const bool isMeant =
+                slash == std::string::npos || isTable(file, name.substr(slash + 1));
+            if (paperOf(file) == paper && isMeant) found.push_back(file.string());
+        }
+        if (found.size() == before) {
+            throw UsageError("unknown paper or table '" + name + "'" + suggestion(name, known) +
+                             "; 'gfxrepro list tables' shows all");
+        }
+    }
+    if (names.empty()) {
+        for (const fs::path& file : all) found.push_back(file.string());
+    }
+    return found;
+}
+
+std::vector<config::Experiment> loadExperiments(const batch::Request& request,
+                                                const std::string& profile) {
+    config::ExperimentOptions options;
+    options.profile = profile;
+    for (const std::string& set : request.sets) {
+        options.sets.push_back(config::parseOverride(set));
+    }
+    for (const std::string& sweep : request.sweeps) {
+        options.sweeps.push_back(config::parseOverride(sweep));
+    }
+    const fs::path configs = dataFolder("configs");
+    std::vector<config::Experiment> experiments;
+    for (const std::string& file : request.configs) {
+        experiments.push_back(config::loadExperiment(file, options, configs));
+    }
+    return experiments;
+}
+
+scene::Catalog openCatalog(const std::string& assets) {
+    return scene::Catalog(dataFolder("configs") / "scenes", assetsFolder(assets));
+}
+
+std::string alignedColumns(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            widths[i] = std::max(widths[i], row[i].size());
+        }
+    }
+    std::string text;
+    for (const auto& row : rows) {
+        std::string line;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            line += row[i];
+            if (i + 1 < row.size()) line.append(widths[i] - row[i].size() + 2, ' ');
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + '\n';
+    }
+    return text;
+}
+
+}  // namespace gfxrepro::cli

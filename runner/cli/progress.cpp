@@ -1,0 +1,74 @@
+#include "runner/cli/progress.h"
+
+#include <fmt/core.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace gfxrepro::cli {
+
+namespace {
+
+constexpr int kBarWidth = 24;
+constexpr std::chrono::milliseconds kDrawInterval{100};
+
+std::string titleOf(const batch::Unit& unit) {
+    std::string title = unit.item->title();
+    if (unit.item->measure.processes > 1) {
+        title += fmt::format(" process {}/{}", unit.process + 1, unit.item->measure.processes);
+    }
+    return title;
+}
+
+std::size_t terminalWidth() {
+    winsize size{};
+    if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+    return size.ws_col;
+}
+
+}  // namespace
+
+Progress::Progress(int unitCount, bool isQuiet)
+    : unitCount_(unitCount), isQuiet_(isQuiet), isTerminal_(::isatty(STDERR_FILENO) == 1) {}
+
+void Progress::unitBegan(const batch::Unit& unit) {
+    title_ = titleOf(unit);
+    lastDraw_ = {};
+    tick();
+}
+
+void Progress::unitEnded(const batch::Unit& unit, report::Status status,
+                         const std::string& message) {
+    ++ended_;
+    const bool isOk = status == report::Status::Ok;
+    if (isOk && (isQuiet_ || isTerminal_)) return;
+    clear();
+    fmt::print(stderr, "[{}/{}] {} {}{}\n", ended_, unitCount_, report::statusName(status),
+               titleOf(unit), message.empty() ? "" : ": " + message);
+}
+
+std::string Progress::etaText() const {
+    if (ended_ == 0) return "--:--";
+    const double elapsedS = std::chrono::duration<double>(Clock::now() - start_).count();
+    const auto leftS = static_cast<long long>(elapsedS / ended_ * (unitCount_ - ended_) + 0.5);
+    return fmt::format("{}:{:02}", leftS / 60, leftS % 60);
+}
+
+void Progress::tick() {
+    if (isQuiet_ || !isTerminal_ || Clock::now() - lastDraw_ < kDrawInterval) return;
+    lastDraw_ = Clock::now();
+    const int filled = unitCount_ == 0 ? kBarWidth : kBarWidth * ended_ / unitCount_;
+    std::string line =
+        fmt::format("[{}{}] {}/{}  ETA {}  {}", std::string(filled, '#'),
+                    std::string(kBarWidth - filled, '.'), ended_, unitCount_, etaText(), title_);
+    line.resize(std::min(line.size(), terminalWidth() - 1));
+    fmt::print(stderr, "\r\033[K{}", line);
+    std::fflush(stderr);
+}
+
+void Progress::clear() {
+    if (!isQuiet_ && isTerminal_) fmt::print(stderr, "\r\033[K");
+}
+
+}  // namespace gfxrepro::cli

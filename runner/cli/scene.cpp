@@ -1,0 +1,81 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "runner/cli/commands.h"
+#include "runner/cli/experiments.h"
+#include "runner/core/files.h"
+#include "runner/gpu_scene/gpu_mesh.h"
+#include "runner/image/png_io.h"
+#include "runner/metrics/image_error.h"
+#include "runner/raycast/ray_tracer.h"
+#include "runner/scene/load.h"
+
+namespace gfxrepro::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+scene::Scene loadNamed(const SceneOptions& options) {
+    if (fs::path(options.name).has_extension()) return scene::loadScene(options.name);
+    return openCatalog(options.assets).load(config::Node::scalar(options.name));
+}
+
+void print(const scene::Scene& scene) {
+    const scene::Box box = scene.bounds();
+    fmt::print("from       {}\n", scene.origin.description);
+    fmt::print("triangles  {}\nvertices   {}\npoints     {}\n", scene.triangleCount(),
+               scene.vertexCount(), scene.points.positions.size());
+    fmt::print("meshes     {}, instances {}, materials {}, textures {}, cameras {}\n",
+               scene.meshes.size(), scene.instances.size(), scene.materials.size(),
+               scene.textures.size(), scene.cameras.size());
+    fmt::print("box        ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", box.min.x, box.min.y,
+               box.min.z, box.max.x, box.max.y, box.max.z);
+}
+
+void exportTo(const fs::path& path, const scene::Scene& scene) {
+    if (path.extension() == ".glb") {
+        scene::saveGlb(path, scene);
+    } else if (path.extension() == ".ply") {
+        scene::savePly(path, scene);
+    } else {
+        throw UsageError("--export " + path.string() + ": .glb or .ply is allowed");
+    }
+    fmt::print("exported   {}\n", path.string());
+}
+
+/// f.png rasterized and f-raytraced.png ray traced, and how far they are apart.
+void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOptions& options) {
+    if (path.extension() != ".png") {
+        throw UsageError("--render " + path.string() + ": .png is allowed");
+    }
+    const gl::Device device = gl::Device::open({options.device, gl::DebugOutput::Log});
+    const gl::ShaderLibrary shaders(dataFolder("shaders"));
+    const scene::Camera camera = scene::framingCamera(scene.bounds(), 1.0F);
+    const image::ImageF rasterized =
+        gpu_scene::renderPreview(scene, camera, options.sizePx, options.sizePx, shaders);
+    const image::ImageF traced =
+        raycast::renderPreview(scene, camera, options.sizePx, options.sizePx);
+    fs::path tracedPath = path;
+    tracedPath.replace_filename(path.stem().string() + "-raytraced.png");
+    image::writePng(path, image::toSrgb8(rasterized));
+    image::writePng(tracedPath, image::toSrgb8(traced));
+    fmt::print("rendered   {} and {}\n", path.string(), tracedPath.string());
+    fmt::print("difference mse {:.3g}, ssim {:.4g}, max {:.3g}\n",
+               metrics::meanSquaredError(rasterized, traced),
+               metrics::structuralSimilarity(rasterized, traced),
+               metrics::maxAbsoluteError(rasterized, traced));
+}
+
+}  // namespace
+
+int scene(const SceneOptions& options) {
+    const scene::Scene scene = loadNamed(options);
+    print(scene);
+    if (!options.exportFile.empty()) exportTo(options.exportFile, scene);
+    if (!options.renderFile.empty()) renderTo(options.renderFile, scene, options);
+    return kExitOk;
+}
+
+}  // namespace gfxrepro::cli

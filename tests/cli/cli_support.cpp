@@ -1,0 +1,45 @@
+#include "tests/cli/cli_support.h"
+
+#include <nlohmann/json.hpp>
+
+namespace gfxrepro::test {
+
+ProcessResult gfxrepro(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), GFXREPRO_PROGRAM);
+    return runProgram(arguments);
+}
+
+ProcessResult mockGfxrepro(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), GFXREPRO_MOCK_PROGRAM);
+    return runProgram(arguments);
+}
+
+std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines) {
+    return folder.write("mock.yaml",
+                        "sweep_of: mock\ntitle: A mock\ntechnique: mock\n"
+                        "output: {width: 8, height: 8}\n" +
+                            lines);
+}
+
+std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric) {
+    std::vector<report::Record> rows = report::readRecords(runDir / "records.csv");
+    std::erase_if(rows, [&](const report::Record& row) { return row.metric != metric; });
+    return rows;
+}
+
+std::vector<std::string> statusLines(const std::filesystem::path& runDir) {
+    std::vector<std::string> lines;
+    std::string lastCase;
+    for (const report::Record& row : report::readRecords(runDir / "records.csv")) {
+        if (row.caseId == lastCase) continue;
+        lastCase = row.caseId;
+        const auto params = nlohmann::json::parse(row.params);
+        std::string line = params["behaviour"].get<std::string>() + ": ";
+        line += report::statusName(row.status);
+        if (!row.message.empty()) line += " (" + row.message + ")";
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+}  // namespace gfxrepro::test

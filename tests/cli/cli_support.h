@@ -1,0 +1,27 @@
+// What the tests of the program share.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/report/records.h"
+#include "tests/support/process.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::test {
+
+/// The program, and the one with the failing technique; both on the software device.
+ProcessResult gfxrepro(std::vector<std::string> arguments);
+ProcessResult mockGfxrepro(std::vector<std::string> arguments);
+
+/// A config for the mock technique with these lines behind its head.
+std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines);
+
+/// Rows of a run, without those that the runner adds itself.
+std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);
+
+/// "value=status message" of every case in order of the rows, by the parameter `behaviour`.
+std::vector<std::string> statusLines(const std::filesystem::path& runDir);
+
+}  // namespace gfxrepro::test

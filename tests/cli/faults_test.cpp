@@ -1,0 +1,73 @@
+// A case that fails becomes a row; its neighbours go on.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(Faults, EveryFailureBecomesARow) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder,
+        "sweep:\n  behaviour: [ok, crash, exit, hang, throw, bad_alloc, unsupported, device_lost,"
+        " not_a_number]\nmeasure: {time_limit_s: 2}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
+    EXPECT_EQ(run.exitCode, 4);
+    EXPECT_EQ(run.out, "1 of 9 finished, 8 failed; records: " + dir + "/records.csv\n");
+    EXPECT_THAT(statusLines(dir),
+                ElementsAre("ok: ok", "crash: crash (SIGSEGV: about to crash)",
+                            "exit: crash (the worker ended with exit code 7: leaving)",
+                            "hang: timeout (not finished after 2 s (in render))",
+                            "throw: error (nothing works)", "bad_alloc: oom (out of memory)",
+                            "unsupported: unsupported (no such extension)",
+                            "device_lost: device-lost (the device was reset)",
+                            "not_a_number: error (metric 'number' is nan; a metric is a finite "
+                            "number)"));
+}
+
+TEST(Faults, MemoryLimit) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep:\n  allocate_mib: [0, 1024]\nparams: {pause_ms: 1000}\n"
+                        "measure: {memory_limit_bytes: 943718400}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    const std::vector<report::Record> ok = rowsOf(dir, "number");
+    EXPECT_EQ(ok.size(), 1U);
+    const std::vector<report::Record> failed = rowsOf(dir, "");
+    ASSERT_EQ(failed.size(), 1U);
+    EXPECT_EQ(failed[0].status, report::Status::Oom);
+    EXPECT_THAT(failed[0].message,
+                testing::MatchesRegex("resident memory of .* MiB is over the limit of 900 MiB"));
+}
+
+TEST(Faults, SideBySideAndInFreshProcesses) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "sweep:\n  number: [1, 2, 3]\nmeasure: {processes: 2, repeats: 2}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--jobs", "2", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
+    EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 12U);
+}
+
+TEST(Faults, NoSuchDevice) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "");
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "77", "--out", (folder.path() / "run").string()});
+    EXPECT_EQ(run.exitCode, 3);
+    EXPECT_EQ(run.err.substr(0, 10), "gfxrepro: ");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

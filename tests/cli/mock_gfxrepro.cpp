@@ -1,0 +1,104 @@
+// The program with one technique that fails in every way that a technique can.
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <thread>
+#include <vector>
+
+#include "runner/cli/cli.h"
+#include "runner/technique/technique.h"
+
+namespace {
+
+using namespace gfxrepro;
+
+enum class Behaviour {
+    Ok,
+    Crash,
+    Exit,
+    Hang,
+    Throw,
+    BadAlloc,
+    Unsupported,
+    DeviceLost,
+    NotANumber
+};
+
+constexpr config::Choice<Behaviour> kBehaviours[] = {
+    {Behaviour::Ok, "ok"},
+    {Behaviour::Crash, "crash"},
+    {Behaviour::Exit, "exit"},
+    {Behaviour::Hang, "hang"},
+    {Behaviour::Throw, "throw"},
+    {Behaviour::BadAlloc, "bad_alloc"},
+    {Behaviour::Unsupported, "unsupported"},
+    {Behaviour::DeviceLost, "device_lost"},
+    {Behaviour::NotANumber, "not_a_number"},
+};
+
+class Mock : public technique::Technique {
+  public:
+    explicit Mock(config::Params& params)
+        : behaviour_(params.getEnum("behaviour", Behaviour::Ok, kBehaviours, {"what happens"})),
+          number_(params.getInt("number", 0, {"given back as a metric"})),
+          pauseMs_(params.getInt("pause_ms", 0, {"length of an iteration", "ms", 0, 60000})),
+          allocateMib_(params.getInt("allocate_mib", 0, {"memory to touch", "MiB", 0, 4096})) {
+        params.finish();
+    }
+
+    void setup(technique::SetupContext&) override {
+        memory_.assign(static_cast<std::size_t>(allocateMib_) << 20, 'x');
+    }
+
+    void render(technique::FrameContext&) override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(pauseMs_));
+        switch (behaviour_) {
+            case Behaviour::Ok:
+            case Behaviour::NotANumber:
+                return;
+            case Behaviour::Crash:
+                std::fputs("about to crash\n", stderr);
+                std::raise(SIGSEGV);
+                return;
+            case Behaviour::Exit:
+                std::fputs("leaving\n", stderr);
+                std::_Exit(7);
+            case Behaviour::Hang:
+                while (true) std::this_thread::sleep_for(std::chrono::seconds(1));
+            case Behaviour::Throw:
+                throw Error("nothing works");
+            case Behaviour::BadAlloc:
+                throw std::bad_alloc();
+            case Behaviour::Unsupported:
+                throw UnsupportedError("no such extension");
+            case Behaviour::DeviceLost:
+                throw DeviceLostError("the device was reset");
+        }
+    }
+
+    void record(technique::Recorder& recorder) override {
+        const bool isNan = behaviour_ == Behaviour::NotANumber;
+        recorder.metric("number", isNan ? std::nan("") : number_, "1");
+        recorder.image("flat", image::ImageF(4, 4, 3, 0.5F));
+    }
+
+  private:
+    Behaviour behaviour_;
+    int number_;
+    int pauseMs_;
+    int allocateMib_;
+    std::vector<char> memory_;
+};
+
+std::unique_ptr<technique::Technique> create(config::Params& params) {
+    return std::make_unique<Mock>(params);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create}};
+    return cli::run(argc, argv, techniques);
+}

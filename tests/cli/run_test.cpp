@@ -1,0 +1,171 @@
+// A run from config to report, killed, resumed and refused.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <thread>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string smokeConfig() {
+    return (fs::path(GFXREPRO_CONFIGS) / "smoke/template.yaml").string();
+}
+
+TEST(Run, SmokeFromConfigToReport) {
+    const TemporaryFolder folder;
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        gfxrepro({"run", smokeConfig(), "--device", "software", "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(run.out, "2 of 2 finished; records: " + dir + "/records.csv\n");
+    const std::vector<report::Record> rows = rowsOf(dir, "mean_brightness");
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_NEAR(rows[0].value, 0.25, 1e-6);
+    EXPECT_NEAR(rows[1].value, 0.5, 1e-6);
+    EXPECT_EQ(rows[0].method, "gradient");
+    EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 2U);
+    EXPECT_TRUE(fs::exists(dir + "/images/sweep-smoke-template/" + rows[0].caseId + "-result.exr"));
+    EXPECT_TRUE(fs::exists(dir + "/images/sweep-smoke-template/" + rows[0].caseId + "-result.png"));
+
+    const ProcessResult table = gfxrepro({"table", dir});
+    EXPECT_EQ(table.exitCode, 0) << table.err;
+    EXPECT_TRUE(fs::exists(dir + "/tables/sweep-smoke-template.csv"));
+    const ProcessResult claims = gfxrepro({"claims", dir});
+    EXPECT_EQ(claims.exitCode, 0) << claims.err;
+    EXPECT_NE(claims.out.find("1 holds"), std::string::npos) << claims.out;
+    const ProcessResult report = gfxrepro({"report", dir});
+    EXPECT_EQ(report.exitCode, 0) << report.err;
+    EXPECT_TRUE(fs::exists(dir + "/report.html"));
+}
+
+TEST(Run, SecondRunIntoOneFolderIsRefused) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {pause_ms: 1500}\n");
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram first(
+        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
+    while (!fs::exists(dir + "/plan.json")) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    const ProcessResult second =
+        mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(second.exitCode, 2);
+    EXPECT_EQ(second.err, "gfxrepro: " + dir + ": another run is writing to this folder\n");
+    EXPECT_EQ(first.wait().exitCode, 0);
+    const ProcessResult third = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(third.err, "gfxrepro: " + dir + ": holds a run already; continue it with --resume " +
+                             dir + ", or give another folder\n");
+}
+
+const char* const kSixCases =
+    "params: {pause_ms: 300}\nsweep:\n  number: {range: [1, 6]}\n"
+    "measure: {lane: timing, processes: 1}\n"
+    "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n";
+
+/// Starts six cases and waits until one is recorded.
+void waitForFirstCase(const std::string& dir) {
+    while (!fs::exists(dir + "/records.csv") || rowsOf(dir, "number").empty()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+TEST(Run, KilledRunResumesToTheSameTables) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, kSixCases);
+    const std::string whole = folder.path() / "whole";
+    const std::string killed = folder.path() / "killed";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
+    BackgroundProgram run(
+        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", killed});
+    waitForFirstCase(killed);
+    run.signal(SIGKILL);
+    EXPECT_EQ(run.wait().exitCode, 128 + SIGKILL);
+    const std::size_t finished = rowsOf(killed, "number").size();
+    EXPECT_LT(finished, 6U);
+    EXPECT_EQ(mockGfxrepro({"table", killed}).exitCode, 4);
+
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", killed});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    const std::string left = std::to_string(6 - finished);
+    EXPECT_EQ(resumed.out,
+              left + " of " + left + " finished; records: " + killed + "/records.csv\n");
+    for (const std::string& dir : {whole, killed}) {
+        EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    }
+    EXPECT_EQ(readFile(killed + "/tables/sweep-mock.csv"),
+              readFile(whole + "/tables/sweep-mock.csv"));
+}
+
+TEST(Run, InterruptedRunIsResumable) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, kSixCases);
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram run(
+        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
+    waitForFirstCase(dir);
+    run.signal(SIGINT);
+    const ProcessResult result = run.wait();
+    EXPECT_EQ(result.exitCode, 130);
+    EXPECT_NE(result.err.find("interrupted; continue with: gfxrepro run --resume " + dir),
+              std::string::npos);
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+    EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
+}
+
+TEST(Run, ResumeRefusesAChangedConfig) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    writeMockConfig(folder, "params: {number: 2}\n");
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 2);
+    EXPECT_EQ(resumed.err, "gfxrepro: " + dir + ": cannot be resumed: the config " + config +
+                               " changed; start a new run instead\n");
+}
+
+/// `reproduce` over a data folder with one paper whose claim asks for `minimum`.
+ProcessResult reproduceDemo(const TemporaryFolder& folder, const std::string& minimum,
+                            const std::string& behaviours) {
+    folder.write("configs/scenes/README.md", "empty");
+    folder.write(
+        "configs/demo2026/table-1.yaml",
+        "table: demo2026/1\ntitle: A demonstration\ntechnique: mock\n"
+        "params: {number: 5}\nsweep: {behaviour: " +
+            behaviours +
+            "}\n"
+            "layout:\n  rows: behaviour\n  columns:\n    n: {metric: number, format: "
+            "\"{median:.0f}\"}\n"
+            "claims:\n  D1: {says: the number is large, bound: n, at: {behaviour: ok}, above: " +
+            minimum + "}\n");
+    return runProgram({GFXREPRO_MOCK_PROGRAM, "reproduce", "demo2026/1", "--device", "software",
+                       "--quiet", "--out", (folder.path() / "run").string()},
+                      {"GFXREPRO_DATA=" + folder.path().string()});
+}
+
+TEST(Reproduce, ExitCodesFollowClaimsAndCases) {
+    const TemporaryFolder holds;
+    const ProcessResult well = reproduceDemo(holds, "4", "[ok]");
+    EXPECT_EQ(well.exitCode, 0) << well.err;
+    EXPECT_NE(well.out.find("claims: 1 holds\n"), std::string::npos) << well.out;
+    for (const char* file : {"records.csv", "claims.csv", "junit.xml", "report.html",
+                             "tables/demo2026-1.csv", "tables/demo2026-1.md"}) {
+        EXPECT_TRUE(fs::exists(holds.path() / "run" / file)) << file;
+    }
+    const TemporaryFolder fails;
+    const ProcessResult failing = reproduceDemo(fails, "6", "[ok]");
+    EXPECT_EQ(failing.exitCode, 1) << failing.err;
+    EXPECT_NE(failing.out.find("demo2026/1 D1 fails: the number is large; measured 5"),
+              std::string::npos)
+        << failing.out;
+    const TemporaryFolder incomplete;
+    EXPECT_EQ(reproduceDemo(incomplete, "4", "[ok, throw]").exitCode, 4);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

@@ -1,0 +1,97 @@
+// What the program says to input that it cannot use: exact words, exit code 2.
+#include <gtest/gtest.h>
+
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+/// Standard error of a call that must end with exit code 2, with the folder's path as DIR.
+std::string refusal(const std::vector<std::string>& arguments, const TemporaryFolder& folder) {
+    ProcessResult result = gfxrepro(arguments);
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.out, "");
+    const std::string prefix = folder.path().string();
+    for (std::size_t at; (at = result.err.find(prefix)) != std::string::npos;) {
+        result.err.replace(at, prefix.size(), "DIR");
+    }
+    return result.err;
+}
+
+TEST(Usage, UnknownCommand) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(refusal({"reproduec"}, folder),
+              "gfxrepro: unknown command 'reproduec'; did you mean 'reproduce'?; see 'gfxrepro "
+              "--help'\n");
+    EXPECT_EQ(refusal({"xyzzy"}, folder),
+              "gfxrepro: unknown command 'xyzzy'; see 'gfxrepro --help'\n");
+    EXPECT_EQ(refusal({}, folder), "gfxrepro: no command; see 'gfxrepro --help'\n");
+}
+
+TEST(Usage, UnknownOption) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(refusal({"run", "--jbos", "2", "x.yaml"}, folder),
+              "gfxrepro: run: unknown option '--jbos'; did you mean '--jobs'?; see 'run --help'\n");
+}
+
+TEST(Usage, MissingConfig) {
+    const TemporaryFolder folder;
+    const std::string missing = (folder.path() / "none.yaml").string();
+    EXPECT_EQ(refusal({"check", missing}, folder),
+              "gfxrepro: cannot read DIR/none.yaml: No such file or directory\n");
+}
+
+TEST(Usage, BadKeyHasItsPlace) {
+    const TemporaryFolder folder;
+    const std::string config = folder.write("bad.yaml",
+                                            "sweep_of: bad\ntitle: Bad\ntechnique: template\n"
+                                            "params: {brightnes: 1}\n");
+    EXPECT_EQ(refusal({"check", config}, folder).substr(0, 33),
+              "gfxrepro: DIR/bad.yaml:4:10: tech");
+}
+
+TEST(Usage, UnknownTechniqueAndScene) {
+    const TemporaryFolder folder;
+    const std::string technique =
+        folder.write("technique.yaml", "sweep_of: bad\ntitle: Bad\ntechnique: templat\n");
+    EXPECT_NE(refusal({"check", technique}, folder)
+                  .find("unknown technique 'templat'; did you mean 'template'?"),
+              std::string::npos);
+    const std::string scene = folder.write(
+        "scene.yaml", "sweep_of: bad\ntitle: Bad\ntechnique: template\nscene: shapes/tours\n");
+    EXPECT_NE(
+        refusal({"check", scene}, folder)
+            .find("scene.yaml:4:8: unknown scene 'shapes/tours'; did you mean 'shapes/torus'?"),
+        std::string::npos);
+}
+
+TEST(Usage, UnknownPaperAndKind) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(refusal({"reproduce", "zju2006/2.1"}, folder),
+              "gfxrepro: unknown paper or table 'zju2006/2.1'; did you mean 'zju2005/2.1'?; "
+              "'gfxrepro list tables' shows all\n");
+    EXPECT_EQ(refusal({"list", "scene"}, folder),
+              "gfxrepro: list: unknown kind 'scene'; did you mean 'scenes'?; known: configs, "
+              "generators, scenes, tables, techniques\n");
+}
+
+TEST(Usage, RunWantsConfigsOrARun) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(refusal({"run"}, folder),
+              "gfxrepro: run: give config files, or --resume DIR alone\n");
+    EXPECT_EQ(refusal({"table", folder.path()}, folder),
+              "gfxrepro: DIR: is no run directory (it has no plan.json)\n");
+}
+
+TEST(Usage, EveryHelpFitsOnAScreen) {
+    for (const char* command : {"doctor", "list", "describe", "check", "plan", "run", "reproduce",
+                                "table", "claims", "report", "image", "scene"}) {
+        const ProcessResult result = gfxrepro({command, "--help"});
+        EXPECT_EQ(result.exitCode, 0) << command;
+        EXPECT_LE(std::count(result.out.begin(), result.out.end(), '\n'), 24) << command;
+    }
+    EXPECT_EQ(gfxrepro({"--help"}).exitCode, 0);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

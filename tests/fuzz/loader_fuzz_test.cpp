@@ -1,0 +1,287 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "runner/image/exr_io.h"
+#include "runner/image/png_io.h"
+#include "runner/scene/load.h"
+#include "tests/fuzz/memory_meter.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro {
+namespace {
+
+namespace fs = std::filesystem;
+using Load = std::function<void(const fs::path&)>;
+
+constexpr int kMutations = 5;
+constexpr std::uintmax_t kMaxMutatedBytes = 200'000;  // larger seeds are loaded as they are only
+
+bool isFinite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+template <class T>
+bool fits(const std::vector<T>& attribute, std::size_t count) {
+    return attribute.empty() || attribute.size() == count;
+}
+
+/// What every user of a scene relies on.
+void expectConsistent(const scene::Scene& scene) {
+    const auto inRange = [](int index, std::size_t count) {
+        return index >= -1 && index < static_cast<int>(count);
+    };
+    for (const scene::Mesh& mesh : scene.meshes) {
+        const std::size_t count = mesh.positions.size();
+        EXPECT_TRUE(std::all_of(mesh.positions.begin(), mesh.positions.end(), isFinite));
+        EXPECT_TRUE(fits(mesh.normals, count) && fits(mesh.texcoords, count) &&
+                    fits(mesh.colors, count));
+        EXPECT_TRUE(inRange(mesh.material, scene.materials.size()));
+        for (const glm::uvec3& triangle : mesh.triangles) {
+            ASSERT_LT(std::max({triangle.x, triangle.y, triangle.z}), count);
+        }
+    }
+    for (const scene::Material& material : scene.materials) {
+        EXPECT_TRUE(inRange(material.baseColorTexture, scene.textures.size()));
+    }
+    for (const scene::Instance& instance : scene.instances) {
+        ASSERT_GE(instance.mesh, 0);
+        ASSERT_LT(instance.mesh, static_cast<int>(scene.meshes.size()));
+    }
+    const std::size_t count = scene.points.positions.size();
+    EXPECT_TRUE(
+        std::all_of(scene.points.positions.begin(), scene.points.positions.end(), isFinite));
+    EXPECT_TRUE(fits(scene.points.normals, count) && fits(scene.points.radii, count) &&
+                fits(scene.points.colors, count));
+}
+
+const Load kLoadPly = [](const fs::path& path) { expectConsistent(scene::loadPly(path)); };
+const Load kLoadObj = [](const fs::path& path) { expectConsistent(scene::loadObj(path)); };
+const Load kLoadGltf = [](const fs::path& path) { expectConsistent(scene::loadGltf(path)); };
+const Load kReadPng = [](const fs::path& path) { image::readPng16(path); };
+const Load kReadExr = [](const fs::path& path) {
+    const image::ExrImage exr = image::readExr(path);
+    for (const auto& channel : exr.channels) {
+        EXPECT_EQ(channel.values.width(), exr.width());
+        EXPECT_EQ(channel.values.height(), exr.height());
+    }
+};
+
+/// A file may fail, but only by an Error that names it, and within the memory that its size allows:
+/// decoders stop at 2,000 times the file (and hold it twice where they convert).
+void expectRefusedOrLoaded(const Load& load, const fs::path& path, std::uintmax_t folderBytes) {
+    SCOPED_TRACE(path.string());
+    test::resetPeakMemory();
+    try {
+        load(path);
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find(path.parent_path().string()) != std::string::npos,
+                  true)
+            << error.what();
+    } catch (const std::exception& error) {
+        ADD_FAILURE() << "not an Error: " << error.what();
+    }
+    // OpenEXR reserves what an unknown attribute declares, up to 2 GiB, and touches it only as far
+    // as the file reaches; attribute sizes that disagree with their types lead it to such a place.
+    const bool isExr = &load == &kReadExr;
+    const std::size_t alwaysAllowedBytes =
+        (std::size_t{256} << 20) + (isExr ? std::size_t{1} << 31 : 0);
+    EXPECT_LE(test::peakMemoryBytes(), alwaysAllowedBytes + 4000 * folderBytes);
+}
+
+std::string mutated(std::string content, Random& random) {
+    const auto place = [&] { return random.index(static_cast<std::uint32_t>(content.size())); };
+    constexpr std::array<const char*, 8> kNumbers{
+        "-1", "4294967295", "1e999", "nan", "99999999999999999999", "0", "65536", "-0.0"};
+    if (content.empty()) return "x";
+    switch (random.index(5)) {
+        case 0:
+            content.resize(place());
+            break;
+        case 1:
+            for (int i = 0; i < 4; ++i) content[place()] = static_cast<char>(random.next());
+            break;
+        case 2: {
+            const std::string chunk = content.substr(place(), 1 + random.index(64));
+            content.insert(place(), chunk);
+            break;
+        }
+        case 3: {  // another number in the text
+            const std::size_t at = content.find_first_of("0123456789", place());
+            if (at == std::string::npos) break;
+            const std::size_t end = content.find_first_not_of("0123456789.", at);
+            content.replace(at, std::min(end, content.size()) - at, kNumbers[random.index(8)]);
+            break;
+        }
+        default: {  // a large word in the binary part
+            const std::size_t at = place();
+            const std::size_t count = std::min<std::size_t>(4, content.size() - at);
+            content.replace(at, count, std::string(count, '\xff'));
+        }
+    }
+    return content;
+}
+
+/// The neighbours that the seed names, so that a mutated file still finds them.
+std::uintmax_t linkNeighbours(const fs::path& seed, const std::string& content,
+                              const fs::path& folder) {
+    std::uintmax_t bytes = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(seed.parent_path())) {
+        const bool isNamed = content.find(entry.path().filename().string()) != std::string::npos;
+        if (!isNamed || !entry.is_regular_file() || entry.path() == seed) continue;
+        fs::remove(folder / entry.path().filename());  // another seed's
+        fs::create_symlink(entry.path(), folder / entry.path().filename());
+        bytes += entry.file_size();
+    }
+    return bytes;
+}
+
+/// Loads the seed and mutations of it, which are written into `folder`. What fails is kept.
+void fuzz(const Load& load, const fs::path& seed, std::uint64_t number, const fs::path& folder) {
+    if (testing::Test::HasFailure()) return;  // the first one is enough to look at
+    const std::string content = readFile(seed);
+    const std::uintmax_t neighbours = linkNeighbours(seed, content, folder);
+    expectRefusedOrLoaded(load, seed, content.size() + neighbours);
+    if (content.size() > kMaxMutatedBytes) return;
+    Random random(number);
+    const fs::path path = folder / ("mutated" + seed.filename().extension().string());
+    for (int i = 0; i < kMutations; ++i) {
+        const std::string variant = mutated(content, random);
+        std::ofstream(path, std::ios::binary) << variant;
+        expectRefusedOrLoaded(load, path, variant.size() + neighbours);
+        if (testing::Test::HasFailure()) {
+            const fs::path kept =
+                fs::temp_directory_path() / ("gfxrepro-fuzz" + path.extension().string());
+            fs::copy_file(path, kept, fs::copy_options::overwrite_existing);
+            FAIL() << seed << " mutation " << i << " of seed " << number << ", kept as " << kept;
+        }
+    }
+}
+
+/// The seeds of a folder in the assets, sorted, and those of `own`.
+std::vector<fs::path> seeds(const std::string& folder, const std::vector<fs::path>& own) {
+    std::vector<fs::path> found;
+    if (const auto path = test::asset("fuzz_seeds/" + folder)) {
+        for (const auto& entry : fs::recursive_directory_iterator(*path)) {
+            if (entry.is_regular_file()) found.push_back(entry.path());
+        }
+    }
+    std::sort(found.begin(), found.end());
+    found.insert(found.begin(), own.begin(), own.end());
+    return found;
+}
+
+bool hasExtension(const fs::path& path, std::initializer_list<const char*> extensions) {
+    return std::find(extensions.begin(), extensions.end(), path.extension()) != extensions.end();
+}
+
+scene::Scene smallScene() {
+    scene::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}};
+    mesh.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+    mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    mesh.triangles = {{0, 1, 2}, {2, 1, 3}};
+    mesh.material = 0;
+    scene::Scene scene = scene::sceneOf(mesh);
+    scene.materials.emplace_back().baseColorTexture = 0;
+    scene.textures.emplace_back(4, 4, 3, std::uint8_t{9});
+    scene.cameras.emplace_back();
+    return scene;
+}
+
+TEST(LoaderFuzz, Ply) {
+    const test::TemporaryFolder own;
+    scene::savePly(own.path() / "binary.ply", smallScene());
+    own.write("ascii.ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+              "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+              "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n");
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed :
+         seeds("ply", {own.path() / "binary.ply", own.path() / "ascii.ply"})) {
+        if (hasExtension(seed, {".ply"})) {
+            // These are small, and the format is our own parser's: more of them.
+            for (int round = 0; round < 2; ++round) fuzz(kLoadPly, seed, ++number, work.path());
+        }
+    }
+}
+
+TEST(LoaderFuzz, Obj) {
+    const test::TemporaryFolder own;
+    own.write("a.mtl", "newmtl a\nKd 1 0 0\nd 0.5\nNs 10\n");
+    const fs::path seed =
+        own.write("a.obj",
+                  "mtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\n"
+                  "f 1/1/1 2/1/1 3/1/1\nf -1 -2 \\\n -3\nf 1//1 2//1 3//1\n");
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& each : seeds("obj", {seed})) {
+        if (hasExtension(each, {".obj"})) {
+            for (int round = 0; round < 2; ++round) fuzz(kLoadObj, each, ++number, work.path());
+        }
+    }
+}
+
+TEST(LoaderFuzz, Gltf) {
+    const test::TemporaryFolder own;
+    scene::saveGlb(own.path() / "a.glb", smallScene());
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed : seeds("gltf", {own.path() / "a.glb"})) {
+        if (hasExtension(seed, {".gltf", ".glb"})) fuzz(kLoadGltf, seed, ++number, work.path());
+    }
+    for (int round = 0; round < 100; ++round)
+        fuzz(kLoadGltf, own.path() / "a.glb", ++number, work.path());
+}
+
+TEST(LoaderFuzz, Png) {
+    const test::TemporaryFolder own;
+    image::writePng(own.path() / "a.png", image::Image16(9, 5, 3, 1234));
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed : seeds("png", {own.path() / "a.png"})) {
+        fuzz(kReadPng, seed, ++number, work.path());
+    }
+}
+
+TEST(LoaderFuzz, Exr) {
+    const test::TemporaryFolder own;
+    image::ExrImage exr;
+    exr.add(image::ImageF(9, 5, 3, 0.5F), {"R", "G", "B"});
+    image::writeExr(own.path() / "a.exr", exr);
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed : seeds("exr", {own.path() / "a.exr"})) {
+        fuzz(kReadExr, seed, ++number, work.path());
+    }
+}
+
+/// Files of quite another kind, given to every loader.
+TEST(LoaderFuzz, AnythingToAnyLoader) {
+    const test::TemporaryFolder own;
+    const fs::path text = own.write("notes.txt", "v f usemtl ply glTF \x89PNG 1 2 3\n");
+    std::vector<fs::path> all = seeds("invalid_misc", {text, own.write("empty", "")});
+    const std::vector<fs::path> others = seeds("stl", {});
+    all.insert(all.end(), others.begin(), others.end());
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed : all) {
+        for (const Load& load : {kLoadPly, kLoadObj, kLoadGltf, kReadPng, kReadExr}) {
+            fuzz(load, seed, ++number, work.path());
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro

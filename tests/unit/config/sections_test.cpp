@@ -1,0 +1,253 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/config/experiment.h"
+#include "tests/unit/config/experiment_fixture.h"
+
+namespace gfxrepro::config {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST_F(ExperimentTest, BadSections) {
+    EXPECT_EQ(errorWith("titl: u"),
+              "DIR/zju/a.yaml:4:1: config: unknown key 'titl'; did you mean 'title'?");
+    EXPECT_EQ(errorWith("output: {width: 20000}"),
+              "DIR/zju/a.yaml:4:17: output: width is 20000; allowed: 1 … 16384 pixels");
+    EXPECT_EQ(errorWith("measure: {lane: fast}"),
+              "DIR/zju/a.yaml:4:17: measure: lane is 'fast'; allowed: quality | timing");
+    EXPECT_EQ(errorWith("measure: {repeat: 3}"),
+              "DIR/zju/a.yaml:4:11: measure: unknown parameter 'repeat'; did you mean 'repeats'?");
+    EXPECT_EQ(errorWith("params: [1]"), "DIR/zju/a.yaml:4:9: params is [1]; allowed: a map");
+    EXPECT_EQ(errorWith("assumptions: {a: {value: 1}}"),
+              "DIR/zju/a.yaml:4:15: assumption 'a' needs 'why'");
+    EXPECT_EQ(errorWith("assumptions: {a: {valu: 1, why: w}}"),
+              "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valu'; did you mean 'value'?");
+    EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
+}
+
+TEST_F(ExperimentTest, BadLayouts) {
+    const auto layoutError = [&](const std::string& layout) {
+        return errorWith("params: {method: m}\nsweep: {scene: [s]}\nlayout: " + layout);
+    };
+    const std::string head = "DIR/zju/a.yaml:6:";
+    EXPECT_EQ(layoutError("{rows: scnee, cell: {metric: m}}"),
+              head + "16: layout: unknown axis 'scnee'; allowed: method, scene, frame");
+    EXPECT_EQ(layoutError("{rows: [scene, methd], cell: {metric: m}}"),
+              head + "24: layout: unknown axis 'methd'; did you mean 'method'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: scene, cell: {metric: m}}"),
+              head + "32: layout: axis 'scene' is used twice");
+    EXPECT_EQ(layoutError("{cell: {metric: m}}"), head + "9: layout has neither rows nor columns");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m}, b: {pass: p}}}"),
+              head +
+                  "9: layout: some cell has no metric; allowed: a metric in `cell`, or in every "
+                  "label of one axis");
+    EXPECT_EQ(layoutError("{axes: {e: {a: m}}, rows: scene, cell: {metric: m}}"),
+              head + "17: layout: axis 'e' is neither in rows nor in columns");
+    EXPECT_EQ(layoutError("{axes: {scene: {a: m}}, rows: scene}"),
+              head + "17: layout: axis 'scene' is an axis of the cases already");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metrics: m}}}"),
+              head + "37: a cell's selection: unknown key 'metrics'; did you mean 'metric'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, where: {metod: x}}}}"),
+              head + "56: where: unknown key 'metod'; did you mean 'method'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {}}"),
+              head + "32: labels is {}; allowed: a map {label: selection}");
+    EXPECT_EQ(layoutError("{row: scene}"),
+              head + "10: layout: unknown key 'row'; did you mean 'rows'?");
+}
+
+TEST_F(ExperimentTest, CellFormats) {
+    const auto formatError = [&](const std::string& format) {
+        return errorWith("sweep: {scene: [s]}\nlayout: {rows: scene, columns: {a: m}, cell: '" +
+                         format + "'}");
+    };
+    for (const char* format :
+         {"{mean:.2f}/{max:.0f}", "{median}", "{{{count:.0f}}}", "{min:8.3e} ms"}) {
+        EXPECT_EQ(formatError(format), "no error") << format;
+    }
+    const std::string head = "DIR/zju/a.yaml:5:46: ";
+    EXPECT_EQ(formatError("{avg:.2f}"),
+              head + "statistic is avg; allowed: median, mean, min, max, sum, count");
+    EXPECT_EQ(formatError("{mean:.2d}"),
+              head +
+                  "format is \"{mean:.2d}\"; allowed: number formats such as {mean:.2f} "
+                  "(invalid type specifier)");
+    EXPECT_EQ(formatError("{mean:999999999f}"),
+              head +
+                  "format is \"{mean:999999999f}\"; allowed: number formats such as {mean:.2f} "
+                  "(too long)");
+    EXPECT_EQ(formatError("mean"),
+              head + "format is mean; allowed: a statistic in braces, as {median:.4g}");
+    EXPECT_EQ(formatError("{mean"), head + "format is \"{mean\"; allowed: a } for every {");
+    EXPECT_EQ(formatError("{mean} }"),
+              head + "format is \"{mean} }\"; allowed: } only after {, or }}");
+}
+
+TEST_F(ExperimentTest, BadPrintedValues) {
+    const auto printedError = [&](const std::string& lines) {
+        return errorWith(
+            "sweep: {scene: [s]}\n"
+            "layout: {axes: {e: {p: {pass: p}, q: {pass: q}}}, rows: [scene, e], columns: {time: "
+            "m}}\n"
+            "printed:\n  values: |\n" +
+            lines);
+    };
+    EXPECT_EQ(printedError("    # remark\n    scene,e,time\n\n    s,p,1\n    s,q,\n"), "no error");
+    EXPECT_EQ(printedError("    scene,e,tme\n    s,p,1\n"),
+              "DIR/zju/a.yaml:8: printed: 'tme' is neither a row axis nor a column; did you mean "
+              "'time'?");
+    EXPECT_EQ(printedError("    scene,e,speed\n    s,p,1\n"),
+              "DIR/zju/a.yaml:8: printed: 'speed' is neither a row axis nor a column; allowed: "
+              "scene, e, time");
+    EXPECT_EQ(printedError("    scene,time\n    s,1\n"),
+              "DIR/zju/a.yaml:8: printed: row axis 'e' has no column");
+    EXPECT_EQ(printedError("    scene,e,time,time\n"),
+              "DIR/zju/a.yaml:8: printed: column 'time' stands twice");
+    EXPECT_EQ(printedError("    scene,e,time\n    # x\n    s,p\n"),
+              "DIR/zju/a.yaml:10: printed: 2 cells in a row; the header has 3");
+    EXPECT_EQ(printedError("    scene,e,time\n    s,r,1\n"),
+              "DIR/zju/a.yaml:9: printed: e is 'r'; allowed: p | q");
+    EXPECT_EQ(printedError("    scene,e,time\n    s,p,1\n    s,p,2\n"),
+              "DIR/zju/a.yaml:10: printed: the row 's,p,2' stands twice");
+    EXPECT_EQ(printedError("    scene,e,time\n"),
+              "DIR/zju/a.yaml:7:11: printed: values has no rows");
+}
+
+TEST_F(ExperimentTest, ColumnsOfSeveralAxesAreJoined) {
+    const std::string text =
+        "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], method: [nr, dp], size: [512, "
+        "1024]}\n"
+        "layout: {rows: scene, columns: [method, size], cell: {metric: m}}\n"
+        "claims: {C: {says: s, ratio: (dp_512 + 1) / nr_512, between: [1, 2]}}\n"
+        "printed: {values: \"scene,nr_512,dp_1024\\ns,1,2\"}\n";
+    const Experiment table = load(text);
+    EXPECT_THAT(table.claims[0].operands, ElementsAre("(dp_512 + 1)", "nr_512"));
+    // What an override takes out of the sweep may still be printed and claimed.
+    ExperimentOptions options;
+    options.sweeps = {parseOverride("size=512")};
+    EXPECT_EQ(load(text, options).printed.header.size(), 3U);
+}
+
+TEST_F(ExperimentTest, BadClaims) {
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(claimError("{says: s, order: aa < bb}"), "no error");
+    EXPECT_EQ(claimError("{order: aa < bb}"), head + "3: claim 'C' needs 'says'");
+    EXPECT_EQ(claimError("{says: s}"),
+              head +
+                  "3: claim 'C' has no type; allowed: order, ratio, trend, independent, bound, "
+                  "exact, tolerance, crossover");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
+              head + "32: claim 'C' is of two types, 'order' and 'bound'");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
+              head +
+                  "32: claim 'C': unknown key 'above'; allowed: says, at, statistic, device, "
+                  "profile, order");
+    EXPECT_EQ(claimError("{says: s, order: aa}"),
+              head + "23: claim 'C': order is aa; allowed: a < b < …");
+    EXPECT_EQ(claimError("{says: s, order: aa < }"),
+              head + "23: claim 'C' is aa <; allowed: an expression over columns");
+    EXPECT_EQ(claimError("{says: s, order: aa < bc}"),
+              head + "23: claim 'C': unknown column 'bc'; did you mean 'bb'?");
+    EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
+              head + "23: claim 'C': ratio is aa; allowed: a / b");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
+              head + "3: claim 'C' needs at_least, at_most or between");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, at_most: 1}"),
+              head + "54: claim 'C': the lower bound exceeds the upper");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, between: [1, 2]}"),
+              head + "54: claim 'C': between beside other bounds");
+    EXPECT_EQ(claimError("{says: s, bound: aa}"), head + "3: claim 'C' needs above or below");
+}
+
+TEST_F(ExperimentTest, BadClaimsOverAxes) {
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(claimError("{says: s, trend: aa, exponent: [1, 2]}"),
+              head + "3: claim 'C' needs 'over'");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb}"),
+              head + "3: claim 'C' needs exponent or direction");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: scen, direction: decreasing}"),
+              head +
+                  "33: claim 'C': 'scen' is neither a row axis nor a column; did you mean "
+                  "'scene'?");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: down}"),
+              head + "48: claim 'C': direction is down; allowed: increasing | decreasing");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [1, 2], strictly: true}"),
+              head + "65: claim 'C': strictly needs 'direction'");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [2, 1]}"),
+              head + "47: claim 'C': exponent is [2, 1]; allowed: [low, high], low first");
+    for (const char* within : {"25", "x%", "-1%", "[1]"}) {
+        EXPECT_EQ(
+            claimError(std::string("{says: s, independent: aa, of: bb, within: ") + within + "}"),
+            head + "49: claim 'C': within is " + within +
+                "; allowed: a percentage as 25%, or a fraction 0 … 1");
+    }
+    EXPECT_EQ(claimError("{says: s, exact: aa}"), head + "3: claim 'C' needs 'equals'");
+    EXPECT_EQ(claimError("{says: s, exact: aa, equals: printed}"),
+              head + "3: claim 'C' needs printed values");
+    EXPECT_EQ(claimError("{says: s, tolerance: aa, within: 5%}"),
+              head + "3: claim 'C' needs printed values");
+    EXPECT_EQ(claimError("{says: s, crossover: [aa], over: scene, between: [1, 2]}"),
+              head + "27: claim 'C': crossover is [aa]; allowed: [a, b]");
+}
+
+TEST_F(ExperimentTest, BadClaimScopes) {
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scene: u}}"),
+              head + "49: claim 'C': at.scene is u; allowed: s | t");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scnene: s}}"),
+              head + "42: claim 'C': at: unknown key 'scnene'; did you mean 'scene'?");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, device: cpu}"),
+              head + "45: claim 'C': device is cpu; allowed: any | gpu");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, profile: fast}"),
+              head + "46: claim 'C': profile is fast; allowed: quick | full | paper");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, statistic: avg}"),
+              head + "48: statistic is avg; allowed: median, mean, min, max, sum, count");
+    EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, above: 1}"),
+              head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
+}
+
+TEST(DescribeConfig, NamesEveryKeyOnALine) {
+    const std::string text = describeConfig();
+    for (const char* key : {"table ",
+                            "figure ",
+                            "section ",
+                            "sweep_of ",
+                            "title ",
+                            "extends ",
+                            "technique ",
+                            "scene ",
+                            "params ",
+                            "sweep ",
+                            "sweep.zip ",
+                            "sweep.list ",
+                            "sweep.exclude ",
+                            "sweep.when ",
+                            "output.width ",
+                            "output.height ",
+                            "measure.lane ",
+                            "measure.warmup ",
+                            "measure.repeats ",
+                            "measure.processes ",
+                            "measure.frames ",
+                            "measure.time_limit_s ",
+                            "measure.memory_limit_bytes ",
+                            "profiles.quick ",
+                            "profiles.paper ",
+                            "layout.axes ",
+                            "layout.rows ",
+                            "layout.columns ",
+                            "layout.cell ",
+                            "printed.values ",
+                            "printed.hardware ",
+                            "printed.remark ",
+                            "claims.ID.order ",
+                            "claims.ID.crossover ",
+                            "assumptions.NAME "}) {
+        EXPECT_THAT("\n" + text, HasSubstr("\n" + std::string(key))) << key;
+    }
+    EXPECT_THAT(text, HasSubstr("1 … 16384 pixels"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::config

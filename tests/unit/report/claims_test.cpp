@@ -1,0 +1,355 @@
+#include "runner/report/claims.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "runner/core/random.h"
+#include "tests/support/support.h"
+#include "tests/unit/report/fixture.h"
+
+namespace gfxrepro::report {
+namespace {
+
+using test::errorText;
+
+const ReportContext kSoftware{"llvmpipe", "software", "quick", "abc", ""};
+const ReportContext kGpu{"GeForce", "gpu", "paper", "abc", ""};
+
+/// Rows n = 1, 2, 4, 8 with columns a, b, c; one claim.
+std::string powersBody(const std::string& claim, const std::string& printed = "") {
+    return R"(
+sweep: {n: [1, 2, 4, 8]}
+layout:
+  rows: n
+  columns:
+    a: {metric: a}
+    b: {metric: b}
+    c-c: {metric: c}
+  cell: "{median:.1f}"
+)" + printed +
+           "claims:\n  X: {says: as claimed, " + claim + "}\n";
+}
+
+using Function = double (*)(double);
+constexpr Function kZero = [](double) { return 1.0; };
+
+std::vector<Record> powers(Function a, Function b = kZero, Function c = kZero) {
+    RecordMaker maker;
+    for (const int n : {1, 2, 4, 8}) {
+        maker.beginCase("", "{\"n\":" + std::to_string(n) + "}");
+        maker.add("a", {a(n)}).add("b", {b(n)}).add("c", {c(n)});
+    }
+    return maker.records();
+}
+
+ClaimResult judgeOne(const std::string& body, const std::vector<Record>& records,
+                     const ReportContext& context = kSoftware) {
+    const config::Experiment experiment = experimentFrom(body);
+    const auto results = evaluateClaims(experiment, buildTable(experiment, records), context);
+    GFXREPRO_ASSERT_EQ(results.size(), 1u);
+    return results[0];
+}
+
+ClaimResult judgePowers(const std::string& claim, const std::vector<Record>& records) {
+    return judgeOne(powersBody(claim), records);
+}
+
+TEST(Claims, Order) {
+    const auto records = powers([](double n) { return n; }, [](double n) { return 2.0 * n; },
+                                [](double n) { return n == 4.0 ? 8.0 : 4.0 * n; });
+    ClaimResult result = judgePowers("order: a < b", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.required, "a < b");
+    EXPECT_EQ(result.measured, "smallest gap 50 %");
+    EXPECT_EQ(result.margin, "50 %");
+    result = judgePowers("order: a < b < c-c", records);  // b = c at n = 4
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "smallest gap 0 %");
+    EXPECT_EQ(result.reason, "worst at n=4; one sample");
+    EXPECT_EQ(judgePowers("order: b < a", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("order: a < b < c-c, at: {n: [1, 2]}", records).verdict, Verdict::Holds);
+}
+
+TEST(Claims, Ratio) {
+    const auto records = powers([](double n) { return 3.0 * n; }, [](double n) { return n; });
+    ClaimResult result = judgePowers("ratio: a / b, between: [2.5, 4]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "3");
+    EXPECT_EQ(result.required, "a / b in [2.5, 4]");
+    EXPECT_EQ(result.margin, "0.5");
+    EXPECT_EQ(judgePowers("ratio: a / b, at_least: 3", records).verdict, Verdict::Holds);
+    result = judgePowers("ratio: a / b, at_least: 3.01", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.required, "a / b ≥ 3.01");
+    EXPECT_EQ(result.margin, "-0.01");
+    EXPECT_EQ(judgePowers("ratio: (a + b) / b, between: [4, 4]", records).verdict, Verdict::Holds);
+}
+
+TEST(Claims, TrendExponentOverAxisAndColumn) {
+    const auto records =
+        powers([](double n) { return 5.0 * std::pow(n, 1.5); }, [](double n) { return n * n; });
+    ClaimResult result = judgePowers("trend: a, over: n, exponent: [1.4, 1.6]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent 1.5");
+    result = judgePowers("trend: a, over: b, exponent: [0.7, 0.8]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent 0.75");
+    EXPECT_EQ(judgePowers("trend: a, over: n, exponent: [1.6, 2]", records).verdict,
+              Verdict::Fails);
+}
+
+TEST(Claims, TrendDirection) {
+    const auto rising = powers([](double n) { return n; });
+    const auto stepped = powers([](double n) { return n == 4.0 ? 2.0 : n; });
+    EXPECT_EQ(
+        judgePowers("trend: a, over: n, direction: increasing, strictly: true", rising).verdict,
+        Verdict::Holds);
+    EXPECT_EQ(judgePowers("trend: a, over: n, direction: increasing", stepped).verdict,
+              Verdict::Holds);
+    const ClaimResult result =
+        judgePowers("trend: a, over: n, direction: increasing, strictly: true", stepped);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.required, "strictly increasing with n");
+    EXPECT_EQ(judgePowers("trend: a, over: n, direction: decreasing", rising).verdict,
+              Verdict::Fails);
+    // Both: rising as asked, but not with that exponent.
+    const ClaimResult both =
+        judgePowers("trend: a, over: n, direction: increasing, exponent: [2, 3]", rising);
+    EXPECT_EQ(both.verdict, Verdict::Fails);
+    EXPECT_EQ(both.measured, "smallest step 50 %; exponent 1");
+    EXPECT_EQ(both.required, "increasing with n; exponent in [2, 3]");
+}
+
+TEST(Claims, Independent) {
+    const auto records =
+        powers([](double n) { return n == 8.0 ? 11.0 : 10.0; }, [](double n) { return n; });
+    ClaimResult result = judgePowers("independent: a, of: n, within: 10%", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "spread 10 %");
+    EXPECT_EQ(result.required, "spread of a ≤ 10 %");
+    result = judgePowers("independent: [a, b], of: n, within: 10%", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "spread 10 %; spread 233.3 %");  // 7 / median 3
+}
+
+TEST(Claims, Bound) {
+    const auto records = powers([](double n) { return n; }, [](double) { return 0.5; });
+    EXPECT_EQ(judgePowers("bound: a + b, above: 1.5, below: 8.5", records).verdict, Verdict::Holds);
+    const ClaimResult result = judgePowers("bound: a + b, below: 8", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "8.5");
+    EXPECT_EQ(result.required, "a + b ≤ 8");
+    EXPECT_EQ(result.reason, "worst at n=8; one sample");
+}
+
+TEST(Claims, ExactAndTolerance) {
+    const std::string printed = R"(
+printed:
+  values: |
+    n,a,b
+    1,16,10
+    2,4.0,
+    4,,20
+)";
+    const auto records = powers([](double n) { return n == 1.0 ? 16.0 : 4.0; },
+                                [](double n) { return n == 1.0 ? 11.0 : 19.0; });
+    const auto judgePrinted = [&](const std::string& claim) {
+        return judgeOne(powersBody(claim, printed), records);
+    };
+    EXPECT_EQ(judgePrinted("exact: a, equals: printed").verdict, Verdict::Holds);
+    ClaimResult result = judgePrinted("exact: b, equals: printed");
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "largest difference 1");
+    EXPECT_EQ(result.required, "b = printed");
+    EXPECT_EQ(judgePrinted("exact: a, equals: 4, at: {n: [2, 4]}").verdict, Verdict::Holds);
+    EXPECT_EQ(judgePrinted("exact: a, equals: 4").verdict, Verdict::Fails);
+    result = judgePrinted("tolerance: b, within: 10%");
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "largest deviation 10 %");
+    EXPECT_EQ(judgePrinted("tolerance: b, within: 9%").verdict, Verdict::Fails);
+    result = judgePrinted("tolerance: b, within: 9%, at: {n: 8}");
+    EXPECT_EQ(result.verdict, Verdict::Unmeasured);
+    EXPECT_EQ(result.reason, "no printed number to compare with");
+}
+
+TEST(Claims, Crossover) {
+    const auto records = powers([](double n) { return n * n; }, [](double n) { return 3.0 * n; },
+                                [](double n) { return 100.0 * n; });
+    ClaimResult result = judgePowers("crossover: [a, b], over: n, between: [2.9, 3.1]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "crossing at 3");
+    EXPECT_EQ(judgePowers("crossover: [a, b], over: n, between: [4, 5]", records).verdict,
+              Verdict::Fails);
+    result = judgePowers("crossover: [a, c-c], over: n, between: [1, 1000]", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.reason, "there is no crossing within the rows; one sample");
+}
+
+TEST(Claims, NotApplicable) {
+    const auto records = powers([](double n) { return n; });
+    ClaimResult result = judgePowers("bound: a, below: 1, device: gpu", records);
+    EXPECT_EQ(result.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(result.reason, "claims about a GPU are not judged on a software device");
+    result = judgePowers("bound: a, below: 1, profile: paper", records);
+    EXPECT_EQ(result.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(result.reason, "judged in the profile 'paper' only");
+    EXPECT_EQ(judgeOne(powersBody("bound: a, below: 8, device: gpu, profile: paper"), records, kGpu)
+                  .verdict,
+              Verdict::Holds);
+}
+
+TEST(Claims, UnmeasuredNamesTheCell) {
+    RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").add("a", {1.0}).add("b", {1.0});
+    maker.beginCase("", R"({"n":2})").fail(Status::Oom, "killed at 2 GiB");
+    const ClaimResult result = judgePowers("trend: a, over: n, exponent: [0, 9]", maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Unmeasured);
+    EXPECT_EQ(result.reason, "a at n=2: oom (killed at 2 GiB)");
+    EXPECT_EQ(judgePowers("bound: a, below: 2, at: {n: 1}", maker.records()).verdict,
+              Verdict::Holds);
+    EXPECT_EQ(
+        judgePowers("trend: a, over: n, exponent: [0, 9], at: {n: 1}", maker.records()).reason,
+        "needs at least 2 rows, found 1");
+    const ClaimResult zero = judgePowers("trend: a, over: n, exponent: [0, 9]",
+                                         powers([](double n) { return n - 1.0; }));
+    EXPECT_EQ(zero.verdict, Verdict::Unmeasured);
+}
+
+/// A failing row counts even where another row could not be measured.
+TEST(Claims, FailureOutweighsAMissingRow) {
+    RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").add("a", {5.0});
+    EXPECT_EQ(judgePowers("bound: a, below: 2", maker.records()).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("bound: a, below: 6", maker.records()).verdict, Verdict::Unmeasured);
+}
+
+/// Over a column, rows are grouped by the axes that the column does not depend on.
+TEST(Claims, GroupsByTheOtherAxes) {
+    const std::string body = R"(
+sweep: {scene: [s, m, l], method: [slow, fast]}
+layout:
+  rows: [scene, method]
+  columns: {triangles: {metric: triangles}, time: {metric: t}}
+  cell: "{median:.1f}"
+claims:
+  X: {says: time grows linearly, trend: time, over: triangles, exponent: [0.9, 1.1]}
+)";
+    RecordMaker maker;
+    double triangles = 100.0;
+    for (const std::string scene : {"s", "m", "l"}) {
+        maker.beginCase(scene, R"({"method":"slow"})").add("triangles", {triangles});
+        maker.add("t", {triangles * 9.0});
+        maker.beginCase(scene, R"({"method":"fast"})").add("triangles", {triangles});
+        maker.add("t", {std::pow(triangles, 0.5)});
+        triangles *= 10.0;
+    }
+    const ClaimResult result = judgeOne(body, maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "exponent 0.5");
+    EXPECT_EQ(result.reason, "worst at method=fast; one sample");
+}
+
+std::string ratioBody(const std::string& between) {
+    return R"(
+sweep: {method: [ours, theirs]}
+scene: models/duck
+layout:
+  rows: scene
+  columns: method
+  cell: {metric: gpu_time_ms, format: "{median:.1f}"}
+claims:
+  X: {says: twice as fast, ratio: theirs / ours, between: )" +
+           between + "}\n";
+}
+
+/// Sum of twelve uniform numbers: near enough to a normal distribution of deviation 1.
+double normal(Random& random) {
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i) sum += double{random.uniform()};
+    return sum;
+}
+
+std::vector<Record> noisyPair(double ratio, double noise, std::uint64_t seed) {
+    Random random(seed);
+    RecordMaker maker;
+    for (const auto& [method, mean] :
+         {std::pair("ours", 10.0), std::pair("theirs", 10.0 * ratio)}) {
+        maker.beginCase("models/duck", std::string("{\"method\":\"") + method + "\"}");
+        std::vector<double> repeats;
+        for (int i = 0; i < 7; ++i) repeats.push_back(mean * (1.0 + noise * normal(random)));
+        maker.add("gpu_time_ms", repeats);
+    }
+    return maker.records();
+}
+
+TEST(Claims, NoiseDoesNotUpsetAClearVerdict) {
+    std::map<Verdict, int> inside, outside, onTheEdge;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        ++inside[judgeOne(ratioBody("[1.6, 2.5]"), noisyPair(2.0, 0.05, seed)).verdict];
+        ++outside[judgeOne(ratioBody("[1.6, 2.5]"), noisyPair(1.2, 0.05, seed)).verdict];
+        ++onTheEdge[judgeOne(ratioBody("[2, 2.5]"), noisyPair(2.0, 0.05, seed)).verdict];
+    }
+    EXPECT_GE(inside[Verdict::Holds], 95);
+    EXPECT_EQ(inside[Verdict::Fails], 0);
+    EXPECT_GE(outside[Verdict::Fails], 95);
+    EXPECT_EQ(outside[Verdict::Holds], 0);
+    EXPECT_GE(onTheEdge[Verdict::Ambiguous], 80);
+}
+
+TEST(Claims, AmbiguousSaysSo) {
+    const ClaimResult result = judgeOne(ratioBody("[2, 2.5]"), noisyPair(2.0, 0.05, 3));
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_EQ(result.reason, "the interval straddles the bound");
+    EXPECT_THAT(result.measured, testing::MatchesRegex("[0-9.]+ \\[[0-9.]+, [0-9.]+\\]"));
+}
+
+TEST(Claims, StatisticOfACell) {
+    const std::string body = R"(
+scene: a
+layout:
+  rows: scene
+  columns: {e: {metric: e}}
+  cell: "{mean:.1f}/{max:.1f}"
+claims:
+  X: {says: no error is large, bound: e, below: 5, statistic: )";
+    RecordMaker maker;
+    maker.beginCase("a").add("e", {1.0, 2.0, 9.0});
+    EXPECT_EQ(judgeOne(body + "mean}", maker.records()).measured.substr(0, 1), "4");
+    EXPECT_EQ(judgeOne(body + "max}", maker.records()).measured.substr(0, 1), "9");
+    EXPECT_THAT(errorText([&] { judgeOne(body + "min}", maker.records()); }),
+                testing::EndsWith("claim 'X': statistic 'min' is not in the format of column 'e'"));
+}
+
+TEST(Claims, BadOperandsAreErrors) {
+    // A swept column is known to the config only by its values, so this is checked here again.
+    config::Experiment experiment = experimentFrom(powersBody("bound: a, below: 5"));
+    const Table table = buildTable(experiment, {});
+    const auto error = [&](const std::string& operand) {
+        experiment.claims[0].operands[0] = operand;
+        experiment.claims[0].location = {"t.yaml", 4, 2};
+        return errorText([&] { evaluateClaims(experiment, table, kSoftware); });
+    };
+    EXPECT_EQ(error("a + time"), "t.yaml:4:2: claim 'X': 'time' is no column (columns: a, b, c-c)");
+    EXPECT_THAT(error("a +"),
+                testing::StartsWith("t.yaml:4:2: claim 'X': 'a +' is no expression: "));
+    EXPECT_EQ(error("max(a, c-c) * 2"), "no error");
+    experiment.claims[0].at = {{"m", {config::Node::number(1.0)}}};
+    EXPECT_EQ(error("a"),
+              "t.yaml:4:2: claim 'X': at: 'm' is no row axis; did you mean 'n'? (row "
+              "axes: n)");
+}
+
+TEST(Claims, Summary) {
+    EXPECT_EQ(claimSummaryLine({}), "no claims");
+    std::vector<ClaimResult> results(4);
+    results[0].verdict = results[1].verdict = Verdict::Holds;
+    results[2].verdict = Verdict::Fails;
+    results[3].verdict = Verdict::NotApplicable;
+    EXPECT_EQ(claimSummaryLine(results), "2 hold, 1 fails, 1 not-applicable");
+}
+
+}  // namespace
+}  // namespace gfxrepro::report

@@ -1,0 +1,73 @@
+#include "tests/unit/report/fixture.h"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/support.h"
+
+namespace gfxrepro::report {
+
+config::Experiment experimentFrom(const std::string& body) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write(
+        "table-9.9.yaml", "table: zju2005/9.9\ntitle: A table\ntechnique: voxelization\n" + body);
+    return config::loadExperiment(file, {}, folder.path());
+}
+
+RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string& params) {
+    current_ = Record{};
+    current_.caseId = "case:" + scene + params;
+    current_.table = "zju2005/9.9";
+    current_.technique = "voxelization";
+    const auto json = nlohmann::json::parse(params);
+    if (json.contains("method")) current_.method = json["method"].get<std::string>();
+    current_.scene = scene;
+    current_.params = params;
+    current_.lane = "timing";
+    return *this;
+}
+
+RecordMaker& RecordMaker::process(int process) {
+    current_.process = process;
+    return *this;
+}
+
+RecordMaker& RecordMaker::frame(int frame) {
+    current_.frame = frame;
+    return *this;
+}
+
+RecordMaker& RecordMaker::lane(const std::string& lane) {
+    current_.lane = lane;
+    return *this;
+}
+
+RecordMaker& RecordMaker::add(const std::string& metric, std::initializer_list<double> repeats,
+                              const std::string& pass, const std::string& unit) {
+    return add(metric, std::vector<double>(repeats), pass, unit);
+}
+
+RecordMaker& RecordMaker::add(const std::string& metric, const std::vector<double>& repeats,
+                              const std::string& pass, const std::string& unit) {
+    for (std::size_t i = 0; i < repeats.size(); ++i) {
+        Record record = current_;
+        record.metric = metric;
+        record.pass = pass;
+        record.unit = unit;
+        record.repeat = static_cast<int>(i);
+        record.value = repeats[i];
+        records_.push_back(record);
+    }
+    return *this;
+}
+
+RecordMaker& RecordMaker::fail(Status status, const std::string& message) {
+    Record record = current_;
+    record.value = std::numeric_limits<double>::quiet_NaN();
+    record.status = status;
+    record.message = message;
+    records_.push_back(record);
+    return *this;
+}
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,312 @@
+#include "runner/report/table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/report/sampling.h"
+#include "tests/support/support.h"
+#include "tests/unit/report/fixture.h"
+
+namespace gfxrepro::report {
+namespace {
+
+using test::errorText;
+using testing::ElementsAre;
+
+std::vector<std::string> columnLabels(const Table& table) {
+    std::vector<std::string> labels;
+    for (const TableColumn& column : table.columns) labels.push_back(column.label);
+    return labels;
+}
+
+std::vector<std::vector<std::string>> rowLabels(const Table& table) {
+    std::vector<std::vector<std::string>> labels;
+    for (const TableRow& row : table.rows) labels.push_back(row.labels);
+    return labels;
+}
+
+const char* const kPlain = R"(
+sweep:
+  scene: [models/duck, models/bunny]
+layout:
+  rows: scene
+  columns:
+    triangles: {metric: triangles, format: "{median:.0f}"}
+    draw_ms: {pass: draw}
+  cell: {metric: gpu_time_ms, format: "{median:.1f}"}
+)";
+
+std::string withPrinted() {
+    return std::string(kPlain) + R"(
+printed:
+  hardware: Radeon 9800 Pro
+  values: |
+    scene,triangles,draw_ms
+    models/bunny,69451,12.0
+    models/duck,1254,9.0
+    models/hugo,16928,9.7
+)";
+}
+
+RecordMaker duckAndBunny() {
+    RecordMaker maker;
+    maker.beginCase("models/bunny")
+        .add("triangles", {69451.0}, "", "triangle")
+        .add("gpu_time_ms", {4.0, 2.0, 3.0}, "draw")
+        .add("gpu_time_ms", {40.0}, "other");
+    maker.beginCase("models/duck")
+        .add("triangles", {1254.0}, "", "triangle")
+        .add("gpu_time_ms", {1.0, 1.0, 1.0}, "draw")
+        .add("scene_source", {1.0}, "", "enum");
+    return maker;
+}
+
+TEST(Table, RowsInSweepOrderMedianOfRepeats) {
+    const Table table = buildTable(experimentFrom(kPlain), duckAndBunny().records());
+    EXPECT_EQ(table.id, "zju2005/9.9");
+    EXPECT_THAT(columnLabels(table), ElementsAre("triangles", "draw_ms"));
+    EXPECT_THAT(rowLabels(table),
+                ElementsAre(ElementsAre("models/duck"), ElementsAre("models/bunny")));
+    const Cell& bunny = table.rows[1].cells[1];
+    EXPECT_TRUE(bunny.isOk());
+    EXPECT_EQ(bunny.measured, "3.0");
+    EXPECT_EQ(bunny.values[0].value, 3.0);
+    EXPECT_EQ(bunny.values[0].draws.size(), static_cast<std::size_t>(kDrawCount));
+    // Of three repeats, all three draws are the smallest in 1 of 27: more than 2.5 %.
+    EXPECT_EQ(bunny.low, "2.0");
+    EXPECT_EQ(bunny.high, "4.0");
+    EXPECT_EQ(table.rows[1].cells[0].measured, "69451");
+    EXPECT_TRUE(table.rows[1].cells[0].values[0].draws.empty());
+    EXPECT_EQ(table.columns[1].unit, "ms");
+    EXPECT_EQ(table.rows[0].source, SceneSource::StandIn);
+    EXPECT_EQ(table.rows[1].source, SceneSource::Unknown);
+    EXPECT_TRUE(table.hasSources());
+}
+
+TEST(Table, PrintedStandsBesideMeasured) {
+    const Table table = buildTable(experimentFrom(withPrinted()), duckAndBunny().records());
+    EXPECT_EQ(table.hardware, "Radeon 9800 Pro");
+    EXPECT_EQ(table.rows[0].cells[0].printed, "1254");
+    EXPECT_EQ(table.rows[1].cells[1].printed, "12.0");
+    EXPECT_EQ(table.rows[1].cells[1].printedValues[0], 12.0);
+    EXPECT_THAT(table.notes,
+                ElementsAre("printed, but not part of this run: models/hugo, 16928, 9.7"));
+}
+
+TEST(Table, CasesNotRunAreMissing) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").add("gpu_time_ms", {4.0}, "draw");
+    const Table table = buildTable(experimentFrom(kPlain), maker.records());
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[0].cells[1].status, Status::Missing);
+    EXPECT_EQ(table.rows[0].cells[1].measured, "missing");
+    EXPECT_EQ(table.rows[0].cells[1].message, "not run");
+    EXPECT_EQ(table.rows[1].cells[0].message, "no 'triangles' was recorded");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "4.0");
+    EXPECT_EQ(table.rows[1].cells[1].low, "");
+}
+
+TEST(Table, WrongPassSaysWhichThereAre) {
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("gpu_time_ms", {4.0}, "drawing").add("gpu_time_ms", {5.0});
+    const Table table = buildTable(experimentFrom(kPlain), maker.records());
+    EXPECT_EQ(table.rows[0].cells[1].message,
+              "no 'gpu_time_ms' of pass 'draw' was recorded; it is there for pass: drawing, none");
+}
+
+TEST(Table, FailedCaseShowsItsStatus) {
+    RecordMaker maker = duckAndBunny();
+    maker.beginCase("models/bunny").fail(Status::Timeout, "longer than 120 s");
+    const Table table = buildTable(experimentFrom(kPlain), maker.records());
+    const Cell& cell = table.rows[1].cells[1];
+    EXPECT_EQ(cell.status, Status::Timeout);
+    EXPECT_EQ(cell.measured, "timeout");
+    EXPECT_EQ(cell.message, "longer than 120 s");
+    EXPECT_TRUE(cell.values.empty());
+    EXPECT_TRUE(table.rows[0].cells[1].isOk());
+}
+
+TEST(Table, SecondAttemptReplacesTheFailure) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").fail(Status::Crash, "signal 11");
+    maker.beginCase("models/bunny").add("gpu_time_ms", {4.0}, "draw");
+    const Table table = buildTable(experimentFrom(kPlain), maker.records());
+    EXPECT_TRUE(table.rows[1].cells[1].isOk());
+    EXPECT_EQ(table.rows[1].cells[1].measured, "4.0");
+}
+
+TEST(Table, OneProcessOfTwoFailedIsPartial) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").add("gpu_time_ms", {4.0, 4.0}, "draw");
+    maker.process(1).fail(Status::Crash, "signal 11");
+    const Table table = buildTable(experimentFrom(kPlain), maker.records());
+    const Cell& cell = table.rows[1].cells[1];
+    EXPECT_TRUE(cell.isPartial);
+    EXPECT_FALSE(cell.isOk());
+    EXPECT_EQ(cell.measured, "4.0 (partial: crash)");
+}
+
+TEST(Table, TimesOfTheQualityLaneStayOut) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").lane("quality").add("gpu_time_ms", {4.0}, "draw");
+    maker.add("triangles", {7.0});
+    const Table table = buildTable(experimentFrom(kPlain), maker.records());
+    EXPECT_EQ(table.rows[1].cells[1].status, Status::Ambiguous);
+    EXPECT_EQ(table.rows[1].cells[1].measured, "ambiguous");
+    EXPECT_EQ(table.rows[1].cells[1].message,
+              "measured in the quality lane, where cases run side by side; a time needs the timing "
+              "lane");
+    EXPECT_EQ(table.rows[1].cells[0].measured, "7");
+}
+
+/// Voided by the equal-work guard, say: the number is there, but it is not shown.
+TEST(Table, DoubtfulMeasurementIsNoNumber) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").add("gpu_time_ms", {4.0, 5.0}, "draw");
+    std::vector<Record> records = maker.records();
+    for (Record& record : records) {
+        record.status = Status::Ambiguous;
+        record.message = "the image is blank";
+    }
+    const Table table = buildTable(experimentFrom(kPlain), records);
+    EXPECT_EQ(table.rows[1].cells[1].measured, "ambiguous");
+    EXPECT_EQ(table.rows[1].cells[1].message, "the image is blank");
+    EXPECT_TRUE(table.rows[1].cells[1].values.empty());
+    records[0].status = Status::Ok;
+    EXPECT_EQ(buildTable(experimentFrom(kPlain), records).rows[1].cells[1].measured,
+              "4.0 (partial: ambiguous)");
+}
+
+TEST(Table, OtherExperimentsArePassedOver) {
+    std::vector<Record> records = duckAndBunny().records();
+    for (Record& record : records) record.table = "zju2005/9.8";
+    const Table table = buildTable(experimentFrom(kPlain), records);
+    EXPECT_EQ(table.rows[0].cells[1].status, Status::Missing);
+}
+
+const char* const kMethods = R"(
+sweep:
+  scene: [city, tree]
+  ratio: [0.5, 1]
+  method: [ours, peeling]
+  exclude: [{scene: tree, ratio: 1, method: peeling}]
+layout:
+  rows: [scene, error, ratio]
+  axes:
+    error: {intensity: {metric: intensity_error}, visibility: {metric: visibility_error}}
+  columns: method
+  cell: "{mean:.2f}/{max:.0f}"
+)";
+
+/// 2 x 2 x 2 cases, three frames each; frame f of a case has value `base` + f.
+RecordMaker methodRecords() {
+    RecordMaker maker;
+    double base = 10.0;
+    for (const std::string scene : {"city", "tree"}) {
+        for (const std::string ratio : {"0.5", "1.0"}) {
+            for (const std::string method : {"ours", "peeling"}) {
+                if (scene == "tree" && ratio == "1.0" && method == "peeling") continue;
+                maker.beginCase(scene, "{\"ratio\":" + ratio + ",\"method\":\"" + method + "\"}");
+                for (int frame = 0; frame < 3; ++frame) {
+                    maker.frame(frame);
+                    maker.add("intensity_error", {base + frame, base + frame, 1000.0});
+                    maker.add("visibility_error", {base + frame + 0.5});
+                }
+                base += 10.0;
+            }
+        }
+    }
+    return maker;
+}
+
+TEST(Table, ThreeRowAxesAndASweptColumn) {
+    const Table table = buildTable(experimentFrom(kMethods), methodRecords().records());
+    EXPECT_THAT(columnLabels(table), ElementsAre("ours", "peeling"));
+    EXPECT_THAT(
+        rowLabels(table),
+        ElementsAre(ElementsAre("city", "intensity", "0.5"), ElementsAre("city", "intensity", "1"),
+                    ElementsAre("city", "visibility", "0.5"),
+                    ElementsAre("city", "visibility", "1"), ElementsAre("tree", "intensity", "0.5"),
+                    ElementsAre("tree", "intensity", "1"), ElementsAre("tree", "visibility", "0.5"),
+                    ElementsAre("tree", "visibility", "1")));
+    // Repeats are reduced to their median for each frame, then mean and max over the frames.
+    EXPECT_EQ(table.rows[0].cells[0].measured, "11.00/12");
+    EXPECT_EQ(table.rows[0].cells[1].measured, "21.00/22");
+    EXPECT_EQ(table.rows[3].cells[1].measured, "41.50/42");
+    EXPECT_EQ(table.rows[0].cells[0].find("max")->value, 12.0);
+    EXPECT_EQ(table.rows[0].cells[0].find("min"), nullptr);
+}
+
+TEST(Table, ExcludedCombinationIsBlankNotMissing) {
+    const Table table = buildTable(experimentFrom(kMethods), methodRecords().records());
+    EXPECT_FALSE(table.rows[5].cells[1].isPlanned);
+    EXPECT_EQ(table.rows[5].cells[1].measured, "");
+    EXPECT_TRUE(table.rows[5].cells[0].isOk());
+}
+
+TEST(Table, AxisOutsideOfTheLayoutIsAggregatedAndMarkedWhenNotWhole) {
+    const std::string body = R"(
+sweep: {scene: [a, b, c], method: [ours]}
+layout:
+  rows: method
+  columns:
+    error: {metric: error, format: "{mean:.1f}"}
+)";
+    RecordMaker maker;
+    maker.beginCase("a", R"({"method":"ours"})").add("error", {1.0});
+    maker.beginCase("b", R"({"method":"ours"})").add("error", {3.0});
+    Table table = buildTable(experimentFrom(body), maker.records());
+    EXPECT_EQ(table.rows[0].cells[0].measured, "2.0 (partial: missing)");
+    EXPECT_EQ(table.rows[0].cells[0].message, "1 of 3 cases were not run");
+    maker.beginCase("c", R"({"method":"ours"})").add("error", {5.0});
+    table = buildTable(experimentFrom(body), maker.records());
+    EXPECT_EQ(table.rows[0].cells[0].measured, "3.0");
+}
+
+TEST(Table, FixedSceneAndWhereOnAParameter) {
+    const std::string body = R"(
+scene: models/wagner
+sweep: {voxel_bits: [1, 8]}
+layout:
+  rows: scene
+  columns:
+    bit_ms: {where: {voxel_bits: 1}}
+    byte_mb: {where: {voxel_bits: 8}, metric: bytes, scale: 9.5367431640625e-7}
+  cell: {metric: gpu_time_ms, format: "{min:.1f}..{max:.1f}"}
+)";
+    RecordMaker maker;
+    maker.beginCase("models/wagner", R"({"voxel_bits":1})").add("gpu_time_ms", {3.0, 1.0, 2.0});
+    maker.beginCase("models/wagner", R"({"voxel_bits":8})").add("bytes", {4194304.0}, "", "byte");
+    const Table table = buildTable(experimentFrom(body), maker.records());
+    ASSERT_EQ(table.rows.size(), 1u);
+    EXPECT_THAT(table.rows[0].labels, ElementsAre("models/wagner"));
+    EXPECT_EQ(table.rows[0].cells[0].measured, "1.0..3.0");
+    EXPECT_EQ(table.rows[0].cells[1].find("max")->value, 4.0);
+    EXPECT_EQ(table.columns[1].unit, "");  // scaled: megabytes are no bytes
+}
+
+TEST(Table, BootstrapResamplesProcessesThenRepeats) {
+    // Two processes that differ by much, repeats that differ by little: the interval must be as
+    // wide as the processes are apart.
+    const Samples samples{{{{0, {10.0, 10.1, 9.9}}}, {{0, {20.0, 20.1, 19.9}}}}};
+    const auto draws = drawSummaries(samples, {metrics::Statistic::Mean}, 1);
+    const metrics::Interval interval = metrics::centralInterval(draws[0]);
+    EXPECT_LT(interval.low, 10.2);
+    EXPECT_GT(interval.high, 19.8);
+    EXPECT_EQ(draws, drawSummaries(samples, {metrics::Statistic::Mean}, 1));
+    EXPECT_TRUE(
+        drawSummaries({{{{0, {10.0}}, {1, {11.0}}}}}, {metrics::Statistic::Mean}, 1)[0].empty());
+}
+
+TEST(Table, BadParamsNameTheCase) {
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("gpu_time_ms", {4.0}, "draw");
+    std::vector<Record> records = maker.records();
+    records[0].params = "{oops";
+    EXPECT_THAT(errorText([&] { buildTable(experimentFrom(kPlain), records); }),
+                testing::StartsWith("case case:models/duck{} of zju2005/9.9: its params are not "
+                                    "JSON: "));
+}
+
+}  // namespace
+}  // namespace gfxrepro::report

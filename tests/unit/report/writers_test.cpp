@@ -1,0 +1,137 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runner/core/files.h"
+#include "runner/report/images.h"
+#include "runner/report/report.h"
+#include "tests/support/support.h"
+#include "tests/unit/report/fixture.h"
+
+namespace gfxrepro::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const ReportContext kContext{"llvmpipe", "software", "quick", "abc123", "gfxrepro reproduce"};
+
+config::Experiment experiment() {
+    return experimentFrom(R"(
+sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
+layout:
+  rows: scene
+  columns:
+    error: {metric: error, format: "{mean:.2f}/{max:.0f}"}
+    draw_ms: {metric: gpu_time_ms, format: "{median:.1f}"}
+printed:
+  hardware: "Radeon <9800> & co"
+  remark: "100 % sure_of \\nothing"
+  values: |
+    scene,error,draw_ms
+    models/duck,3.00/106,9.0
+claims:
+  A: {says: "a < b & \"c\"", bound: draw_ms, below: 10, at: {scene: models/duck}}
+  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}}
+  C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
+assumptions:
+  padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
+)");
+}
+
+std::vector<Record> records() {
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
+    maker.add("scene_source", {1.0}, "", "enum");
+    maker.beginCase("<b>&|_%").add("error", {2.5}).add("gpu_time_ms", {1.0 / 3.0});
+    maker.beginCase("models/lost").fail(Status::Crash, "signal <11>");
+    return maker.records();
+}
+
+struct Written {
+    test::TemporaryFolder folder;
+    std::string read(const std::string& name) const { return readFile(folder.path() / name); }
+};
+
+TEST(Writers, TableFiles) {
+    const Written run;
+    writeTables(run.folder.path(), buildTables({experiment()}, records()));
+    const std::string csv = run.read("tables/zju2005-9.9.csv");
+    EXPECT_THAT(csv, testing::StartsWith(
+                         "scene,source,error_printed,error_mean_measured,error_mean_low,"
+                         "error_mean_high,error_max_measured,error_max_low,error_max_high,"
+                         "error_status,draw_ms_printed,draw_ms_measured,draw_ms_low,draw_ms_high,"
+                         "draw_ms_status\nmodels/duck,stand-in,3.00/106,2,1,"));
+    EXPECT_THAT(csv, HasSubstr(",ok,9.0,8,8,8,ok\n"));
+    EXPECT_THAT(csv, HasSubstr("0.3333333333333333,"));
+    EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,crash,,,,,crash\n"));
+    const std::string markdown = run.read("tables/zju2005-9.9.md");
+    EXPECT_THAT(markdown, HasSubstr("# Table 9.9. A table\n"));
+    EXPECT_THAT(markdown, HasSubstr("| models/duck | stand-in | 3.00/106 → 2.00/4 ["));
+    EXPECT_THAT(markdown, HasSubstr("| \\<b\\>&amp;\\|\\_% |"));
+    EXPECT_THAT(markdown, HasSubstr("| 9.0 → 8.0 |"));
+    EXPECT_THAT(markdown, HasSubstr("| models/lost |  | crash | crash |"));
+    const std::string latex = run.read("tables/zju2005-9.9.tex");
+    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{llrrrr}\n\\toprule\n"));
+    EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
+}
+
+TEST(Writers, ClaimFiles) {
+    const Written run;
+    const auto tables = buildTables({experiment()}, records());
+    const auto results = evaluateClaims({experiment()}, tables, kContext);
+    writeClaims(run.folder.path(), results, kContext);
+    EXPECT_EQ(run.read("claims.csv"),
+              "claim,table,device,profile,verdict,measured,required,margin,reason\n"
+              "A,zju2005/9.9,llvmpipe,quick,holds,8,draw_ms ≤ 10,2,one sample\n"
+              "B,zju2005/9.9,llvmpipe,quick,fails,8,draw_ms ≤ 1,-7,one sample\n"
+              "C,zju2005/9.9,llvmpipe,quick,unmeasured,,draw_ms ≤ 1,,draw_ms at "
+              "scene=models/lost: crash (signal <11>)\n");
+    EXPECT_EQ(run.read("junit.xml"),
+              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+              "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
+              "  <testcase classname=\"zju2005/9.9\" name=\"A\"/>\n"
+              "  <testcase classname=\"zju2005/9.9\" name=\"B\"><failure message=\"fails: measured "
+              "8, required draw_ms ≤ 1 (one sample)\"/></testcase>\n"
+              "  <testcase classname=\"zju2005/9.9\" name=\"C\"><skipped message=\"unmeasured: "
+              "measured nothing, required draw_ms ≤ 1 (draw_ms at scene=models/lost: crash (signal "
+              "&lt;11&gt;))\"/></testcase>\n"
+              "</testsuite>\n");
+}
+
+TEST(Writers, ReportIsOneSafeFile) {
+    const Written run;
+    run.folder.write("images/a.png", "\x89PNG\r\n\x1a\n");
+    appendImages(run.folder.path(), {{"case", "zju2005/9.9", 0, "surface", "images/a.png", "",
+                                      "zju2005/9.9 scene=<img onerror=x>"}});
+    writeReport(run.folder.path(), {experiment()}, records(), {{"cpu", "Xeon <script>"}}, kContext);
+    const std::string html = run.read("report.html");
+    EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,iVBORw0KGgo"));
+    EXPECT_THAT(html, HasSubstr("scene=&lt;img onerror=x&gt; · surface"));
+    EXPECT_THAT(html, HasSubstr("<dd>Xeon &lt;script&gt;</dd>"));
+    EXPECT_THAT(html, HasSubstr("<th scope=\"row\">&lt;b&gt;&amp;|_%</th>"));
+    EXPECT_THAT(html, HasSubstr("models/duck <abbr title=\"stand-in\">†</abbr>"));
+    EXPECT_THAT(html, HasSubstr("<span class=\"badge fails\">fails</span>"));
+    EXPECT_THAT(html, HasSubstr("padding = 1 voxels"));
+    EXPECT_THAT(html, HasSubstr("<span class=\"status\">crash</span> — signal &lt;11&gt;"));
+    EXPECT_THAT(html, HasSubstr("cells without a value: 2 crash; 1 of its cases failed"));
+    EXPECT_THAT(html, HasSubstr("gfxrepro reproduce zju2005/9.9 --profile quick"));
+    for (const char* forbidden : {"<script", "<b>", "onerror=x>", "src=\"http", "href=\"http"}) {
+        EXPECT_THAT(html, Not(HasSubstr(forbidden)));
+    }
+}
+
+TEST(Writers, LargeGalleriesAreLinked) {
+    const Written run;
+    const auto image = run.folder.write("images/a b.png", "\x89PNG");
+    appendImages(run.folder.path(), {{"case", "zju2005/9.9", 0, "s", "images/a b.png", "", "t"}});
+    std::filesystem::resize_file(image, 20'000'001);
+    writeReport(run.folder.path(), {experiment()}, records(), {}, kContext);
+    const std::string html = run.read("report.html");
+    EXPECT_THAT(html, HasSubstr("<img src=\"images/a b.png\""));
+    EXPECT_LT(html.size(), 100'000u);
+}
+
+}  // namespace
+}  // namespace gfxrepro::report

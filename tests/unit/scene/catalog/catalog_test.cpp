@@ -1,0 +1,213 @@
+#include "runner/scene/catalog.h"
+
+#include <gtest/gtest.h>
+
+#include "runner/scene/topology.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+const std::filesystem::path kShippedScenes = GFXREPRO_SOURCE_DIR "/configs/scenes";
+
+config::Node reference(const std::string& name) {
+    return config::Node::scalar(name, {"table.yaml", 5, 8});
+}
+
+/// configs with one entry m/x, and an assets folder beside it.
+struct Folders {
+    test::TemporaryFolder folder;
+
+    Folders() {
+        folder.write("assets/readme", "");
+        folder.write("scenes/readme", "");
+    }
+    void entry(const std::string& yaml) const { folder.write("scenes/m/x.yaml", yaml); }
+    Catalog catalog() const { return {folder.path() / "scenes", folder.path() / "assets"}; }
+    std::string errorOf(const std::string& yaml) const {
+        entry(yaml);
+        return test::errorText([&] { catalog(); }, folder.path());
+    }
+};
+
+TEST(Catalog, TakesTheFirstSourceAtHand) {
+    const Folders folders;
+    folders.entry(
+        "scene: m/x\ndoc: an x\nsources:\n"
+        "  - file: x/full.obj\n"
+        "  - {file: x/small.obj, refine_to: 9}\n"
+        "  - {generator: sdf_model, params: {shape: cube, triangles: 600}, seed: 4}\n");
+    const Catalog catalog = folders.catalog();
+    EXPECT_EQ(catalog.entries().at("m/x").doc, "an x");
+
+    const Scene last = catalog.load(reference("m/x"));
+    EXPECT_EQ(last.name, "m/x");
+    EXPECT_EQ(last.triangleCount(), 600U);
+    EXPECT_EQ(last.origin.kind, Origin::Kind::StandIn);
+    EXPECT_EQ(last.origin.description,
+              "generator sdf_model, seed 4: {shape: cube, triangles: 600}");
+    EXPECT_EQ(last.origin.sha256, "");
+
+    folders.folder.write("assets/x/small.obj", kTriangle);
+    const Scene middle = catalog.load(reference("m/x"));
+    EXPECT_EQ(middle.triangleCount(), 9U);
+    EXPECT_EQ(middle.origin.kind, Origin::Kind::StandIn);
+    EXPECT_EQ(middle.origin.description, "x/small.obj, refined to 9 triangles");
+    EXPECT_EQ(middle.origin.sha256.size(), 64U);
+
+    folders.folder.write("assets/x/full.obj", kTriangle);
+    const Scene first = catalog.load(reference("m/x"));
+    EXPECT_EQ(first.triangleCount(), 1U);
+    EXPECT_EQ(first.origin.kind, Origin::Kind::Real);
+    EXPECT_EQ(first.origin.description, "x/full.obj");
+}
+
+TEST(Catalog, ContentKeyFollowsTheContent) {
+    const Folders folders;
+    const auto keyWith = [&](const std::string& source) {
+        folders.entry("scene: m/x\ndoc: d\nsources: [" + source + "]\n");
+        return folders.catalog().contentKey(reference("m/x"));
+    };
+    folders.folder.write("assets/a.obj", kTriangle);
+    folders.folder.write("assets/b.obj", kTriangle);
+    EXPECT_EQ(keyWith("{file: a.obj}"), keyWith("{file: b.obj}"));
+    EXPECT_NE(keyWith("{file: a.obj}"), keyWith("{file: a.obj, refine_to: 5}"));
+    const std::string one = "{generator: sdf_model, params: {shape: cube}";
+    EXPECT_EQ(keyWith(one + "}"), keyWith(one + ", seed: 1}"));
+    EXPECT_NE(keyWith(one + "}"), keyWith(one + ", seed: 2}"));
+    EXPECT_NE(keyWith(one + "}"), keyWith("{generator: sdf_model, params: {shape: torus}}"));
+
+    folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.obj}]\n");
+    const Catalog catalog = folders.catalog();
+    const std::string before = catalog.contentKey(reference("m/x"));
+    EXPECT_EQ(catalog.contentKey(reference("m/x")), before);
+    folders.folder.write("assets/a.obj", std::string(kTriangle) + "# changed\n");
+    EXPECT_NE(catalog.contentKey(reference("m/x")), before);
+}
+
+TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
+    const Folders folders;
+    const std::string file = folders.folder.write("mine/my.obj", kTriangle).string();
+    const std::string config = (folders.folder.path() / "mine/table.yaml").string();
+    const auto my = config::Node::scalar("my.obj", {config, 2, 3});
+    const Catalog catalog = folders.catalog();
+    EXPECT_EQ(catalog.resolve(my).file, file);
+    const Scene scene = catalog.load(my);
+    EXPECT_EQ(scene.name, "my.obj");
+    EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
+    const auto missing = config::Node::scalar("../no.obj", {config, 2, 3});
+    EXPECT_EQ(test::errorText([&] { catalog.load(missing); }, folders.folder.path()),
+              "DIR/mine/table.yaml:2:3: scene file '../no.obj' is not there; looked at DIR/no.obj");
+}
+
+TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {
+    const Folders folders;
+    folders.entry(
+        "scene: m/x\ndoc: d\ncanonical: http://example.org/x.tar.gz\n"
+        "sources: [{file: x/full.ply}, {file: x/small.ply, refine_to: 9}]\n");
+    const Catalog catalog = folders.catalog();
+    EXPECT_EQ(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
+              "table.yaml:5:8: scene 'm/x' is not at hand; looked at:\n"
+              "  DIR/assets/x/full.ply\n"
+              "  DIR/assets/x/small.ply\n"
+              "get it with scripts/fetch-assets or from http://example.org/x.tar.gz");
+    EXPECT_EQ(test::errorText([&] { catalog.resolve(reference("m/y")); }),
+              "table.yaml:5:8: unknown scene 'm/y'; did you mean 'm/x'? (`gfxrepro list scenes` "
+              "prints all)");
+}
+
+TEST(Catalog, RefusesBadEntries) {
+    const Folders f;
+    EXPECT_EQ(f.errorOf("scene: m/z\ndoc: d\nsources: [{file: a.ply}]\n"),
+              "DIR/scenes/m/x.yaml:1:8: scene is 'm/z', but the file's place names it 'm/x'");
+    EXPECT_EQ(f.errorOf("scene: m/x\nsource: []\n"),
+              "DIR/scenes/m/x.yaml:2:1: scene entry: unknown key 'source'; did you mean 'sources'? "
+              "(allowed: scene, doc, canonical, generated, sources)");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\n"),
+              "DIR/scenes/m/x.yaml:1:1: scene entry: 'sources' is missing");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: []\n"),
+              "DIR/scenes/m/x.yaml:3:10: sources is empty; an entry needs at least one");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [a.ply]\n"),
+              "DIR/scenes/m/x.yaml:3:11: source is text, but must be a map");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, generator: sdf_model}]\n"),
+              "DIR/scenes/m/x.yaml:3:11: source: 'file' and 'generator' exclude each other");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: /a.ply}]\n"),
+              "DIR/scenes/m/x.yaml:3:18: file is '/a.ply', but must be a path within the assets "
+              "folder");
+    EXPECT_EQ(
+        f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, refine_to: 0}]\n"),
+        "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: a number of triangles, at least 1");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_modell}]\n"),
+              "DIR/scenes/m/x.yaml:3:23: unknown generator 'sdf_modell'; did you mean 'sdf_model'? "
+              "(there are: sdf_model)");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_model, seed: -1}]\n"),
+              "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: at least 0");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\ngenerated: true\nsources: [{file: a.ply}]\n"),
+              "DIR/scenes/m/x.yaml:4:11: source: a file cannot be the source of a generated scene");
+}
+
+TEST(Catalog, RefiningBelowTheFileIsLocated) {
+    const Folders folders;
+    folders.folder.write("assets/two.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    folders.entry("scene: m/x\ndoc: d\nsources: [{file: two.obj, refine_to: 1}]\n");
+    const Catalog catalog = folders.catalog();
+    EXPECT_EQ(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
+              "DIR/scenes/m/x.yaml:3:11: two.obj: cannot refine a mesh of 2 triangles to 1: it has "
+              "more already");
+}
+
+/// The triangles and vertices that the thesis prints, from generators alone.
+TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
+    const test::TemporaryFolder noAssets;
+    const Catalog catalog(kShippedScenes, noAssets.path());
+    const struct {
+        const char* name;
+        std::size_t triangles, vertices;
+    } kPrinted[] = {{"models/duck", 1254, 947},         {"models/hugo", 16928, 8634},
+                    {"models/bunny", 69450, 34834},     {"models/dragon", 871326, 439370},
+                    {"models/buddha", 1087514, 550868}, {"models/blade", 1765388, 898796},
+                    {"models/wagner", 60246, 30215},    {"models/brain", 36758, 29371}};
+    for (const auto& printed : kPrinted) {
+        const Scene scene = catalog.load(reference(printed.name));
+        EXPECT_EQ(scene.triangleCount(), printed.triangles) << printed.name;
+        EXPECT_EQ(scene.vertexCount(), printed.vertices) << printed.name;
+        EXPECT_EQ(scene.origin.kind, Origin::Kind::StandIn);
+        const Topology topology = topologyOf(scene.meshes[0]);
+        EXPECT_TRUE(topology.isClosed()) << printed.name;
+        EXPECT_EQ(topology.degenerateTriangles, 0U) << printed.name;
+        EXPECT_TRUE(topology.isManifold()) << printed.name;
+        EXPECT_TRUE(topology.isOriented()) << printed.name;
+    }
+    for (const auto& [name, entry] : catalog.entries()) {
+        if (!name.starts_with("shapes/")) continue;
+        const Scene scene = catalog.load(reference(name));
+        EXPECT_EQ(scene.origin.kind, Origin::Kind::Generated) << name;
+        EXPECT_TRUE(topologyOf(scene.meshes[0]).isClosed()) << name;
+    }
+}
+
+TEST(ShippedCatalog, RealModelsAreRecognized) {
+    const auto bunny = test::asset("bunny/bun_zipper.ply");
+    if (!bunny) GTEST_SKIP() << "bunny/bun_zipper.ply";
+    const Catalog catalog(kShippedScenes, bunny->parent_path().parent_path());
+    const Scene scene = catalog.load(reference("models/bunny"));
+    EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
+    EXPECT_EQ(scene.origin.description, "bunny/bun_zipper.ply");
+    EXPECT_EQ(scene.triangleCount(), 69451U);
+    EXPECT_EQ(scene.vertexCount(), 35947U);
+}
+
+TEST(ShippedCatalog, DecimatedScansAreRefinedToThePrintedCount) {
+    const auto blade = test::asset("blade/turbineblade.ply");
+    if (!blade) GTEST_SKIP() << "blade/turbineblade.ply";
+    const Catalog catalog(kShippedScenes, blade->parent_path().parent_path());
+    const Scene scene = catalog.load(reference("models/blade"));
+    EXPECT_EQ(scene.triangleCount(), 1765388U);
+    EXPECT_EQ(scene.origin.kind, Origin::Kind::StandIn);
+    EXPECT_EQ(scene.origin.description, "blade/turbineblade.ply, refined to 1765388 triangles");
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene

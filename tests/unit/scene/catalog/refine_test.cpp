@@ -1,0 +1,136 @@
+#include "runner/scene/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runner/scene/topology.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+Mesh square() {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+Mesh tetrahedron() {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    return mesh;
+}
+
+double area(const Mesh& mesh) {
+    double sum = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a = mesh.positions[t.x];
+        sum += 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[t.y]) - a,
+                                            glm::dvec3(mesh.positions[t.z]) - a));
+    }
+    return sum;
+}
+
+TEST(Refine, HalvesTheLongestEdgeFirst) {
+    const Mesh mesh = refinedTo(square(), 4);
+    ASSERT_EQ(mesh.triangles.size(), 4U);
+    ASSERT_EQ(mesh.positions.size(), 5U);
+    EXPECT_EQ(mesh.positions[4], glm::vec3(0.5F, 0.5F, 0));  // on the diagonal
+    EXPECT_EQ(mesh.texcoords[4], glm::vec2(0.5F, 0.5F));
+    EXPECT_NEAR(area(mesh), 1.0, 1e-12);
+}
+
+TEST(Refine, OpenMeshesReachEveryCount) {
+    for (long long count = 2; count < 60; ++count) {
+        const Mesh mesh = refinedTo(square(), count);
+        EXPECT_EQ(static_cast<long long>(mesh.triangles.size()), count);
+        const Topology topology = topologyOf(mesh);
+        EXPECT_TRUE(topology.isManifold()) << count;
+        EXPECT_TRUE(topology.isOriented()) << count;
+        // A disc: no T-junction has opened a hole.
+        EXPECT_EQ(topology.vertices + topology.triangles, topology.edges + 1) << count;
+        EXPECT_NEAR(area(mesh), 1.0, 1e-6);
+    }
+}
+
+TEST(Refine, ClosedMeshesStayClosedAndReachTheNextEvenCount) {
+    for (const long long count : {4LL, 5LL, 6LL, 7LL, 100LL, 101LL, 5000LL}) {
+        const Mesh mesh = refinedTo(tetrahedron(), count);
+        EXPECT_EQ(static_cast<long long>(mesh.triangles.size()), count + count % 2);
+        EXPECT_TRUE(topologyOf(mesh).isClosed());
+        EXPECT_TRUE(topologyOf(mesh).isManifold());
+        EXPECT_TRUE(topologyOf(mesh).isOriented());
+        EXPECT_NEAR(signedVolume(mesh), 1.0 / 6.0, 1e-6);
+    }
+}
+
+TEST(Refine, EdgesComeOutAboutEquallyLong) {
+    const Mesh mesh = refinedTo(square(), 512);
+    float longest = 0.0F;
+    for (const glm::uvec3& t : mesh.triangles) {
+        longest = std::max(longest, glm::distance(mesh.positions[t.x], mesh.positions[t.y]));
+    }
+    EXPECT_NEAR(longest, 1.0F / 16.0F, 1.0F / 32.0F);  // 512 right triangles: legs of 1/16
+}
+
+TEST(Refine, SeamsStayShutAndKeepTheirOwnAttributes) {
+    Mesh mesh = tetrahedron();  // every triangle with its own vertices and normal
+    Mesh seamed;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::vec3 normal = glm::normalize(glm::cross(
+            mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+        const auto first = static_cast<unsigned>(seamed.positions.size());
+        for (int i = 0; i < 3; ++i) {
+            seamed.positions.push_back(mesh.positions[t[i]]);
+            seamed.normals.push_back(normal);
+        }
+        seamed.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    const Mesh refined = refinedTo(seamed, 300);
+    EXPECT_EQ(refined.triangles.size(), 300U);
+    EXPECT_TRUE(topologyOf(refined).isClosed());
+    EXPECT_TRUE(topologyOf(refined).isManifold());
+    for (const glm::uvec3& t : refined.triangles) {
+        const glm::vec3 normal =
+            glm::normalize(glm::cross(refined.positions[t.y] - refined.positions[t.x],
+                                      refined.positions[t.z] - refined.positions[t.x]));
+        for (int i = 0; i < 3; ++i) EXPECT_GT(glm::dot(normal, refined.normals[t[i]]), 0.999F);
+    }
+}
+
+TEST(Refine, NonManifoldEdgesSplitAllTheirTriangles) {
+    Mesh fans;  // three triangles around one edge, which is the longest
+    fans.positions = {{0, -2, 0}, {0, 2, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
+    fans.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+    const Mesh mesh = refinedTo(fans, 6);
+    EXPECT_EQ(mesh.triangles.size(), 6U);
+    EXPECT_EQ(mesh.positions.size(), 6U);
+    EXPECT_EQ(topologyOf(mesh).nonManifoldEdges, 2U);
+    EXPECT_EQ(refinedTo(fans, 4).triangles.size(), 4U);  // through an edge of the boundary
+}
+
+TEST(Refine, SurvivesDuplicateAndDegenerateTriangles) {
+    Mesh mesh = square();
+    mesh.triangles.push_back({0, 1, 2});
+    mesh.triangles.push_back({1, 1, 2});
+    const Mesh refined = refinedTo(mesh, 200);
+    EXPECT_GE(refined.triangles.size(), 200U);
+    EXPECT_LE(refined.triangles.size(), 202U);
+    for (const glm::uvec3& t : refined.triangles) {
+        for (int i = 0; i < 3; ++i) ASSERT_LT(t[i], refined.positions.size());
+    }
+}
+
+TEST(Refine, RefusesCountsItCannotReach) {
+    EXPECT_EQ(test::errorText([] { refinedTo(square(), 1); }),
+              "cannot refine a mesh of 2 triangles to 1: it has more already");
+    EXPECT_EQ(test::errorText([] { refinedTo(Mesh{}, 10); }),
+              "cannot refine a mesh without triangles to 10");
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene

@@ -1,0 +1,291 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "runner/scene/load.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+/// The top-level members of a file, without their names' quotes: {"nodes", "[…]"}.
+using Document = std::map<std::string, std::string>;
+
+std::string text(const Document& document) {
+    std::string result;
+    for (const auto& [key, value] : document) {
+        result += (result.empty() ? "{\"" : ",\"") + key + "\":" + value;
+    }
+    return result + "}";
+}
+
+/// One buffer with, from byte 0, the positions of the unit square's corners (float), then the
+/// indices 0 1 2 0 2 3 (byte 48, unsigned short), then 4 normalized bytes a corner (byte 60).
+Document square() {
+    return {
+        {"asset", R"({"version":"2.0"})"},
+        {"buffers", R"([{"byteLength":76,"uri":"square.bin"}])"},
+        {"bufferViews",
+         R"([{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},
+                 {"buffer":0,"byteOffset":60,"byteLength":16,"byteStride":4}])"},
+        {"accessors",
+         R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+                 {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"},
+                 {"bufferView":2,"componentType":5121,"count":4,"type":"VEC4","normalized":true},
+                 {"bufferView":2,"componentType":5120,"count":4,"type":"VEC2","normalized":true}])"},
+        {"meshes", R"([{"name":"m","primitives":[{"attributes":{"POSITION":0},"indices":1}]}])"},
+        {"nodes", R"([{"mesh":0}])"},
+        {"scenes", R"([{"nodes":[0]}])"}};
+}
+
+std::string squareBytes() {
+    const float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    const std::uint16_t indices[] = {0, 1, 2, 0, 2, 3};
+    const std::uint8_t small[] = {255, 0, 51, 255, 127, 129, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    return std::string(reinterpret_cast<const char*>(positions), sizeof(positions)) +
+           std::string(reinterpret_cast<const char*>(indices), sizeof(indices)) +
+           std::string(reinterpret_cast<const char*>(small), sizeof(small));
+}
+
+class LoadGltf : public testing::Test {
+  protected:
+    LoadGltf() { folder_.write("square.bin", squareBytes()); }
+
+    Scene load(const Document& document) {
+        return loadGltf(folder_.write("a.gltf", text(document)));
+    }
+    Scene loadWith(const std::string& key, const std::string& value) {
+        Document document = square();
+        document[key] = value;
+        return load(document);
+    }
+    std::string error(const std::string& content) {
+        const auto path = folder_.write("a.gltf", content);
+        return errorText([&] { loadGltf(path); }, folder_.path());
+    }
+    std::string errorWith(const std::string& key, const std::string& value) {
+        Document document = square();
+        document[key] = value;
+        return error(text(document));
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(LoadGltf, ReadsASquare) {
+    const Scene scene = load(square());
+    const Mesh& mesh = scene.meshes.at(0);
+    EXPECT_EQ(mesh.name, "m");
+    EXPECT_EQ(mesh.positions[2], glm::vec3(1, 1, 0));
+    EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(scene.instances.at(0).worldFromMesh, glm::mat4(1.0F));
+}
+
+TEST_F(LoadGltf, ReadsBinaryFiles) {
+    Document document = square();
+    document["buffers"] = R"([{"byteLength":76}])";
+    std::string json = text(document);
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t value) {
+        const auto word32 = static_cast<std::uint32_t>(value);
+        return std::string(reinterpret_cast<const char*>(&word32), 4);
+    };
+    const std::string data = squareBytes();
+    const std::string content = "glTF" + word(2) + word(28 + json.size() + data.size()) +
+                                word(json.size()) + "JSON" + json + word(data.size()) +
+                                std::string("BIN\0", 4) + data;
+    EXPECT_EQ(loadGltf(folder_.write("a.glb", content)).triangleCount(), 2U);
+    const auto path = folder_.write("a.glb", content.substr(0, content.size() - 4));
+    EXPECT_EQ(errorText([&] { loadGltf(path); }, folder_.path()),
+              "DIR/a.glb: Invalid glTF binary.");
+}
+
+TEST_F(LoadGltf, ConvertsNormalizedIntegers) {
+    const Mesh mesh =
+        loadWith("meshes",
+                 R"([{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":2,"TEXCOORD_0":3}}]}])")
+            .meshes.at(0);
+    EXPECT_EQ(mesh.colors[0], glm::vec3(1, 0, 0.2F));
+    EXPECT_EQ(mesh.texcoords[1], glm::vec2(1, -1));  // 127 and −127
+}
+
+TEST_F(LoadGltf, ReadsStripsAndFansWithTheirOutside) {
+    const auto triangles = [this](int mode) {
+        return loadWith("meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":)" +
+                                      std::to_string(mode) + "}]}]")
+            .meshes.at(0)
+            .triangles;
+    };
+    EXPECT_EQ(triangles(5), (std::vector<glm::uvec3>{{0, 1, 2}, {1, 3, 2}}));
+    EXPECT_EQ(triangles(6), (std::vector<glm::uvec3>{{1, 2, 0}, {2, 3, 0}}));
+}
+
+TEST_F(LoadGltf, ReadsPointsAndRefusesLinesAlone) {
+    const std::string points = R"([{"primitives":[{"attributes":{"POSITION":0},"mode":0},
+                                                  {"attributes":{"POSITION":0},"mode":1}]}])";
+    Document document = square();
+    document["meshes"] = points;
+    document["nodes"] = R"([{"mesh":0,"translation":[0,0,5]}])";
+    EXPECT_EQ(load(document).points.positions.at(1), glm::vec3(1, 0, 5));
+    EXPECT_EQ(errorWith("meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":1}]}])"),
+              "DIR/a.gltf: no triangles or points in the scene");
+}
+
+TEST_F(LoadGltf, AppliesTheNodeTree) {
+    const Scene scene = loadWith("nodes",
+                                 R"([{"children":[1],"translation":[1,0,0]},
+                {"mesh":0,"rotation":[0,0,0.70710678,0.70710678],"scale":[2,2,2]}])");
+    const glm::vec4 corner = scene.instances.at(0).worldFromMesh * glm::vec4(1, 0, 0, 1);
+    EXPECT_LT(glm::length(corner - glm::vec4(1, 2, 0, 1)), 1e-6F);
+}
+
+TEST_F(LoadGltf, ReadsSparseAccessors) {
+    // Index 1 (of the index list's second entry) of an accessor without data gets corner 2.
+    const Mesh mesh =
+        loadWith("accessors",
+                 R"([{"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,
+                "indices":{"bufferView":1,"byteOffset":2,"componentType":5123},
+                "values":{"bufferView":0,"byteOffset":24}}},
+               {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])")
+            .meshes.at(0);
+    EXPECT_EQ(mesh.positions[0], glm::vec3(0));
+    EXPECT_EQ(mesh.positions[1], glm::vec3(1, 1, 0));
+}
+
+TEST_F(LoadGltf, ReadsInstancesOfNodes) {
+    Document document = square();
+    document["extensionsRequired"] = R"(["EXT_mesh_gpu_instancing"])";
+    document["nodes"] = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":
+                            {"attributes":{"TRANSLATION":0}}}}])";
+    const Scene scene = load(document);
+    ASSERT_EQ(scene.instances.size(), 4U);
+    EXPECT_EQ(scene.instances[2].worldFromMesh[3], glm::vec4(1, 1, 0, 1));
+}
+
+TEST_F(LoadGltf, ReadsMaterialsAndCameras) {
+    Document document = square();
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_1":3},"material":0}]}])";
+    document["materials"] = R"([{"name":"lamp","emissiveFactor":[1,0.5,0],"alphaMode":"MASK",
+        "alphaCutoff":0.25,"doubleSided":true,
+        "pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,0.4],"metallicFactor":0.5,
+            "baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":
+                {"texCoord":1,"offset":[10,20],"rotation":1.5707963267948966,"scale":[2,3]}}}},
+        "extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":8},
+            "KHR_materials_unlit":{},"KHR_materials_ior":{"ior":1.25},
+            "KHR_materials_transmission":{"transmissionFactor":0.75}}}])";
+    // A single white pixel.
+    document["images"] =
+        R"([{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="}])";
+    document["textures"] = R"([{"source":0}])";
+    document["cameras"] =
+        R"([{"name":"eye","type":"perspective","perspective":{"yfov":0.5,"znear":0.125,"zfar":50}}])";
+    document["nodes"] = R"([{"mesh":0,"camera":0,"translation":[1,2,3]}])";
+    const Scene scene = load(document);
+    const Material& material = scene.materials.at(0);
+    EXPECT_EQ(material.name, "lamp");
+    EXPECT_EQ(material.baseColor, glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
+    EXPECT_EQ(material.metallic, 0.5F);
+    EXPECT_EQ(material.roughness, 1.0F);
+    EXPECT_EQ(material.emissive, glm::vec3(8, 4, 0));
+    EXPECT_EQ(material.alphaCutoff, 0.25F);
+    EXPECT_TRUE(material.isDoubleSided);
+    EXPECT_TRUE(material.isUnlit);
+    EXPECT_EQ(material.indexOfRefraction, 1.25F);
+    EXPECT_EQ(material.transmission, 0.75F);
+    EXPECT_EQ(material.baseColorTexture, 0);
+    EXPECT_EQ(scene.textures.at(0).channels(), 3);
+    EXPECT_EQ(scene.textures.at(0).at(0, 0), 255);
+    // (1, −1) · (2, 3) = (2, −3), turned by a quarter: (−3, −2).
+    EXPECT_LT(glm::length(scene.meshes.at(0).texcoords[1] - glm::vec2(7, 18)), 1e-5F);
+    const Camera& camera = scene.cameras.at(0);
+    EXPECT_EQ(camera.name, "eye");
+    EXPECT_EQ(camera.position, glm::vec3(1, 2, 3));
+    EXPECT_EQ(camera.target, glm::vec3(1, 2, 2));
+    EXPECT_EQ(camera.verticalFovRad, 0.5F);
+    EXPECT_EQ(camera.nearM, 0.125F);
+    EXPECT_EQ(camera.farM, 50.0F);
+}
+
+TEST_F(LoadGltf, DecodesPercentSignsAndStaysInItsFolder) {
+    folder_.write("sub/the square.bin", squareBytes());
+    EXPECT_EQ(loadWith("buffers", R"([{"byteLength":76,"uri":"sub/../sub/the%20square.bin"}])")
+                  .triangleCount(),
+              2U);
+    EXPECT_EQ(errorWith("buffers", R"([{"byteLength":76,"uri":"../square.bin"}])"),
+              "DIR/a.gltf: the URI '../square.bin' leaves the file's folder");
+    EXPECT_EQ(errorWith("buffers", R"([{"byteLength":76,"uri":"/etc/passwd"}])"),
+              "DIR/a.gltf: the URI '/etc/passwd' leaves the file's folder");
+    EXPECT_EQ(errorWith("buffers", R"([{"byteLength":76,"uri":"sub/%2e%2e/%2e%2e/x"}])"),
+              "DIR/a.gltf: the URI 'sub/../../x' leaves the file's folder");
+    EXPECT_EQ(errorWith("buffers", R"([{"byteLength":76,"uri":"gone.bin"}])"),
+              "DIR/a.gltf: File not found : gone.bin");
+}
+
+TEST_F(LoadGltf, RefusesWhatItCannotRead) {
+    EXPECT_EQ(errorWith("asset", R"({"version":"1.0"})"),
+              "DIR/a.gltf: glTF version '1.0'; 2.0 is read");
+    EXPECT_EQ(errorWith("extensionsRequired", R"(["KHR_draco_mesh_compression","X"])"),
+              "DIR/a.gltf: requires the extension KHR_draco_mesh_compression, X; supported are "
+              "EXT_mesh_gpu_instancing, KHR_materials_emissive_strength, KHR_materials_ior, "
+              "KHR_materials_transmission, KHR_materials_unlit, KHR_mesh_quantization, "
+              "KHR_texture_transform");
+    EXPECT_EQ(errorWith("extras", std::string(300, '[') + std::string(300, ']')),
+              "DIR/a.gltf: JSON nested deeper than 256");
+    EXPECT_THAT(error("{\"asset\": {\"version\": 2"), testing::StartsWith("DIR/a.gltf: "));
+    EXPECT_THAT(error("[1, 2, 3]"), testing::StartsWith("DIR/a.gltf: "));
+}
+
+TEST_F(LoadGltf, RefusesRangesThatAreNotThere) {
+    EXPECT_EQ(errorWith("bufferViews", R"([{"buffer":0,"byteOffset":40,"byteLength":48},
+                                           {"buffer":0,"byteLength":12}])"),
+              "DIR/a.gltf: buffer view 0 reaches beyond its buffer of 76 bytes");
+    EXPECT_EQ(
+        errorWith("bufferViews", R"([{"buffer":7,"byteLength":48},{"buffer":0,"byteLength":12}])"),
+        "DIR/a.gltf: buffer view 0: buffer 7 does not exist; there are 1");
+    const std::string indices =
+        R"(,{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
+    EXPECT_EQ(
+        errorWith("accessors",
+                  R"([{"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"})" + indices),
+        "DIR/a.gltf: accessor 0 reaches beyond its buffer view of 48 bytes");
+    EXPECT_EQ(
+        errorWith("accessors",
+                  R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC2"})" + indices),
+        "DIR/a.gltf: accessor 0 has 2 components; 3 are needed");
+    EXPECT_EQ(
+        errorWith("accessors",
+                  R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})" + indices),
+        "DIR/a.gltf: mesh 0 primitive 0: index 3 is not one of the 3 vertices");
+    Document huge = square();
+    huge["accessors"] = R"([{"componentType":5126,"count":900000000,"type":"VEC3"})" + indices;
+    EXPECT_EQ(error(text(huge)), "DIR/a.gltf: the scene is too large for a file of " +
+                                     std::to_string(76 + text(huge).size()) + " bytes");
+    EXPECT_EQ(errorWith("meshes", R"([{"primitives":[{"attributes":{"POSITION":9}}]}])"),
+              "DIR/a.gltf: accessor 9 does not exist; there are 4");
+    EXPECT_EQ(
+        errorWith("meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"material":2}]}])"),
+        "DIR/a.gltf: mesh 0 primitive 0: material 2 does not exist; there are 0");
+}
+
+TEST_F(LoadGltf, RefusesNodesThatAreNoTree) {
+    EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"children":[1]},{"children":[0]}])"),
+              "DIR/a.gltf: node 0 has two parents or is its own ancestor");
+    EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"children":[5]}])"),
+              "DIR/a.gltf: node 5 does not exist; there are 1");
+    EXPECT_EQ(errorWith("nodes", R"([{"mesh":3}])"),
+              "DIR/a.gltf: node 0: mesh 3 does not exist; there are 1");
+    EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"scale":[1e30,1e30,1e300]}])"),
+              "DIR/a.gltf: node 0: the transform is not finite");
+    EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"translation":[1,2]}])"),
+              "DIR/a.gltf: node 0: 2 numbers where 3 are needed");
+    EXPECT_EQ(errorWith("scene", "4"), "DIR/a.gltf: scene 4 does not exist; there are 1");
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene

@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <string>
+
+#include "runner/core/random.h"
+#include "runner/scene/load.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+/// A mesh whose numbers use all their bits.
+Mesh randomMesh(std::uint64_t seed) {
+    Random random(seed);
+    const auto vec3 = [&random] {
+        return glm::vec3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9));
+    };
+    Mesh mesh;
+    mesh.name = "mesh" + std::to_string(seed);
+    for (int i = 0; i < 100; ++i) {
+        mesh.positions.push_back(vec3());
+        mesh.normals.push_back(glm::normalize(vec3()));
+        mesh.texcoords.emplace_back(random.uniform(-1, 2), random.uniform());
+        mesh.colors.push_back(glm::abs(vec3()));
+        mesh.triangles.emplace_back(random.index(100), random.index(100), random.index(100));
+    }
+    return mesh;
+}
+
+void expectSame(const Mesh& a, const Mesh& b) {
+    EXPECT_EQ(a.positions, b.positions);
+    EXPECT_EQ(a.normals, b.normals);
+    EXPECT_EQ(a.texcoords, b.texcoords);
+    EXPECT_EQ(a.colors, b.colors);
+    EXPECT_EQ(a.triangles, b.triangles);
+}
+
+TEST(SavePly, ComesBackExactly) {
+    const TemporaryFolder folder;
+    const Mesh mesh = randomMesh(1);
+    savePly(folder.path() / "a.PLY", sceneOf(mesh));
+    const Scene scene = loadScene(folder.path() / "a.PLY");
+    expectSame(scene.meshes.at(0), mesh);
+    EXPECT_EQ(scene.name, "a");
+    EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
+    EXPECT_EQ(scene.origin.description, "a.PLY");
+    EXPECT_EQ(scene.origin.sha256.size(), 64U);
+}
+
+TEST(SavePly, KeepsPoints) {
+    const TemporaryFolder folder;
+    Scene scene;
+    const Mesh mesh = randomMesh(2);
+    scene.points = {mesh.positions, mesh.normals, std::vector<float>(100, 0.1F), mesh.colors};
+    savePly(folder.path() / "a.ply", scene);
+    const PointCloud points = loadPly(folder.path() / "a.ply").points;
+    EXPECT_EQ(points.positions, scene.points.positions);
+    EXPECT_EQ(points.normals, scene.points.normals);
+    EXPECT_EQ(points.radii, scene.points.radii);
+    EXPECT_EQ(points.colors, scene.points.colors);
+}
+
+TEST(SavePly, RefusesNothing) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(errorText([&] { savePly(folder.path() / "a.ply", Scene{}); }, folder.path()),
+              "cannot write DIR/a.ply: the scene has no triangles and no points");
+}
+
+TEST(LoadScene, ListsTheExtensions) {
+    EXPECT_EQ(errorText([] { loadScene("model.stl"); }),
+              "model.stl: unknown extension '.stl'; .ply, .obj, .gltf and .glb are allowed");
+}
+
+Material unusualMaterial() {
+    Material material;
+    material.name = "unusual";
+    material.baseColor = {0.1F, 0.2F, 0.3F, 0.7F};
+    material.metallic = 0.9F;
+    material.roughness = 0.3F;
+    material.emissive = {0.1F, 17.3F, 3.3F};
+    material.baseColorTexture = 0;
+    material.alphaCutoff = 0.6F;
+    material.isDoubleSided = true;
+    material.isUnlit = true;
+    material.transmission = 0.8F;
+    material.indexOfRefraction = 1.31F;
+    return material;
+}
+
+TEST(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
+    const TemporaryFolder folder;
+    Scene scene;
+    scene.meshes = {randomMesh(3), randomMesh(4)};
+    scene.meshes[1].material = 1;
+    scene.meshes[0].colors.clear();
+    scene.materials = {Material{}, unusualMaterial()};
+    scene.textures.emplace_back(3, 2, 4, std::uint8_t{77});
+    scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});  // used by nothing
+    scene.instances = {{0, glm::mat4(1.0F)},
+                       {1, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 2, 3))},
+                       {0, glm::scale(glm::mat4(1.0F), glm::vec3(-0.3F, 1, 1))}};
+    Camera camera;
+    camera.name = "eye";
+    camera.position = {1, 2, 3};
+    camera.target = {0, 0, 0};
+    scene.cameras = {camera};
+    saveGlb(folder.path() / "a.glb", scene);
+    const Scene back = loadGltf(folder.path() / "a.glb");
+
+    ASSERT_EQ(back.meshes.size(), 2U);
+    expectSame(back.meshes[0], scene.meshes[0]);
+    expectSame(back.meshes[1], scene.meshes[1]);
+    EXPECT_EQ(back.meshes[1].name, "mesh4");
+    EXPECT_EQ(back.meshes[0].material, -1);
+    EXPECT_EQ(back.meshes[1].material, 1);
+    ASSERT_EQ(back.instances.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(back.instances[i].mesh, scene.instances[i].mesh);
+        EXPECT_EQ(back.instances[i].worldFromMesh, scene.instances[i].worldFromMesh);
+    }
+    EXPECT_EQ(back.textures.at(0), scene.textures[0]);
+    const Camera& eye = back.cameras.at(0);
+    EXPECT_EQ(eye.position, camera.position);
+    EXPECT_LT(
+        glm::length(glm::normalize(eye.target - eye.position) + glm::normalize(camera.position)),
+        1e-6F);
+    EXPECT_EQ(eye.verticalFovRad, camera.verticalFovRad);
+    EXPECT_EQ(eye.farM, camera.farM);
+}
+
+TEST(SaveGlb, KeepsEveryMemberOfAMaterial) {
+    const TemporaryFolder folder;
+    Scene scene = sceneOf(randomMesh(5));
+    scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});
+    scene.materials = {unusualMaterial(), Material{}};
+    saveGlb(folder.path() / "a.glb", scene);
+    const Scene back = loadGltf(folder.path() / "a.glb");
+    ASSERT_EQ(back.materials.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Material& a = back.materials[i];
+        const Material& b = scene.materials[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_EQ(a.baseColor, b.baseColor);
+        EXPECT_EQ(a.metallic, b.metallic);
+        EXPECT_EQ(a.roughness, b.roughness);
+        EXPECT_EQ(a.emissive, b.emissive);
+        EXPECT_EQ(a.baseColorTexture, b.baseColorTexture);
+        EXPECT_EQ(a.alphaCutoff, b.alphaCutoff);
+        EXPECT_EQ(a.isDoubleSided, b.isDoubleSided);
+        EXPECT_EQ(a.isUnlit, b.isUnlit);
+        EXPECT_EQ(a.transmission, b.transmission);
+        EXPECT_EQ(a.indexOfRefraction, b.indexOfRefraction);
+    }
+}
+
+TEST(SaveGlb, KeepsPoints) {
+    const TemporaryFolder folder;
+    Scene scene;
+    const Mesh mesh = randomMesh(6);
+    scene.points = {mesh.positions, mesh.normals, {}, mesh.colors};
+    saveGlb(folder.path() / "a.glb", scene);
+    const PointCloud points = loadGltf(folder.path() / "a.glb").points;
+    EXPECT_EQ(points.positions, scene.points.positions);
+    EXPECT_EQ(points.normals, scene.points.normals);
+    EXPECT_EQ(points.colors, scene.points.colors);
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
