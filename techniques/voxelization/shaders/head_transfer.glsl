@@ -21,10 +21,10 @@ vec4 headTissue(vec3 position, vec3 towardsEye) {
     float skin = band(data.a, 0.10, 0.22, 0.05);
     float soft = band(data.a, 0.28, 0.40, 0.04);
     float bone = smoothstep(0.68, 0.80, data.a);
-    float alpha = 0.055 * skin + 0.004 * soft + 0.03 * bone;
+    float alpha = 0.09 * skin + 0.004 * soft + 0.02 * bone;
     if (alpha < 0.0005) return vec4(0.0);
-    vec3 albedo = (0.055 * skin * vec3(0.80, 0.56, 0.44) + 0.004 * soft * vec3(0.70, 0.35, 0.30) +
-                   0.03 * bone * vec3(0.85, 0.82, 0.72)) / alpha;
+    vec3 albedo = (0.09 * skin * vec3(0.80, 0.56, 0.44) + 0.004 * soft * vec3(0.70, 0.35, 0.30) +
+                   0.02 * bone * vec3(0.85, 0.82, 0.72)) / alpha;
     vec3 normal = data.xyz * 2.0 - 1.0;
     if (dot(normal, normal) < 0.01) return vec4(albedo * 0.6, alpha);
     return vec4(lit(albedo, faceForward(normalize(normal), towardsEye), towardsEye), alpha);

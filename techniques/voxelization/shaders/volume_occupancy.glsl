@@ -27,7 +27,11 @@ uint drawnVoxel(ivec3 voxel) {
     return value;
 }
 
-const vec3 kFirstColor = vec3(0.62, 0.56, 0.47);   // grey-beige
+#if HEAD
+const vec3 kFirstColor = vec3(0.72, 0.30, 0.26);  // tissue, to stand out from the head
+#else
+const vec3 kFirstColor = vec3(0.62, 0.56, 0.47);  // grey-beige
+#endif
 const vec3 kSecondColor = vec3(0.42, 0.50, 0.60);  // grey-blue
 const vec3 kCommonColor = vec3(0.80, 0.03, 0.02);  // red, as figure 2.8 marks what collides
 
