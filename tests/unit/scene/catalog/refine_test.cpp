@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runner/scene/topology.h"
@@ -39,9 +40,31 @@ TEST(Refine, HalvesTheLongestEdgeFirst) {
     const Mesh mesh = refinedTo(square(), 4);
     ASSERT_EQ(mesh.triangles.size(), 4U);
     ASSERT_EQ(mesh.positions.size(), 5U);
-    EXPECT_EQ(mesh.positions[4], glm::vec3(0.5F, 0.5F, 0));  // on the diagonal
-    EXPECT_EQ(mesh.texcoords[4], glm::vec2(0.5F, 0.5F));
+    const auto middle = std::ranges::find(mesh.positions, glm::vec3(0.5F, 0.5F, 0));
+    ASSERT_NE(middle, mesh.positions.end());  // on the diagonal
+    EXPECT_EQ(mesh.texcoords[static_cast<std::size_t>(middle - mesh.positions.begin())],
+              glm::vec2(0.5F, 0.5F));
     EXPECT_NEAR(area(mesh), 1.0, 1e-12);
+}
+
+TEST(Refine, PartsOfATriangleStayTogetherAndVerticesFollowTheirUse) {
+    const Mesh mesh = refinedTo(square(), 200);
+    std::uint32_t seen = 0;
+    std::vector<bool> isUpper;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            ASSERT_LE(triangle[corner], seen);
+            seen = std::max(seen, triangle[corner] + 1);
+        }
+        const glm::vec3 centre = (mesh.positions[triangle[0]] + mesh.positions[triangle[1]] +
+                                  mesh.positions[triangle[2]]) /
+                                 3.0F;
+        isUpper.push_back(centre.y > centre.x);
+    }
+    EXPECT_EQ(seen, mesh.positions.size());
+    int changes = 0;
+    for (std::size_t i = 1; i < isUpper.size(); ++i) changes += isUpper[i] != isUpper[i - 1];
+    EXPECT_EQ(changes, 1);  // all of the first triangle, then all of the second
 }
 
 TEST(Refine, OpenMeshesReachEveryCount) {
