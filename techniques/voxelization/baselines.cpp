@@ -81,9 +81,7 @@ class DepthOnlyMethod : public MeshMethod {
         program_.use();
         program_.set("boxCentreWorld", boxCentreWorld_);
         program_.set("clipFromWorldScale", clipFromWorldScale_);
-        mesh.vertexArray.bind();
-        const TriangleRange last = mesh.ranges.back();
-        glDrawElements(GL_TRIANGLES, (last.first + last.count) * 3, GL_UNSIGNED_INT, nullptr);
+        mesh.drawIndexed({0, mesh.ranges.back().first + mesh.ranges.back().count});
     }
     const VoxelGrid* grid() const override { return nullptr; }
     void record(technique::Recorder&) override {}

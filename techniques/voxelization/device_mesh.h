@@ -43,6 +43,9 @@ struct DeviceMesh {
     DeviceMesh(const MeshRequest& request, const AxisSplit& split, const gl::DeviceLimits& limits);
     /// Replaces the indices: the dynamic index buffer of [zju2005] Sec. 2.3.1.
     void update(const AxisSplit& split);
+    /// Draws these triangles with the program in use, in pieces: the memory that a software device
+    /// takes for a draw then does not grow with the mesh.
+    void drawIndexed(TriangleRange range) const;
     std::size_t sizeBytes() const;
 };
 

@@ -50,11 +50,7 @@ void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
     }
     program_.set("boxCentreWorld", boxCentreWorld_);
     program_.set("clipFromWorldScale", clipFromWorldScale_);
-    mesh.vertexArray.bind();
-    const TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
-    const std::size_t offsetBytes = static_cast<std::size_t>(range.first) * sizeof(glm::uvec3);
-    glDrawElements(GL_TRIANGLES, range.count * 3, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(offsetBytes));
+    mesh.drawIndexed(mesh.ranges[static_cast<std::size_t>(axis)]);
 }
 
 void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice) const {
