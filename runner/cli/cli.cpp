@@ -94,7 +94,7 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* reproduceApp =
         app.add_subcommand("reproduce", "run + tables + claims + report of papers or tables");
     reproduceApp->add_option("names", o.run.selection.names,
-                             "PAPER or PAPER/TABLE; none: everything");
+                             "PAPER, PAPER/TABLE or a config file; none: all papers");
     addRunOptions(reproduceApp, o.run);
     reproduceApp->callback([&] { o.command = [&] { return reproduce(context, o.run); }; });
 

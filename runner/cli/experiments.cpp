@@ -54,6 +54,10 @@ std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names)
     }
     std::vector<std::string> found;
     for (const std::string& name : names) {
+        if (fs::path(name).extension() == ".yaml") {  // a config of the user's own
+            found.push_back(name);
+            continue;
+        }
         const std::size_t slash = name.find('/');
         const std::string paper = name.substr(0, slash);
         const std::size_t before = found.size();

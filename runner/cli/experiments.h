@@ -15,7 +15,8 @@ namespace gfxrepro::cli {
 /// presets, sweeps, smoke) are left out.
 std::vector<std::filesystem::path> paperConfigs();
 
-/// The config files behind "PAPER" and "PAPER/TABLE" (all papers for no name), as absolute paths.
+/// The config files behind "PAPER" and "PAPER/TABLE" (all papers for no name), as absolute paths;
+/// a name that ends in .yaml is a config itself.
 /// Throws UsageError for names that are none, with the nearest.
 std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names);
 

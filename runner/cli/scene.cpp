@@ -52,7 +52,8 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
     }
     const gl::Device device = gl::Device::open({options.device, gl::DebugOutput::Log});
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
-    const scene::Camera camera = scene::framingCamera(scene.bounds(), 1.0F);
+    const scene::Camera camera =
+        scene.cameras.empty() ? scene::framingCamera(scene.bounds(), 1.0F) : scene.cameras.front();
     const image::ImageF rasterized =
         gpu_scene::renderPreview(scene, camera, options.sizePx, options.sizePx, shaders);
     const image::ImageF traced =

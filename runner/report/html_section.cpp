@@ -188,9 +188,11 @@ std::string sectionHtml(const ReportSection& section, const ReportContext& conte
     html += failuresHtml(section.failures);
     html += assumptionsHtml(section.experiment->assumptions);
     html += imagesHtml(section, runDir, embedsImages);
+    const bool isOwn = section.experiment->kind == config::Experiment::Kind::Sweep;
     html +=
         fmt::format("<h3>Run this one again</h3>\n<pre>gfxrepro reproduce {} --profile {}</pre>\n",
-                    escapeXml(table.id), escapeXml(context.profile));
+                    escapeXml(isOwn ? section.experiment->file.string() : table.id),
+                    escapeXml(context.profile));
     return html + "</section>\n";
 }
 

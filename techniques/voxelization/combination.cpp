@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace gfxrepro::voxelization {
@@ -26,7 +27,8 @@ CombinationSettings::CombinationSettings(config::Params& params)
       sceneB(params.getText("scene_b", "", {"the second model, of csg and collision"})) {
     constexpr double kNowhere[] = {0.0, 0.0, 0.0};
     const std::vector<double> offset =
-        params.getVector("offset_b", kNowhere, {"where the second model is put", "scene units"});
+        params.getVector("offset_b", kNowhere,
+                         {"where the second model is put", "longest edges of the first one's box"});
     offsetB = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
                static_cast<float>(offset[2])};
     if (needsSecond() && sceneB.empty()) {
@@ -39,16 +41,19 @@ CombinationSettings::CombinationSettings(config::Params& params)
     }
 }
 
-scene::Box Combination::loadSecond(technique::SetupContext& context, VoxelValue value) {
+scene::Box Combination::loadSecond(technique::SetupContext& context, VoxelValue value,
+                                   const scene::Box& firstBounds) {
     secondInput_.emplace(context.scenes.load(settings_.sceneB), value);
     const scene::Box bounds = secondInput_->mesh().bounds();
-    return {bounds.min + settings_.offsetB, bounds.max + settings_.offsetB};
+    const glm::vec3 size = firstBounds.size();
+    offsetWorld_ = settings_.offsetB * std::max({size.x, size.y, size.z});
+    return {bounds.min + offsetWorld_, bounds.max + offsetWorld_};
 }
 
 void Combination::setup(technique::SetupContext& context, const MeshVoxelizerSettings& voxelizer,
                         const scene::Box& box) {
     // Moving the grid's box instead of the model saves a copy of it.
-    const scene::Box shifted{box.min - settings_.offsetB, box.max - settings_.offsetB};
+    const scene::Box shifted{box.min - offsetWorld_, box.max - offsetWorld_};
     secondSource_.emplace(voxelizer, secondInput_->mesh(), shifted);
     secondSource_->setup(context);
     const WorksheetLayout& layout = voxelizer.grid.layout;

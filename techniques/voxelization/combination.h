@@ -16,7 +16,7 @@ struct CombinationSettings {
     std::optional<CsgOperation> csg;
     bool findsCollision = false;
     std::string sceneB;       // catalogue name or path
-    glm::vec3 offsetB{0.0F};  // world units
+    glm::vec3 offsetB{0.0F};  // longest edges of the first model's box
 
     /// Declares csg, collision, scene_b and offset_b. Throws Error when a second scene is missing
     /// or not used.
@@ -30,7 +30,8 @@ class Combination {
     explicit Combination(const CombinationSettings& settings) : settings_(settings) {}
 
     /// Loads the second model and returns its bounds where it is put.
-    scene::Box loadSecond(technique::SetupContext& context, VoxelValue value);
+    scene::Box loadSecond(technique::SetupContext& context, VoxelValue value,
+                          const scene::Box& firstBounds);
     void setup(technique::SetupContext& context, const MeshVoxelizerSettings& voxelizer,
                const scene::Box& box);
     /// Voxelizes the second model like the first, then combines; scopes "csg" and "collision".
@@ -45,6 +46,7 @@ class Combination {
 
   private:
     CombinationSettings settings_;
+    glm::vec3 offsetWorld_{0.0F};
     std::optional<MeshInput> secondInput_;
     std::optional<MeshVoxelizer> secondSource_;
     std::optional<CsgPass> csgPass_, intersectionPass_;

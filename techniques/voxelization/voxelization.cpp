@@ -61,7 +61,7 @@ void Voxelization::setupMesh(technique::SetupContext& context) {
     input_.emplace(*context.scene, settings.grid.value);
     scene::Box bounds = input_->mesh().bounds();
     if (params_.combination.needsSecond()) {
-        bounds.add(combination_.loadSecond(context, settings.grid.value));
+        bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));
     }
     const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
     box_ = params_.box ? *params_.box
