@@ -17,8 +17,8 @@ Json newManifest(const Plan& plan, const gl::DeviceInfo& device);
 
 /// An invocation is one start of the program on the run; a resumed run has several.
 void beginInvocation(Json& manifest, const std::string& commandLine);
-/// Adds end, wall time, phase totals and the runner's own share to the last invocation: the wall time
-/// in which no worker was inside of a phase.
+/// Adds end, wall time, phase totals and the runner's own share to the last invocation: the wall
+/// time in which no worker was inside of a phase.
 void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
 
 /// Adds what workers loaded, one entry a reference.

@@ -15,6 +15,11 @@ constexpr config::Choice<DrawMode> kModes[] = {
     {DrawMode::Mixed, "mixed", "blended together with a CT/MR head around the model (figure 2.7)"},
 };
 
+constexpr config::Choice<Framing> kFramings[] = {
+    {Framing::Model, "model", "the model, as large as it fits"},
+    {Framing::Grid, "grid", "the whole grid: the same pixels a plane for every model"},
+};
+
 std::optional<scene::Box> readCut(config::Params& params) {
     const config::ParamSpec lowSpec{
         "lowest corner of a box that is not drawn, as a fraction of the "
@@ -42,6 +47,7 @@ DrawingSettings::DrawingSettings(config::Params& params, VoxelValue value) {
     draw.mode = params.getEnum("draw", DrawMode::None, kModes, {"what is drawn of the grid"});
     draw.opacity = static_cast<float>(params.getDouble(
         "opacity", 0.1, {"of a voxel, where voxels are blended", "1", 0.001, 0.999}));
+    framing = params.getEnum("frame", Framing::Model, kFramings, {"what the picture holds"});
     azimuthDeg = params.getDouble("azimuth_deg", 30.0,
                                   {"of the eye, from +z towards +x", "degree", -360.0, 360.0});
     elevationDeg = params.getDouble("elevation_deg", 17.0,
@@ -56,7 +62,9 @@ void Drawing::setup(technique::SetupContext& context, const WorksheetLayout& lay
     settings_.draw.hasSecond = isCollision;
     // Something thin, seen along itself, would bring the eye into the grid.
     const glm::vec3 half = glm::max(0.5F * shown.size(), 0.1F * box.size());
-    const scene::Box framed{shown.centre() - half, shown.centre() + half};
+    const scene::Box framed = settings_.framing == Framing::Grid
+                                  ? box
+                                  : scene::Box{shown.centre() - half, shown.centre() + half};
     const scene::Camera camera =
         orbitCamera(framed, settings_.azimuthDeg, settings_.elevationDeg, aspect);
     renderer_.emplace(context.shaders, layout, box, camera, context.outputSizePx, settings_.draw);

@@ -7,12 +7,17 @@
 
 namespace gfxrepro::voxelization {
 
+/// What the picture holds: the model as large as it fits, or the whole grid, so that every model
+/// covers as many pixels of every plane.
+enum class Framing { Model, Grid };
+
 struct DrawingSettings {
     DrawSettings draw;
+    Framing framing = Framing::Model;
     double azimuthDeg = 0.0;
     double elevationDeg = 0.0;
 
-    /// Declares draw, opacity, azimuth_deg, elevation_deg, cut_min and cut_max.
+    /// Declares draw, opacity, frame, azimuth_deg, elevation_deg, cut_min and cut_max.
     DrawingSettings(config::Params& params, VoxelValue value);
     bool isOn() const { return draw.mode != DrawMode::None; }
 };
@@ -22,7 +27,8 @@ class Drawing {
   public:
     explicit Drawing(const DrawingSettings& settings) : settings_(settings) {}
 
-    /// `shown` is what the picture frames; `isCollision`: two grids are drawn, common voxels red.
+    /// `shown` is what Framing::Model frames; `isCollision`: two grids are drawn, common voxels
+    /// red.
     void setup(technique::SetupContext& context, const WorksheetLayout& layout,
                const scene::Box& box, const scene::Box& shown, bool isCollision);
     void render(gl::Profiler& profiler, const VoxelGrid& grid, const VoxelGrid* second);
