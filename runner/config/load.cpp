@@ -23,6 +23,25 @@ struct Merged {
     std::vector<std::pair<std::string, Node>> profiles;  // in order; later ones win
 };
 
+/// A text with a comma, unquoted in `{…}`, ends at the comma: its rest is a key without a value,
+/// which merging would take for a removal.
+void refuseTornTexts(const Node& whole) {
+    for (const char* section : {"claims", "assumptions"}) {
+        const Node* entries = whole.find(section);
+        if (!entries || !entries->isMap()) continue;
+        for (const auto& [name, entry] : entries->entries()) {
+            if (!entry.isMap()) continue;
+            for (const auto& [key, value] : entry.entries()) {
+                if (!value.isNull()) continue;
+                throw Error(entry.keyLocation(key), std::string(section) + '.' + name + ": '" +
+                                                        key +
+                                                        "' has no value; a text that holds a "
+                                                        "comma needs quotes");
+            }
+        }
+    }
+}
+
 class Reader {
   public:
     explicit Reader(fs::path configsFolder) : configsFolder_(std::move(configsFolder)) {}
@@ -34,6 +53,7 @@ class Reader {
                         "a config is a map, found " + whole.kindName());
         }
         requireFileKeys(whole);
+        refuseTornTexts(whole);
         open_.push_back(fs::weakly_canonical(file));
         Merged result{Node::map({}, whole.location()), {}};
         if (const Node* extends = whole.find("extends")) {

@@ -22,6 +22,9 @@ TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("params: [1]"), "DIR/zju/a.yaml:4:9: params is [1]; allowed: a map");
     EXPECT_EQ(errorWith("assumptions: {a: {value: 1}}"),
               "DIR/zju/a.yaml:4:15: assumption 'a' needs 'why'");
+    EXPECT_EQ(errorWith("assumptions:\n  a: {value: 1, why: it is, or is not}\n"),
+              "DIR/zju/a.yaml:5:29: assumptions.a: 'or is not' has no value; a text that holds a "
+              "comma needs quotes");
     EXPECT_EQ(errorWith("assumptions: {a: {valu: 1, why: w}}"),
               "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valu'; did you mean 'value'?");
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
