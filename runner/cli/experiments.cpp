@@ -1,6 +1,7 @@
 #include "runner/cli/experiments.h"
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "runner/core/files.h"
@@ -21,6 +22,17 @@ std::string paperOf(const fs::path& file) {
     return file.parent_path().filename().string();
 }
 
+/// Papers by name; in each tables first, then sections, then figures, by number (2.6 before 2.10).
+bool comesBefore(const fs::path& a, const fs::path& b) {
+    const auto rank = [](const fs::path& file) {
+        const std::string stem = file.stem().string();
+        return stem.starts_with("table-") ? 0 : stem.starts_with("section-") ? 1 : 2;
+    };
+    if (paperOf(a) != paperOf(b)) return paperOf(a) < paperOf(b);
+    if (rank(a) != rank(b)) return rank(a) < rank(b);
+    return ::strverscmp(a.stem().c_str(), b.stem().c_str()) < 0;
+}
+
 /// "table-2.1.yaml" is table 2.1; "section-2.5.3.yaml" is 2.5.3.
 bool isTable(const fs::path& file, std::string_view table) {
     const std::string stem = file.stem().string();
@@ -38,7 +50,7 @@ std::vector<fs::path> paperConfigs() {
             if (file.path().extension() == ".yaml") files.push_back(fs::absolute(file.path()));
         }
     }
-    std::sort(files.begin(), files.end());
+    std::ranges::sort(files, comesBefore);
     return files;
 }
 
