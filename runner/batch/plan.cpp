@@ -189,8 +189,10 @@ Plan Plan::fromJsonFile(const fs::path& path) {
 std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
+    const config::Node* named = experiment.document.find("technique");
     const technique::TechniqueInfo& info = technique::findTechnique(
-        techniques, experiment.technique, {experiment.file.string(), 0, 0});
+        techniques, experiment.technique,
+        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
     std::vector<Case> cases;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
         config::Params params(spec.params, "technique '" + std::string(info.name) + "'");
