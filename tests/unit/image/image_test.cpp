@@ -137,6 +137,26 @@ TEST(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
     EXPECT_EQ(read.colour().at(5, 3, 2), written.colour().at(5, 3, 2));
 }
 
+TEST(Exr, RefusesAttributesThatDoNotEndWhereTheirTypeDoes) {
+    const TemporaryFolder folder;
+    writeExr(folder.path() / "a.exr", exrNoise());
+    const std::string good = readFile(folder.path() / "a.exr");
+    const auto errorOf = [&](const std::string& attribute, const std::string& type, char size) {
+        const std::string start = attribute + '\0' + type + '\0';
+        const std::size_t at = good.find(start);
+        EXPECT_NE(at, std::string::npos);
+        std::string broken = good;
+        broken[at + start.size()] = size;
+        return errorText([&] { readExr(folder.write("b.exr", broken)); }, folder.path());
+    };
+    EXPECT_EQ(errorOf("compression", "compression", 2),
+              "DIR/b.exr: attribute 'compression' has 2 bytes, which no 'compression' has");
+    EXPECT_EQ(errorOf("channels", "chlist", 72),  // 4 · 18 and the zero: 73
+              "DIR/b.exr: attribute 'channels' has 72 bytes, which no 'chlist' has");
+    EXPECT_EQ(errorOf("dataWindow", "box2i", 17),
+              "DIR/b.exr: attribute 'dataWindow' has 17 bytes, which no 'box2i' has");
+}
+
 TEST(Exr, RoundsHalvesToNearest) {
     const TemporaryFolder folder;
     ImageF image(4, 1, 1);
