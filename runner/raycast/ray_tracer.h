@@ -20,6 +20,19 @@ struct Hit {
     unsigned triangle = 0;            // into the instance's mesh
 };
 
+/// One triangle met by a ray.
+struct TriangleHit {
+    float distance = 0.0F;  // along the unit direction
+    unsigned triangle = 0;  // into scene::flattened(scene).triangles
+};
+
+/// Which sides of triangles a ray meets.
+enum class Faces {
+    All,
+    Drawn,  // as drawn with back-face culling: triangles of materials that are not double-sided are
+            // passed through from behind
+};
+
 /// A BVH over the instanced triangles of a scene; it keeps no reference to the scene. Watertight
 /// (Embree's robust mode): no ray slips between triangles that share an edge. The price is that a
 /// ray through a shared edge may be reported for both triangles; closestHit() and isOccluded() do
@@ -38,6 +51,10 @@ class RayTracer {
     std::optional<Hit> closestHit(const glm::vec3& origin, const glm::vec3& direction,
                                   float tMin = 0.0F,
                                   float tMax = std::numeric_limits<float>::infinity()) const;
+    /// All hits in (tMin, tMax), nearest first, put into `hits` (cleared; its memory is reused). A
+    /// ray through a shared edge may have both triangles.
+    void hitsBetween(const glm::vec3& origin, const glm::vec3& direction, float tMin, float tMax,
+                     Faces faces, std::vector<TriangleHit>& hits) const;
     bool isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
                     float tMax) const;
     /// Distances of all hits, ascending; every triangle counts, so a crossing at a shared edge may

@@ -1,0 +1,59 @@
+// The measures of [xie2017] Sec. 2.3.2 under the pixel definition, on the device.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runner/gl/device.h"
+#include "techniques/shared/depth_image.h"
+
+namespace gfxrepro::depth_sampling {
+
+using ImageSpan = std::span<const depth_images::DepthImage* const>;
+
+/// What is known of an image's samples: bits of an R32UI texture of the image's size. A pixel
+/// without a sample has none.
+enum Mark : std::uint32_t {
+    kSample = 1,
+    kRedundant = 2,  // with an earlier conventional image (measure 1)
+    kOccluded = 4,   // in none of the conventional images V₀ … Vₙ₋₁ (measure 2)
+    kOccludedLiterally = 8,  // in none of the conventional images V₀ … Vᵢ₋₁ (measure 2, as printed)
+    kUseful = 16,            // occluded, and needed by an output frame (measure 3)
+};
+
+/// Pixel redundancy of samples with images, tested one thread a sample ([xie2017] Algorithm 3):
+/// sample s of image I is redundant with image J when the pixel of J in which s lands holds the
+/// triangle of s. A sample outside of J or behind its eye is not.
+class PixelMeasures {
+  public:
+    explicit PixelMeasures(const gl::ShaderLibrary& shaders);
+
+    /// Marks with kSample alone.
+    gl::Texture makeMarks(const depth_images::DepthImage& image) const;
+
+    /// Adds `bit` to the marks of those samples of `image` that have all bits of `among` and that
+    /// are redundant (`isRedundant`) with one of `images`, or (else) with none. Samples that
+    /// already have the bit are not tested again. At most 16 images.
+    void mark(const depth_images::DepthImage& image, gl::Texture& marks, ImageSpan images,
+              bool isRedundant, std::uint32_t among, Mark bit);
+
+    /// Pixels whose marks hold all of `bits`; waits for the device.
+    std::uint64_t count(const gl::Texture& marks, std::uint32_t bits);
+
+    /// Of the samples of an output frame, how many there are and how many are redundant with at
+    /// least one of `images` (measure 4). begin… enqueues the test of one frame, which is the pass
+    /// that is timed; finish… waits for it.
+    struct Availability {
+        std::uint64_t samples = 0;
+        std::uint64_t available = 0;
+    };
+    void beginAvailability(const depth_images::DepthImage& frame, ImageSpan images);
+    Availability finishAvailability();
+
+  private:
+    struct Programs;
+    const gl::ShaderLibrary& shaders_;
+    gl::Buffer counters_;
+};
+
+}  // namespace gfxrepro::depth_sampling

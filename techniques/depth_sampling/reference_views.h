@@ -1,0 +1,42 @@
+// Where the reference images are taken from, and the output frames between them.
+#pragma once
+
+#include <vector>
+
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::depth_sampling {
+
+/// The triangle V₀V₁V₂ before the scene ([xie2017] Fig. 8). Its centre is where the scene's own
+/// camera stands (the first one; a camera that frames the scene when there is none); all views look
+/// at that camera's target.
+struct ViewTriangle {
+    scene::Camera centre;
+    glm::vec3 corners[3];
+};
+
+struct ViewTriangleSettings {
+    float spread = 0.5F;    // side of the triangle, in diagonals of the scene's box
+    float distance = 1.0F;  // factor on the camera's distance from its target
+    float yawRad = 0.0F;    // turns the camera about its target, about the up axis
+    float pitchRad = 0.0F;  // … and about its right axis, upwards
+    float aspect = 1.0F;    // width : height
+};
+
+/// Equilateral, upright, across the direction of view. Near and far planes are fitted to the scene
+/// from every point of the triangle.
+ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSettings& settings);
+
+/// The camera at barycentric coordinates (a, b) of corners 1 and 2.
+scene::Camera cameraAt(const ViewTriangle& triangle, glm::vec2 barycentric);
+
+/// n reference cameras: n = 1 the centre, n = 2 the corners V₀ and V₁, n ≥ 3 the corners and then a
+/// low-discrepancy sequence inside.
+std::vector<scene::Camera> referenceCameras(const ViewTriangle& triangle, int count);
+
+/// `count` output cameras that fill the hull of the first min(3, referenceCount) reference views
+/// evenly (point, segment or triangle; the R₂ sequence, folded).
+std::vector<scene::Camera> outputCameras(const ViewTriangle& triangle, int referenceCount,
+                                         int count);
+
+}  // namespace gfxrepro::depth_sampling

@@ -1,0 +1,55 @@
+#include "techniques/shared/view.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gfxrepro::depth_images {
+
+View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx) {
+    View view;
+    view.eyeWorld = camera.position;
+    view.viewFromWorld = glm::lookAt(camera.position, camera.target, camera.up);
+    view.sizePx = sizePx;
+    view.nearM = camera.nearM;
+    view.farM = camera.farM;
+    const float aspect = static_cast<float>(sizePx.x) / static_cast<float>(sizePx.y);
+    view.clipFromView = glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM);
+    // A point seen offsetPx further right and up lands in the middle of the pixel: the image moves
+    // left and down. w = −z, so the shift in normalized coordinates goes into the third column.
+    const glm::vec2 shift = 2.0F * offsetPx / glm::vec2(sizePx);
+    view.clipFromView[2].x += shift.x;
+    view.clipFromView[2].y += shift.y;
+    return view;
+}
+
+std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld) {
+    const glm::vec4 clip = view.clipFromWorld() * glm::vec4(pointWorld, 1.0F);
+    if (clip.w <= 0.0F) return std::nullopt;
+    return (glm::vec2(clip) / clip.w * 0.5F + 0.5F) * glm::vec2(view.sizePx);
+}
+
+std::optional<glm::ivec2> pixelOf(const View& view, const glm::vec3& pointWorld) {
+    const std::optional<glm::vec2> position = project(view, pointWorld);
+    if (!position) return std::nullopt;
+    const glm::vec2 size(view.sizePx);
+    if (position->x < 0.0F || position->y < 0.0F || position->x >= size.x ||
+        position->y >= size.y) {
+        return std::nullopt;
+    }
+    return glm::ivec2(*position);
+}
+
+glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx) {
+    return glm::normalize(unproject(view, positionPx, 1.0F) - view.eyeWorld);
+}
+
+glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM) {
+    const glm::vec2 ndc = positionPx / glm::vec2(view.sizePx) * 2.0F - 1.0F;
+    const glm::mat4& p = view.clipFromView;
+    // clip.xy = p[0].x · x + p[2].x · z …, w = −z = depth
+    const glm::vec3 pointView((ndc.x + p[2].x) * depthM / p[0].x,
+                              (ndc.y + p[2].y) * depthM / p[1].y, -depthM);
+    const glm::mat3 rotation(view.viewFromWorld);
+    return glm::transpose(rotation) * (pointView - glm::vec3(view.viewFromWorld[3]));
+}
+
+}  // namespace gfxrepro::depth_images

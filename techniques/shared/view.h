@@ -1,0 +1,41 @@
+// A pinhole view of a given size in pixels.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::depth_images {
+
+/// Pixel coordinates are continuous; pixel (x, y) covers [x, x + 1) × [y, y + 1), its sample lies
+/// at its centre, and y grows upwards: (0, 0) is the lower left corner of the image, as GL has it.
+struct View {
+    glm::vec3 eyeWorld{0.0F};
+    glm::mat4 viewFromWorld{1.0F};  // looks along −z
+    glm::mat4 clipFromView{1.0F};   // clip z from −w (near) to w (far)
+    glm::ivec2 sizePx{0};
+    float nearM = 0.0F;  // eye distance along the view axis
+    float farM = 0.0F;
+
+    glm::mat4 clipFromWorld() const { return clipFromView * viewFromWorld; }
+};
+
+/// The view of a camera. `offsetPx` moves the samples: pixel p samples where p + offsetPx would
+/// without it ((0.5, 0.5) is the half-pixel image H of [xie2017] algorithm 4).
+View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx = glm::vec2(0.0F));
+
+/// Where a point lands, in pixel coordinates; may lie outside of the image. Nothing for points on
+/// or behind the plane through the eye. Same operations as projectToPixel in shared/view.glsl.
+std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld);
+
+/// The pixel whose square holds the projection; nothing when that is outside of the image.
+std::optional<glm::ivec2> pixelOf(const View& view, const glm::vec3& pointWorld);
+
+/// The unit direction from the eye through a position in pixel coordinates.
+glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx);
+
+/// The point seen at a position in pixel coordinates at `depthM`, the distance along the view axis.
+glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM);
+
+}  // namespace gfxrepro::depth_images
