@@ -5,6 +5,7 @@
 
 #include "runner/core/random.h"
 #include "runner/core/text.h"
+#include "runner/scene/generators_outdoor.h"
 #include "runner/scene/generators_shapes.h"
 #include "runner/scene/refine.h"
 
@@ -178,6 +179,8 @@ Scene sdfModel(config::Params& params, std::uint64_t seed) {
 }
 
 constexpr GeneratorInfo kGenerators[] = {
+    {"bird_nest", "twigs woven into a bowl, with eggs, on a branch", &birdNest},
+    {"grass", "bent blades on uneven ground", &grass},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
 };
 
