@@ -1,9 +1,6 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/error.h"
 #include "runner/scene/fitted_camera.h"
 #include "runner/scene/generators_city_parts.h"
 #include "runner/scene/generators_outdoor.h"
@@ -134,9 +131,8 @@ void planSlots(Plan& plan, int i, int j, Random& random) {
     }
 }
 
-Plan planned(float triangles, std::uint64_t seed) {
+Plan planned(float blocks, std::uint64_t seed) {
     Plan plan;
-    const float blocks = triangles / kTrianglesPerBlock;
     plan.blocks.x = std::max(1, static_cast<int>(std::sqrt(blocks) + 0.5F));
     plan.blocks.y =
         std::max(1, static_cast<int>(blocks / static_cast<float>(plan.blocks.x) + 0.5F));
@@ -221,10 +217,22 @@ Builders built(const Plan& plan, float detail, std::uint64_t seed) {
     return builders;
 }
 
+/// As many blocks as leave room for windows.
+Plan fittingPlan(std::size_t triangles, std::uint64_t seed) {
+    constexpr float kLeastDetail = 0.3F;
+    float blocks = static_cast<float>(triangles) / kTrianglesPerBlock;
+    for (;;) {
+        Plan plan = planned(blocks, seed);
+        const bool isLeast = plan.blocks == glm::ivec2(1);
+        if (isLeast || built(plan, kLeastDetail, seed).triangleCount() <= triangles) return plan;
+        blocks *= 0.9F;
+    }
+}
+
 /// As many windows as the count allows, then cars, trees and lamps for what is missing.
 Builders filled(const Plan& plan, std::size_t triangles, std::uint64_t seed) {
     constexpr int kBisections = 12;
-    float low = 0.2F;
+    float low = 0.1F;
     float high = 4.0F;
     Builders best = built(plan, low, seed);
     for (int i = 0; i < kBisections; ++i) {
@@ -263,8 +271,9 @@ Scene city(config::Params& params, std::uint64_t seed) {
         "triangles", 50'000, {"count, met to 2 %; more make a larger city", "", 5000, 1e6});
     params.finish();
 
-    const Plan plan = planned(static_cast<float>(triangles), seed);
-    Builders builders = filled(plan, static_cast<std::size_t>(triangles), seed);
+    const auto wanted = static_cast<std::size_t>(triangles);
+    const Plan plan = fittingPlan(wanted, seed);
+    Builders builders = filled(plan, wanted, seed);
     Scene scene;
     addMesh(scene, builders.ground, "ground", 1.0F);
     addMesh(scene, builders.walls, "walls", 1.0F);

@@ -32,7 +32,7 @@ FacadeStyle styleOf(const glm::vec3& wall, float detail, Random& random) {
     const float tint = random.uniform(0.6F, 1.4F);
     style.glass = tint * glm::vec3(0.06F, 0.10F, 0.14F);
     style.bayM = random.uniform(3.6F, 4.8F) / detail;
-    style.storeyM = random.uniform(3.7F, 4.5F) / std::clamp(detail, 0.75F, 1.15F);
+    style.storeyM = random.uniform(3.7F, 4.5F) / std::clamp(detail, 0.6F, 1.15F);
     return style;
 }
 
