@@ -78,9 +78,9 @@ struct Wanted {
     int triangles;
 };
 
-class OutdoorScene : public testing::TestWithParam<Wanted> {};
+class NestOrGrass : public testing::TestWithParam<Wanted> {};
 
-TEST_P(OutdoorScene, IsSoundWithExactlyTheWantedTriangles) {
+TEST_P(NestOrGrass, IsSoundWithExactlyTheWantedTriangles) {
     const Scene scene = generated(GetParam().generator, GetParam().triangles, 7);
     EXPECT_EQ(scene.triangleCount(), static_cast<std::size_t>(GetParam().triangles));
     for (const Mesh& mesh : scene.meshes) expectSound(mesh);
@@ -107,7 +107,7 @@ float fillOf(const Scene& scene, const Camera& camera, const glm::vec3& eye) {
     return fill;
 }
 
-TEST_P(OutdoorScene, FillsItsCameraAndStaysInFrontOfReferenceViews) {
+TEST_P(NestOrGrass, FillsItsCameraAndStaysInFrontOfReferenceViews) {
     const Scene scene = generated(GetParam().generator, GetParam().triangles);
     ASSERT_EQ(scene.cameras.size(), 1U);
     const Camera& camera = scene.cameras[0];
@@ -125,7 +125,7 @@ TEST_P(OutdoorScene, FillsItsCameraAndStaysInFrontOfReferenceViews) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, OutdoorScene,
+INSTANTIATE_TEST_SUITE_P(Sizes, NestOrGrass,
                          testing::Values(Wanted{"bird_nest", 5000}, Wanted{"bird_nest", 20002},
                                          Wanted{"bird_nest", 66666}, Wanted{"bird_nest", 67000},
                                          Wanted{"bird_nest", 300004}, Wanted{"grass", 10000},
@@ -136,12 +136,12 @@ INSTANTIATE_TEST_SUITE_P(Sizes, OutdoorScene,
                                     std::to_string(info.param.triangles);
                          });
 
-TEST(OutdoorScenes, DefaultsAreThePrintedCounts) {
+TEST(NestAndGrass, DefaultsAreThePrintedCounts) {
     EXPECT_EQ(generated("bird_nest", "{}").triangleCount(), 67'000U);
     EXPECT_EQ(generated("grass", "{}").triangleCount(), 56'000U);
 }
 
-TEST(OutdoorScenes, SameSeedSameBytes) {
+TEST(NestAndGrass, SameSeedSameBytes) {
     for (const char* generator : {"bird_nest", "grass"}) {
         EXPECT_EQ(digestOf(generated(generator, 20'000)), digestOf(generated(generator, 20'000)));
         EXPECT_NE(digestOf(generated(generator, 20'000)),
@@ -149,7 +149,7 @@ TEST(OutdoorScenes, SameSeedSameBytes) {
     }
 }
 
-TEST(OutdoorScenes, SameBytesOnEveryMachine) {
+TEST(NestAndGrass, SameBytesOnEveryMachine) {
     EXPECT_EQ(digestOf(generated("bird_nest", 67'000)),
               "976ecd68f3d71ea0eee259caac644d2568c4dff44061370e4c43701ba9a66a89");
     EXPECT_EQ(digestOf(generated("grass", 56'000)),
@@ -272,7 +272,7 @@ TEST(Grass, DensityGrowsOnTheSameGround) {
     }
 }
 
-TEST(OutdoorScenes, BadParametersAreLocated) {
+TEST(NestAndGrass, BadParametersAreLocated) {
     EXPECT_EQ(test::errorText([] { generated("bird_nest", "{triangles: 67001}"); }),
               "t.yaml:1:13: triangles: 67001 is odd, but twigs, eggs and branch are closed, which "
               "takes an even number");
