@@ -79,9 +79,9 @@ struct Case {
     int triangles;
 };
 
-class Outdoor : public testing::TestWithParam<Case> {};
+class CityOrTree : public testing::TestWithParam<Case> {};
 
-TEST_P(Outdoor, HasItsCountAndSoundMeshes) {
+TEST_P(CityOrTree, HasItsCountAndSoundMeshes) {
     const auto [name, triangles] = GetParam();
     const Scene scene = sized(name, triangles, 5);
     EXPECT_GE(scene.triangleCount(), static_cast<std::size_t>(0.98 * triangles));
@@ -93,7 +93,7 @@ TEST_P(Outdoor, HasItsCountAndSoundMeshes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Sizes, Outdoor,
+    Sizes, CityOrTree,
     testing::Values(Case{"city", 5000}, Case{"city", 7000}, Case{"city", 10'000},
                     Case{"city", 16'000}, Case{"city", 25'000}, Case{"city", 50'000},
                     Case{"city", 130'000}, Case{"city", 1'000'000}, Case{"tree", 10'000},
@@ -103,12 +103,12 @@ INSTANTIATE_TEST_SUITE_P(
         return std::string(info.param.name) + std::to_string(info.param.triangles);
     });
 
-TEST(OutdoorScenes, DefaultsAreTheThesis) {
+TEST(CityAndTree, DefaultsAreTheThesis) {
     EXPECT_NEAR(static_cast<double>(generated("city", "{}").triangleCount()), 50e3, 1e3);
     EXPECT_NEAR(static_cast<double>(generated("tree", "{}").triangleCount()), 113e3, 2.26e3);
 }
 
-TEST(OutdoorScenes, EverySeedMeetsTheCount) {
+TEST(CityAndTree, EverySeedMeetsTheCount) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
         EXPECT_NEAR(static_cast<double>(sized("city", 50'000, seed).triangleCount()), 50e3, 1e3);
@@ -117,14 +117,14 @@ TEST(OutdoorScenes, EverySeedMeetsTheCount) {
     }
 }
 
-TEST(OutdoorScenes, AnotherSeedIsAnotherScene) {
+TEST(CityAndTree, AnotherSeedIsAnotherScene) {
     for (const char* name : {"city", "tree"}) {
         EXPECT_EQ(digestOf(sized(name, 12'000, 1)), digestOf(sized(name, 12'000, 1)));
         EXPECT_NE(digestOf(sized(name, 12'000, 1)), digestOf(sized(name, 12'000, 2)));
     }
 }
 
-TEST(OutdoorScenes, SameBytesOnEveryMachine) {
+TEST(CityAndTree, SameBytesOnEveryMachine) {
     // A difference here is a changed generator (then kGeneratorVersion goes up) or a compiler that
     // reorders floating point.
     EXPECT_EQ(digestOf(generated("city", "{}")),
@@ -155,7 +155,7 @@ bool isFramed(const Scene& scene, const glm::vec3& eye, float fill) {
     return true;
 }
 
-TEST(OutdoorScenes, CamerasAndTheViewsAroundThemHoldTheScene) {
+TEST(CityAndTree, CamerasAndTheViewsAroundThemHoldTheScene) {
     for (const char* name : {"city", "tree", "four_objects"}) {
         SCOPED_TRACE(name);
         const Scene scene = generated(name, "{}");
@@ -178,7 +178,7 @@ TEST(OutdoorScenes, CamerasAndTheViewsAroundThemHoldTheScene) {
     }
 }
 
-TEST(OutdoorScenes, LeavesAreDoubleSidedAndAllElseIsNot) {
+TEST(CityAndTree, LeavesAreDoubleSidedAndAllElseIsNot) {
     const Scene scene = sized("tree", 12'000);
     for (const Mesh& mesh : scene.meshes) {
         EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(mesh.material)).isDoubleSided,
@@ -189,7 +189,7 @@ TEST(OutdoorScenes, LeavesAreDoubleSidedAndAllElseIsNot) {
     }
 }
 
-TEST(OutdoorScenes, BadParametersAreLocated) {
+TEST(CityAndTree, BadParametersAreLocated) {
     EXPECT_EQ(test::errorText([] { generated("city", "{triangles: 4999}"); }),
               "t.yaml:1:13: generator 'city': triangles is 4999; allowed: 5000 … 1000000");
     EXPECT_EQ(test::errorText([] { generated("city", "{blocks: 4}"); }),
