@@ -213,6 +213,23 @@ TEST(Visibility, PointsOfDepthImagesAreFoundAgain) {
     EXPECT_LE(lost, samples / 500);
 }
 
+TEST(Visibility, SurfacesSeenAtASlantDoNotHideThemselves) {
+    scene::Scene scene;
+    scene.meshes = {squareAt({0, 0, 0}, 1.0F)};
+    scene.instances = {{0, glm::mat4(1.0F)}};
+    const RayTracer tracer(scene);
+    scene::Camera camera;
+    camera.position = {-1.5F, 0.1F, 0.01F};
+    camera.target = {0.3F, 0.2F, 0};
+    camera.up = {0, 0, 1};
+    const View view = depth_images::viewOf(camera, {16, 16});
+    const VisibilitySequence images(tracer, {view, view}, true);
+    // Rounded to 1 µm behind the surface, the ray meets it 0.2 mm before the point.
+    const SurfacePoint point{{0.3F, 0.2F, -1e-6F}, 1};
+    EXPECT_TRUE(images.holds(0, point));
+    EXPECT_FALSE(images.holds(1, point));
+}
+
 // [xie2017] Fig. 11 and 12: A hides C from both views; as V₀ has A, V₁ looks through it, past B.
 TEST(Visibility, OnlyNonRedundantImagesGetTheObjectHiddenFromAllViews) {
     const FourObjects objects;
