@@ -62,7 +62,7 @@ TEST_F(DepthImageTest, HoldsShadingDepthAndIds) {
     EXPECT_EQ(image.depthM[image.indexOf(right)], 6.0F);
     EXPECT_LE(image.triangleId[image.indexOf(left)], 2U);
     EXPECT_EQ(image.triangleId[image.indexOf(right)], 3U);     // below the diagonal
-    EXPECT_EQ(image.triangleId[image.indexOf({14, 15})], 4U);  // above
+    EXPECT_EQ(image.triangleId[image.indexOf({13, 14})], 4U);  // above
     expectShading(image, left, litFromFront(glm::vec3(0.8F)));
     expectShading(image, right, litFromFront({0.8F, 0.4F, 0.0F}));
     const glm::vec3 point = image.pointWorld(right);
