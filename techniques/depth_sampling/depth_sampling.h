@@ -54,13 +54,12 @@ class DepthSampling final : public technique::Technique {
     std::vector<scene::Camera> chooseCameras(technique::SetupContext& context,
                                              const ViewTriangle& triangle) const;
     Views makeViews(technique::SetupContext& context) const;
-    void recordPictures(technique::Recorder& recorder, std::size_t frame) const;
+    void recordPictures(technique::Recorder& recorder) const;
 
     DepthSamplingParams params_;
     std::unique_ptr<Experiment> experiment_;
     PixelExperiment* pixelExperiment_ = nullptr;  // the same, under the pixel definition
     std::optional<Measures> measures_;            // of all frames alike: taken once
-    bool isFirstFrame_ = true;
 };
 
 /// Records `measures` as metrics; percentages of nothing are 0.

@@ -45,21 +45,22 @@ ViewTriangleSettings readTriangle(config::Params& params) {
         return static_cast<float>(params.getDouble(name, fallback, spec));
     };
     ViewTriangleSettings settings;
-    settings.spread = number("view_spread", 0.5,
-                             {"side of the triangle of views, in diagonals of the scene's box",
-                              "diagonals", 0.0, 10.0});
-    settings.distance = number(
-        "view_distance", 1.0, {"factor on the camera's distance from its target", "1", 0.01, 100.0});
+    settings.spread = number(
+        "view_spread", 0.5,
+        {"side of the triangle of views, in diagonals of the scene's box", "diagonals", 0.0, 10.0});
+    settings.distance =
+        number("view_distance", 1.0,
+               {"factor on the camera's distance from its target", "1", 0.01, 100.0});
     settings.yawRad = glm::radians(
         number("view_yaw_deg", 0.0, {"turns the camera about its target", "°", -360.0, 360.0}));
-    settings.pitchRad = glm::radians(number(
-        "view_pitch_deg", 0.0, {"raises the camera about its target", "°", -180.0, 180.0}));
+    settings.pitchRad = glm::radians(
+        number("view_pitch_deg", 0.0, {"raises the camera about its target", "°", -180.0, 180.0}));
     return settings;
 }
 
-/// `name` is given, but `because`.
-[[noreturn]] void refuse(const config::Params& params, const char* name, std::string_view because) {
-    throw Error(params.locationOf(name), fmt::format("{}", because));
+[[noreturn]] void refuse(const config::Params& params, const char* name,
+                         const std::string& because) {
+    throw Error(params.locationOf(name), because);
 }
 
 void checkPlacement(const config::Params& params, const DepthSamplingParams& read) {
@@ -116,8 +117,9 @@ DepthSamplingParams::DepthSamplingParams(config::Params& params)
     : method(params.getEnum("method", Method::Conventional, kMethods, {"which images are taken"})),
       redundancy(params.getEnum("redundancy", Redundancy::Pixel, kRedundancies,
                                 {"which samples count as captured"})),
-      views(params.getInt("views", 3, {"reference images, or layers of depth peeling", "images", 1,
-                                       depth_images::kMaxEarlierImages + 1})),
+      views(params.getInt("views", 3,
+                          {"reference images, or layers of depth peeling", "images", 1,
+                           depth_images::kMaxEarlierImages + 1})),
       placement(params.getEnum("placement", Placement::Fixed, kPlacements,
                                {"where reference images are taken"})),
       candidates(params.getInt("candidates", 16,
@@ -129,12 +131,12 @@ DepthSamplingParams::DepthSamplingParams(config::Params& params)
                                  {"what the depth test compares"})),
       outputFrames(params.getInt("output_frames", 1000,
                                  {"views in the hull of the reference views", "frames", 1, 10000})),
-      frameSizePx(params.getInt("frame_size", 0,
-                                {"side of an output frame; 0: the reference images' size", "px", 0,
-                                 4096})),
+      frameSizePx(
+          params.getInt("frame_size", 0,
+                        {"side of an output frame; 0: the reference images' size", "px", 0, 4096})),
       showsPictures(params.getBool("pictures", false, {"save images with what was measured"})),
-      measured(params.getEnum("measured", Measured::ReferenceImages, kMeasured,
-                              {"what is timed"})) {
+      measured(
+          params.getEnum("measured", Measured::ReferenceImages, kMeasured, {"what is timed"})) {
     measures.usefulness = params.getBool(
         "usefulness", false, {"count the occluded samples that an output frame needs (measure 3)"});
     measures.availability = params.getBool(

@@ -69,6 +69,8 @@ class Experiment {
     virtual std::size_t referenceImageBytes() const = 0;
 };
 
-inline std::string imageName(std::size_t index) { return "image_" + std::to_string(index); }
+inline std::string imageName(std::size_t index) {
+    return "image_" + std::to_string(index);
+}
 
 }  // namespace gfxrepro::depth_sampling
