@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 namespace gfxrepro::depth_sampling {
 
 using depth_images::DepthImage;
