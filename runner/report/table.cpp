@@ -108,6 +108,7 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
 /// Of a table without a measurement.
 void layPrintedAlone(const config::Printed& printed, Table& table) {
     if (printed.rows.empty()) return;
+    table.isOnlyPrinted = true;
     table.rowAxes = {printed.header[0]};
     for (std::size_t i = 1; i < printed.header.size(); ++i) {
         table.columns.push_back({printed.header[i], ""});

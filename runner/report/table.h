@@ -61,6 +61,7 @@ struct Table {
     std::string title;
     std::string hardware;  // that the paper's numbers come from
     std::string remark;
+    bool isOnlyPrinted = false;  // nothing is measured for it
     std::vector<std::string> rowAxes;
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;

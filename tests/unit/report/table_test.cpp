@@ -67,6 +67,7 @@ TEST(Table, WithoutATechniqueThereIsWhatWasPrinted) {
     experiment.printed.header = {"function", "dimensions", "bound"};
     experiment.printed.rows = {{"light field", "4", "a box"}, {"panorama", "2", ""}};
     const Table table = buildTable(experiment, {});
+    EXPECT_TRUE(table.isOnlyPrinted);
     EXPECT_THAT(table.rowAxes, ElementsAre("function"));
     EXPECT_THAT(columnLabels(table), ElementsAre("dimensions", "bound"));
     EXPECT_THAT(rowLabels(table), ElementsAre(ElementsAre("light field"), ElementsAre("panorama")));
