@@ -4,6 +4,23 @@
 
 namespace gfxrepro::depth_images {
 
+namespace {
+
+/// From world space to (x·d, y·d, d, 1) of reprojection().
+glm::dmat4 pixelsFromWorld(const View& view) {
+    // Row by row of clip: x·d = (clip.x + clip.w) · width / 2, d = clip.w.
+    glm::dmat4 pixelsFromClip(0.0);
+    pixelsFromClip[0].x = 0.5 * view.sizePx.x;
+    pixelsFromClip[1].y = 0.5 * view.sizePx.y;
+    pixelsFromClip[3] = {0.5 * view.sizePx.x, 0.5 * view.sizePx.y, 1.0, 0.0};
+    glm::dmat4 result =
+        pixelsFromClip * glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
+    for (int column = 0; column < 4; ++column) result[column].w = column == 3 ? 1.0 : 0.0;
+    return result;
+}
+
+}  // namespace
+
 View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx) {
     View view;
     view.eyeWorld = camera.position;
@@ -50,6 +67,32 @@ glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM)
                               (ndc.y + p[2].y) * depthM / p[1].y, -depthM);
     const glm::mat3 rotation(view.viewFromWorld);
     return glm::transpose(rotation) * (pointView - glm::vec3(view.viewFromWorld[3]));
+}
+
+glm::mat4 pixelFromSample(const View& from, const View& to) {
+    // Double precision: camera and world positions cancel here, not in the shader.
+    const glm::dmat4 p(from.clipFromView);
+    const glm::dvec2 fromPx(from.sizePx);
+    const glm::dvec2 toPx(to.sizePx);
+    // Columns of x·d, y·d, d and 1, with the lines of unproject() multiplied out.
+    const glm::dmat4 viewFromSample(
+        glm::dvec4(2.0 / (fromPx.x * p[0].x), 0.0, 0.0, 0.0),
+        glm::dvec4(0.0, 2.0 / (fromPx.y * p[1].y), 0.0, 0.0),
+        glm::dvec4((p[2].x - 1.0) / p[0].x, (p[2].y - 1.0) / p[1].y, -1.0, 0.0),
+        glm::dvec4(0.0, 0.0, 0.0, 1.0));
+    const glm::dmat4 pixelFromClip(glm::dvec4(0.5 * toPx.x, 0.0, 0.0, 0.0),
+                                   glm::dvec4(0.0, 0.5 * toPx.y, 0.0, 0.0), glm::dvec4(0.0),
+                                   glm::dvec4(0.5 * toPx.x, 0.5 * toPx.y, 0.0, 1.0));
+    return glm::mat4(pixelFromClip * glm::dmat4(to.clipFromView) * glm::dmat4(to.viewFromWorld) *
+                     glm::inverse(glm::dmat4(from.viewFromWorld)) * viewFromSample);
+}
+
+glm::mat4 worldFromPixels(const View& view) {
+    return glm::mat4(glm::inverse(pixelsFromWorld(view)));
+}
+
+glm::mat4 reprojection(const View& from, const View& to) {
+    return glm::mat4(pixelsFromWorld(to) * glm::inverse(pixelsFromWorld(from)));
 }
 
 }  // namespace gfxrepro::depth_images
