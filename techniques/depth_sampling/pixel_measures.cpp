@@ -41,8 +41,8 @@ void bindTest(const gl::Program& program, const DepthImage& image, ImageSpan ima
     image.depth.bindImage(kDepthImage, GL_READ_ONLY);
     for (std::size_t i = 0; i < images.size(); ++i) {
         images[i]->triangleId.bind(static_cast<GLuint>(kFirstTriangleIdsUnit + i));
-        program.set(fmt::format("pixelFromSample[{}]", i).c_str(),
-                    depth_images::pixelFromSample(image.view, images[i]->view));
+        program.set(fmt::format("thereFromHere[{}]", i).c_str(),
+                    depth_images::reprojection(image.view, images[i]->view));
     }
 }
 

@@ -69,24 +69,6 @@ glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM)
     return glm::transpose(rotation) * (pointView - glm::vec3(view.viewFromWorld[3]));
 }
 
-glm::mat4 pixelFromSample(const View& from, const View& to) {
-    // Double precision: camera and world positions cancel here, not in the shader.
-    const glm::dmat4 p(from.clipFromView);
-    const glm::dvec2 fromPx(from.sizePx);
-    const glm::dvec2 toPx(to.sizePx);
-    // Columns of x·d, y·d, d and 1, with the lines of unproject() multiplied out.
-    const glm::dmat4 viewFromSample(
-        glm::dvec4(2.0 / (fromPx.x * p[0].x), 0.0, 0.0, 0.0),
-        glm::dvec4(0.0, 2.0 / (fromPx.y * p[1].y), 0.0, 0.0),
-        glm::dvec4((p[2].x - 1.0) / p[0].x, (p[2].y - 1.0) / p[1].y, -1.0, 0.0),
-        glm::dvec4(0.0, 0.0, 0.0, 1.0));
-    const glm::dmat4 pixelFromClip(glm::dvec4(0.5 * toPx.x, 0.0, 0.0, 0.0),
-                                   glm::dvec4(0.0, 0.5 * toPx.y, 0.0, 0.0), glm::dvec4(0.0),
-                                   glm::dvec4(0.5 * toPx.x, 0.5 * toPx.y, 0.0, 1.0));
-    return glm::mat4(pixelFromClip * glm::dmat4(to.clipFromView) * glm::dmat4(to.viewFromWorld) *
-                     glm::inverse(glm::dmat4(from.viewFromWorld)) * viewFromSample);
-}
-
 glm::mat4 worldFromPixels(const View& view) {
     return glm::mat4(glm::inverse(pixelsFromWorld(view)));
 }

@@ -38,11 +38,6 @@ glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx);
 /// The point seen at a position in pixel coordinates at `depthM`, the distance along the view axis.
 glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM);
 
-/// unproject() in `from` and project() to `to` as one matrix: what is seen in `from` at (x, y) in
-/// pixel coordinates at depth d lands in `to` at p.xy / p.w, p = pixelFromSample · (x, y, 1, 1/d);
-/// it is before the eye of `to` when p.w > 0. p.z is 0.
-glm::mat4 pixelFromSample(const View& from, const View& to);
-
 /// Takes (x·d, y·d, d, 1) to the point of the world that is seen at pixel coordinates (x, y) and
 /// the distance d along the view axis.
 glm::mat4 worldFromPixels(const View& view);

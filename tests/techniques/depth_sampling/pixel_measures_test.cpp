@@ -234,12 +234,12 @@ TEST_F(PixelMeasuresTest, AnImageIsRedundantWithItself) {
 // inside.
 TEST_F(PixelMeasuresTest, PixelCentresLandAtCentresOfTheSameView) {
     const View view = test::viewFrom({1000.0F, 40.0F, 3.0F}, {1024, 512}, {997.0F, 39.0F, 0.0F});
-    const glm::mat4 same = depth_images::pixelFromSample(view, view);
+    const glm::mat4 same = depth_images::reprojection(view, view);
     for (const float depthM : {0.06F, 1.0F, 19.0F}) {
         for (const glm::vec2 centre : {glm::vec2(0.5F), glm::vec2(1023.5F, 511.5F)}) {
-            const glm::vec4 landed = same * glm::vec4(centre, 1.0F, 1.0F / depthM);
-            EXPECT_NEAR(landed.x / landed.w, centre.x, 1e-3F);
-            EXPECT_NEAR(landed.y / landed.w, centre.y, 1e-3F);
+            const glm::vec4 landed = same * glm::vec4(centre * depthM, depthM, 1.0F);
+            EXPECT_NEAR(landed.x / landed.z, centre.x, 1e-3F);
+            EXPECT_NEAR(landed.y / landed.z, centre.y, 1e-3F);
         }
     }
 }
@@ -247,21 +247,21 @@ TEST_F(PixelMeasuresTest, PixelCentresLandAtCentresOfTheSameView) {
 TEST_F(PixelMeasuresTest, OneMatrixProjectsLikeUnprojectAndProject) {
     const View from = test::viewFrom({-1.2F, -0.7F, 3.0F}, {61, 53});
     const View to = test::viewFrom({0.3F, 0.2F, 0.5F}, {37, 90}, {0.1F, 0.0F, -2.0F});
-    const glm::mat4 matrix = depth_images::pixelFromSample(from, to);
+    const glm::mat4 matrix = depth_images::reprojection(from, to);
     int before = 0;
     for (int i = 0; i < 300; ++i) {
         const glm::vec2 position(static_cast<float>(i % 61) + 0.25F,
                                  static_cast<float>(i % 53) + 0.75F);
         const float depthM = 0.1F + 0.02F * static_cast<float>(i);
         const auto expected = project(to, unproject(from, position, depthM));
-        const glm::vec4 landed = matrix * glm::vec4(position, 1.0F, 1.0F / depthM);
-        ASSERT_EQ(landed.w > 0.0F, expected.has_value()) << i;
+        const glm::vec4 landed = matrix * glm::vec4(position * depthM, depthM, 1.0F);
+        ASSERT_EQ(landed.z > 0.0F, expected.has_value()) << i;
         if (!expected) continue;
         ++before;
         // Positions far outside of the image are thousands of pixels: relative there.
         const float tolerance = 1e-4F * std::max(10.0F, glm::length(*expected));
-        EXPECT_NEAR(landed.x / landed.w, expected->x, tolerance) << i;
-        EXPECT_NEAR(landed.y / landed.w, expected->y, tolerance) << i;
+        EXPECT_NEAR(landed.x / landed.z, expected->x, tolerance) << i;
+        EXPECT_NEAR(landed.y / landed.z, expected->y, tolerance) << i;
     }
     EXPECT_GT(before, 50);
     EXPECT_LT(before, 250);
