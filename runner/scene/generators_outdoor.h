@@ -18,6 +18,7 @@ Scene tree(config::Params& params, std::uint64_t seed);
 constexpr float kFourObjectsSpread = 0.5F;
 /// Four boxes and two views of which neither sees C ([xie2017] Fig. 11–12).
 Scene fourObjects(config::Params& params, std::uint64_t seed);
+
 /// Twigs woven into a bowl, eggs in it, a forked branch below. Exactly `triangles`; the number of
 /// twigs follows from it, the bowl stays, and the twigs get thinner so that the wood in it stays.
 Scene birdNest(config::Params& params, std::uint64_t seed);
