@@ -102,9 +102,9 @@ std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits)
 }
 
 void PixelMeasures::beginAvailability(const DepthImage& frame, ImageSpan images) {
-    availabilityCounter_.clear();
     const gl::Program& program =
         variant(availabilityPrograms_, "depth_sampling/availability.comp.glsl", images.size());
+    availabilityCounter_.clear();
     program.use();
     bindTest(program, frame, images);
     availabilityCounter_.bindStorage(kCounterBinding);

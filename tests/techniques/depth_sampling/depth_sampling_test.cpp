@@ -252,6 +252,25 @@ TEST_F(DepthSamplingTest, MeasuresKeepTheirBounds) {
     }
 }
 
+// Through a hole in a wall each view sees another part of the wall behind; the fixed views stand at
+// the ends and see next to nothing of what the frames between them see.
+TEST_F(DepthSamplingTest, AutomaticPlacementFindsWhatTheEndsMiss) {
+    scene::MeshBuilder builder;
+    for (const float side : {-1.0F, 1.0F}) {
+        builder.addBox({side * 2.4F, 0, 0}, {2, 5, 0.05F});
+        builder.addBox({0, side * 2.9F, 0}, {0.4F, 2.5F, 0.05F});
+    }
+    builder.addBox({0, 0, -4}, {6, 6, 0.05F});
+    scene::Scene scene = scene::sceneOf(builder.take("hole", -1));
+    scene.cameras = {lookingAt({0, 0, 3}, {0, 0, 0})};
+    const std::string common =
+        "{method: non_redundant, views: 2, view_spread: 0.2, availability: true, output_frames: "
+        "40, placement: ";
+    const Metrics fixed = run(common + "fixed}", scene);
+    const Metrics automatic = run(common + "automatic, candidates: 8}", scene);
+    EXPECT_GT(automatic.at("available_mean_pct"), fixed.at("available_mean_pct") + 1.0);
+}
+
 TEST_F(DepthSamplingTest, GeometryShaderIdsGiveTheSameSamples) {
     const scene::Scene scene = clutter();
     const std::string common = "{method: non_redundant, triangle_ids: ";
