@@ -12,10 +12,10 @@
 
 #include "shared/pixel_redundancy.glsl"
 
-layout(r32ui, binding = TRIANGLE_ID_IMAGE) readonly uniform uimage2D sampleTriangleIds;
+layout(binding = SAMPLE_IDS_UNIT) uniform usampler2D sampleTriangleIds;
 
 #if IMAGE_COUNT > 0
-layout(r32f, binding = DEPTH_IMAGE) readonly uniform image2D sampleDepths;
+layout(binding = SAMPLE_DEPTHS_UNIT) uniform sampler2D sampleDepths;
 layout(binding = FIRST_TRIANGLE_IDS_UNIT) uniform usampler2D triangleIds[IMAGE_COUNT];
 uniform mat4 otherFromHere[IMAGE_COUNT];
 uniform vec2 otherSizePx[IMAGE_COUNT];
@@ -24,7 +24,7 @@ uniform vec2 otherSizePx[IMAGE_COUNT];
 // Whether one of the images holds the sample of I in `pixel`, which is of triangle `triangleId`.
 bool isRedundantWithAny(ivec2 pixel, uint triangleId) {
 #if IMAGE_COUNT > 0
-    vec3 sampleHere = vec3(vec2(pixel) + 0.5, imageLoad(sampleDepths, pixel).r);
+    vec3 sampleHere = vec3(vec2(pixel) + 0.5, texelFetch(sampleDepths, pixel, 0).r);
     for (int i = 0; i < IMAGE_COUNT; ++i) {
         if (isPixelRedundant(triangleIds[i], otherSizePx[i], otherFromHere[i], sampleHere,
                              triangleId)) {
