@@ -252,23 +252,25 @@ TEST_F(DepthSamplingTest, MeasuresKeepTheirBounds) {
     }
 }
 
-// Through a hole in a wall each view sees another part of the wall behind; the fixed views stand at
-// the ends and see next to nothing of what the frames between them see.
+// Only from the middle of V₀V₁ does one see the card behind the hole in a wall; the fixed views
+// stand at the ends. All is inside of every frustum: what lies outside does not decide.
+// (Conventional images: a non-redundant one sees the wall behind anyway, where the first wall is
+// redundant.)
 TEST_F(DepthSamplingTest, AutomaticPlacementFindsWhatTheEndsMiss) {
     scene::MeshBuilder builder;
     for (const float side : {-1.0F, 1.0F}) {
-        builder.addBox({side * 2.4F, 0, 0}, {2, 5, 0.05F});
-        builder.addBox({0, side * 2.9F, 0}, {0.4F, 2.5F, 0.05F});
+        builder.addBox({side * 0.85F, 0, 0}, {0.45F, 1.3F, 0.05F});
+        builder.addBox({0, side * 0.85F, 0}, {0.4F, 0.45F, 0.05F});
     }
-    builder.addBox({0, 0, -4}, {6, 6, 0.05F});
+    builder.addBox({0, 0, -4}, {0.8F, 0.8F, 0.05F});
     scene::Scene scene = scene::sceneOf(builder.take("hole", -1));
     scene.cameras = {lookingAt({0, 0, 3}, {0, 0, 0})};
     const std::string common =
-        "{method: non_redundant, views: 2, view_spread: 0.2, availability: true, output_frames: "
+        "{method: conventional, views: 2, view_spread: 0.6, availability: true, output_frames: "
         "40, placement: ";
     const Metrics fixed = run(common + "fixed}", scene);
     const Metrics automatic = run(common + "automatic, candidates: 8}", scene);
-    EXPECT_GT(automatic.at("available_mean_pct"), fixed.at("available_mean_pct") + 1.0);
+    EXPECT_LT(automatic.at("unavailable_mean_pct"), 0.8 * fixed.at("unavailable_mean_pct"));
 }
 
 TEST_F(DepthSamplingTest, GeometryShaderIdsGiveTheSameSamples) {
