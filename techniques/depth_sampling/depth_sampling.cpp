@@ -95,8 +95,10 @@ Views DepthSampling::makeViews(technique::SetupContext& context) const {
     views.conventional = viewsOf(chooseCameras(context, triangle), size);
     views.images = views.conventional;
     if (params_.method == Method::DepthPeeling) {
-        views.images.assign(static_cast<std::size_t>(params_.views),
-                            depth_images::viewOf(triangle.centre, size));
+        const depth_images::View view = params_.peeledFrom == PeeledFrom::FirstView
+                                            ? views.conventional.front()
+                                            : depth_images::viewOf(triangle.centre, size);
+        views.images.assign(static_cast<std::size_t>(params_.views), view);
     }
     const glm::ivec2 frameSize = params_.frameSizePx > 0 ? glm::ivec2(params_.frameSizePx) : size;
     views.frames = viewsOf(outputCameras(triangle, params_.views, params_.outputFrames), frameSize);

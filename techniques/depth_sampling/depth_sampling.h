@@ -20,6 +20,12 @@ enum class Placement {
     Automatic,  // the next view is chosen by what the images so far lack
 };
 
+/// The one view of depth peeling.
+enum class PeeledFrom {
+    Centre,     // of the triangle (or segment) of views: the tables
+    FirstView,  // V₀: figures 11 and 12
+};
+
 /// What render() does, and is timed.
 enum class Measured { ReferenceImages, OutputFrame };
 
@@ -29,6 +35,7 @@ struct DepthSamplingParams {
     int views = 3;
     Placement placement = Placement::Fixed;
     int candidates = 16;
+    PeeledFrom peeledFrom = PeeledFrom::Centre;
     ViewTriangleSettings triangle;  // all but the aspect
     depth_images::TriangleIds triangleIds = depth_images::TriangleIds::PrimitiveId;
     depth_images::DepthFormat depthFormat = depth_images::DepthFormat::Float32;

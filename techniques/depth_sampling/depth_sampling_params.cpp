@@ -11,7 +11,7 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::Conventional, "conventional", "ordinary depth images: the nearest sample of a pixel"},
     {Method::NonRedundant, "non_redundant",
      "the nearest sample that no earlier image has (algorithm 1)"},
-    {Method::DepthPeeling, "depth_peeling", "layers of one view, from the triangle's centre"},
+    {Method::DepthPeeling, "depth_peeling", "layers of one view"},
 };
 constexpr config::Choice<Redundancy> kRedundancies[] = {
     {Redundancy::Pixel, "pixel",
@@ -22,6 +22,10 @@ constexpr config::Choice<Redundancy> kRedundancies[] = {
 constexpr config::Choice<Placement> kPlacements[] = {
     {Placement::Fixed, "fixed", "the triangle's corners, then evenly inside of it"},
     {Placement::Automatic, "automatic", "each next view where the images so far lack most"},
+};
+constexpr config::Choice<PeeledFrom> kPeeledFrom[] = {
+    {PeeledFrom::Centre, "centre", "the centre of the triangle of views"},
+    {PeeledFrom::FirstView, "first_view", "V0, as figures 11 and 12 have it"},
 };
 constexpr config::Choice<depth_images::TriangleIds> kTriangleIds[] = {
     {depth_images::TriangleIds::PrimitiveId, "primitive_id", "gl_PrimitiveID"},
@@ -127,6 +131,8 @@ DepthSamplingParams::DepthSamplingParams(config::Params& params)
                                {"where reference images are taken"})),
       candidates(params.getInt("candidates", 16,
                                {"views to choose from (automatic)", "views", 2, kMaxCandidates})),
+      peeledFrom(params.getEnum("peeled_from", PeeledFrom::Centre, kPeeledFrom,
+                                {"the one view of depth_peeling"})),
       triangle(readTriangle(params)),
       triangleIds(params.getEnum("triangle_ids", depth_images::TriangleIds::PrimitiveId,
                                  kTriangleIds, {"where triangle ids come from"})),
