@@ -15,6 +15,9 @@ namespace shapes = voxelization::shapes;
 using ClassicTest = ReconstructionTest;
 
 constexpr ReconstructionSettings kSettings{.method = Reconstruction::Classic};
+/// For images of a few pixels, whose footprints are large.
+constexpr ReconstructionSettings kTinyImage{.method = Reconstruction::Classic,
+                                            .discontinuityPx = 0.5F};
 
 /// Samples from rows of ids, top row first: '.' none, '1' … the id; the depth of id n is
 /// `depths[n]`.
@@ -126,7 +129,7 @@ TEST_F(ClassicTest, APlaneIsTwoTrianglesACell) {
 
 TEST_F(ClassicTest, NothingLeadsAcrossADiscontinuity) {
     const ImagePair images = imagesOf({"112222", "111222", "111122"}, {0.0F, 3.0F, 50.0F});
-    const HostMesh measured = reconstruct(images, kFacing, kSettings);
+    const HostMesh measured = reconstruct(images, kFacing, kTinyImage);
     EXPECT_FALSE(measured.triangles.empty());
     for (const glm::uvec3& t : measured.triangles) {
         const float depth = measured.vertices[t.x].depthM;
@@ -144,7 +147,7 @@ TEST_F(ClassicTest, ThreeNeighboursAreOneTriangle) {
         {{"12", "11"}, {{{0, 0}, {1, 0}, {0, 1}}}}};  // the fourth is far behind
     for (const auto& [rows, triangle] : cases) {
         const HostMesh measured =
-            reconstruct(imagesOf(rows, {0.0F, 1.0F, 80.0F}), kFacing, kSettings);
+            reconstruct(imagesOf(rows, {0.0F, 1.0F, 80.0F}), kFacing, kTinyImage);
         EXPECT_EQ(pixelTriangles(measured), std::multiset<PixelTriangle>{triangle});
         EXPECT_EQ(measured.vertices.size(), 3U);
     }
@@ -153,7 +156,7 @@ TEST_F(ClassicTest, ThreeNeighboursAreOneTriangle) {
 TEST_F(ClassicTest, WhatHasNoTwoNeighboursIsLost) {
     for (const std::vector<std::string>& rows :
          {std::vector<std::string>{"1.1.", ".1.1"}, {"11.1"}, {"1"}, {"...."}}) {
-        const HostMesh measured = reconstruct(imagesOf(rows, {0.0F, 1.0F}), kFacing, kSettings);
+        const HostMesh measured = reconstruct(imagesOf(rows, {0.0F, 1.0F}), kFacing, kTinyImage);
         EXPECT_TRUE(measured.vertices.empty());
         EXPECT_TRUE(measured.triangles.empty());
     }

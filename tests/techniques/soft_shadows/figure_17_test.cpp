@@ -65,7 +65,9 @@ class Figure17Test : public ReconstructionTest {
         };
         std::vector<glm::vec3> normals(6);
         for (const Ellipse& e : kEllipses) normals[e.leftId - 1] = normals[e.leftId] = e.normal;
-        mesh = reconstruct({imageWithOffset(0.0F), imageWithOffset(-0.5F)}, normals, {});
+        ReconstructionSettings settings;
+        settings.discontinuityPx = 1.0F;  // a pixel of so small an image is large
+        mesh = reconstruct({imageWithOffset(0.0F), imageWithOffset(-0.5F)}, normals, settings);
     }
 
     /// Vertices of a pixel's corners, counter-clockwise from the lower left.

@@ -74,12 +74,19 @@ TEST_F(ShadowCastersTest, AReconstructionSeenFromItsOwnViewIsTheImage) {
     const ReconstructedCaster caster(shaders(), std::move(meshes));
     EXPECT_EQ(caster.triangleCount(), host.triangles.size());
     const std::vector<float> drawn = depthsOf(caster, images.image.view);
+    std::size_t exact = 0, samples = 0;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
-        // Not exactly: a quad across an edge of the cube bends by a part of a pixel.
         const double depth = images.image.depthM[i];
-        EXPECT_NEAR(drawn[i], depth, reference::footprintM(images.image.view, depth)) << i;
-        EXPECT_EQ(drawn[i] == 0.0F, depth == 0.0) << i;
+        ASSERT_EQ(drawn[i] == 0.0F, depth == 0.0) << i;
+        if (depth == 0.0) continue;
+        const double footprint = reference::footprintM(images.image.view, depth);
+        const double error = std::abs(drawn[i] - depth);
+        // A quad across an edge of the cube bends, by no more than a valid corner may differ.
+        EXPECT_LT(error, 4.0 * footprint) << i;
+        exact += error < 0.01 * footprint;
+        ++samples;
     }
+    EXPECT_GT(exact, samples - samples / 10);
 }
 
 TEST_F(ShadowCastersTest, SeveralReconstructionsAreDrawnLikeTheirWorldMeshes) {
