@@ -17,13 +17,15 @@ struct Surfel {
     vec2 positionPx;
     float depth;
     uint id;  // 0: the pixel holds no sample
+    vec3 normal;
 };
 
 Surfel surfelOfI(ivec2 pixel) {
-    Surfel s = Surfel(vec2(pixel) + 0.5, 0.0, 0u);
+    Surfel s = Surfel(vec2(pixel) + 0.5, 0.0, 0u, vec3(0.0));
     if (!isPixel(pixel)) return s;
     s.id = texelFetch(idOfI, pixel, 0).r;
     s.depth = texelFetch(depthOfI, pixel, 0).r;
+    if (s.id != 0u) s.normal = normals[s.id - 1u].xyz;
     return s;
 }
 
@@ -39,9 +41,8 @@ const float kNowhere = 1e30;  // farther than anything: the ray misses the plane
 /// n·(depth·ray(p) − s.depth·ray(s)) = 0. A plane that slants away from the eye so steeply that it
 /// ends in a horizon before the ray is met nowhere.
 float depthOnPlane(Surfel s, vec2 positionPx) {
-    vec3 n = normals[s.id - 1u].xyz;
-    float slantAtSample = dot(n, rayThrough(s.positionPx));
-    float slantHere = dot(n, rayThrough(positionPx));
+    float slantAtSample = dot(s.normal, rayThrough(s.positionPx));
+    float slantHere = dot(s.normal, rayThrough(positionPx));
     // A triangle without area has no normal: it is taken to face the eye.
     if (slantAtSample == 0.0) return s.depth;
     float ratio = slantHere / slantAtSample;
