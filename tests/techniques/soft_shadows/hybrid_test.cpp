@@ -1,6 +1,7 @@
 // [xie2017] Algorithm 4 on the device against the CPU and against known surfaces.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <set>
@@ -304,6 +305,26 @@ TEST_F(HybridTest, IsolatedSamplesHaveQuadsOfTheirOwn) {
     const reference::Shape shape = reference::shapeOf(measured.triangles, measured.vertices.size());
     EXPECT_EQ(shape.parts, samples);
     EXPECT_EQ(shape.euler, samples);
+}
+
+// The largest images of [xie2017] table 9, at their largest mesh: no corner is shared.
+TEST_F(HybridTest, TakesTheLargestImages) {
+    ImagePair images = emptyPair({1536, 1536});
+    constexpr std::uint32_t kSamples = 1536 * 1536;
+    images.image.depthM.assign(kSamples, 3.0F);
+    images.image.triangleId.assign(kSamples, 1);
+    const std::vector<glm::vec3> normals{glm::vec3(0.0F, 0.0F, 1.0F)};
+    const HostMesh measured = reconstruct(images, normals, kSettings);
+    EXPECT_EQ(measured.mesh.fittedCorners, 4 * kSamples);
+    ASSERT_EQ(measured.vertices.size(), 4 * kSamples);
+    EXPECT_EQ(measured.mesh.sizeBytes(), 56 * static_cast<std::size_t>(kSamples));
+    // The first and the last vertex are corners of the image; every vertex is used.
+    EXPECT_EQ(measured.vertices.front().xHalfPx, 0);
+    EXPECT_EQ(measured.vertices.back().xHalfPx, 2 * 1536);
+    EXPECT_EQ(measured.vertices.back().yHalfPx, 2 * 1536);
+    std::vector<bool> isUsed(measured.vertices.size());
+    for (const glm::uvec3& t : measured.triangles) isUsed[t.x] = isUsed[t.y] = isUsed[t.z] = true;
+    EXPECT_EQ(std::count(isUsed.begin(), isUsed.end(), true), 4 * kSamples);
 }
 
 TEST_F(HybridTest, RepeatsToTheByte) {
