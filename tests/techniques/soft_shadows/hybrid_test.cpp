@@ -189,14 +189,17 @@ TEST_F(HybridTest, CornersLieOnTheSurface) {
     // Of a pixel at the far side, which is farther than every sample.
     const double footprint = reference::footprintM(
         images.image.view, glm::distance(images.image.view.eyeWorld, centre) + 1.0F);
+    const double limit = kSettings.grazingLimitPx;
     std::size_t exact = 0;
     for (const glm::vec3& p : world.positions) {
         const double error = std::abs(glm::length(p - centre) - 1.0F);
         // The polyhedron's faces lie up to 0.0004 inside of the sphere.
         if (error < 0.0005) ++exact;
-        // Fitted corners lie on planes that touch the sphere at most 8 pixels in depth and one to
-        // the side of them: (8² + 1²) / (2 · radius).
-        EXPECT_LT(error, 65.0 * footprint * footprint / 2.0 + 0.0005);
+        // Fitted corners lie within half a pixel's diagonal of a plane that touches the sphere
+        // (on it, unless it grazes), at most this far from where it does: in depth the limit, to
+        // the side a pixel. The sphere has left the plane there by (limit² + 1²) / (2 · radius).
+        const double sagitta = 0.5 * (limit * limit + 1.0) * footprint * footprint;
+        EXPECT_LT(error, 0.71 * footprint + sagitta + 0.0005);
     }
     EXPECT_GE(exact, measured.vertices.size() - measured.mesh.fittedCorners);
 }
@@ -221,10 +224,10 @@ TEST_F(HybridTest, PlanesThatSlantAwayAreBounded) {
         for (const CornerVertex& v : measured.vertices) {
             lowest = std::min(lowest, v.depthM);
             highest = std::max(highest, v.depthM);
-            EXPECT_LE(std::abs(v.depthM - 10.0F), 8.0001F * footprint);
+            EXPECT_LE(std::abs(v.depthM - 10.0F), 1.0001F * kSettings.grazingLimitPx * footprint);
         }
         EXPECT_GT(lowest, 0.0F);
-        EXPECT_FLOAT_EQ(highest, 10.0F + 8.0F * footprint);
+        EXPECT_FLOAT_EQ(highest, 10.0F + kSettings.grazingLimitPx * footprint);
     }
 }
 
