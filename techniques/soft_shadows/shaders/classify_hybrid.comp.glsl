@@ -24,13 +24,12 @@ void main() {
     uint bits = 0u;
     for (int k = 0; k < 4; ++k) {
         Surfel s = surfelOfI(corner - kCornerOfPixel[k]);
-        if (s.id == 0u) continue;
-        bits |= 1u << k;
-        if (sharedId == 0u) continue;
         // Two samples of one triangle have no discontinuity between them, however it slants.
-        bool isValid = sharedId == s.id || abs(sharedDepth - depthOnPlane(s, vec2(corner))) <=
-                                               discontinuityPx * footprint(s);
-        if (isValid) bits |= 16u << k;
+        bool isContinuous = sharedId == s.id || abs(sharedDepth - depthOnPlane(s, vec2(corner))) <=
+                                                    discontinuityPx * footprint(s);
+        bool isSample = s.id != 0u;
+        bool isValid = isSample && sharedId != 0u && isContinuous;
+        bits |= (isSample ? 1u : 0u) << k | (isValid ? 16u : 0u) << k;
     }
     imageStore(flags, corner, uvec4(bits));
 }

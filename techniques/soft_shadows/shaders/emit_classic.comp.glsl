@@ -16,11 +16,12 @@ void main() {
         writeVertex(firstVertexAt(corner), 2 * pixel + 1, texelFetch(depthOfI, pixel, 0).r);
     }
 
-    uint triangles = trianglesOf(imageLoad(flags, corner).r);
+    // From the highest bit: of both triangles of a cell, that of samples 0, 1 and 2 comes first.
     uint triangle = firstTriangleAt(corner);
-    for (int i = 0; i < 4; ++i) {
-        int left = 3 - i;  // the sample left out: with both triangles of a cell, 0-1-2 comes first
-        if ((triangles >> left & 1u) == 0u) continue;
+    uint triangles = trianglesOf(imageLoad(flags, corner).r);
+    while (triangles != 0u) {
+        int left = findMSB(triangles);  // the sample left out
+        triangles &= ~(1u << left);
         uint v[3];
         for (int j = 0; j < 3; ++j) {
             v[j] = firstVertexAt(corner - kCornerOfPixel[(left + 1 + j) & 3]);

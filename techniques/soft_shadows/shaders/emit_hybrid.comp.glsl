@@ -29,9 +29,8 @@ void main() {
     if (sharersOf(bits) != 0u) {
         writeVertex(vertex++, 2 * corner, texelFetch(depthOfH, corner, 0).r);
     }
-    for (int k = 0; k < 4; ++k) {
-        if ((fittedOf(bits) >> k & 1u) == 0u) continue;
-        Surfel s = surfelOfI(corner - kCornerOfPixel[k]);
+    for (uint left = fittedOf(bits); left != 0u; left &= left - 1u) {
+        Surfel s = surfelOfI(corner - kCornerOfPixel[findLSB(left)]);
         writeVertex(vertex++, 2 * corner, fittedDepth(s, vec2(corner)));
     }
 
