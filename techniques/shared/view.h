@@ -22,7 +22,7 @@ struct View {
 };
 
 /// The view of a camera. `offsetPx` moves the samples: pixel p samples where p + offsetPx would
-/// without it ((0.5, 0.5) is the half-pixel image H of [xie2017] algorithm 4).
+/// without it ((-0.5, -0.5) is the half-pixel image H of [xie2017] algorithm 4).
 View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx = glm::vec2(0.0F));
 
 /// Where a point lands, in pixel coordinates; may lie outside of the image. Nothing for points on

@@ -128,26 +128,9 @@ void Reconstructor::setGeometry(const gl::Program& program, const depth_images::
     setIfActive("runsPerRow", runsPerRow_);
 }
 
-ReconstructedMesh Reconstructor::reconstruct(const depth_images::DepthImage& image,
-                                             const depth_images::DepthImage* offsetImage,
-                                             const gl::Buffer& triangleNormals) {
-    const depth_images::View& view = image.view;
-    if (std::max(view.sizePx.x, view.sizePx.y) > kMaxSizePx) {
-        throw UnsupportedError(
-            fmt::format("a depth image of {} × {} pixels cannot be made a mesh; at most {} a side",
-                        view.sizePx.x, view.sizePx.y, kMaxSizePx));
-    }
-    resizeScratch(view.sizePx);
-    image.depth.bind(kDepthUnit);
-    image.triangleId.bind(kIdUnit);
-    if (settings_.method == Reconstruction::Hybrid) {
-        GFXREPRO_ASSERT(offsetImage != nullptr && isHalfPixelToLowerLeft(offsetImage->view, view));
-        offsetImage->depth.bind(kOffsetDepthUnit);
-        offsetImage->triangleId.bind(kOffsetIdUnit);
-    }
+glm::uvec4 Reconstructor::countElements(const depth_images::View& view) {
     flags_.bindImage(kFlagsUnit, GL_READ_WRITE);
     places_.bindImage(kPlacesUnit, GL_READ_WRITE);
-    triangleNormals.bindStorage(kNormalBinding);
     runs_.bindStorage(kRunBinding);
 
     classify_.use();
@@ -165,28 +148,52 @@ ReconstructedMesh Reconstructor::reconstruct(const depth_images::DepthImage& ima
     scan_.set("runCount", runCount);
     glDispatchCompute(1, 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-
-    ReconstructedMesh mesh;
-    mesh.view = view;
     const std::size_t totalsAt = static_cast<std::size_t>(runCount) * sizeof(glm::uvec4);
-    const glm::uvec4 totals = runs_.read<glm::uvec4>(1, totalsAt).front();
-    mesh.vertexCount = totals.x;
-    mesh.triangleCount = totals.y;
-    mesh.sampleCount = totals.z;
-    if (settings_.method == Reconstruction::Hybrid) {
-        mesh.fittedCorners = totals.w;
-        mesh.sharedCorners = 4 * totals.z - totals.w;
-    }
-    mesh.vertices = gl::Buffer(mesh.vertexCount * sizeof(CornerVertex));
-    mesh.indices = gl::Buffer(mesh.triangleCount * sizeof(glm::uvec3));
-    if (mesh.triangleCount == 0) return mesh;
+    return runs_.read<glm::uvec4>(1, totalsAt).front();
+}
 
+void Reconstructor::emit(const ReconstructedMesh& mesh) {
     emit_.use();
-    setGeometry(emit_, view);
+    setGeometry(emit_, mesh.view);
     mesh.vertices.bindStorage(kVertexBinding);
     mesh.indices.bindStorage(kIndexBinding);
     dispatchCorners(cornersSize_);
-    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT);
+    // The next image's classify overwrites what emit reads.
+    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
+                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+ReconstructedMesh Reconstructor::reconstruct(const depth_images::DepthImage& image,
+                                             const depth_images::DepthImage* offsetImage,
+                                             const gl::Buffer& triangleNormals) {
+    const depth_images::View& view = image.view;
+    if (std::max(view.sizePx.x, view.sizePx.y) > kMaxSizePx) {
+        throw UnsupportedError(
+            fmt::format("a depth image of {} × {} pixels cannot be made a mesh; at most {} a side",
+                        view.sizePx.x, view.sizePx.y, kMaxSizePx));
+    }
+    const bool isHybrid = settings_.method == Reconstruction::Hybrid;
+    resizeScratch(view.sizePx);
+    image.depth.bind(kDepthUnit);
+    image.triangleId.bind(kIdUnit);
+    if (isHybrid) {
+        GFXREPRO_ASSERT(offsetImage != nullptr && isHalfPixelToLowerLeft(offsetImage->view, view));
+        offsetImage->depth.bind(kOffsetDepthUnit);
+        offsetImage->triangleId.bind(kOffsetIdUnit);
+    }
+    triangleNormals.bindStorage(kNormalBinding);
+
+    const glm::uvec4 totals = countElements(view);
+    ReconstructedMesh mesh;
+    mesh.view = view;
+    mesh.vertexCount = totals.x;
+    mesh.triangleCount = totals.y;
+    mesh.sampleCount = totals.z;
+    mesh.fittedCorners = totals.w;
+    mesh.sharedCorners = isHybrid ? 4 * totals.z - totals.w : 0;
+    mesh.vertices = gl::Buffer(mesh.vertexCount * sizeof(CornerVertex));
+    mesh.indices = gl::Buffer(mesh.triangleCount * sizeof(glm::uvec3));
+    if (mesh.triangleCount > 0) emit(mesh);
     return mesh;
 }
 

@@ -78,6 +78,9 @@ class Reconstructor {
   private:
     void resizeScratch(glm::ivec2 imageSizePx);
     void setGeometry(const gl::Program& program, const depth_images::View& view) const;
+    /// Vertices, triangles, samples and plane-fitted corners of the mesh.
+    glm::uvec4 countElements(const depth_images::View& view);
+    void emit(const ReconstructedMesh& mesh);
 
     ReconstructionSettings settings_;
     gl::Program classify_, count_, scan_, emit_;
