@@ -1,6 +1,7 @@
 // Conventional, non-redundant and peeled depth images: one renderer, three uses.
 #pragma once
 
+#include <compare>
 #include <map>
 #include <span>
 
@@ -39,12 +40,20 @@ class DepthImageRenderer {
                 std::span<const DepthImage* const> earlier = {});
 
   private:
-    const gl::Program& programFor(int earlierCount);
+    /// What the program for an image is made for; the rest is uniforms.
+    struct Variant {
+        int earlierCount = 0;
+        bool hasTextures = false;
+        bool isAlphaTested = false;
+        bool hasFlatParts = false;
+        auto operator<=>(const Variant&) const = default;
+    };
+    const gl::Program& programFor(const Variant& variant);
 
     const gl::ShaderLibrary& shaders_;
     TriangleIds ids_;
     DepthFormat format_;
-    std::map<int, gl::Program> programs_;  // by the number of earlier images
+    std::map<Variant, gl::Program> programs_;
 };
 
 }  // namespace gfxrepro::depth_images

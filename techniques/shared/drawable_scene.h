@@ -34,6 +34,12 @@ class DrawableScene {
     void drawDepthOnly() const;
 
     std::uint64_t triangleCount() const { return triangleCount_; }
+    /// Whether a part has a texture of base colours.
+    bool hasTextures() const { return !textures_.empty(); }
+    /// Whether a part may discard texels.
+    bool isAlphaTested() const;
+    /// Whether a mesh has no vertex normals.
+    bool hasFlatParts() const { return hasFlatParts_; }
     const scene::Box& bounds() const { return bounds_; }
     std::size_t sizeBytes() const;
 
@@ -46,11 +52,14 @@ class DrawableScene {
         float alphaCutoff = 0.0F;
         bool isDoubleSided = false;
     };
+    void addPart(const Part& part);
+
     std::vector<Part> parts_;
     std::vector<gl::Texture> textures_;
     gl::Buffer positions_, normals_, texcoords_, colors_, indices_;
     gl::VertexArray vertexArray_;
     std::uint64_t triangleCount_ = 0;
+    bool hasFlatParts_ = false;
     scene::Box bounds_;
 };
 

@@ -4,6 +4,23 @@
 
 namespace gfxrepro::depth_images {
 
+namespace {
+
+/// From world space to (x·d, y·d, d, 1) of reprojection().
+glm::dmat4 pixelsFromWorld(const View& view) {
+    // Row by row of clip: x·d = (clip.x + clip.w) · width / 2, d = clip.w.
+    glm::dmat4 pixelsFromClip(0.0);
+    pixelsFromClip[0].x = 0.5 * view.sizePx.x;
+    pixelsFromClip[1].y = 0.5 * view.sizePx.y;
+    pixelsFromClip[3] = {0.5 * view.sizePx.x, 0.5 * view.sizePx.y, 1.0, 0.0};
+    glm::dmat4 result =
+        pixelsFromClip * glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
+    for (int column = 0; column < 4; ++column) result[column].w = column == 3 ? 1.0 : 0.0;
+    return result;
+}
+
+}  // namespace
+
 View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx) {
     View view;
     view.eyeWorld = camera.position;
@@ -50,6 +67,14 @@ glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM)
                               (ndc.y + p[2].y) * depthM / p[1].y, -depthM);
     const glm::mat3 rotation(view.viewFromWorld);
     return glm::transpose(rotation) * (pointView - glm::vec3(view.viewFromWorld[3]));
+}
+
+glm::mat4 worldFromPixels(const View& view) {
+    return glm::mat4(glm::inverse(pixelsFromWorld(view)));
+}
+
+glm::mat4 reprojection(const View& from, const View& to) {
+    return glm::mat4(pixelsFromWorld(to) * glm::inverse(pixelsFromWorld(from)));
 }
 
 }  // namespace gfxrepro::depth_images
