@@ -27,10 +27,17 @@ struct ReconstructionSettings {
     float grazingLimitPx = 8.0F;
 };
 
-/// A reconstructed mesh on the device. A vertex is 8 bytes: a corner in the image's pixel
-/// coordinates (x and y as 16-bit unsigned, in half pixels) and its depth along the view axis
-/// (float); `worldFromCorner` of the view turns it into a point. Indices are 32-bit, two triangles
-/// a quad: c₀c₁c₂, c₂c₃c₀. Order of vertices and triangles follows the image's rows.
+/// A vertex of a reconstructed mesh.
+struct CornerVertex {
+    std::uint16_t xHalfPx = 0;  // pixel coordinates of the image, doubled
+    std::uint16_t yHalfPx = 0;
+    float depthM = 0.0F;  // distance along the view axis
+};
+static_assert(sizeof(CornerVertex) == 8);
+
+/// A reconstructed mesh on the device: CornerVertex a vertex, 32-bit indices, two triangles a quad:
+/// c₀c₁c₂, c₂c₃c₀, counter-clockwise seen from the eye. Order of vertices and triangles follows the
+/// image's rows.
 struct ReconstructedMesh {
     depth_images::View view;
     gl::Buffer vertices;
@@ -38,11 +45,14 @@ struct ReconstructedMesh {
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
     std::uint32_t sampleCount = 0;    // samples of the image
-    std::uint32_t sharedCorners = 0;  // corners taken from H (hybrid)
-    std::uint32_t fittedCorners = 0;  // corners from planes (hybrid)
+    std::uint32_t sharedCorners = 0;  // corners of quads taken from H (hybrid)
+    std::uint32_t fittedCorners = 0;  // corners of quads from planes (hybrid)
 
     std::size_t sizeBytes() const;
 };
+
+/// Takes (x·d, y·d, d, 1) of a CornerVertex (x, y in half pixels, d its depth) into the world.
+glm::dmat4 worldFromCorner(const depth_images::View& view);
 
 /// Rebuilds a mesh from depth image I and, for the hybrid method, its offset image H: the same
 /// view, moved by half a pixel to the lower left (viewOf with offset (−½, −½)), so that H's pixel
@@ -52,13 +62,29 @@ struct ReconstructedMesh {
 class Reconstructor {
   public:
     Reconstructor(const gl::ShaderLibrary& shaders, const ReconstructionSettings& settings);
+
+    /// Waits for the device once, for the counts. Throws UnsupportedError for meshes beyond the
+    /// limit of a storage block, std::bad_alloc.
     ReconstructedMesh reconstruct(const depth_images::DepthImage& image,
                                   const depth_images::DepthImage* offsetImage,
                                   const gl::Buffer& triangleNormals);
 
+    /// What is kept beside the meshes, of the size of the last image.
+    std::size_t scratchBytes() const;
+
   private:
+    void resizeScratch(glm::ivec2 imageSizePx);
+    void setGeometry(const gl::Program& program, const depth_images::View& view) const;
+
     ReconstructionSettings settings_;
-    gl::Program classify_, scan_, emit_;
+    gl::Program classify_, count_, scan_, emit_;
+
+    // A texel a corner, where up to four pixels meet: (width + 1) × (height + 1).
+    glm::ivec2 cornersSize_{0};
+    int runsPerRow_ = 0;
+    gl::Texture flags_;   // R8UI, what classify_ decided
+    gl::Texture places_;  // R32UI, places of the corner's vertices and triangles in its run
+    gl::Buffer runs_;     // uvec4 a run of corners: counts, then places; behind them the totals
 };
 
 /// The normals that Reconstructor takes. Throws UnsupportedError where they are beyond the limit of
