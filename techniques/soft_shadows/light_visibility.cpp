@@ -26,11 +26,11 @@ float texelWidth(const depth_images::View& view) {
     return 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x));
 }
 
+}  // namespace
+
 glm::vec3 forwardOf(const depth_images::View& view) {
     return -glm::vec3(glm::transpose(view.viewFromWorld)[2]);
 }
-
-}  // namespace
 
 std::size_t Receivers::sizeBytes() const {
     return positions.sizeBytes() + normals.sizeBytes() + shading.sizeBytes();
@@ -104,13 +104,17 @@ void LightVisibility::drawShadowMap(const depth_images::View& lightView,
     for (const ShadowCaster* caster : casters) caster->draw(lightView);
 }
 
+float LightVisibility::biasPerDistance(const depth_images::View& lightView) const {
+    return settings_.biasTexels * texelWidth(lightView);
+}
+
 void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& receivers,
                            const depth_images::View& lightView) const {
     test_.use();
     test_.set("clipFromWorld", lightView.clipFromWorld());
     test_.set("lightForward", forwardOf(lightView));
     test_.set("lightPosition", lightView.eyeWorld);
-    test_.set("biasPerDistance", settings_.biasTexels * texelWidth(lightView));
+    test_.set("biasPerDistance", biasPerDistance(lightView));
     test_.set("bit", 1U << (sample % 32));
     shadowMap_.bind(kShadowMapUnit);
     receivers.positions.bindImage(kPositionImage, GL_READ_ONLY);

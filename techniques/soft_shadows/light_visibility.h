@@ -31,6 +31,9 @@ struct VisibilityMask {
     int sampleCount = 0;
 };
 
+/// The unit axis of a view.
+glm::vec3 forwardOf(const depth_images::View& view);
+
 /// What casts shadows into a shadow map.
 class ShadowCaster {
   public:
@@ -66,6 +69,8 @@ class LightVisibility {
     void test(VisibilityMask& mask, int sample, const Receivers& receivers,
               const depth_images::View& lightView) const;
 
+    /// Bias in metres a metre of distance from the light.
+    float biasPerDistance(const depth_images::View& lightView) const;
     /// Window depth (0 near … 1 far) of the last shadow map, Depth32F.
     const gl::Texture& shadowMap() const { return shadowMap_; }
 
