@@ -78,8 +78,9 @@ class RayTracer {
 /// A look at a scene, ray traced: one sample at the centre of each pixel, 3 channels, linear, rows
 /// from the top.
 ///
-///     radiance = baseColor.rgb · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
+///     radiance = baseColor.rgb · color · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
 ///
+/// `color` is the interpolated vertex colour (linear), 1 where the mesh has none.
 /// N is the interpolated vertex normal where the mesh has normals, else the geometric normal; V is
 /// the unit direction to the camera (a headlight). The texture is decoded from sRGB texel by texel,
 /// filtered bilinearly, repeated, v downwards. Where baseColor.a · texture.a < alphaCutoff the ray
