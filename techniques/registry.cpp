@@ -1,6 +1,7 @@
 // Every technique, one line each. A table, not self-registration: a static library's unreferenced
 // objects are dropped by the linker.
 #include "runner/technique/technique.h"
+#include "techniques/depth_sampling/depth_sampling.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
 
@@ -8,6 +9,7 @@ namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
+        depth_sampling::kDepthSampling,
         template_::kTemplate,
         voxelization::kVoxelization,
     };
