@@ -189,6 +189,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
 std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
+    if (experiment.technique.empty()) return {};  // only printed
     const config::Node* named = experiment.document.find("technique");
     const technique::TechniqueInfo& info = technique::findTechnique(
         techniques, experiment.technique,

@@ -56,7 +56,8 @@ void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog
 void describeExperiment(const config::Experiment& experiment) {
     fmt::print("{} ({}): {}\n", experiment.id, experiment.label(), experiment.title);
     fmt::print("file       {}\n", experiment.file.string());
-    fmt::print("technique  {}\n", experiment.technique);
+    const bool isPrinted = experiment.technique.empty();
+    fmt::print("technique  {}\n", isPrinted ? "none, only printed" : experiment.technique);
     fmt::print("cases      {}\n", config::expandCases(experiment).size());
     fmt::print("profiles   full{}\n",
                experiment.profiles.empty() ? "" : ", " + joined(experiment.profiles));

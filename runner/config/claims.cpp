@@ -64,7 +64,7 @@ class ClaimReader {
 
     ClaimSpec read() {
         const Kind& kind = kindOf(node_, what_, claim_.location);
-        Names allowed = {"says", "at", "statistic", "device", "profile"};
+        Names allowed = {"says", "at", "across", "statistic", "device", "profile"};
         allowed.emplace_back(kind.key);
         for (const std::string_view key : kind.further) {
             if (!key.empty()) allowed.emplace_back(key);
@@ -103,7 +103,30 @@ class ClaimReader {
             }
             claim_.profile = name;
         }
+        if (const Node* across = node_.find("across")) readAcross(*across);
         if (const Node* at = node_.find("at")) readAt(*at);
+    }
+
+    /// From here on the axis and the columns have changed places.
+    void readAcross(const Node& across) {
+        const std::string axis = lineOf(across, what_ + ": across");
+        const auto found = std::find(names_.rowAxes.begin(), names_.rowAxes.end(), axis);
+        if (found == names_.rowAxes.end()) {
+            throwNotAllowed(across, what_ + ": across", joined(names_.rowAxes, " | "));
+        }
+        claim_.across = axis;
+        names_.rowAxes.erase(found);
+        names_.rowAxes.emplace_back(kColumnAxis);
+        if (names_.hasAllColumns) {
+            for (const std::string& label : names_.columns) {
+                names_.rowValues[kColumnAxis].push_back(Node::scalar(label, {}, true));
+            }
+        }
+        const auto known = names_.rowValues.find(axis);
+        names_.hasAllColumns = known != names_.rowValues.end();
+        names_.columns.clear();
+        if (!names_.hasAllColumns) return;
+        for (const Node& value : known->second) names_.columns.push_back(value.text());
     }
 
     void readAt(const Node& at) {
@@ -336,7 +359,7 @@ class ClaimReader {
     }
 
     const Node& node_;
-    const TableNames& names_;
+    TableNames names_;
     bool hasPrinted_;
     std::string what_;
     ClaimSpec claim_;

@@ -84,6 +84,8 @@ std::vector<Line> claimLines() {
     return {
         {"claims.ID.says", "line", "required", "the claim in the paper's sense"},
         {"claims.ID.at", "{row axis: value | [values]}", "all rows", "rows that are read"},
+        {"claims.ID.across", "row axis", "none",
+         "a, b are its labels instead of columns; those become the row axis `column`"},
         {"claims.ID.statistic", "name", "the first", "of cells with several"},
         {"claims.ID.device", "any | gpu", "any", "where it must hold"},
         {"claims.ID.profile", "quick | full | paper", "all", "the only profile it is judged in"},

@@ -84,6 +84,9 @@ struct Printed {
     SourceLocation location;
 };
 
+/// What a claim calls the axis of the columns when it compares rows (`across`).
+inline constexpr const char* kColumnAxis = "column";
+
 /// `claims:` — typed, not code. Operands are arithmetic expressions over column names ("a + b").
 struct ClaimSpec {
     enum class Type { Order, Ratio, Trend, Independent, Bound, Exact, Tolerance, Crossover };
@@ -102,6 +105,9 @@ struct ClaimSpec {
     /// Rows that are read: axis = one of these values. A claim must hold in every group of rows
     /// that agree on all row axes but `over`.
     std::vector<std::pair<std::string, std::vector<Node>>> at;
+    /// A row axis whose labels the operands name instead of columns; the columns become the row
+    /// axis `column` (kColumnAxis). So rows are compared with rows, a column at a time.
+    std::optional<std::string> across;
     Device device = Device::Any;
     std::optional<std::string> profile;  // only in this one
     SourceLocation location;

@@ -33,9 +33,10 @@ struct GpuMesh {
     std::size_t sizeBytes() const;
 };
 
-/// The rasterized look at a scene, by the formula of raycast::renderPreview: one sample at each
-/// pixel's centre, 3 linear channels, rows from the top. Points are not drawn. `shaders` holds
-/// gpu_scene/preview.*.glsl. Throws Error for shaders, UnsupportedError for sizes beyond limits.
+/// The rasterized look at a scene, by the formula of raycast::renderPreview, vertex colours
+/// included: one sample at each pixel's centre, 3 linear channels, rows from the top. Points are
+/// not drawn. `shaders` holds gpu_scene/preview.*.glsl. Throws Error for shaders, UnsupportedError
+/// for sizes beyond limits.
 image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
                             int height, const gl::ShaderLibrary& shaders);
 

@@ -60,6 +60,7 @@ void drawInstance(const scene::Scene& scene, const scene::Instance& instance, Up
     program.set("hasTexture", hasTexture ? 1 : 0);
     // What a mesh without normals gives every vertex: the shader then takes the triangle's.
     glVertexAttrib3f(kNormal, 0.0F, 0.0F, 0.0F);
+    glVertexAttrib3f(kColor, 1.0F, 1.0F, 1.0F);  // without vertex colours
     uploads.mesh(instance.mesh).draw();
 }
 

@@ -89,6 +89,10 @@ class Previewer {
                               interpolated(mesh.texcoords, mesh.triangles[hit.triangle], hit));
         }
         if (base.a < material.alphaCutoff) return std::nullopt;
+        if (!mesh.colors.empty()) {
+            const glm::vec3 color = interpolated(mesh.colors, mesh.triangles[hit.triangle], hit);
+            base *= glm::vec4(color, 1.0F);
+        }
         const float facing = std::abs(glm::dot(normalAt(mesh, hit), toCamera));
         return glm::vec3(base) * (0.15F + 0.85F * facing) + material.emissive;
     }

@@ -76,7 +76,57 @@ struct Record {
     float edgeClearance;  // smallest barycentric weight
 };
 
+/// What is kept of an instance; its number is the number of the Embree geometry.
+struct Placed {
+    unsigned firstTriangle = 0;  // of the flattened scene
+    bool isMirrored = false;
+    bool isDoubleSided = false;
+    const glm::vec3* positions = nullptr;   // in the world; Embree's
+    const glm::uvec3* triangles = nullptr;  // Embree's
+};
+
+bool isEntering(const RTCRay& ray, const RTCHit& hit) {
+    return hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z < 0.0F;
+}
+
 /// Extends Embree's context, which its filter gets to see. `base` comes first.
+struct SelectingContext {
+    RTCIntersectContext base;
+    const std::vector<Placed>* placed;
+    Faces faces;
+    unsigned ignored;
+    std::vector<TriangleHit>* hits;  // for collectSelected
+
+    bool isSelected(const RTCRay& ray, const RTCHit& hit) const {
+        const Placed& instance = (*placed)[hit.geomID];
+        if (instance.firstTriangle + hit.primID == ignored) return false;
+        return faces == Faces::All || instance.isDoubleSided || isEntering(ray, hit);
+    }
+};
+
+/// Rejects what is not selected, so that the ray goes on.
+void rejectOthers(const RTCFilterFunctionNArguments* arguments) {
+    GFXREPRO_ASSERT_EQ(arguments->N, 1U);
+    const auto& context = *reinterpret_cast<const SelectingContext*>(arguments->context);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (!context.isSelected(ray, hit)) *arguments->valid = 0;
+}
+
+/// Notes what is selected and rejects everything, so that traversal goes on.
+void collectSelected(const RTCFilterFunctionNArguments* arguments) {
+    GFXREPRO_ASSERT_EQ(arguments->N, 1U);
+    const auto& context = *reinterpret_cast<const SelectingContext*>(arguments->context);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (context.isSelected(ray, hit)) {
+        context.hits->push_back(
+            {ray.tfar, (*context.placed)[hit.geomID].firstTriangle + hit.primID});
+    }
+    *arguments->valid = 0;
+}
+
+/// Extends Embree's context likewise.
 struct CollectingContext {
     RTCIntersectContext base;
     std::vector<Record>* records;
@@ -87,9 +137,8 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
     GFXREPRO_ASSERT_EQ(arguments->N, 1U);
     const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-    const float along = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
     reinterpret_cast<CollectingContext*>(arguments->context)
-        ->records->push_back({ray->tfar, hit->geomID, hit->primID, along < 0.0F,
+        ->records->push_back({ray->tfar, hit->geomID, hit->primID, isEntering(*ray, *hit),
                               std::min({hit->u, hit->v, 1.0F - hit->u - hit->v})});
     *arguments->valid = 0;
 }
@@ -99,21 +148,28 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
 struct RayTracer::Impl {
     Device device = newDevice();
     BvhScene bvh;
-    std::vector<bool> mirrored;  // of each instance
+    std::vector<Placed> placed;  // by instance
 
     explicit Impl(const scene::Scene& scene);
     void addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh, unsigned id);
+    SelectingContext selecting(Faces faces, unsigned ignored, RTCFilterFunctionN filter) const;
     /// Every triangle along the ray once, by distance.
     std::vector<Record> recordsAlong(const glm::vec3& origin, const glm::vec3& direction) const;
 };
 
 RayTracer::Impl::Impl(const scene::Scene& scene)
-    : bvh(rtcNewScene(device.get())), mirrored(scene.instances.size(), false) {
+    : bvh(rtcNewScene(device.get())), placed(scene.instances.size()) {
     rtcSetSceneFlags(bvh.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                            RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    unsigned triangleCount = 0;
     for (unsigned i = 0; i < scene.instances.size(); ++i) {
         const scene::Instance& instance = scene.instances[i];
         const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        placed[i].firstTriangle = triangleCount;
+        triangleCount += static_cast<unsigned>(mesh.triangles.size());
+        placed[i].isDoubleSided =
+            mesh.material >= 0 &&
+            scene.materials[static_cast<std::size_t>(mesh.material)].isDoubleSided;
         if (!mesh.triangles.empty()) addInstance(mesh, instance.worldFromMesh, i);
     }
     rtcCommitScene(bvh.get());
@@ -136,9 +192,22 @@ void RayTracer::Impl::addInstance(const scene::Mesh& mesh, const glm::mat4& worl
     const bool isMirrored = glm::determinant(glm::mat3(worldFromMesh)) < 0.0F;
     std::transform(mesh.triangles.begin(), mesh.triangles.end(), triangles,
                    [&](const glm::uvec3& t) { return isMirrored ? glm::uvec3(t.x, t.z, t.y) : t; });
-    mirrored[id] = isMirrored;
+    placed[id].isMirrored = isMirrored;
+    placed[id].positions = positions;
+    placed[id].triangles = triangles;
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(bvh.get(), geometry.get(), id);
+}
+
+SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored,
+                                            RTCFilterFunctionN filter) const {
+    SelectingContext context{};
+    rtcInitIntersectContext(&context.base);
+    context.base.filter = filter;
+    context.placed = &placed;
+    context.faces = faces;
+    context.ignored = ignored;
+    return context;
 }
 
 std::vector<Record> RayTracer::Impl::recordsAlong(const glm::vec3& origin,
@@ -169,12 +238,12 @@ RayTracer::RayTracer(RayTracer&&) noexcept = default;
 RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 
 std::optional<Hit> RayTracer::closestHit(const glm::vec3& origin, const glm::vec3& direction,
-                                         float tMin, float tMax) const {
+                                         float tMin, float tMax, Faces faces) const {
     const glm::vec3 unit = glm::normalize(direction);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    SelectingContext context =
+        impl_->selecting(faces, kNoTriangle, faces == Faces::All ? nullptr : &rejectOthers);
     RTCRayHit rayHit = rayHitAlong(rayAlong(origin, unit, tMin, tMax));
-    rtcIntersect1(impl_->bvh.get(), &context, &rayHit);
+    rtcIntersect1(impl_->bvh.get(), &context.base, &rayHit);
     const RTCHit& found = rayHit.hit;
     if (found.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
@@ -183,19 +252,39 @@ std::optional<Hit> RayTracer::closestHit(const glm::vec3& origin, const glm::vec
     hit.position = origin + hit.distance * unit;
     hit.geometricNormal = glm::normalize(glm::vec3(found.Ng_x, found.Ng_y, found.Ng_z));
     // The triangle was turned when it was put in: vertices 1 and 2 are swapped.
-    hit.barycentric =
-        impl_->mirrored[found.geomID] ? glm::vec2(found.v, found.u) : glm::vec2(found.u, found.v);
+    hit.barycentric = impl_->placed[found.geomID].isMirrored ? glm::vec2(found.v, found.u)
+                                                             : glm::vec2(found.u, found.v);
     hit.instance = found.geomID;
     hit.triangle = found.primID;
+    hit.flattenedTriangle = impl_->placed[found.geomID].firstTriangle + found.primID;
     return hit;
 }
 
+void RayTracer::hitsBetween(const glm::vec3& origin, const glm::vec3& direction, float tMin,
+                            float tMax, Faces faces, std::vector<TriangleHit>& hits) const {
+    hits.clear();
+    SelectingContext context = impl_->selecting(faces, kNoTriangle, &collectSelected);
+    context.hits = &hits;
+    RTCRayHit rayHit = rayHitAlong(rayAlong(origin, glm::normalize(direction), tMin, tMax));
+    rtcIntersect1(impl_->bvh.get(), &context.base, &rayHit);
+    // The filter sees triangles in order of traversal, and one twice where the hierarchy refers to
+    // it twice.
+    const auto inOrder = [](const TriangleHit& a, const TriangleHit& b) {
+        return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+    };
+    const auto isSame = [](const TriangleHit& a, const TriangleHit& b) {
+        return a.triangle == b.triangle;
+    };
+    std::sort(hits.begin(), hits.end(), inOrder);
+    hits.erase(std::unique(hits.begin(), hits.end(), isSame), hits.end());
+}
+
 bool RayTracer::isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
-                           float tMax) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+                           float tMax, Faces faces, unsigned ignored) const {
+    const bool isPlain = faces == Faces::All && ignored == kNoTriangle;
+    SelectingContext context = impl_->selecting(faces, ignored, isPlain ? nullptr : &rejectOthers);
     RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
-    rtcOccluded1(impl_->bvh.get(), &context, &ray);
+    rtcOccluded1(impl_->bvh.get(), &context.base, &ray);
     return ray.tfar < 0.0F;  // Embree's sign for "something is in the way"
 }
 
@@ -238,6 +327,28 @@ bool RayTracer::isInside(const glm::vec3& point) const {
         if (isClear) return records.size() % 2 == 1;
     }
     throw Error("no ray from the point stays clear of edges: the mesh is too fine for its size");
+}
+
+WorldTriangle RayTracer::triangle(unsigned flattenedTriangle) const {
+    // The last instance that begins at or before it; instances without triangles begin where the
+    // next one does.
+    const auto next = std::upper_bound(
+        impl_->placed.begin(), impl_->placed.end(), flattenedTriangle,
+        [](unsigned number, const Placed& instance) { return number < instance.firstTriangle; });
+    GFXREPRO_ASSERT(next != impl_->placed.begin());
+    const Placed& instance = *std::prev(next);
+    const glm::uvec3 corners = instance.triangles[flattenedTriangle - instance.firstTriangle];
+    return {{instance.positions[corners.x], instance.positions[corners.y],
+             instance.positions[corners.z]},
+            instance.isDoubleSided};
+}
+
+bool WorldTriangle::isDrawnFrom(const glm::vec3& point) const {
+    // In double precision: a float loses the sign for triangles seen edge-on.
+    const glm::dvec3 a(corners[0]);
+    const glm::dvec3 outside = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+    const double height = glm::dot(outside, glm::dvec3(point) - a);
+    return isDoubleSided ? height != 0.0 : height > 0.0;
 }
 
 }  // namespace gfxrepro::raycast

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,6 +19,7 @@ struct Hit {
     glm::vec2 barycentric{0.0F};      // weights of vertices 1 and 2
     unsigned instance = 0;            // into Scene::instances
     unsigned triangle = 0;            // into the instance's mesh
+    unsigned flattenedTriangle = 0;   // into scene::flattened(scene).triangles
 };
 
 /// One triangle met by a ray.
@@ -30,8 +32,20 @@ struct TriangleHit {
 enum class Faces {
     All,
     Drawn,  // as drawn with back-face culling: triangles of materials that are not double-sided are
-            // passed through from behind
+            // passed through from behind. Texels that an alpha test would cut out count as surface.
 };
+
+/// A triangle as it lies in the world: counter-clockwise seen from outside.
+struct WorldTriangle {
+    glm::vec3 corners[3];
+    bool isDoubleSided = false;
+
+    /// Whether a drawn face is turned to the point; not for points in the triangle's plane.
+    bool isDrawnFrom(const glm::vec3& point) const;
+};
+
+/// Stands for "no triangle".
+constexpr unsigned kNoTriangle = std::numeric_limits<unsigned>::max();
 
 /// A BVH over the instanced triangles of a scene; it keeps no reference to the scene. Watertight
 /// (Embree's robust mode): no ray slips between triangles that share an edge. The price is that a
@@ -50,13 +64,15 @@ class RayTracer {
     /// The nearest hit in (tMin, tMax).
     std::optional<Hit> closestHit(const glm::vec3& origin, const glm::vec3& direction,
                                   float tMin = 0.0F,
-                                  float tMax = std::numeric_limits<float>::infinity()) const;
-    /// All hits in (tMin, tMax), nearest first, put into `hits` (cleared; its memory is reused). A
-    /// ray through a shared edge may have both triangles.
+                                  float tMax = std::numeric_limits<float>::infinity(),
+                                  Faces faces = Faces::All) const;
+    /// All hits in (tMin, tMax), nearest first, put into `hits` (cleared; its memory is reused),
+    /// each triangle once. A ray through a shared edge may have both triangles.
     void hitsBetween(const glm::vec3& origin, const glm::vec3& direction, float tMin, float tMax,
                      Faces faces, std::vector<TriangleHit>& hits) const;
-    bool isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
-                    float tMax) const;
+    /// Whether there is a hit in (tMin, tMax). `ignored` (of the flattened scene) does not count.
+    bool isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin, float tMax,
+                    Faces faces = Faces::All, unsigned ignored = kNoTriangle) const;
     /// Distances of all hits, ascending; every triangle counts, so a crossing at a shared edge may
     /// stand there twice.
     std::vector<float> allHits(const glm::vec3& origin, const glm::vec3& direction) const;
@@ -70,6 +86,9 @@ class RayTracer {
     /// does.
     bool isInside(const glm::vec3& point) const;
 
+    /// By its number in scene::flattened(scene).triangles.
+    WorldTriangle triangle(unsigned flattenedTriangle) const;
+
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
@@ -78,8 +97,9 @@ class RayTracer {
 /// A look at a scene, ray traced: one sample at the centre of each pixel, 3 channels, linear, rows
 /// from the top.
 ///
-///     radiance = baseColor.rgb · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
+///     radiance = baseColor.rgb · color · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
 ///
+/// `color` is the interpolated vertex colour (linear), 1 where the mesh has none.
 /// N is the interpolated vertex normal where the mesh has normals, else the geometric normal; V is
 /// the unit direction to the camera (a headlight). The texture is decoded from sRGB texel by texel,
 /// filtered bilinearly, repeated, v downwards. Where baseColor.a · texture.a < alphaCutoff the ray

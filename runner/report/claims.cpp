@@ -1,5 +1,6 @@
 #include "runner/report/claims.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -101,6 +102,17 @@ std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& contex
     return "";
 }
 
+/// The table as the claim reads it.
+Table tableFor(const ClaimSpec& claim, const Table& table) {
+    const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
+    if (found == table.rowAxes.end()) {
+        throw Error(claim.location, "claim '" + claim.id + "': across: '" + *claim.across +
+                                        "' is no row axis (row axes: " + joined(table.rowAxes) +
+                                        ")");
+    }
+    return transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
+}
+
 ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
     ClaimReader reader(claim, table);
     const std::vector<ClaimPart> parts = partsOf(claim);
@@ -156,7 +168,8 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, co
                                         const ReportContext& context) {
     std::vector<ClaimResult> results;
     for (const ClaimSpec& claim : experiment.claims) {
-        results.push_back(evaluate(claim, table, context));
+        results.push_back(claim.across ? evaluate(claim, tableFor(claim, table), context)
+                                       : evaluate(claim, table, context));
     }
     return results;
 }

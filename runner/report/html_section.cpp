@@ -24,9 +24,14 @@ bool hasPrinted(const Table& table, std::size_t column) {
     return false;
 }
 
+/// Whether a column's printed numbers stand beside measured ones: not so where nothing is measured.
+bool isPair(const Table& table, std::size_t column) {
+    return hasPrinted(table, column) && !table.isOnlyPrinted;
+}
+
 std::string headHtml(const Table& table) {
     bool isTwoLines = false;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) isTwoLines |= hasPrinted(table, i);
+    for (std::size_t i = 0; i < table.columns.size(); ++i) isTwoLines |= isPair(table, i);
     const char* rowSpan = isTwoLines ? " rowspan=\"2\"" : "";
     std::string head = "<thead><tr>";
     std::string below;
@@ -41,10 +46,10 @@ std::string headHtml(const Table& table) {
             isSaid || column.unit == "1"
                 ? ""
                 : fmt::format(" <span class=\"sub\">{}</span>", escapeXml(column.unit));
-        const bool isPair = hasPrinted(table, i);
-        head += fmt::format("<th class=\"{}\"{}>{}{}</th>", isPair ? "group" : "num",
-                            isPair ? " colspan=\"2\"" : rowSpan, escapeXml(column.label), unit);
-        if (isPair) below += "<th class=\"sub\">printed</th><th class=\"sub\">measured</th>";
+        const bool isGroup = isPair(table, i);
+        head += fmt::format("<th class=\"{}\"{}>{}{}</th>", isGroup ? "group" : "num",
+                            isGroup ? " colspan=\"2\"" : rowSpan, escapeXml(column.label), unit);
+        if (isGroup) below += "<th class=\"sub\">printed</th><th class=\"sub\">measured</th>";
     }
     head += "</tr>";
     if (isTwoLines) head += fmt::format("<tr>{}</tr>", below);
@@ -85,7 +90,7 @@ std::string tableHtml(const Table& table) {
                 html += fmt::format("<td class=\"num printed\">{}</td>",
                                     escapeXml(row.cells[i].printed.value_or("")));
             }
-            html += cellHtml(row.cells[i]);
+            if (!table.isOnlyPrinted) html += cellHtml(row.cells[i]);
         }
         html += "</tr>\n";
     }

@@ -1,6 +1,7 @@
 #include "runner/report/table.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "runner/core/text.h"
@@ -104,6 +105,26 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
     }
 }
 
+/// Of a table without a measurement.
+void layPrintedAlone(const config::Printed& printed, Table& table) {
+    if (printed.rows.empty()) return;
+    table.isOnlyPrinted = true;
+    table.rowAxes = {printed.header[0]};
+    for (std::size_t i = 1; i < printed.header.size(); ++i) {
+        table.columns.push_back({printed.header[i], ""});
+    }
+    for (const std::vector<std::string>& printedRow : printed.rows) {
+        TableRow row{{printedRow[0]}, SceneSource::Unknown, {}};
+        for (std::size_t i = 1; i < printedRow.size(); ++i) {
+            Cell cell;
+            cell.isPlanned = false;
+            if (!printedRow[i].empty()) cell.printed = printedRow[i];
+            row.cells.push_back(std::move(cell));
+        }
+        table.rows.push_back(std::move(row));
+    }
+}
+
 }  // namespace
 
 const Measured* Cell::find(const std::string& statistic) const {
@@ -141,6 +162,41 @@ std::string Table::rowName(std::size_t row) const {
     return joined(parts);
 }
 
+Table transposed(const Table& table, std::size_t rowAxis) {
+    GFXREPRO_ASSERT(rowAxis < table.rowAxes.size());
+    const auto without = [rowAxis](std::vector<std::string> labels) {
+        labels.erase(labels.begin() + static_cast<std::ptrdiff_t>(rowAxis));
+        return labels;
+    };
+    Table result = table;
+    result.rowAxes = without(table.rowAxes);
+    result.rowAxes.emplace_back(config::kColumnAxis);
+    result.columns.clear();
+    result.rows.clear();
+    std::map<std::string, std::size_t> columns;
+    for (const TableRow& row : table.rows) {
+        const std::string& label = row.labels[rowAxis];
+        if (columns.try_emplace(label, columns.size()).second)
+            result.columns.push_back({label, ""});
+    }
+    Cell unplanned;
+    unplanned.isPlanned = false;
+    std::map<std::vector<std::string>, std::size_t> places;  // labels → index in result.rows
+    for (const TableRow& row : table.rows) {
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            std::vector<std::string> labels = without(row.labels);
+            labels.push_back(table.columns[i].label);
+            const auto [place, isNew] = places.try_emplace(labels, result.rows.size());
+            if (isNew) {
+                result.rows.push_back({std::move(labels), row.source,
+                                       std::vector<Cell>(result.columns.size(), unplanned)});
+            }
+            result.rows[place->second].cells[columns.at(row.labels[rowAxis])] = row.cells[i];
+        }
+    }
+    return result;
+}
+
 Table buildTable(const config::Experiment& experiment, const std::vector<Record>& records) {
     Table table;
     table.id = experiment.id;
@@ -149,6 +205,7 @@ Table buildTable(const config::Experiment& experiment, const std::vector<Record>
     table.title = experiment.title;
     table.hardware = experiment.printed.hardware;
     table.remark = experiment.printed.remark;
+    if (experiment.technique.empty()) layPrintedAlone(experiment.printed, table);
     if (!experiment.layout.isGiven) return table;
 
     const config::Layout& layout = experiment.layout;

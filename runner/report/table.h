@@ -61,6 +61,7 @@ struct Table {
     std::string title;
     std::string hardware;  // that the paper's numbers come from
     std::string remark;
+    bool isOnlyPrinted = false;  // nothing is measured for it
     std::vector<std::string> rowAxes;
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;
@@ -71,6 +72,10 @@ struct Table {
     std::string rowName(std::size_t row) const;
 };
 
+/// The table with one of its row axes and its columns in each other's place: that axis's labels are
+/// the columns, and a last row axis `column` (config::kColumnAxis) has the labels of the columns.
+Table transposed(const Table& table, std::size_t rowAxis);
+
 /// Gathers the records of one experiment (others are passed over).
 ///
 /// Rows are the combinations of the row axes that the sweep contains, in its order; those without
@@ -78,6 +83,9 @@ struct Table {
 /// and `cell` choose; repeats (over processes) are reduced to their median for each frame, then the
 /// format's statistics are taken over frames. With a single frame they are taken over the repeats.
 /// Intervals are from a bootstrap over processes, then repeats.
+///
+/// Of an experiment without a technique the table is what was printed: the first column for the
+/// rows, no cell planned.
 ///
 /// A cell whose metric is a time or a frame rate never shows a record of the quality lane. Throws
 /// Error with the layout's place for an unknown statistic or axis.

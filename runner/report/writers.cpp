@@ -69,9 +69,9 @@ std::string tableCsv(const Table& table) {
     return text;
 }
 
-std::string markdownCell(const Cell& cell) {
+std::string markdownCell(const Cell& cell, bool isOnlyPrinted) {
     std::string text;
-    if (cell.printed) text += escapeMarkdown(*cell.printed) + " → ";
+    if (cell.printed) text += escapeMarkdown(*cell.printed) + (isOnlyPrinted ? "" : " → ");
     text += cell.isPlanned ? escapeMarkdown(cell.measured) : "";
     if (!cell.low.empty() && cell.low != cell.high) {
         text += fmt::format(" [{}, {}]", escapeMarkdown(cell.low), escapeMarkdown(cell.high));
@@ -81,7 +81,8 @@ std::string markdownCell(const Cell& cell) {
 
 std::string tableMarkdown(const Table& table) {
     std::string text = fmt::format("# {}\n\n", escapeMarkdown(table.label + ". " + table.title));
-    text += "Printed → measured [95 % interval].";
+    text += table.isOnlyPrinted ? "As printed; nothing is measured."
+                                : "Printed → measured [95 % interval].";
     if (!table.hardware.empty())
         text += fmt::format(" Printed: {}.", escapeMarkdown(table.hardware));
     text += "\n\n|";
@@ -104,7 +105,8 @@ std::string tableMarkdown(const Table& table) {
         for (const std::string& label : row.labels)
             text += fmt::format(" {} |", escapeMarkdown(label));
         if (table.hasSources()) text += fmt::format(" {} |", sceneSourceName(row.source));
-        for (const Cell& cell : row.cells) text += fmt::format(" {} |", markdownCell(cell));
+        for (const Cell& cell : row.cells)
+            text += fmt::format(" {} |", markdownCell(cell, table.isOnlyPrinted));
         text += "\n";
     }
     if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 
 #include "runner/gl/device.h"
+#include "runner/gl/program.h"
 #include "techniques/shared/depth_image.h"
 
 namespace gfxrepro::depth_sampling {
@@ -19,6 +21,7 @@ enum Mark : std::uint32_t {
     kOccluded = 4,   // in none of the conventional images V₀ … Vₙ₋₁ (measure 2)
     kOccludedLiterally = 8,  // in none of the conventional images V₀ … Vᵢ₋₁ (measure 2, as printed)
     kUseful = 16,            // occluded, and needed by an output frame (measure 3)
+    kAvailable = 32,  // of an output frame: in at least one reference image (measure 4)
 };
 
 /// Pixel redundancy of samples with images, tested one thread a sample ([xie2017] Algorithm 3):
@@ -26,14 +29,17 @@ enum Mark : std::uint32_t {
 /// triangle of s. A sample outside of J or behind its eye is not.
 class PixelMeasures {
   public:
+    /// At most this many images in one test: GL promises a shader 16 textures.
+    static constexpr std::size_t kMaxImages = 16;
+
     explicit PixelMeasures(const gl::ShaderLibrary& shaders);
 
     /// Marks with kSample alone.
-    gl::Texture makeMarks(const depth_images::DepthImage& image) const;
+    gl::Texture makeMarks(const depth_images::DepthImage& image);
 
     /// Adds `bit` to the marks of those samples of `image` that have all bits of `among` and that
     /// are redundant (`isRedundant`) with one of `images`, or (else) with none. Samples that
-    /// already have the bit are not tested again. At most 16 images.
+    /// already have the bit are not tested again. At most kMaxImages.
     void mark(const depth_images::DepthImage& image, gl::Texture& marks, ImageSpan images,
               bool isRedundant, std::uint32_t among, Mark bit);
 
@@ -41,19 +47,27 @@ class PixelMeasures {
     std::uint64_t count(const gl::Texture& marks, std::uint32_t bits);
 
     /// Of the samples of an output frame, how many there are and how many are redundant with at
-    /// least one of `images` (measure 4). begin… enqueues the test of one frame, which is the pass
-    /// that is timed; finish… waits for it.
+    /// least one of `images` (measure 4).
     struct Availability {
         std::uint64_t samples = 0;
         std::uint64_t available = 0;
+        bool operator==(const Availability&) const = default;
     };
+    /// Enqueues the test of one frame: the pass that is timed. Forgets the frame before.
     void beginAvailability(const depth_images::DepthImage& frame, ImageSpan images);
+    /// Waits for the test of the last frame.
     Availability finishAvailability();
 
   private:
-    struct Programs;
+    /// One variant for each number of images, so that the shader's loop over them is unrolled.
+    using Variants = std::map<std::size_t, gl::Program>;
+    const gl::Program& variant(Variants& variants, const char* file, std::size_t imageCount);
+
     const gl::ShaderLibrary& shaders_;
-    gl::Buffer counters_;
+    Variants markPrograms_, availabilityPrograms_;
+    gl::Program countProgram_;
+    gl::Buffer counter_;              // of countProgram_
+    gl::Buffer availabilityCounter_;  // samples, available
 };
 
 }  // namespace gfxrepro::depth_sampling

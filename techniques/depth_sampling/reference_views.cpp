@@ -1,5 +1,7 @@
 #include "techniques/depth_sampling/reference_views.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -25,22 +27,63 @@ glm::vec2 evenlyInTriangle(int i) {
     return p.x + p.y > 1.0F ? 1.0F - p : p;
 }
 
-/// Near and far planes that hold the whole box as seen from `eye` towards the target.
-void fitPlanes(scene::Camera& camera, const scene::Box& box) {
-    const glm::vec3 forward = glm::normalize(camera.target - camera.position);
-    float nearest = std::numeric_limits<float>::infinity();
-    float farthest = 0.0F;
+/// Distances from `eye` along the direction to the target between which the whole box lies.
+struct DepthRange {
+    float nearestM = std::numeric_limits<float>::infinity();
+    float farthestM = -std::numeric_limits<float>::infinity();
+};
+
+void addDepths(DepthRange& range, const glm::vec3& eye, const glm::vec3& target,
+               const scene::Box& box) {
+    const glm::vec3 forward = glm::normalize(target - eye);
     for (int corner = 0; corner < 8; ++corner) {
         const glm::vec3 point((corner & 1) != 0 ? box.max.x : box.min.x,
                               (corner & 2) != 0 ? box.max.y : box.min.y,
                               (corner & 4) != 0 ? box.max.z : box.min.z);
-        const float distance = glm::dot(point - camera.position, forward);
-        nearest = std::min(nearest, distance);
-        farthest = std::max(farthest, distance);
+        const float depthM = glm::dot(point - eye, forward);
+        range.nearestM = std::min(range.nearestM, depthM);
+        range.farthestM = std::max(range.farthestM, depthM);
     }
-    const float diagonal = glm::length(box.size());
-    camera.nearM = std::max(nearest - 0.01F * diagonal, 0.002F * diagonal);
-    camera.farM = std::max(farthest + 0.01F * diagonal, 2.0F * camera.nearM);
+}
+
+/// Near and far planes that hold the whole box as seen from every point of the triangle.
+void fitPlanes(ViewTriangle& triangle, const scene::Box& box) {
+    // Neither extreme lies at a corner of the triangle in general (the centre is the point nearest
+    // to the target), so look from a lattice; the margin takes what lies between its points.
+    constexpr int kSteps = 8;
+    DepthRange range;
+    for (int a = 0; a <= kSteps; ++a) {
+        for (int b = 0; a + b <= kSteps; ++b) {
+            const glm::vec2 at = glm::vec2(a, b) / static_cast<float>(kSteps);
+            addDepths(range, cameraAt(triangle, at).position, triangle.centre.target, box);
+        }
+    }
+    addDepths(range, triangle.centre.position, triangle.centre.target, box);
+    const float diagonalM = glm::length(box.size());
+    scene::Camera& centre = triangle.centre;
+    // An eye inside of the box has a near plane at 0.2 % of the diagonal: a nearer one would cost
+    // depth precision and show nothing that a reference image is taken for.
+    centre.nearM = std::max(range.nearestM - 0.01F * diagonalM, 0.002F * diagonalM);
+    centre.farM = std::max(range.farthestM + 0.01F * diagonalM, 2.0F * centre.nearM);
+}
+
+/// A camera that looks along its up direction has no right and no left.
+void checkUpright(const scene::Camera& camera) {
+    const glm::vec3 back = camera.position - camera.target;
+    // Sine of the angle, 0.06°: below it, lookAt() loses half of a float's digits.
+    constexpr float kMinSine = 0.001F;
+    if (glm::length(glm::cross(glm::normalize(camera.up), glm::normalize(back))) >= kMinSine)
+        return;
+    throw Error(fmt::format(
+        "the camera at ({:g}, {:g}, {:g}) looks along its up direction; change 'view_pitch_deg'",
+        camera.position.x, camera.position.y, camera.position.z));
+}
+
+/// Camera i of those that fill the hull of the first min(3, referenceCount) reference views.
+scene::Camera cameraInHull(const ViewTriangle& triangle, int referenceCount, int i) {
+    if (referenceCount == 1) return triangle.centre;
+    if (referenceCount == 2) return cameraAt(triangle, {evenlySpread(i).x, 0.0F});
+    return cameraAt(triangle, evenlyInTriangle(i));
 }
 
 }  // namespace
@@ -52,11 +95,13 @@ ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSetti
         scene.cameras.empty() ? scene::framingCamera(box, settings.aspect) : scene.cameras.front();
     scene::Camera& centre = triangle.centre;
     glm::vec3 back = (centre.position - centre.target) * settings.distance;
+    checkUpright(centre);
     back = turned(back, glm::normalize(centre.up), settings.yawRad);
     const glm::vec3 rightOfYaw = glm::normalize(glm::cross(centre.up, back));
     back = turned(back, rightOfYaw, -settings.pitchRad);
     centre.position = centre.target + back;
 
+    checkUpright(centre);
     const glm::vec3 right = glm::normalize(glm::cross(centre.up, back));
     const glm::vec3 up = glm::normalize(glm::cross(back, right));
     const float side = settings.spread * glm::length(box.size());
@@ -65,17 +110,7 @@ ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSetti
     triangle.corners[1] = centre.position + 0.5F * side * right - height / 3.0F * up;
     triangle.corners[2] = centre.position + 2.0F / 3.0F * height * up;
 
-    for (const glm::vec3& corner : triangle.corners) {
-        scene::Camera at = centre;
-        at.position = corner;
-        fitPlanes(at, box);
-        if (&corner == &triangle.corners[0]) {
-            centre.nearM = at.nearM;
-            centre.farM = at.farM;
-        }
-        centre.nearM = std::min(centre.nearM, at.nearM);
-        centre.farM = std::max(centre.farM, at.farM);
-    }
+    fitPlanes(triangle, box);
     return triangle;
 }
 
@@ -93,8 +128,17 @@ std::vector<scene::Camera> referenceCameras(const ViewTriangle& triangle, int co
         if (static_cast<int>(cameras.size()) == count) break;
         cameras.push_back(cameraAt(triangle, corner));
     }
-    for (int i = 3; i < count; ++i) {
-        cameras.push_back(cameraAt(triangle, evenlyInTriangle(i - 3)));
+    for (int i = 3; i < count; ++i) cameras.push_back(cameraInHull(triangle, count, i - 3));
+    return cameras;
+}
+
+std::vector<scene::Camera> candidateCameras(const ViewTriangle& triangle, int referenceCount,
+                                            int count) {
+    GFXREPRO_ASSERT(count <= kMaxCandidates);
+    const int fixed = std::min({3, referenceCount, count});
+    std::vector<scene::Camera> cameras = referenceCameras(triangle, fixed);
+    for (int i = fixed; i < count; ++i) {
+        cameras.push_back(cameraInHull(triangle, referenceCount, i - fixed));
     }
     return cameras;
 }
@@ -102,14 +146,11 @@ std::vector<scene::Camera> referenceCameras(const ViewTriangle& triangle, int co
 std::vector<scene::Camera> outputCameras(const ViewTriangle& triangle, int referenceCount,
                                          int count) {
     std::vector<scene::Camera> cameras;
+    cameras.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
-        if (referenceCount == 1) {
-            cameras.push_back(triangle.centre);
-        } else if (referenceCount == 2) {
-            cameras.push_back(cameraAt(triangle, {evenlySpread(i).x, 0.0F}));
-        } else {
-            cameras.push_back(cameraAt(triangle, evenlyInTriangle(i)));
-        }
+        // Past the points of reference views and candidates: an output frame at a reference view
+        // would find every sample.
+        cameras.push_back(cameraInHull(triangle, referenceCount, kMaxCandidates + i));
     }
     return cameras;
 }

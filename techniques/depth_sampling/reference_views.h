@@ -24,7 +24,7 @@ struct ViewTriangleSettings {
 };
 
 /// Equilateral, upright, across the direction of view. Near and far planes are fitted to the scene
-/// from every point of the triangle.
+/// from every point of the triangle. Throws Error when the camera looks along its up direction.
 ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSettings& settings);
 
 /// The camera at barycentric coordinates (a, b) of corners 1 and 2.
@@ -33,6 +33,14 @@ scene::Camera cameraAt(const ViewTriangle& triangle, glm::vec2 barycentric);
 /// n reference cameras: n = 1 the centre, n = 2 the corners V₀ and V₁, n ≥ 3 the corners and then a
 /// low-discrepancy sequence inside.
 std::vector<scene::Camera> referenceCameras(const ViewTriangle& triangle, int count);
+
+/// Most places to choose reference views from.
+constexpr int kMaxCandidates = 64;
+
+/// `count` places to choose reference views from: the fixed ones, three at most, then more that
+/// fill their hull evenly.
+std::vector<scene::Camera> candidateCameras(const ViewTriangle& triangle, int referenceCount,
+                                            int count);
 
 /// `count` output cameras that fill the hull of the first min(3, referenceCount) reference views
 /// evenly (point, segment or triangle; the R₂ sequence, folded).

@@ -7,32 +7,34 @@
 #include <vector>
 
 #include "runner/raycast/ray_tracer.h"
-#include "techniques/shared/depth_image.h"
+#include "techniques/shared/view.h"
 
 namespace gfxrepro::depth_sampling {
 
 /// A point of the scene on a known triangle.
 struct SurfacePoint {
-    glm::vec3 positionWorld;
-    std::uint32_t triangleId;  // as in depth images
+    glm::vec3 positionWorld{0.0F};
+    std::uint32_t triangleId = 0;  // as in depth images: 1 + index into the flattened scene
 };
 
 /// Which points of the scene images with infinitely many pixels hold; their resolution does not
-/// count. Directions outside of an image's frustum count as not held.
+/// count. What is outside of an image's frustum, before its near plane or beyond its far plane is
+/// not held, and back faces neither hide nor are held (raycast::Faces::Drawn).
 ///
 /// A sequence of views stands for a sequence of images. Conventional: image j holds what is visible
 /// from Vⱼ. Non-redundant: image j holds, on each ray from Vⱼ, the first point that no earlier
 /// image of the sequence holds; peeled layers are the same with one view repeated.
+///
+/// All queries may run on several threads at once.
 class VisibilitySequence {
   public:
-    /// `tracer` is of the scene whose flattened triangles carry the ids; both references must
-    /// outlive this.
+    /// `tracer` is of the scene whose flattened triangles carry the ids; it must outlive this.
     VisibilitySequence(const raycast::RayTracer& tracer, std::vector<depth_images::View> views,
                        bool isNonRedundant);
 
     const std::vector<depth_images::View>& views() const { return views_; }
 
-    /// Whether image `index` holds the point. May run on several threads at once.
+    /// Whether image `index` holds the point.
     bool holds(std::size_t index, const SurfacePoint& point) const;
     /// Whether one of images [0, count) does.
     bool anyHolds(std::size_t count, const SurfacePoint& point) const;
@@ -41,9 +43,20 @@ class VisibilitySequence {
     std::optional<SurfacePoint> sample(std::size_t index, glm::ivec2 pixel) const;
 
   private:
+    /// From an image's near plane to a little before a point.
+    struct Sight;
+    std::optional<Sight> sightOf(std::size_t index, const SurfacePoint& point) const;
+    bool isVisible(std::size_t index, const SurfacePoint& point) const;
+    bool isReached(std::size_t index, const SurfacePoint& point) const;
+    bool isLastOfItsView(std::size_t index, std::size_t count) const {
+        return nextOfView_[index] >= count;
+    }
+
     const raycast::RayTracer* tracer_;
     std::vector<depth_images::View> views_;
+    std::vector<std::size_t> nextOfView_;  // the next image of the same view, or views_.size()
     bool isNonRedundant_;
+    bool isPeeling_;  // all images have one view
 };
 
 }  // namespace gfxrepro::depth_sampling

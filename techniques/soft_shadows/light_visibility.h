@@ -1,82 +1,84 @@
-// Which samples of the light an output pixel sees: shadow maps and the bits they leave.
+// Which samples of the light an output pixel sees, by shadow maps: one bit each.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "runner/gl/program.h"
-#include "runner/raycast/ray_tracer.h"
 #include "techniques/shared/drawable_scene.h"
 #include "techniques/soft_shadows/area_light.h"
-#include "techniques/soft_shadows/reconstruction.h"
 
 namespace gfxrepro::soft_shadows {
 
-/// The output samples: world position and unit geometric normal (turned to the eye) of what each
-/// pixel of the output image shows; w of the position is 0 where nothing is seen.
+/// The output samples: what each pixel of the output image shows.
 struct Receivers {
     depth_images::View view;
-    gl::Texture positions;  // RGBA32F
-    gl::Texture normals;    // RGBA16F
-    gl::Texture shading;    // RGBA8, unshadowed colour of the surface (no light term)
+    gl::Texture positions;  // RGBA32F, world space; w is 0 where nothing is seen
+    gl::Texture normals;    // RGBA16F, unit, geometric, turned to the eye
+    gl::Texture shading;    // RGBA8, linear, the surface's colour without light
+
+    std::size_t sizeBytes() const;
 };
 
-/// One bit a light sample and output pixel: 1 where the pixel sees the sample. Bit k of layer l is
-/// light sample 32·l + k; sample (i, j) of an n × n light is number j·n + i. A pixel without a
-/// surface sees all.
+Receivers renderReceivers(const gl::ShaderLibrary& shaders,
+                          const depth_images::DrawableScene& scene, const depth_images::View& view);
+
+/// One bit a light sample and output pixel: 1 where the pixel sees the sample. Sample (i, j) of an
+/// n × n light is number s = j·n + i, bit s mod 32 of layer s div 32. A pixel without a surface
+/// sees all.
 struct VisibilityMask {
     gl::Texture bits;  // R32UI array
     int sampleCount = 0;
 };
 
-struct HostVisibilityMask {
-    glm::ivec2 sizePx{0};
-    int sampleCount = 0;
-    std::vector<std::uint32_t> bits;  // layer by layer, rows from the bottom
-};
+/// The unit axis of a view.
+glm::vec3 forwardOf(const depth_images::View& view);
 
 /// What casts shadows into a shadow map.
 class ShadowCaster {
   public:
     virtual ~ShadowCaster() = default;
-    /// Draws depth only; framebuffer, viewport and depth state are set. Binds its own program.
+    /// Draws depth only; framebuffer, viewport and depth state are set. Binds its own program and
+    /// sets culling.
     virtual void draw(const depth_images::View& lightView) const = 0;
     virtual std::uint64_t triangleCount() const = 0;
 };
 
 struct ShadowMapSettings {
     int sizePx = 1024;
-    /// How far the receiver is moved towards the light before the test, in shadow-map texels of its
-    /// depth (the larger part along its normal; without it, surfaces shadow themselves).
-    float biasTexels = 2.0F;
+    /// How far a receiver is moved along its normal before the test, in texels at its distance.
+    /// Below 0.71 surfaces shadow themselves; higher values lift shadows off their casters.
+    float biasTexels = 1.0F;
 };
 
-/// [xie2017] Algorithm 5, step 3: for each light sample a shadow map of the casters, and a test of
-/// every output sample.
+/// [xie2017] Algorithm 5, step 3: for each light sample a shadow map of all casters, and a test of
+/// every output sample. Memory: one shadow map, reused.
 class LightVisibility {
   public:
     LightVisibility(const gl::ShaderLibrary& shaders, const ShadowMapSettings& settings);
-    VisibilityMask accumulate(const Receivers& receivers, const AreaLight& light, int gridSize,
-                              std::span<const ShadowCaster* const> casters);
+
+    /// Makes the mask for `gridSize`² samples of the light.
+    static VisibilityMask makeMask(glm::ivec2 sizePx, int gridSize);
+    /// Overwrites `mask`.
+    void accumulate(VisibilityMask& mask, const Receivers& receivers, const AreaLight& light,
+                    int gridSize, std::span<const ShadowCaster* const> casters) const;
+
+    /// The two halves of one light sample.
+    void drawShadowMap(const depth_images::View& lightView,
+                       std::span<const ShadowCaster* const> casters) const;
+    void test(VisibilityMask& mask, int sample, const Receivers& receivers,
+              const depth_images::View& lightView) const;
+
+    /// Bias in metres a metre of distance from the light.
+    float biasPerDistance(const depth_images::View& lightView) const;
+    /// Window depth (0 near … 1 far) of the last shadow map, Depth32F.
+    const gl::Texture& shadowMap() const { return shadowMap_; }
+
+  private:
+    ShadowMapSettings settings_;
+    gl::Texture shadowMap_;
+    gl::Framebuffer framebuffer_;
+    gl::Program test_;
 };
-
-HostVisibilityMask readMask(const VisibilityMask& mask);
-
-/// The same bits by shadow rays: no shadow maps, no bias but the offset that keeps a ray off its
-/// own triangle. Runs on all cores.
-HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer,
-                                   const std::vector<glm::vec4>& positions,
-                                   const std::vector<glm::vec4>& normals, glm::ivec2 sizePx,
-                                   const AreaLight& light, int gridSize);
-
-/// Errors of `measured` against `truth` ([xie2017] Sec. 3.4.2), scaled to 256 light samples,
-/// over all pixels of the output image.
-struct ShadowErrors {
-    double visibilityMean = 0.0, visibilityMax = 0.0;  // wrong samples a pixel
-    double intensityMean = 0.0, intensityMax = 0.0;    // |samples too bright − samples too dark|
-    std::vector<float> signedError;  // a pixel: lit − truly lit, in samples of 256 (figure 16)
-};
-ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth);
 
 }  // namespace gfxrepro::soft_shadows

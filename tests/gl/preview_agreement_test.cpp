@@ -130,6 +130,34 @@ TEST_F(PreviewAgreementTest, InstancesWithNormalsTexturesAndCutOuts) {
     expectAgreement(scene);
 }
 
+TEST_F(PreviewAgreementTest, VertexColoursTimesBaseColourBesideMeshesWithoutThem) {
+    scene::Scene scene = scene::sceneOf(sphere(24));
+    scene.meshes[0].material = 0;
+    scene.materials.resize(1);
+    scene.materials[0].baseColor = {0.9F, 0.5F, 0.7F, 1.0F};
+    for (const glm::vec3& position : scene.meshes[0].positions) {
+        scene.meshes[0].colors.push_back(0.5F + 0.5F * position);
+    }
+    // After the coloured one: its colours must not stay behind.
+    scene.meshes.push_back(sphere(16));
+    glm::mat4 aside(1.0F);
+    aside[3] = {2.0F, 0.5F, -1.0F, 1};
+    scene.instances.push_back({1, aside});
+    expectAgreement(scene);
+
+    const scene::Camera camera = scene::framingCamera(scene.bounds(), 1.0F);
+    const ImageF coloured = raycast::renderPreview(scene, camera, kSizePx, kSizePx);
+    scene.meshes[0].colors.clear();
+    const ImageF plain = raycast::renderPreview(scene, camera, kSizePx, kSizePx);
+    int changed = 0;
+    for (int y = 0; y < kSizePx; ++y) {
+        for (int x = 0; x < kSizePx; ++x) {
+            changed += difference(coloured, x, y, plain, x, y) > kThreshold;
+        }
+    }
+    EXPECT_GT(changed, kSizePx * kSizePx / 20);  // else neither multiplies
+}
+
 TEST_F(PreviewAgreementTest, ZeroNormalsFallBackToTheTriangles) {
     scene::Scene scene = scene::sceneOf(sphere(12));
     scene.meshes[0].normals.assign(scene.meshes[0].positions.size(), glm::vec3(0));

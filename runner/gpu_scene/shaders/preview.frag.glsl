@@ -1,10 +1,11 @@
 #version 450 core
-// The look at a scene, pixels: base colour under a headlight. Reads the material, writes linear
-// radiance; raycast::renderPreview evaluates the same formula on the CPU.
+// The look at a scene, pixels: base colour under a headlight. Reads the material and vertex colours,
+// writes linear radiance; raycast::renderPreview evaluates the same formula on the CPU.
 
 in vec3 normalWorld;
 in vec3 toCameraWorld;
 in vec2 uv;
+in vec3 vertexColor;  // linear; 1 without
 
 uniform vec4 baseColor;  // linear
 uniform vec3 emissive;
@@ -22,7 +23,7 @@ void main() {
     vec3 triangleNormal = cross(dFdx(toCameraWorld), dFdy(toCameraWorld));
     vec3 normal = normalWorld == vec3(0.0) ? triangleNormal : normalWorld;
 
-    vec4 base = baseColor;
+    vec4 base = baseColor * vec4(vertexColor, 1.0);
     // One level without mipmaps: the ray traced look has no footprint to choose a level by.
     if (hasTexture != 0) base *= textureLod(baseColorTexture, uv, 0.0);
     if (base.a < alphaCutoff) discard;

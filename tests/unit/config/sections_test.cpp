@@ -144,8 +144,8 @@ TEST_F(ExperimentTest, BadClaims) {
               head + "32: claim 'C' is of two types, 'order' and 'bound'");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
               head +
-                  "32: claim 'C': unknown key 'above'; allowed: says, at, statistic, device, "
-                  "profile, order");
+                  "32: claim 'C': unknown key 'above'; allowed: says, at, across, statistic, "
+                  "device, profile, order");
     EXPECT_EQ(claimError("{says: s, order: aa}"),
               head + "23: claim 'C': order is aa; allowed: a < b < …");
     EXPECT_EQ(claimError("{says: s, order: aa < }"),
@@ -210,6 +210,26 @@ TEST_F(ExperimentTest, BadClaimScopes) {
               head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
 }
 
+TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
+    const auto error = [&](const std::string& claim) {
+        return errorWith(
+            "sweep: {scene: [s, t]}\nlayout: {axes: {e: {p: {pass: p}, q: {pass: q}}}, rows: [e, "
+            "scene], columns: {aa: m, bb: m}}\nclaims:\n  C: {says: s, " +
+            claim);
+    };
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(error("across: e, order: p < q, at: {scene: s, column: [aa, bb]}}"), "no error");
+    EXPECT_EQ(error("across: e, trend: p / q, over: scene, exponent: [1, 2]}"), "no error");
+    EXPECT_EQ(error("across: f, order: p < q}"),
+              head + "24: claim 'C': across is f; allowed: e | scene");
+    EXPECT_EQ(error("across: e, order: aa < bb}"),
+              head + "34: claim 'C': unknown column 'aa'; allowed: p, q");
+    EXPECT_EQ(error("across: e, order: p < q, at: {e: p}}"),
+              head + "46: claim 'C': at: unknown key 'e'; allowed: scene, column");
+    EXPECT_EQ(error("across: e, order: p < q, at: {column: p}}"),
+              head + "54: claim 'C': at.column is p; allowed: aa | bb");
+}
+
 TEST(DescribeConfig, NamesEveryKeyOnALine) {
     const std::string text = describeConfig();
     for (const char* key : {"table ",
@@ -244,6 +264,7 @@ TEST(DescribeConfig, NamesEveryKeyOnALine) {
                             "printed.values ",
                             "printed.hardware ",
                             "printed.remark ",
+                            "claims.ID.across ",
                             "claims.ID.order ",
                             "claims.ID.crossover ",
                             "assumptions.NAME "}) {

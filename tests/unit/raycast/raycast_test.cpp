@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runner/config/params.h"
@@ -117,6 +119,103 @@ TEST(RayTracer, AllHitsCountEveryTriangleAndCrossingsEverySurface) {
         const float s = 0.019F * static_cast<float>(i) - 0.95F;
         EXPECT_EQ(two.crossings({s, s, 1}, {0, 0, -1}).size(), 1U) << s;
     }
+}
+
+/// Three squares facing +z at z = 0, −1, −2 of one-sided, double-sided and no material, the last
+/// one a mirror image, and a fourth at z = −3 that is turned away.
+scene::Scene stackOfSquares() {
+    scene::Scene scene;
+    scene.materials.resize(2);
+    scene.materials[1].isDoubleSided = true;
+    for (const int material : {0, 1, -1}) {
+        scene.meshes.push_back(square());
+        scene.meshes.back().material = material;
+    }
+    const glm::mat4 one(1.0F);
+    const glm::mat4 third = glm::translate(one, glm::vec3(0, 0, -2));
+    const glm::mat4 fourth = glm::translate(one, glm::vec3(0, 0, -3));
+    scene.instances = {{0, one},
+                       {1, glm::translate(one, glm::vec3(0, 0, -1))},
+                       {2, glm::scale(third, glm::vec3(-1, 1, 1))},
+                       {0, glm::rotate(fourth, glm::pi<float>(), glm::vec3(1, 0, 0))}};
+    return scene;
+}
+
+std::vector<float> distancesOf(const std::vector<TriangleHit>& hits) {
+    std::vector<float> distances;
+    for (const TriangleHit& hit : hits) distances.push_back(hit.distance);
+    return distances;
+}
+
+TEST(RayTracer, DrawnFacesAreThoseThatCullingLeaves) {
+    const RayTracer tracer(stackOfSquares());
+    const glm::vec3 front(0.5F, -0.25F, 1);
+    const glm::vec3 behind(0.5F, -0.25F, -4);
+    std::vector<TriangleHit> hits;
+    tracer.hitsBetween(front, {0, 0, -2}, 0, kInfinity, Faces::All, hits);
+    EXPECT_EQ(distancesOf(hits), (std::vector<float>{1, 2, 3, 4}));
+    tracer.hitsBetween(front, {0, 0, -2}, 0, kInfinity, Faces::Drawn, hits);
+    EXPECT_EQ(distancesOf(hits), (std::vector<float>{1, 2, 3}));
+    tracer.hitsBetween(front, {0, 0, -2}, 1.5F, 2.5F, Faces::Drawn, hits);
+    EXPECT_EQ(distancesOf(hits), (std::vector<float>{2}));
+    tracer.hitsBetween(behind, {0, 0, 1}, 0, kInfinity, Faces::Drawn, hits);
+    EXPECT_EQ(distancesOf(hits), (std::vector<float>{1, 3}));
+
+    EXPECT_EQ(tracer.closestHit(behind, {0, 0, 1}, 1.5F)->distance, 2.0F);
+    EXPECT_EQ(tracer.closestHit(behind, {0, 0, 1}, 1.5F, 9.0F, Faces::Drawn)->distance, 3.0F);
+    EXPECT_FALSE(tracer.closestHit(behind, {0, 0, 1}, 3.5F, 9.0F, Faces::Drawn));
+    EXPECT_TRUE(tracer.isOccluded(behind, {0, 0, 1}, 1.5F, 2.5F));
+    EXPECT_FALSE(tracer.isOccluded(behind, {0, 0, 1}, 1.5F, 2.5F, Faces::Drawn));
+    EXPECT_TRUE(tracer.isOccluded(behind, {0, 0, 1}, 1.5F, 3.5F, Faces::Drawn));
+    EXPECT_FALSE(tracer.isOccluded(behind, {0, 0, 1}, 1.5F, 3.5F, Faces::Drawn, hits[1].triangle));
+}
+
+TEST(RayTracer, TrianglesHaveTheNumbersOfTheFlattenedScene) {
+    scene::Scene scene = stackOfSquares();
+    scene.meshes.push_back({});  // instances without triangles take no numbers
+    scene.instances.insert(scene.instances.begin() + 1, {3, glm::mat4(1.0F)});
+    scene.instances.push_back({3, glm::mat4(1.0F)});
+    const RayTracer tracer(scene);
+    const scene::Mesh mesh = flattened(scene);
+    ASSERT_EQ(mesh.triangles.size(), 8U);
+    for (unsigned t = 0; t < 8; ++t) {
+        const WorldTriangle triangle = tracer.triangle(t);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_EQ(triangle.corners[c], mesh.positions[mesh.triangles[t][c]]) << t;
+        }
+        EXPECT_EQ(triangle.isDoubleSided, t == 2 || t == 3);
+        EXPECT_EQ(triangle.isDrawnFrom({0, 0, 5}), t < 6);
+        EXPECT_EQ(triangle.isDrawnFrom({0, 0, -5}), t != 0 && t != 1 && t != 4 && t != 5);
+        const glm::vec3 centroid =
+            (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0F;
+        const auto hit = tracer.closestHit(centroid + glm::vec3(0, 0, 0.5F), {0, 0, -1});
+        ASSERT_TRUE(hit);
+        EXPECT_EQ(hit->flattenedTriangle, t);
+    }
+}
+
+TEST(RayTracer, HitsBetweenAreAllHitsInOrder) {
+    const RayTracer torus(body("torus"));
+    Random random(11);
+    std::vector<TriangleHit> hits;
+    std::size_t most = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::vec3 origin = randomPoint(random, 2.0F);
+        const glm::vec3 direction = randomPoint(random, 1.0F);
+        torus.hitsBetween(origin, direction, 0, kInfinity, Faces::All, hits);
+        EXPECT_EQ(distancesOf(hits), torus.allHits(origin, direction));
+        most = std::max(most, hits.size());
+        // Of a closed body, a ray from outside leaves as often as it enters.
+        if (torus.isInside(origin) || hits.empty()) continue;
+        const std::size_t crossings = hits.size();
+        torus.hitsBetween(origin, direction, 0, kInfinity, Faces::Drawn, hits);
+        if (crossings == torus.crossings(origin, direction).size()) {  // clear of edges
+            EXPECT_EQ(hits.size(), crossings / 2);
+        }
+        EXPECT_EQ(torus.closestHit(origin, direction, 0, kInfinity, Faces::Drawn)->distance,
+                  hits.front().distance);
+    }
+    EXPECT_GE(most, 4U);
 }
 
 TEST(RayTracer, InsideAndOutsideAgreeWithTheEquations) {

@@ -323,6 +323,47 @@ claims:
                 testing::EndsWith("claim 'X': statistic 'min' is not in the format of column 'e'"));
 }
 
+/// Rows `method` × `scene`, columns a and b; one claim that compares methods.
+std::string acrossBody(const std::string& claim) {
+    return R"(
+sweep: {method: [old, new], scene: [s, t]}
+layout:
+  rows: [method, scene]
+  columns: {a: {metric: a}, b: {metric: b}}
+printed:
+  values: |
+    method,scene,a,b
+    old,s,1,2
+    new,s,10,4
+claims:
+  X: {says: as claimed, across: method, )" +
+           claim + "}\n";
+}
+
+TEST(Claims, AcrossComparesRows) {
+    RecordMaker maker;
+    maker.beginCase("s", R"({"method":"old"})").add("a", {1.0}).add("b", {2.0});
+    maker.beginCase("s", R"({"method":"new"})").add("a", {10.0}).add("b", {3.0});
+    maker.beginCase("t", R"({"method":"old"})").add("a", {1.0}).add("b", {2.0});
+    maker.beginCase("t", R"({"method":"new"})").add("a", {20.0}).add("b", {1.0});
+    const auto judge = [&](const std::string& claim) {
+        return judgeOne(acrossBody(claim), maker.records());
+    };
+    ClaimResult result = judge("order: old < new");
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "smallest gap -50 %");
+    EXPECT_EQ(result.reason, "worst at scene=t, column=b; one sample");
+    EXPECT_EQ(judge("order: old < new, at: {column: a}").verdict, Verdict::Holds);
+    EXPECT_EQ(judge("order: old < new, at: {scene: s}").verdict, Verdict::Holds);
+    result = judge("ratio: new / old, at_least: 20, at: {scene: t, column: a}");
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "20");
+    // The printed numbers have moved along.
+    EXPECT_EQ(judge("exact: new, equals: printed, at: {column: a}").verdict, Verdict::Holds);
+    result = judge("exact: new, equals: printed");
+    EXPECT_EQ(result.measured, "largest difference 1");
+}
+
 TEST(Claims, BadOperandsAreErrors) {
     // A swept column is known to the config only by its values, so this is checked here again.
     config::Experiment experiment = experimentFrom(powersBody("bound: a, below: 5"));

@@ -61,6 +61,41 @@ RecordMaker duckAndBunny() {
     return maker;
 }
 
+TEST(Table, WithoutATechniqueThereIsWhatWasPrinted) {
+    config::Experiment experiment;
+    experiment.id = "p/1";
+    experiment.printed.header = {"function", "dimensions", "bound"};
+    experiment.printed.rows = {{"light field", "4", "a box"}, {"panorama", "2", ""}};
+    const Table table = buildTable(experiment, {});
+    EXPECT_TRUE(table.isOnlyPrinted);
+    EXPECT_THAT(table.rowAxes, ElementsAre("function"));
+    EXPECT_THAT(columnLabels(table), ElementsAre("dimensions", "bound"));
+    EXPECT_THAT(rowLabels(table), ElementsAre(ElementsAre("light field"), ElementsAre("panorama")));
+    EXPECT_EQ(table.rows[0].cells[1].printed, "a box");
+    EXPECT_EQ(table.rows[1].cells[1].printed, std::nullopt);
+    EXPECT_FALSE(table.rows[0].cells[0].isPlanned);
+    EXPECT_FALSE(table.rows[0].cells[0].isOk());
+}
+
+TEST(Table, TransposedCellsKeepTheirPlaces) {
+    const Table plain = buildTable(experimentFrom(kPlain), duckAndBunny().records());
+    const Table table = transposed(plain, 0);
+    EXPECT_THAT(table.rowAxes, ElementsAre("column"));
+    EXPECT_THAT(columnLabels(table), ElementsAre("models/duck", "models/bunny"));
+    EXPECT_THAT(rowLabels(table), ElementsAre(ElementsAre("triangles"), ElementsAre("draw_ms")));
+    EXPECT_EQ(table.rows[0].cells[1].measured, "69451");
+    EXPECT_EQ(table.rows[1].cells[0].measured, plain.rows[0].cells[1].measured);
+    // A place that no row has is not planned.
+    Table ragged = plain;
+    ragged.rowAxes = {"scene", "step"};
+    ragged.rows[0].labels = {"duck", "1"};
+    ragged.rows[1].labels = {"bunny", "2"};
+    const Table four = transposed(ragged, 0);
+    ASSERT_EQ(four.rows.size(), 4u);
+    EXPECT_TRUE(four.rows[0].cells[0].isPlanned);
+    EXPECT_FALSE(four.rows[0].cells[1].isPlanned);
+}
+
 TEST(Table, RowsInSweepOrderMedianOfRepeats) {
     const Table table = buildTable(experimentFrom(kPlain), duckAndBunny().records());
     EXPECT_EQ(table.id, "zju2005/9.9");

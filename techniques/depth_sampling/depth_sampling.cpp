@@ -1,0 +1,177 @@
+#include "techniques/depth_sampling/depth_sampling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "techniques/depth_sampling/pictures.h"
+#include "techniques/depth_sampling/view_check.h"
+#include "techniques/depth_sampling/visibility_experiment.h"
+
+namespace gfxrepro::depth_sampling {
+namespace {
+
+std::unique_ptr<technique::Technique> create(config::Params& params) {
+    return std::make_unique<DepthSampling>(params);
+}
+
+std::vector<depth_images::View> viewsOf(const std::vector<scene::Camera>& cameras,
+                                        glm::ivec2 sizePx) {
+    std::vector<depth_images::View> views;
+    views.reserve(cameras.size());
+    for (const scene::Camera& camera : cameras) {
+        views.push_back(depth_images::viewOf(camera, sizePx));
+    }
+    return views;
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+    if (whole == 0) return 0.0;
+    return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCounts>& frames) {
+    double sumPct = 0.0;
+    double minPct = std::numeric_limits<double>::infinity();
+    int seen = 0;  // a frame without samples says nothing
+    for (const FrameCounts& frame : frames) {
+        if (frame.samples == 0) continue;
+        const double availablePct = percent(frame.available, frame.samples);
+        sumPct += availablePct;
+        minPct = std::min(minPct, availablePct);
+        ++seen;
+    }
+    const double meanPct = seen > 0 ? sumPct / seen : 0.0;
+    recorder.metric("available_mean_pct", meanPct, "%");
+    recorder.metric("available_min_pct", seen > 0 ? minPct : 0.0, "%");
+    recorder.metric("unavailable_mean_pct", seen > 0 ? 100.0 - meanPct : 0.0, "%");
+}
+
+}  // namespace
+
+DepthSampling::DepthSampling(config::Params& params) : params_(params) {
+    params.finish();
+}
+
+std::vector<scene::Camera> DepthSampling::chooseCameras(technique::SetupContext&,
+                                                        const ViewTriangle& triangle) const {
+    return referenceCameras(triangle, params_.views);
+}
+
+Views DepthSampling::makeViews(technique::SetupContext& context) const {
+    const glm::ivec2 size = context.outputSizePx;
+    ViewTriangleSettings settings = params_.triangle;
+    settings.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+    const ViewTriangle triangle = makeViewTriangle(*context.scene, settings);
+
+    Views views;
+    views.conventional = viewsOf(chooseCameras(context, triangle), size);
+    views.images = views.conventional;
+    if (params_.method == Method::DepthPeeling) {
+        views.images.assign(static_cast<std::size_t>(params_.views),
+                            depth_images::viewOf(triangle.centre, size));
+    }
+    const glm::ivec2 frameSize = params_.frameSizePx > 0 ? glm::ivec2(params_.frameSizePx) : size;
+    views.frames = viewsOf(outputCameras(triangle, params_.views, params_.outputFrames), frameSize);
+    return views;
+}
+
+void DepthSampling::setup(technique::SetupContext& context) {
+    if (!context.scene)
+        throw Error("technique 'depth_sampling' needs a scene; the config names none");
+    const scene::Scene& scene = *context.scene;
+    if (scene.triangleCount() == 0) {
+        throw Error(fmt::format("scene '{}' has no triangles to take depth images of", scene.name));
+    }
+    depth_images::requireIdsFor(scene.triangleCount());
+    const Views views = makeViews(context);
+    raycast::RayTracer tracer(scene);
+    checkViews(scene, tracer, views.conventional);
+    if (params_.method == Method::DepthPeeling) checkViews(scene, tracer, {&views.images[0], 1});
+
+    if (params_.redundancy == Redundancy::Visibility) {
+        experiment_ =
+            std::make_unique<VisibilityExperiment>(scene, std::move(tracer), params_.method, views);
+        return;
+    }
+    auto experiment = std::make_unique<PixelExperiment>(
+        context.shaders, scene, params_.method, params_.triangleIds, params_.depthFormat, views);
+    pixelExperiment_ = experiment.get();
+    experiment_ = std::move(experiment);
+    if (params_.measured == Measured::OutputFrame) {
+        gl::Profiler untimed(context.device.info().isSoftware);
+        experiment_->makeReferenceImages(untimed);
+    }
+}
+
+void DepthSampling::render(technique::FrameContext& context) {
+    if (params_.measured == Measured::ReferenceImages) {
+        experiment_->makeReferenceImages(context.profiler);
+        return;
+    }
+    // Measured frames spread over the output frames.
+    const auto frame = static_cast<std::int64_t>(context.frame) * params_.outputFrames /
+                       std::max(context.frameCount, 1);
+    pixelExperiment_->drawOutputFrame(context.profiler, static_cast<std::size_t>(frame));
+}
+
+void DepthSampling::record(technique::Recorder& recorder) {
+    if (params_.measured == Measured::OutputFrame) {
+        const FrameCounts counts = pixelExperiment_->outputFrameCounts();
+        recorder.metric("available_pct", percent(counts.available, counts.samples), "%",
+                        "output_frame");
+    }
+    // The reference images are the same in each frame.
+    if (!measures_) {
+        measures_ = experiment_->measure(params_.measures);
+        if (params_.showsPictures) recordPictures(recorder);
+    }
+    recordMeasures(recorder, *measures_);
+    recorder.metric("reference_image_bytes",
+                    static_cast<double>(experiment_->referenceImageBytes()), "byte");
+    const bool usesFrames = params_.measures.usefulness || params_.measures.availability;
+    recorder.metric("output_frames", usesFrames ? params_.outputFrames : 0, "frame");
+}
+
+void DepthSampling::recordPictures(technique::Recorder& recorder) const {
+    for (std::size_t i = 0; i < measures_->images.size(); ++i) {
+        const MarkedImage marked = experiment_->markedImage(i);
+        recorder.image(imageName(i), depth_images::shadingPicture(marked.image));
+        recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks));
+    }
+    const MarkedImage frame =
+        experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
+    recorder.image("output_frame", availabilityPicture(frame.image, frame.marks));
+    recorder.image("output_frame_truth", depth_images::shadingPicture(frame.image));
+}
+
+void recordMeasures(technique::Recorder& recorder, const Measures& measures) {
+    double occludedSumPct = 0.0;
+    double usefulSumPct = 0.0;
+    for (std::size_t i = 0; i < measures.images.size(); ++i) {
+        const ImageCounts& counts = measures.images[i];
+        const std::string pass = imageName(i);
+        const auto share = [&](const char* name, std::uint64_t part, std::uint64_t whole) {
+            recorder.metric(name, percent(part, whole), "%", pass);
+        };
+        recorder.metric("samples", static_cast<double>(counts.samples), "sample", pass);
+        share("redundant_pct", counts.redundant, counts.samples);
+        share("occluded_pct", counts.occluded, counts.samples);
+        share("occluded_literal_pct", counts.occludedLiterally, counts.samples);
+        share("useful_pct", counts.useful, counts.occluded);
+        share("useful_of_samples_pct", counts.useful, counts.samples);
+        occludedSumPct += percent(counts.occluded, counts.samples);
+        usefulSumPct += percent(counts.useful, counts.samples);
+    }
+    recorder.metric("occluded_sum_pct", occludedSumPct, "%");
+    recorder.metric("useful_sum_pct", usefulSumPct, "%");
+    if (!measures.frames.empty()) recordAvailability(recorder, measures.frames);
+}
+
+const technique::TechniqueInfo kDepthSampling = {
+    "depth_sampling",
+    "non-redundant depth images, conventional ones and depth peeling (xie2017, chapter 2)",
+    &create};
+
+}  // namespace gfxrepro::depth_sampling

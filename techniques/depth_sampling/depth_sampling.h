@@ -1,0 +1,70 @@
+// The technique `depth_sampling`: chapter 2 of xie2017. See README.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "runner/technique/technique.h"
+#include "techniques/depth_sampling/experiment.h"
+#include "techniques/depth_sampling/pixel_experiment.h"
+#include "techniques/depth_sampling/reference_views.h"
+
+namespace gfxrepro::depth_sampling {
+
+/// Which definition makes the images and measures them.
+enum class Redundancy { Pixel, Visibility };
+
+/// Where reference images are taken.
+enum class Placement {
+    Fixed,
+    Automatic,  // the next view is chosen by what the images so far lack
+};
+
+/// What render() does, and is timed.
+enum class Measured { ReferenceImages, OutputFrame };
+
+struct DepthSamplingParams {
+    Method method = Method::Conventional;
+    Redundancy redundancy = Redundancy::Pixel;
+    int views = 3;
+    Placement placement = Placement::Fixed;
+    int candidates = 16;
+    ViewTriangleSettings triangle;  // all but the aspect
+    depth_images::TriangleIds triangleIds = depth_images::TriangleIds::PrimitiveId;
+    depth_images::DepthFormat depthFormat = depth_images::DepthFormat::Float32;
+    MeasureSettings measures;
+    int outputFrames = 1000;
+    int frameSizePx = 0;  // 0: as the reference images
+    bool showsPictures = false;
+    Measured measured = Measured::ReferenceImages;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit DepthSamplingParams(config::Params& params);
+};
+
+class DepthSampling final : public technique::Technique {
+  public:
+    explicit DepthSampling(config::Params& params);
+
+    void setup(technique::SetupContext& context) override;
+    void render(technique::FrameContext& context) override;
+    void record(technique::Recorder& recorder) override;
+
+  private:
+    std::vector<scene::Camera> chooseCameras(technique::SetupContext& context,
+                                             const ViewTriangle& triangle) const;
+    Views makeViews(technique::SetupContext& context) const;
+    void recordPictures(technique::Recorder& recorder) const;
+
+    DepthSamplingParams params_;
+    std::unique_ptr<Experiment> experiment_;
+    PixelExperiment* pixelExperiment_ = nullptr;  // the same, under the pixel definition
+    std::optional<Measures> measures_;            // of all frames alike: taken once
+};
+
+/// Records `measures` as metrics; percentages of nothing are 0.
+void recordMeasures(technique::Recorder& recorder, const Measures& measures);
+
+extern const technique::TechniqueInfo kDepthSampling;
+
+}  // namespace gfxrepro::depth_sampling

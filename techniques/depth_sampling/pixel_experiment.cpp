@@ -1,0 +1,126 @@
+#include "techniques/depth_sampling/pixel_experiment.h"
+
+#include <utility>
+
+namespace gfxrepro::depth_sampling {
+
+using depth_images::DepthImage;
+using depth_images::View;
+
+PixelExperiment::PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene,
+                                 Method method, depth_images::TriangleIds ids,
+                                 depth_images::DepthFormat format, Views views)
+    : method_(method),
+      views_(std::move(views)),
+      scene_(scene),
+      renderer_(shaders, ids, format),
+      measures_(shaders) {
+    for (const View& view : views_.images) images_.push_back(renderer_.makeImage(view));
+}
+
+std::vector<const DepthImage*> PixelExperiment::first(const std::vector<DepthImage>& images,
+                                                      std::size_t count) const {
+    std::vector<const DepthImage*> pointers;
+    for (std::size_t i = 0; i < count; ++i) pointers.push_back(&images[i]);
+    return pointers;
+}
+
+// [xie2017] Algorithm 1
+void PixelExperiment::makeReferenceImages(gl::Profiler& profiler) {
+    const gl::GpuScope all(profiler, "reference_images");
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        const gl::GpuScope one(profiler, imageName(i));
+        const std::size_t earlier = method_ == Method::Conventional ? 0 : i;
+        renderer_.render(scene_, images_[i], first(images_, earlier));
+    }
+}
+
+void PixelExperiment::drawConventionalImages() {
+    if (method_ == Method::Conventional || !conventional_.empty()) return;
+    for (const View& view : views_.conventional) {
+        conventional_.push_back(renderer_.makeImage(view));
+        renderer_.render(scene_, conventional_.back());
+    }
+}
+
+void PixelExperiment::drawFrame(std::size_t index) {
+    const View& view = views_.frames.at(index);
+    if (!outputFrame_) outputFrame_.emplace(renderer_.makeImage(view));
+    outputFrame_->view = view;  // all frames are of one size
+    renderer_.render(scene_, *outputFrame_);
+}
+
+void PixelExperiment::drawOutputFrame(gl::Profiler& profiler, std::size_t index) {
+    {
+        const gl::GpuScope scope(profiler, "output_frame");
+        drawFrame(index);
+    }
+    const gl::GpuScope scope(profiler, "availability_test");
+    measures_.beginAvailability(*outputFrame_, first(images_, images_.size()));
+}
+
+void PixelExperiment::markImage(std::size_t index) {
+    const DepthImage& image = images_[index];
+    gl::Texture& marks = marks_[index];
+    // For the method's own sequence; a conventional image's earlier ones are conventional.
+    measures_.mark(image, marks, first(images_, index), true, kSample, kRedundant);
+    const std::size_t all = conventional().size();
+    measures_.mark(image, marks, first(conventional(), all), false, kSample, kOccluded);
+    if (method_ == Method::Conventional) return;
+    // Departure [xie2017] Sec. 2.3.2: printed are the views 0 … i−1 for a non-redundant image and
+    // all for a peeled one. Of image 1 all samples are occluded so, by construction: beside ours.
+    const std::size_t printed = method_ == Method::DepthPeeling ? all : index;
+    measures_.mark(image, marks, first(conventional(), printed), false, kSample,
+                   kOccludedLiterally);
+}
+
+Measures PixelExperiment::measure(const MeasureSettings& settings) {
+    drawConventionalImages();
+    marks_.clear();
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        marks_.push_back(measures_.makeMarks(images_[i]));
+        markImage(i);
+    }
+    Measures result;
+    const std::vector<const DepthImage*> images = first(images_, images_.size());
+    const bool needsFrames = settings.usefulness || settings.availability;
+    for (std::size_t f = 0; needsFrames && f < views_.frames.size(); ++f) {
+        drawFrame(f);
+        const DepthImage* const frame[] = {&*outputFrame_};
+        for (std::size_t i = 0; settings.usefulness && i < images_.size(); ++i) {
+            measures_.mark(images_[i], marks_[i], frame, true, kOccluded, kUseful);
+        }
+        if (!settings.availability) continue;
+        measures_.beginAvailability(*outputFrame_, images);
+        result.frames.push_back(measures_.finishAvailability());
+    }
+    for (const gl::Texture& marks : marks_) {
+        result.images.push_back({.samples = measures_.count(marks, kSample),
+                                 .redundant = measures_.count(marks, kRedundant),
+                                 .occluded = measures_.count(marks, kOccluded),
+                                 .occludedLiterally = measures_.count(marks, kOccludedLiterally),
+                                 .useful = measures_.count(marks, kUseful)});
+    }
+    return result;
+}
+
+MarkedImage PixelExperiment::markedImage(std::size_t index) const {
+    return {readDepthImage(images_[index]),
+            marks_[index].read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1)};
+}
+
+MarkedImage PixelExperiment::markedFrame(std::size_t index) {
+    drawFrame(index);
+    gl::Texture marks = measures_.makeMarks(*outputFrame_);
+    measures_.mark(*outputFrame_, marks, first(images_, images_.size()), true, kSample, kAvailable);
+    return {readDepthImage(*outputFrame_),
+            marks.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1)};
+}
+
+std::size_t PixelExperiment::referenceImageBytes() const {
+    std::size_t bytes = 0;
+    for (const DepthImage& image : images_) bytes += image.sizeBytes();
+    return bytes;
+}
+
+}  // namespace gfxrepro::depth_sampling

@@ -1,0 +1,87 @@
+#include "techniques/depth_sampling/visibility_measures.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+
+namespace gfxrepro::depth_sampling {
+namespace {
+
+/// Whether one of the output frames sees the point. Begins with the frame that saw the point before
+/// (`hint`), which most often sees this one, too; the answer does not depend on it.
+bool isSeen(const VisibilitySequence& outputs, const SurfacePoint& point, std::size_t& hint) {
+    const std::size_t count = outputs.views().size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t frame = (hint + i) % count;
+        if (outputs.holds(frame, point)) {
+            hint = frame;
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+VisibilityCounts& VisibilityCounts::operator+=(const VisibilityCounts& other) {
+    samples += other.samples;
+    redundant += other.redundant;
+    occluded += other.occluded;
+    occludedLiterally += other.occludedLiterally;
+    useful += other.useful;
+    return *this;
+}
+
+VisibilityCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
+                              const VisibilitySequence& conventional,
+                              const VisibilitySequence& outputs) {
+    const glm::ivec2 size = sequence.views()[index].sizePx;
+    const std::size_t viewCount = conventional.views().size();
+    const std::size_t earlierCount = std::min(index, viewCount);
+    const auto countRows = [&](const tbb::blocked_range<int>& rows, VisibilityCounts counts) {
+        std::size_t hint = 0;
+        for (int y = rows.begin(); y < rows.end(); ++y) {
+            for (int x = 0; x < size.x; ++x) {
+                const auto point = sequence.sample(index, {x, y});
+                if (!point) continue;
+                ++counts.samples;
+                counts.redundant += sequence.anyHolds(index, *point) ? 1 : 0;
+                if (conventional.anyHolds(earlierCount, *point)) continue;
+                ++counts.occludedLiterally;
+                if (conventional.anyHolds(viewCount, *point)) continue;
+                ++counts.occluded;
+                counts.useful += isSeen(outputs, *point, hint) ? 1 : 0;
+            }
+        }
+        return counts;
+    };
+    return tbb::parallel_reduce(tbb::blocked_range<int>(0, size.y), VisibilityCounts{}, countRows,
+                                [](VisibilityCounts a, const VisibilityCounts& b) {
+                                    a += b;
+                                    return a;
+                                });
+}
+
+std::vector<VisibilityAvailability> countAvailable(const VisibilitySequence& sequence,
+                                                   const VisibilitySequence& outputs) {
+    std::vector<VisibilityAvailability> frames(outputs.views().size());
+    const std::size_t imageCount = sequence.views().size();
+    tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t frame) {
+        const glm::ivec2 size = outputs.views()[frame].sizePx;
+        VisibilityAvailability counts;
+        for (int y = 0; y < size.y; ++y) {
+            for (int x = 0; x < size.x; ++x) {
+                const auto point = outputs.sample(frame, {x, y});
+                if (!point) continue;
+                ++counts.samples;
+                counts.available += sequence.anyHolds(imageCount, *point) ? 1 : 0;
+            }
+        }
+        frames[frame] = counts;
+    });
+    return frames;
+}
+
+}  // namespace gfxrepro::depth_sampling

@@ -1,0 +1,390 @@
+// Measures on the device against double loops on the CPU, and against answers known beforehand.
+#include "techniques/depth_sampling/pixel_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "runner/core/files.h"
+#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/depth_sampling/host_images.h"
+
+namespace gfxrepro::depth_sampling {
+namespace {
+
+using depth_images::DepthFormat;
+using depth_images::DepthImage;
+using depth_images::HostDepthImage;
+using depth_images::View;
+using test::HostImages;
+
+class PixelMeasuresTest : public test::GlTest {
+  protected:
+    /// Copies of host images on the device.
+    struct OnDevice {
+        std::vector<DepthImage> images;
+        std::vector<const DepthImage*> pointers;
+        std::span<const DepthImage* const> span() const { return pointers; }
+    };
+    static OnDevice onDevice(HostImages hosts) {
+        OnDevice all;
+        for (const HostDepthImage& host : hosts) {
+            all.images.emplace_back(host.view, DepthFormat::Float32);
+            depth_images::writeDepthImage(host, all.images.back());
+        }
+        for (const DepthImage& image : all.images) all.pointers.push_back(&image);
+        return all;
+    }
+    static OnDevice onDevice(const HostDepthImage& host) { return onDevice({&host, 1}); }
+
+    static std::vector<std::uint32_t> read(const gl::Texture& marks) {
+        return marks.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    }
+    /// Of the samples of `image`, those redundant with one of `others`, on the device.
+    std::uint64_t redundantCount(const HostDepthImage& image, HostImages others) {
+        const OnDevice one = onDevice(image);
+        const OnDevice rest = onDevice(others);
+        gl::Texture marks = measures.makeMarks(one.images[0]);
+        measures.mark(one.images[0], marks, rest.span(), true, kSample, kRedundant);
+        return measures.count(marks, kRedundant);
+    }
+
+    gl::ShaderLibrary programShaders{dataFolder("shaders")};
+    PixelMeasures measures{programShaders};
+};
+
+/// A random scene, three views of different sizes, the images of all methods and output frames.
+struct Experiment {
+    std::vector<test::Triangle> triangles;
+    std::vector<HostDepthImage> conventional, nonRedundant, outputs;
+
+    explicit Experiment(unsigned seed) : triangles(test::randomTriangles(40, seed)) {
+        const View views[] = {
+            test::viewFrom({-1.2F, -0.7F, 3.0F}, {61, 53}),
+            test::viewFrom({1.2F, -0.7F, 3.0F}, {48, 64}),
+            // Within the scene: much of the others' samples is behind this eye.
+            test::viewFrom({0.0F, 0.2F, 0.3F}, {37, 90}, {0.1F, 0.0F, -2.0F}),
+        };
+        for (const View& view : views) {
+            conventional.push_back(test::castImage(view, triangles));
+            nonRedundant.push_back(test::castImage(view, triangles, nonRedundant));
+        }
+        for (int i = 0; i < 5; ++i) {
+            const float t = static_cast<float>(i) / 4.0F;
+            outputs.push_back(test::castImage(
+                test::viewFrom({2.4F * t - 1.2F, 0.6F * t - 0.5F, 3.0F}, {55 + i, 50}), triangles));
+        }
+    }
+};
+
+/// Expected marks of one image, with samples whose answer depends on rounding set apart.
+struct Expected {
+    const HostDepthImage& image;
+    std::vector<std::uint32_t> marks, borderline;
+
+    explicit Expected(const HostDepthImage& of)
+        : image(of), marks(of.triangleId.size(), 0), borderline(of.triangleId.size(), 0) {
+        for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = of.triangleId[i] != 0 ? 1 : 0;
+    }
+    void mark(HostImages others, bool isRedundant, std::uint32_t among, std::uint32_t bit) {
+        for (int y = 0; y < image.view.sizePx.y; ++y) {
+            for (int x = 0; x < image.view.sizePx.x; ++x) {
+                const std::size_t i = image.indexOf({x, y});
+                if ((marks[i] & 1) == 0) continue;
+                // What hangs on an undecided mark is undecided, too.
+                if (test::isBorderlineWithAny(image, {x, y}, others) ||
+                    (borderline[i] & among) != 0) {
+                    borderline[i] |= bit;
+                }
+                if ((marks[i] & among) == among &&
+                    test::isRedundantWithAny(image, {x, y}, others) == isRedundant) {
+                    marks[i] |= bit;
+                }
+            }
+        }
+    }
+};
+
+/// Marks equal sample by sample, but for the few that are borderline; then counts are those of the
+/// device's marks.
+void expectEqualMarks(const Expected& expected, const std::vector<std::uint32_t>& actual) {
+    ASSERT_EQ(actual.size(), expected.marks.size());
+    std::size_t different = 0;
+    std::size_t undecided = 0;
+    std::size_t samples = 0;
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+        if (((actual[i] ^ expected.marks[i]) & ~expected.borderline[i]) != 0) ++different;
+        if (expected.borderline[i] != 0) ++undecided;
+        if (actual[i] != 0) ++samples;
+    }
+    EXPECT_EQ(different, 0U) << "of " << samples << " samples";
+    // A sample lands within 1e-3 px of a border with probability 0.004 for each image.
+    EXPECT_LE(undecided, samples / 20 + 2) << "of " << samples << " samples";
+}
+
+std::uint64_t countOf(const std::vector<std::uint32_t>& marks, std::uint32_t bits) {
+    return static_cast<std::uint64_t>(std::count_if(
+        marks.begin(), marks.end(), [&](std::uint32_t mark) { return (mark & bits) == bits; }));
+}
+
+TEST_F(PixelMeasuresTest, ConventionalImagesHoldTheRedundantSamplesThatDoubleLoopsFind) {
+    for (unsigned seed : {1U, 2U, 3U}) {
+        const Experiment e(seed);
+        const OnDevice device = onDevice(e.conventional);
+        for (std::size_t i = 0; i < 3; ++i) {
+            Expected expected(e.conventional[i]);
+            expected.mark(HostImages(e.conventional).first(i), true, kSample, kRedundant);
+            gl::Texture marks = measures.makeMarks(device.images[i]);
+            EXPECT_EQ(read(marks), Expected(e.conventional[i]).marks);
+            measures.mark(device.images[i], marks, device.span().first(i), true, kSample,
+                          kRedundant);
+            expectEqualMarks(expected, read(marks));
+            EXPECT_EQ(measures.count(marks, kRedundant), countOf(read(marks), kRedundant));
+            EXPECT_EQ(measures.count(marks, kSample), countOf(read(marks), kSample));
+            EXPECT_EQ(measures.count(marks, kRedundant) > 0, i > 0);
+        }
+    }
+}
+
+TEST_F(PixelMeasuresTest, NonRedundantImagesHoldTheOccludedAndUsefulSamplesThatDoubleLoopsFind) {
+    for (unsigned seed : {1U, 2U, 3U}) {
+        const Experiment e(seed);
+        const OnDevice conventional = onDevice(e.conventional);
+        const OnDevice nonRedundant = onDevice(e.nonRedundant);
+        const OnDevice outputs = onDevice(e.outputs);
+        for (std::size_t i = 0; i < 3; ++i) {
+            Expected expected(e.nonRedundant[i]);
+            expected.mark(HostImages(e.nonRedundant).first(i), true, kSample, kRedundant);
+            expected.mark(e.conventional, false, kSample, kOccluded);
+            expected.mark(HostImages(e.conventional).first(i), false, kSample, kOccludedLiterally);
+
+            const DepthImage& image = nonRedundant.images[i];
+            gl::Texture marks = measures.makeMarks(image);
+            measures.mark(image, marks, nonRedundant.span().first(i), true, kSample, kRedundant);
+            measures.mark(image, marks, conventional.span(), false, kSample, kOccluded);
+            measures.mark(image, marks, conventional.span().first(i), false, kSample,
+                          kOccludedLiterally);
+            for (std::size_t frame = 0; frame < e.outputs.size(); ++frame) {
+                expected.mark({&e.outputs[frame], 1}, true, kOccluded, kUseful);
+                measures.mark(image, marks, outputs.span().subspan(frame, 1), true, kOccluded,
+                              kUseful);
+            }
+            const std::vector<std::uint32_t> actual = read(marks);
+            expectEqualMarks(expected, actual);
+            for (const Mark bit : {kRedundant, kOccluded, kOccludedLiterally, kUseful}) {
+                EXPECT_EQ(measures.count(marks, bit), countOf(actual, bit)) << bit;
+            }
+            EXPECT_EQ(measures.count(marks, kOccluded | kUseful), countOf(actual, kUseful));
+            if (i > 0) {
+                EXPECT_GT(countOf(expected.marks, kUseful), 0U);
+                EXPECT_GT(countOf(expected.marks, kOccluded), countOf(expected.marks, kUseful));
+            }
+        }
+    }
+}
+
+TEST_F(PixelMeasuresTest, AvailabilityIsThatOfDoubleLoops) {
+    for (unsigned seed : {1U, 2U, 3U}) {
+        const Experiment e(seed);
+        const OnDevice references = onDevice(e.nonRedundant);
+        const OnDevice outputs = onDevice(e.outputs);
+        double mean = 0.0, least = 1.0, expectedMean = 0.0, expectedLeast = 1.0;
+        for (std::size_t frame = 0; frame < e.outputs.size(); ++frame) {
+            Expected expected(e.outputs[frame]);
+            expected.mark(e.nonRedundant, true, kSample, kAvailable);
+            const std::uint64_t samples = countOf(expected.marks, kSample);
+            const std::uint64_t sure = countOf(expected.marks, kAvailable);
+            const std::uint64_t undecided = countOf(expected.borderline, kAvailable);
+
+            measures.beginAvailability(outputs.images[frame], references.span());
+            const PixelMeasures::Availability found = measures.finishAvailability();
+            EXPECT_EQ(found.samples, samples);
+            EXPECT_NEAR(static_cast<double>(found.available), static_cast<double>(sure),
+                        static_cast<double>(undecided));
+            // The marks are of the same test: no tolerance.
+            gl::Texture marks = measures.makeMarks(outputs.images[frame]);
+            measures.mark(outputs.images[frame], marks, references.span(), true, kSample,
+                          kAvailable);
+            expectEqualMarks(expected, read(marks));
+            EXPECT_EQ(found.available, measures.count(marks, kAvailable));
+
+            const auto share = [&](std::uint64_t n) {
+                return static_cast<double>(n) / static_cast<double>(samples);
+            };
+            mean += share(found.available) / 5.0;
+            least = std::min(least, share(found.available));
+            expectedMean += share(sure) / 5.0;
+            expectedLeast = std::min(expectedLeast, share(sure));
+        }
+        EXPECT_NEAR(mean, expectedMean, 0.01);
+        EXPECT_NEAR(least, expectedLeast, 0.01);
+        EXPECT_LT(least, mean);
+        EXPECT_GT(least, 0.3);
+    }
+}
+
+TEST_F(PixelMeasuresTest, AnImageIsRedundantWithItself) {
+    const Experiment e(4);
+    for (const HostDepthImage& image : e.conventional) {
+        EXPECT_EQ(redundantCount(image, {&image, 1}), countOf(Expected(image).marks, kSample));
+    }
+}
+
+// 1024 pixels and an eye far from the origin: the sample must land at the centre, not merely
+// inside.
+TEST_F(PixelMeasuresTest, PixelCentresLandAtCentresOfTheSameView) {
+    const View view = test::viewFrom({1000.0F, 40.0F, 3.0F}, {1024, 512}, {997.0F, 39.0F, 0.0F});
+    const glm::mat4 same = depth_images::reprojection(view, view);
+    for (const float depthM : {0.06F, 1.0F, 19.0F}) {
+        for (const glm::vec2 centre : {glm::vec2(0.5F), glm::vec2(1023.5F, 511.5F)}) {
+            const glm::vec4 landed = same * glm::vec4(centre * depthM, depthM, 1.0F);
+            EXPECT_NEAR(landed.x / landed.z, centre.x, 1e-3F);
+            EXPECT_NEAR(landed.y / landed.z, centre.y, 1e-3F);
+        }
+    }
+}
+
+TEST_F(PixelMeasuresTest, OneMatrixProjectsLikeUnprojectAndProject) {
+    const View from = test::viewFrom({-1.2F, -0.7F, 3.0F}, {61, 53});
+    const View to = test::viewFrom({0.3F, 0.2F, 0.5F}, {37, 90}, {0.1F, 0.0F, -2.0F});
+    const glm::mat4 matrix = depth_images::reprojection(from, to);
+    int before = 0;
+    for (int i = 0; i < 300; ++i) {
+        const glm::vec2 position(static_cast<float>(i % 61) + 0.25F,
+                                 static_cast<float>(i % 53) + 0.75F);
+        const float depthM = 0.1F + 0.02F * static_cast<float>(i);
+        const auto expected = project(to, unproject(from, position, depthM));
+        const glm::vec4 landed = matrix * glm::vec4(position * depthM, depthM, 1.0F);
+        ASSERT_EQ(landed.z > 0.0F, expected.has_value()) << i;
+        if (!expected) continue;
+        ++before;
+        // Positions far outside of the image are thousands of pixels: relative there.
+        const float tolerance = 1e-4F * std::max(10.0F, glm::length(*expected));
+        EXPECT_NEAR(landed.x / landed.z, expected->x, tolerance) << i;
+        EXPECT_NEAR(landed.y / landed.z, expected->y, tolerance) << i;
+    }
+    EXPECT_GT(before, 50);
+    EXPECT_LT(before, 250);
+}
+
+TEST_F(PixelMeasuresTest, SamplesBehindTheEyeAreNotRedundant) {
+    // Back to back: projected through the eye, the samples would land inside.
+    const auto image = test::filledImage(test::viewFrom({0, 0, 1}, {8, 8}), 2.0F, 1);
+    const auto away = test::filledImage(test::viewFrom({0, 0, 1}, {8, 8}, {0, 0, 5}), 2.0F, 1);
+    const auto towards = test::filledImage(test::viewFrom({0, 0, 2}, {8, 8}), 2.0F, 1);
+    EXPECT_EQ(redundantCount(image, {&away, 1}), 0U);
+    EXPECT_EQ(redundantCount(image, {&towards, 1}), 64U);
+}
+
+TEST_F(PixelMeasuresTest, SamplesOutsideOfTheOtherImageAreNotRedundant) {
+    scene::Camera camera;
+    camera.position = {0, 0, 1};
+    const auto image = test::filledImage(depth_images::viewOf(camera, {20, 10}), 2.0F, 1);
+    struct Shift {
+        glm::vec2 offsetPx;
+        std::uint64_t inside;
+    };
+    for (const Shift& shift : {Shift{{3, 0}, 17 * 10},
+                               {{-3, 0}, 17 * 10},
+                               {{0, 2}, 20 * 8},
+                               {{0, -2}, 20 * 8},
+                               {{1, -1}, 19 * 9},
+                               {{20, 0}, 0}}) {
+        const auto other =
+            test::filledImage(depth_images::viewOf(camera, {20, 10}, shift.offsetPx), 2.0F, 1);
+        EXPECT_EQ(redundantCount(image, {&other, 1}), shift.inside)
+            << shift.offsetPx.x << ", " << shift.offsetPx.y;
+    }
+}
+
+TEST_F(PixelMeasuresTest, ImagesMayDifferInSize) {
+    const auto image = test::filledImage(test::viewFrom({0, 0, 1}, {12, 9}), 2.0F, 7);
+    // Three times finer: the centre of pixel p lands at the centre of pixel 3p + 1.
+    auto fine = test::emptyImage(test::viewFrom({0, 0, 1}, {36, 27}));
+    auto others = test::filledImage(fine.view, 2.0F, 7);
+    for (int y = 0; y < 9; ++y) {
+        for (int x = 0; x < 12; ++x) {
+            fine.triangleId[fine.indexOf({3 * x + 1, 3 * y + 1})] = 7;
+            others.triangleId[fine.indexOf({3 * x + 1, 3 * y + 1})] = 8;
+        }
+    }
+    EXPECT_EQ(redundantCount(image, {&fine, 1}), 12U * 9U);
+    EXPECT_EQ(redundantCount(image, {&others, 1}), 0U);
+}
+
+TEST_F(PixelMeasuresTest, EmptyImagesAndEmptyLists) {
+    const View view = test::viewFrom({0, 0, 1}, {19, 70});
+    const OnDevice full = onDevice(test::filledImage(view, 2.0F, 1));
+    const OnDevice empty = onDevice(test::emptyImage(view));
+
+    gl::Texture none = measures.makeMarks(empty.images[0]);
+    measures.mark(empty.images[0], none, full.span(), false, 0, kOccluded);
+    measures.mark(empty.images[0], none, empty.span(), true, 0, kRedundant);
+    EXPECT_EQ(read(none), std::vector<std::uint32_t>(19 * 70, 0));
+    measures.beginAvailability(empty.images[0], empty.span());
+    EXPECT_EQ(measures.finishAvailability(), (PixelMeasures::Availability{0, 0}));
+    measures.beginAvailability(full.images[0], empty.span());
+    EXPECT_EQ(measures.finishAvailability(), (PixelMeasures::Availability{19 * 70, 0}));
+    measures.beginAvailability(full.images[0], {});
+    EXPECT_EQ(measures.finishAvailability(), (PixelMeasures::Availability{19 * 70, 0}));
+
+    gl::Texture marks = measures.makeMarks(full.images[0]);
+    measures.mark(full.images[0], marks, {}, true, kSample, kRedundant);
+    EXPECT_EQ(measures.count(marks, kRedundant), 0U);
+    measures.mark(full.images[0], marks, {}, false, kSample, kOccluded);
+    EXPECT_EQ(measures.count(marks, kOccluded), 19U * 70U);
+    EXPECT_EQ(measures.count(marks, 0), 19U * 70U);
+}
+
+TEST_F(PixelMeasuresTest, EveryOneOfSixteenImagesIsTestedAndSeventeenAreRefused) {
+    const View view = test::viewFrom({0, 0, 1}, {16, 4});
+    const auto image = test::filledImage(view, 2.0F, 1);
+    // Image i holds column i only.
+    std::vector<HostDepthImage> columns;
+    for (int i = 0; i < 16; ++i) {
+        columns.push_back(test::emptyImage(view));
+        for (int y = 0; y < 4; ++y) columns.back().triangleId[columns.back().indexOf({i, y})] = 1;
+    }
+    for (std::size_t count = 0; count <= 16; ++count) {
+        EXPECT_EQ(redundantCount(image, HostImages(columns).first(count)), 4 * count);
+    }
+    columns.push_back(image);
+    EXPECT_DEATH(redundantCount(image, columns), "imageCount <= kMaxImages");
+}
+
+TEST_F(PixelMeasuresTest, MarksStayAndConditionsOnMarksHold) {
+    const View view = test::viewFrom({0, 0, 1}, {16, 4});
+    const OnDevice full = onDevice(test::filledImage(view, 2.0F, 1));
+    auto leftHalf = test::filledImage(view, 2.0F, 1);
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 8; x < 16; ++x) leftHalf.triangleId[leftHalf.indexOf({x, y})] = 0;
+    }
+    const OnDevice left = onDevice(leftHalf);
+    gl::Texture marks = measures.makeMarks(full.images[0]);
+    measures.mark(full.images[0], marks, left.span(), false, kSample, kOccluded);
+    EXPECT_EQ(measures.count(marks, kOccluded), 32U);
+    // The left half would be needed as well, but is not occluded.
+    measures.mark(full.images[0], marks, full.span(), true, kOccluded, kUseful);
+    EXPECT_EQ(measures.count(marks, kUseful), 32U);
+    EXPECT_EQ(measures.count(marks, kUseful | kOccluded), 32U);
+    EXPECT_EQ(read(marks)[0], std::uint32_t{kSample});
+    EXPECT_EQ(read(marks)[15], std::uint32_t{kSample | kOccluded | kUseful});
+    // Again, with nothing that needs them: all that were marked stay so.
+    const std::vector<std::uint32_t> before = read(marks);
+    measures.mark(full.images[0], marks, {}, true, kOccluded, kUseful);
+    EXPECT_EQ(read(marks), before);
+    // Among two bits.
+    measures.mark(full.images[0], marks, full.span(), true, kOccluded | kRedundant, kAvailable);
+    EXPECT_EQ(measures.count(marks, kAvailable), 0U);
+}
+
+TEST_F(PixelMeasuresTest, MarksOfAnotherSizeAreRefused) {
+    const OnDevice small = onDevice(test::emptyImage(test::viewFrom({0, 0, 1}, {4, 4})));
+    const OnDevice large = onDevice(test::emptyImage(test::viewFrom({0, 0, 1}, {4, 5})));
+    gl::Texture marks = measures.makeMarks(small.images[0]);
+    EXPECT_DEATH(measures.mark(large.images[0], marks, {}, true, 0, kRedundant),
+                 "marks.size\\(\\) == glm::ivec3");
+}
+
+}  // namespace
+}  // namespace gfxrepro::depth_sampling

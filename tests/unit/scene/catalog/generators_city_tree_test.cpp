@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+#include <string>
+
+#include "runner/core/hash.h"
+#include "runner/scene/generators.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+Scene generated(const std::string& name, const std::string& yaml, std::uint64_t seed = 1) {
+    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator '" + name + "'");
+    return findGenerator(name, {}).generate(params, seed);
+}
+
+Scene sized(const std::string& name, int triangles, std::uint64_t seed = 1) {
+    return generated(name, "{triangles: " + std::to_string(triangles) + "}", seed);
+}
+
+template <class T>
+std::string digestOf(const std::vector<T>& values) {
+    return sha256(std::as_bytes(std::span(values)));
+}
+
+std::string digestOf(const Scene& scene) {
+    std::string digests;
+    for (const Mesh& mesh : scene.meshes) {
+        digests += digestOf(mesh.positions) + digestOf(mesh.normals) + digestOf(mesh.colors) +
+                   digestOf(mesh.triangles);
+    }
+    return sha256(digests);
+}
+
+void expectSoundMesh(const Mesh& mesh) {
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
+    float largest = 0.0F;
+    float furthestFromUnit = 0.0F;
+    bool areColorsValid = true;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            const float p = mesh.positions[i][c];
+            largest = std::isfinite(p) ? std::max(largest, std::abs(p)) : HUGE_VALF;
+            const float color = mesh.colors[i][c];
+            areColorsValid &= color >= 0.0F && color <= 1.0F;
+        }
+        const float error = std::abs(glm::length(mesh.normals[i]) - 1.0F);
+        // The negation counts not-a-number.
+        if (!(error <= furthestFromUnit)) furthestFromUnit = error;
+    }
+    EXPECT_LT(largest, 1e4F);
+    EXPECT_LT(furthestFromUnit, 1e-4F);
+    EXPECT_TRUE(areColorsValid);
+
+    std::size_t bad = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        ASSERT_LT(std::max({t.x, t.y, t.z}), mesh.positions.size());
+        const glm::vec3 a = mesh.positions[t.x];
+        const glm::vec3 b = mesh.positions[t.y];
+        const glm::vec3 c = mesh.positions[t.z];
+        const glm::vec3 cross = glm::cross(b - a, c - a);
+        const float longest =
+            std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+        // Twice the area against the longest side's square: a sliver of 1 : 10⁵ is a mistake.
+        bad += !(glm::length(cross) > 1e-5F * longest * longest);
+        // Winding and vertex normals must agree about the outside.
+        bad += !(glm::dot(cross, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) > 0.0F);
+    }
+    EXPECT_EQ(bad, 0U);
+}
+
+struct Case {
+    const char* name;
+    int triangles;
+};
+
+class Outdoor : public testing::TestWithParam<Case> {};
+
+TEST_P(Outdoor, HasItsCountAndSoundMeshes) {
+    const auto [name, triangles] = GetParam();
+    const Scene scene = sized(name, triangles, 5);
+    EXPECT_GE(scene.triangleCount(), static_cast<std::size_t>(0.98 * triangles));
+    EXPECT_LE(scene.triangleCount(), static_cast<std::size_t>(1.02 * triangles));
+    for (const Mesh& mesh : scene.meshes) {
+        SCOPED_TRACE(mesh.name);
+        expectSoundMesh(mesh);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sizes, Outdoor,
+    testing::Values(Case{"city", 5000}, Case{"city", 7000}, Case{"city", 10'000},
+                    Case{"city", 16'000}, Case{"city", 25'000}, Case{"city", 50'000},
+                    Case{"city", 130'000}, Case{"city", 1'000'000}, Case{"tree", 10'000},
+                    Case{"tree", 25'000}, Case{"tree", 47'001}, Case{"tree", 113'000},
+                    Case{"tree", 400'000}, Case{"tree", 2'000'000}),
+    [](const auto& info) {
+        return std::string(info.param.name) + std::to_string(info.param.triangles);
+    });
+
+TEST(OutdoorScenes, DefaultsAreTheThesis) {
+    EXPECT_NEAR(static_cast<double>(generated("city", "{}").triangleCount()), 50e3, 1e3);
+    EXPECT_NEAR(static_cast<double>(generated("tree", "{}").triangleCount()), 113e3, 2.26e3);
+}
+
+TEST(OutdoorScenes, EverySeedMeetsTheCount) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        EXPECT_NEAR(static_cast<double>(sized("city", 50'000, seed).triangleCount()), 50e3, 1e3);
+        EXPECT_NEAR(static_cast<double>(sized("city", 5000, seed).triangleCount()), 5e3, 100);
+        EXPECT_NEAR(static_cast<double>(sized("tree", 10'000, seed).triangleCount()), 10e3, 200);
+    }
+}
+
+TEST(OutdoorScenes, AnotherSeedIsAnotherScene) {
+    for (const char* name : {"city", "tree"}) {
+        EXPECT_EQ(digestOf(sized(name, 12'000, 1)), digestOf(sized(name, 12'000, 1)));
+        EXPECT_NE(digestOf(sized(name, 12'000, 1)), digestOf(sized(name, 12'000, 2)));
+    }
+}
+
+TEST(OutdoorScenes, SameBytesOnEveryMachine) {
+    // A difference here is a changed generator (then kGeneratorVersion goes up) or a compiler that
+    // reorders floating point.
+    EXPECT_EQ(digestOf(generated("city", "{}")),
+              "1c373e7675030c73566e3c9eef3772ca0181aeecaa92c13f7bddc71e468ca860");
+    EXPECT_EQ(digestOf(generated("tree", "{}")),
+              "50c1dcc4f24673f4262b9e16976c6b260d5b790fe728590199a1003986a2bf64");
+    EXPECT_EQ(digestOf(generated("four_objects", "{}")),
+              "72e08689c94286f0b28ad643c7aa3fb3d70b031a70f85ce22a5e5da6f1f0895f");
+}
+
+/// Whether all vertices are in the square picture from `eye`, within `fill` of its half size.
+bool isFramed(const Scene& scene, const glm::vec3& eye, float fill) {
+    const Camera& camera = scene.cameras.at(0);
+    const glm::vec3 forward = glm::normalize(camera.target - eye);
+    const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up));
+    const glm::vec3 up = glm::cross(right, forward);
+    const float slope = fill * std::tan(0.5F * camera.verticalFovRad);
+    for (const Mesh& mesh : scene.meshes) {
+        for (const glm::vec3& position : mesh.positions) {
+            const glm::vec3 d = position - eye;
+            const float depth = glm::dot(d, forward);
+            if (depth <= 0.0F || std::abs(glm::dot(d, right)) > slope * depth ||
+                std::abs(glm::dot(d, up)) > slope * depth) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+TEST(OutdoorScenes, CamerasAndTheViewsAroundThemHoldTheScene) {
+    for (const char* name : {"city", "tree", "four_objects"}) {
+        SCOPED_TRACE(name);
+        const Scene scene = generated(name, "{}");
+        ASSERT_EQ(scene.cameras.size(), 1U);
+        const Camera& camera = scene.cameras[0];
+        EXPECT_TRUE(isFramed(scene, camera.position, 0.9F));
+        // The corners of an upright equilateral triangle around it, half a diagonal wide.
+        const glm::vec3 forward = glm::normalize(camera.target - camera.position);
+        const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up));
+        const glm::vec3 up = glm::cross(right, forward);
+        const float sideM = 0.5F * glm::length(scene.bounds().size());
+        const float heightM = sideM * std::sqrt(3.0F) / 2.0F;
+        const glm::vec3 low = camera.position - up * (heightM / 3.0F);
+        for (const glm::vec3& eye : {low - right * (0.5F * sideM), low + right * (0.5F * sideM),
+                                     camera.position + up * (heightM * 2.0F / 3.0F)}) {
+            EXPECT_TRUE(isFramed(scene, eye, 1.0F));
+            const glm::vec3 outside = glm::max(scene.bounds().min - eye, eye - scene.bounds().max);
+            EXPECT_GT(std::max({outside.x, outside.y, outside.z}), 0.0F);
+        }
+    }
+}
+
+TEST(OutdoorScenes, LeavesAreDoubleSidedAndAllElseIsNot) {
+    const Scene scene = sized("tree", 12'000);
+    for (const Mesh& mesh : scene.meshes) {
+        EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(mesh.material)).isDoubleSided,
+                  mesh.name == "leaves");
+    }
+    for (const Material& material : sized("city", 5000).materials) {
+        EXPECT_FALSE(material.isDoubleSided);
+    }
+}
+
+TEST(OutdoorScenes, BadParametersAreLocated) {
+    EXPECT_EQ(test::errorText([] { generated("city", "{triangles: 4999}"); }),
+              "t.yaml:1:13: generator 'city': triangles is 4999; allowed: 5000 … 1000000");
+    EXPECT_EQ(test::errorText([] { generated("city", "{blocks: 4}"); }),
+              "t.yaml:1:2: generator 'city': unknown parameter 'blocks'; allowed: triangles");
+    EXPECT_EQ(test::errorText([] { generated("tree", "{triangles: 2000001}"); }),
+              "t.yaml:1:13: generator 'tree': triangles is 2000001; allowed: 10000 … 2000000");
+    EXPECT_EQ(test::errorText([] { generated("tree", "{leafs: 1}"); }),
+              "t.yaml:1:2: generator 'tree': unknown parameter 'leafs'; allowed: triangles");
+    EXPECT_EQ(test::errorText([] { generated("four_objects", "{triangles: 48}"); }),
+              "t.yaml:1:2: generator 'four_objects': unknown parameter 'triangles'; it has none");
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
