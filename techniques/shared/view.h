@@ -41,4 +41,13 @@ glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx);
 /// The point seen at a position in pixel coordinates at `depthM`, the distance along the view axis.
 glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM);
 
+/// Takes (x·d, y·d, d, 1) to the point of the world that is seen at pixel coordinates (x, y) and
+/// the distance d along the view axis.
+glm::mat4 worldFromPixels(const View& view);
+
+/// Takes a sample of `from` to `to`: (x·d, y·d, d, 1) becomes (x'·d', y'·d', d', 1), (x, y) being
+/// pixel coordinates and d the distance along the view axis. Worked out in double precision:
+/// between equal views it is the identity. For reproject() of shared/pixel_redundancy.glsl.
+glm::mat4 reprojection(const View& from, const View& to);
+
 }  // namespace gfxrepro::depth_images

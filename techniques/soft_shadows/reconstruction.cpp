@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <bit>
-#include <glm/gtc/matrix_inverse.hpp>
+#include <algorithm>
 
 #include "runner/core/error.h"
 
@@ -78,16 +77,11 @@ std::size_t ReconstructedMesh::sizeBytes() const {
     return vertices.sizeBytes() + indices.sizeBytes();
 }
 
-glm::dmat4 worldFromCorner(const depth_images::View& view) {
-    const glm::dmat4 p(view.clipFromView);
-    const glm::dvec2 size(view.sizePx);
-    // As depth_images::unproject: ndc = position / size · 2 − 1, and position = half pixels / 2.
-    glm::dmat4 viewFromCorner(0.0);
-    viewFromCorner[0].x = 1.0 / (size.x * p[0].x);
-    viewFromCorner[1].y = 1.0 / (size.y * p[1].y);
-    viewFromCorner[2] = glm::dvec4((p[2].x - 1.0) / p[0].x, (p[2].y - 1.0) / p[1].y, -1.0, 0.0);
-    viewFromCorner[3].w = 1.0;
-    return glm::affineInverse(glm::dmat4(view.viewFromWorld)) * viewFromCorner;
+glm::mat4 worldFromCorner(const depth_images::View& view) {
+    glm::mat4 matrix = worldFromPixels(view);
+    matrix[0] *= 0.5F;
+    matrix[1] *= 0.5F;
+    return matrix;
 }
 
 Reconstructor::Reconstructor(const gl::ShaderLibrary& shaders,
@@ -116,11 +110,11 @@ void Reconstructor::setGeometry(const gl::Program& program, const depth_images::
     const auto setIfActive = [&](const char* name, const auto& value) {
         if (program.isActive(name)) program.set(name, value);
     };
-    const glm::mat4 rays(worldFromCorner(view));  // of depth 1, by half pixels
+    const glm::mat4 rays = worldFromPixels(view);  // of depth 1
     setIfActive("imageSizePx", view.sizePx);
     setIfActive("rayOrigin", glm::vec3(rays[2]));
-    setIfActive("rayStepX", 2.0F * glm::vec3(rays[0]));
-    setIfActive("rayStepY", 2.0F * glm::vec3(rays[1]));
+    setIfActive("rayStepX", glm::vec3(rays[0]));
+    setIfActive("rayStepY", glm::vec3(rays[1]));
     setIfActive("footprintPerDepth",
                 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
     setIfActive("grazingLimitPx", settings_.grazingLimitPx);
@@ -219,7 +213,7 @@ gl::Buffer triangleNormals(const scene::Mesh& flattened, const gl::DeviceLimits&
 }
 
 scene::Mesh toWorldMesh(const ReconstructedMesh& mesh) {
-    const glm::dmat4 toWorld = worldFromCorner(mesh.view);
+    const glm::dmat4 toWorld(worldFromCorner(mesh.view));
     scene::Mesh world;
     world.name = "reconstruction";
     world.positions.reserve(mesh.vertexCount);

@@ -55,7 +55,7 @@ struct ReconstructedMesh {
 };
 
 /// Takes (x·d, y·d, d, 1) of a CornerVertex (x, y in half pixels, d its depth) into the world.
-glm::dmat4 worldFromCorner(const depth_images::View& view);
+glm::mat4 worldFromCorner(const depth_images::View& view);
 
 /// Rebuilds a mesh from depth image I and, for the hybrid method, its offset image H: the same
 /// view, moved by half a pixel to the lower left (viewOf with offset (−½, −½)), so that H's pixel

@@ -60,7 +60,8 @@ void ReconstructedCaster::draw(const depth_images::View& lightView) const {
         glm::dmat4(lightView.clipFromView) * glm::dmat4(lightView.viewFromWorld);
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         const ReconstructedMesh& mesh = meshes_[i];
-        program_.set("clipFromCorner", glm::mat4(clipFromWorld * worldFromCorner(mesh.view)));
+        program_.set("clipFromCorner",
+                     glm::mat4(clipFromWorld * glm::dmat4(worldFromCorner(mesh.view))));
         vertexArrays_[i].bind();
         for (std::uint32_t first = 0; first < mesh.triangleCount; first += kTrianglesPerDraw) {
             const std::uint32_t count = std::min(mesh.triangleCount - first, kTrianglesPerDraw);

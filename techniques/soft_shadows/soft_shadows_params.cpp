@@ -49,10 +49,10 @@ ReconstructionSettings readReconstruction(config::Params& params) {
     settings.method = params.getEnum("reconstruction", Reconstruction::Hybrid, kReconstructions,
                                      {"how depth images become meshes"});
     settings.discontinuityPx = number(
-        params, "discontinuity", 4.0,
+        params, "discontinuity", static_cast<double>(settings.discontinuityPx),
         {"depth off a sample's plane at which a corner is another surface's", "pixels", 0.0, 1e6});
     settings.grazingLimitPx = number(
-        params, "grazing_limit", 8.0,
+        params, "grazing_limit", static_cast<double>(settings.grazingLimitPx),
         {"how far a plane-fitted corner may lie before or behind its sample", "pixels", 0.0, 1e6});
     return settings;
 }
