@@ -278,4 +278,24 @@ void Texture::bindImageLayer(GLuint unit, int layer, GLenum access) const {
     glBindImageTexture(unit, id(), 0, GL_FALSE, layer, access, format_);
 }
 
+SampleQuery::SampleQuery() {
+    GLuint id = 0;
+    glCreateQueries(GL_SAMPLES_PASSED, 1, &id);
+    name_ = detail::Name<detail::deleteQuery>(id);
+}
+
+void SampleQuery::begin() const {
+    glBeginQuery(GL_SAMPLES_PASSED, name_.get());
+}
+
+void SampleQuery::end() const {
+    glEndQuery(GL_SAMPLES_PASSED);
+}
+
+std::uint64_t SampleQuery::result() const {
+    GLuint64 count = 0;
+    glGetQueryObjectui64v(name_.get(), GL_QUERY_RESULT, &count);
+    return count;
+}
+
 }  // namespace gfxrepro::gl

@@ -166,6 +166,19 @@ class Framebuffer {
     glm::ivec2 size_{0};
 };
 
+/// Counts the samples that pass all tests of the draws between begin() and end().
+class SampleQuery {
+  public:
+    SampleQuery();
+    void begin() const;
+    void end() const;
+    /// Of the last begin() … end(); waits for the device.
+    std::uint64_t result() const;
+
+  private:
+    detail::Name<detail::deleteQuery> name_;
+};
+
 class VertexArray {
   public:
     /// Makes an empty array object (for draws without attributes).

@@ -129,23 +129,28 @@ std::string latexCell(const Cell& cell) {
 std::string tableLatex(const Table& table) {
     std::string text = "\\begin{tabular}{";
     text += std::string(table.rowAxes.size() + (table.hasSources() ? 1 : 0), 'l');
-    text += std::string(2 * table.columns.size(), 'r') + "}\n\\toprule\n";
+    const std::size_t width = table.isOnlyPrinted ? 1 : 2;
+    text += std::string(width * table.columns.size(), 'r') + "}\n\\toprule\n";
     std::vector<std::string> head, subhead;
     for (const std::string& axis : table.rowAxes) head.push_back(escapeLatex(axis));
     if (table.hasSources()) head.emplace_back("source");
     subhead.resize(head.size());
     for (const TableColumn& column : table.columns) {
-        head.push_back(fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", escapeLatex(column.label)));
+        const std::string label = escapeLatex(column.label);
+        head.push_back(table.isOnlyPrinted ? label
+                                           : fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", label));
         subhead.insert(subhead.end(), {"printed", "measured"});
     }
-    text += joined(head, " & ") + " \\\\\n" + joined(subhead, " & ") + " \\\\\n\\midrule\n";
+    text += joined(head, " & ") + " \\\\\n";
+    if (!table.isOnlyPrinted) text += joined(subhead, " & ") + " \\\\\n";
+    text += "\\midrule\n";
     for (const TableRow& row : table.rows) {
         std::vector<std::string> cells;
         for (const std::string& label : row.labels) cells.push_back(escapeLatex(label));
         if (table.hasSources()) cells.emplace_back(sceneSourceName(row.source));
         for (const Cell& cell : row.cells) {
             cells.push_back(escapeLatex(cell.printed.value_or("")));
-            cells.push_back(latexCell(cell));
+            if (!table.isOnlyPrinted) cells.push_back(latexCell(cell));
         }
         text += joined(cells, " & ") + " \\\\\n";
     }

@@ -31,6 +31,7 @@ FacadeStyle styleOf(const glm::vec3& wall, float detail, Random& random) {
     style.trim = glm::min(wall * random.uniform(0.75F, 1.35F), glm::vec3(0.8F));
     const float tint = random.uniform(0.6F, 1.4F);
     style.glass = tint * glm::vec3(0.06F, 0.10F, 0.14F);
+    style.seed = random.next();
     style.bayM = random.uniform(3.6F, 4.8F) / detail;
     style.storeyM = random.uniform(3.7F, 4.5F) / std::clamp(detail, 0.6F, 1.15F);
     return style;
@@ -112,7 +113,8 @@ void addHouse(Builders& builders, const Lot& lot, float detail, Random& random) 
 
 void addBlockBuilding(Builders& builders, const Lot& lot, float detail, Random& random) {
     FacadeStyle style = styleOf(oneOf(kWallColors, random), detail, random);
-    style.hasLedges = random.index(5) == 0;
+    style.hasLedges = random.index(6) == 0;
+    if (random.index(3) != 0) style.recessM = 0.0F;
     Solid body{{lot.min.x, 0.2F, lot.min.y}, {lot.max.x, lot.heightM, lot.max.y}};
     // The shop front: a darker storey, with a canopy around.
     const float shopM = 4.5F;
@@ -120,6 +122,7 @@ void addBlockBuilding(Builders& builders, const Lot& lot, float detail, Random& 
     shop.wall = 0.5F * style.trim;
     shop.storeyM = shopM;
     shop.bayM = 1.8F * style.bayM;
+    shop.recessM = 0.3F;
     shop.hasLedges = false;
     const Solid base{body.min, {body.max.x, body.min.y + shopM, body.max.z}};
     addWindowWalls(builders, base, shop, {false, false, false, false});
@@ -149,7 +152,8 @@ void addBlockBuilding(Builders& builders, const Lot& lot, float detail, Random& 
 }
 
 void addTower(Builders& builders, const Lot& lot, float detail, Random& random) {
-    const FacadeStyle style = styleOf(oneOf(kTowerColors, random), detail, random);
+    FacadeStyle style = styleOf(oneOf(kTowerColors, random), detail, random);
+    style.recessM = 0.0F;
     FacadeStyle pane = style;
     pane.glass = glm::vec3(0.16F, 0.26F, 0.33F) * random.uniform(0.5F, 1.3F);
     const unsigned kind = random.index(3);
@@ -175,7 +179,7 @@ void addTower(Builders& builders, const Lot& lot, float detail, Random& random) 
         tier = next;
     }
     addRoofStructures(builders, tier, false, random);
-    if (lot.heightM > 70.0F) {
+    if (lot.heightM > 75.0F && random.index(2) == 0) {
         const glm::vec3 middle = 0.5F * (tier.min + tier.max);
         builders.metal.setColor({0.5F, 0.12F, 0.1F});
         const glm::vec3 foot(middle.x, tier.max.y, middle.z);

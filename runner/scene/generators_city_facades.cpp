@@ -53,21 +53,22 @@ void addBar(MeshBuilder& builder, const Wall& wall, const glm::vec4& leftRightLo
     }
 }
 
-/// The hole of a window: pane and four reveals.
+/// The hole of a window: the pane and, where it is recessed, four reveals.
 void addWindow(Builders& builders, const Wall& wall, const FacadeStyle& style,
                const glm::vec4& leftRightLowHigh) {
-    constexpr float kRecessM = 0.3F;
     const glm::vec4& r = leftRightLowHigh;
-    const glm::vec3 in = glm::cross(wall.along, kUp) * -kRecessM;
+    const glm::vec3 in = glm::cross(wall.along, kUp) * -style.recessM;
     const glm::vec3 a = wall.origin + wall.along * r[0] + kUp * r[2];
     const glm::vec3 b = wall.origin + wall.along * r[1] + kUp * r[2];
     const glm::vec3 c = wall.origin + wall.along * r[1] + kUp * r[3];
     const glm::vec3 d = wall.origin + wall.along * r[0] + kUp * r[3];
     builders.glass.addQuad(a + in, b + in, c + in, d + in);
-    builders.walls.addQuad(a, b, b + in, a + in);
-    builders.walls.addQuad(b, c, c + in, b + in);
-    builders.walls.addQuad(c, d, d + in, c + in);
-    builders.walls.addQuad(d, a, a + in, d + in);
+    if (style.recessM > 0.0F) {
+        builders.walls.addQuad(a, b, b + in, a + in);
+        builders.walls.addQuad(b, c, c + in, b + in);
+        builders.walls.addQuad(c, d, d + in, c + in);
+        builders.walls.addQuad(d, a, a + in, d + in);
+    }
     if (!style.hasLedges) return;
     builders.walls.setColor(style.trim);
     addBar(builders.walls, wall, {r[0] - 0.15F, r[1] + 0.15F, r[2] - 0.25F, r[2]}, 0.3F, true,
@@ -101,13 +102,12 @@ void addFrame(MeshBuilder& builder, const Solid& outer, float thickness, FrameFa
 }
 
 void addWindowWall(Builders& builders, const Wall& wall, const FacadeStyle& style, int bays,
-                   float glassShare) {
+                   float glassShare, Random& panes) {
     const int storeys = divided(wall.heightM, style.storeyM);
     const float storeyM = wall.heightM / static_cast<float>(storeys);
     const float bayM = wall.widthM / static_cast<float>(bays);
     const float pierM = 0.5F * bayM * (1.0F - glassShare);  // to each side of a window
     builders.walls.setColor(style.wall);
-    builders.glass.setColor(style.glass);
     float below = 0.0F;
     for (int storey = 0; storey < storeys; ++storey) {
         const float low = (static_cast<float>(storey) + 0.28F) * storeyM;
@@ -118,6 +118,9 @@ void addWindowWall(Builders& builders, const Wall& wall, const FacadeStyle& styl
             const float begin = static_cast<float>(bay) * bayM + pierM;
             const float end = static_cast<float>(bay + 1) * bayM - pierM;
             addPatch(builders.walls, wall, left, begin, low, high);
+            // Curtains, lamps, reflections: no two windows look the same.
+            builders.glass.setColor(style.glass *
+                                    (panes.index(9) == 0 ? 2.6F : panes.uniform(0.6F, 1.4F)));
             addWindow(builders, wall, style, {begin, end, low, high});
             left = end;
         }
@@ -130,10 +133,11 @@ void addWindowWall(Builders& builders, const Wall& wall, const FacadeStyle& styl
 void addWindowWalls(Builders& builders, const Solid& tier, const FacadeStyle& style,
                     const bool (&isBack)[4]) {
     const auto walls = wallsOf(tier);
+    Random panes(style.seed, 5);
     for (std::size_t i = 0; i < walls.size(); ++i) {
         const float bayM = style.bayM * (isBack[i] ? 2.6F : 1.0F);
         addWindowWall(builders, walls[i], style, divided(walls[i].widthM, bayM),
-                      isBack[i] ? 0.22F : 0.52F);
+                      isBack[i] ? 0.22F : 0.52F, panes);
     }
 }
 

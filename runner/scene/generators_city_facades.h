@@ -13,6 +13,8 @@ struct FacadeStyle {
     float bayM = 3.6F;
     float storeyM = 3.6F;
     bool hasLedges = false;
+    float recessM = 0.3F;    // of windows; 0: flush with the wall
+    std::uint64_t seed = 0;  // of what is behind the panes
 };
 
 /// The lot's rectangle moved inwards.
@@ -25,14 +27,14 @@ struct FrameFaces {
 };
 void addFrame(MeshBuilder& builder, const Solid& outer, float thickness, FrameFaces faces);
 
-/// One wall with rows of recessed windows. `origin` is its lower left corner seen from outside,
+/// One wall with rows of windows. `origin` is its lower left corner seen from outside,
 /// `along` its unit direction to the right; `glassShare` of a bay's width is window.
 struct Wall {
     glm::vec3 origin, along;
     float widthM, heightM;
 };
 void addWindowWall(Builders& builders, const Wall& wall, const FacadeStyle& style, int bays,
-                   float glassShare);
+                   float glassShare, Random& panes);
 
 /// Four walls with windows; on the sides that `isBack` names (+x, −x, +z, −z) fewer of them.
 void addWindowWalls(Builders& builders, const Solid& tier, const FacadeStyle& style,

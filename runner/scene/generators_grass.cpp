@@ -166,9 +166,9 @@ Blade makeBlade(Random& random, const Field& field, float widthScale) {
         isWithWind ? windRad + random.uniform(-0.7F, 0.7F) : random.uniform(0.0F, 2.0F * kPi);
     blade.tiltRad = random.uniform(0.02F, 0.45F);
     const float limp = random.uniform();
-    blade.bendRad = 0.2F + 2.0F * limp * limp;
+    blade.bendRad = 0.2F + (isTall ? 0.9F : 2.0F) * limp * limp;
     blade.twistRad = random.uniform(-1.2F, 1.2F);
-    blade.widthM = widthScale * random.uniform(0.005F, 0.0125F);
+    blade.widthM = widthScale * random.uniform(0.007F, 0.016F);
     colorBlade(random, field, blade);
     return blade;
 }
@@ -256,8 +256,8 @@ Scene grass(config::Params& params, std::uint64_t seed) {
     scene.instances = {{0}, {1}};
     Camera camera;
     camera.name = "three_quarter";
-    camera.target = {-0.1F, 0.0F, 0.05F};
-    camera.position = {1.78F, 3.35F, 4.24F};
+    camera.target = {-0.13F, 0.02F, 0.05F};
+    camera.position = {1.95F, 2.80F, 4.68F};
     camera.nearM = 0.5F;
     camera.farM = 15.0F;
     scene.cameras = {camera};

@@ -9,6 +9,14 @@
 
 namespace gfxrepro::scene {
 
+/// Twigs woven into a bowl, eggs in it, a forked branch below. Exactly `triangles`; the number of
+/// twigs follows from it, the bowl stays, and the twigs get thinner so that the wood in it stays.
+Scene birdNest(config::Params& params, std::uint64_t seed);
+
+/// Bent blades on uneven ground. Exactly `triangles`; the number of blades follows from it, field
+/// and blade lengths stay, and the blades' width keeps its ratio to the distance between them.
+Scene grass(config::Params& params, std::uint64_t seed);
+
 /// A downtown: streets, sidewalks, towers, houses, trees and cars.
 Scene city(config::Params& params, std::uint64_t seed);
 /// A deciduous tree with a dense crown of double-sided leaves on a disc of ground.
@@ -18,13 +26,5 @@ Scene tree(config::Params& params, std::uint64_t seed);
 constexpr float kFourObjectsSpread = 0.5F;
 /// Four boxes and two views of which neither sees C ([xie2017] Fig. 11–12).
 Scene fourObjects(config::Params& params, std::uint64_t seed);
-
-/// Twigs woven into a bowl, eggs in it, a forked branch below. Exactly `triangles`; the number of
-/// twigs follows from it, the bowl stays, and the twigs get thinner so that the wood in it stays.
-Scene birdNest(config::Params& params, std::uint64_t seed);
-
-/// Bent blades on uneven ground. Exactly `triangles`; the number of blades follows from it, field
-/// and blade lengths stay, and the blades' width keeps its ratio to the distance between them.
-Scene grass(config::Params& params, std::uint64_t seed);
 
 }  // namespace gfxrepro::scene

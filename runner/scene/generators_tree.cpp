@@ -152,8 +152,8 @@ void addLeaf(MeshBuilder& builder, const glm::vec3& base, const glm::vec3& direc
     const glm::vec3 up = glm::cross(direction, side);
     const glm::vec3 tip = base + direction * lengthM - kUp * (0.18F * lengthM);
     const glm::vec3 middle = base + direction * (0.45F * lengthM) + up * (0.14F * lengthM);
-    builder.addTriangle(base, tip, middle + side * (0.32F * lengthM));
-    builder.addTriangle(base, middle - side * (0.32F * lengthM), tip);
+    builder.addTriangle(base, tip, middle + side * (0.4F * lengthM));
+    builder.addTriangle(base, middle - side * (0.4F * lengthM), tip);
 }
 
 /// `count` leaves, dealt out evenly to the twigs.
@@ -246,7 +246,7 @@ Scene tree(config::Params& params, std::uint64_t seed) {
     GFXREPRO_ASSERT(wood < wanted);
     // The leaves' area together stays what it is.
     MeshBuilder leaves;
-    addLeaves(leaves, grower.twigs(), (wanted - wood) / 2, 0.21F / std::sqrt(share), seed);
+    addLeaves(leaves, grower.twigs(), (wanted - wood) / 2, 0.23F / std::sqrt(share), seed);
 
     Scene scene;
     addMesh(scene, ground, "ground", false);

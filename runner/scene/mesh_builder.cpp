@@ -40,16 +40,20 @@ void MeshBuilder::addQuad(const glm::vec3& a, const glm::vec3& b, const glm::vec
 
 void MeshBuilder::addBox(const glm::vec3& centre, const glm::vec3& halfSize,
                          const glm::mat3& axes) {
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const float side : {-1.0F, 1.0F}) {
-            const int next = (axis + 1) % 3;
-            const int last = (axis + 2) % 3;
-            const glm::vec3 out = axes[axis] * (side * halfSize[axis]);
-            const glm::vec3 u = axes[next] * (side * halfSize[next]);
-            const glm::vec3 v = axes[last] * halfSize[last];
-            const glm::vec3 face = centre + out;
-            addQuad(face - u - v, face + u - v, face + u + v, face - u + v);
-        }
+    // Faces take their corners from here: computed face by face they would differ in the last bit,
+    // and a turned box would leak.
+    std::array<glm::vec3, 8> corners;
+    for (unsigned i = 0; i < 8; ++i) {
+        const glm::vec3 sign((i & 1) != 0 ? 1.0F : -1.0F, (i & 2) != 0 ? 1.0F : -1.0F,
+                             (i & 4) != 0 ? 1.0F : -1.0F);
+        corners[i] = centre + axes * (sign * halfSize);
+    }
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const unsigned out = 1U << axis;
+        const unsigned u = 1U << ((axis + 1) % 3);
+        const unsigned v = 1U << ((axis + 2) % 3);
+        addQuad(corners[0], corners[v], corners[u + v], corners[u]);
+        addQuad(corners[out], corners[out + u], corners[out + u + v], corners[out + v]);
     }
 }
 

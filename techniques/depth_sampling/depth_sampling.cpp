@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "techniques/depth_sampling/next_view.h"
 #include "techniques/depth_sampling/pictures.h"
 #include "techniques/depth_sampling/view_check.h"
 #include "techniques/depth_sampling/visibility_experiment.h"
@@ -54,9 +55,34 @@ DepthSampling::DepthSampling(config::Params& params) : params_(params) {
     params.finish();
 }
 
-std::vector<scene::Camera> DepthSampling::chooseCameras(technique::SetupContext&,
+std::vector<scene::Camera> DepthSampling::chooseCameras(technique::SetupContext& context,
                                                         const ViewTriangle& triangle) const {
-    return referenceCameras(triangle, params_.views);
+    if (params_.placement == Placement::Fixed) return referenceCameras(triangle, params_.views);
+    // Every candidate is tried against every frame: fewer and smaller ones than are measured.
+    constexpr int kFrames = 24;
+    constexpr int kLongestSidePx = 256;
+    const glm::ivec2 size = context.outputSizePx;
+    const int longestPx = std::max(size.x, size.y);
+    const glm::ivec2 trialSize =
+        longestPx > kLongestSidePx ? glm::max(size * kLongestSidePx / longestPx, 1) : size;
+
+    const depth_images::DrawableScene drawable(*context.scene);
+    depth_images::DepthImageRenderer renderer(context.shaders, params_.triangleIds,
+                                              params_.depthFormat);
+    NextView nextView(context.shaders, renderer, drawable,
+                      candidateCameras(triangle, params_.views, params_.candidates),
+                      outputCameras(triangle, params_.views, kFrames), trialSize);
+    std::vector<scene::Camera> cameras;
+    std::vector<depth_images::DepthImage> images;
+    images.reserve(static_cast<std::size_t>(params_.views));
+    std::vector<const depth_images::DepthImage*> imagesSoFar;
+    for (int i = 0; i < params_.views; ++i) {
+        cameras.push_back(nextView.next(imagesSoFar).camera);
+        images.push_back(renderer.makeImage(depth_images::viewOf(cameras.back(), trialSize)));
+        renderer.render(drawable, images.back(), imagesSoFar);
+        imagesSoFar.push_back(&images.back());
+    }
+    return cameras;
 }
 
 Views DepthSampling::makeViews(technique::SetupContext& context) const {

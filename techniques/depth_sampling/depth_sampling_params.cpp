@@ -55,6 +55,9 @@ ViewTriangleSettings readTriangle(config::Params& params) {
         number("view_yaw_deg", 0.0, {"turns the camera about its target", "°", -360.0, 360.0}));
     settings.pitchRad = glm::radians(
         number("view_pitch_deg", 0.0, {"raises the camera about its target", "°", -180.0, 180.0}));
+    settings.rollRad = glm::radians(number(
+        "view_roll_deg", 0.0,
+        {"turns the triangle of views in its plane; the views stay upright", "°", -360.0, 360.0}));
     return settings;
 }
 

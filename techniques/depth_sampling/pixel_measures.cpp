@@ -8,41 +8,46 @@ using depth_images::DepthImage;
 
 namespace {
 
-enum TextureUnit { kFirstTriangleIdsUnit = 0 };
-enum ImageUnit { kDepthImage = 0, kTriangleIdImage = 1, kMarkImage = 2 };
-enum Binding { kCounterBinding = 0 };
-
-// Pixels of a work group: kGroupSize × kGroupSize threads, each with a column of kRowsPerThread
-// pixels, so that the reduction over the group is paid once for many samples.
-constexpr int kGroupSize = 8;
-constexpr int kRowsPerThread = 8;
+// GL promises a stage 16 units; the test of 16 images takes 19. Every device of GL 4.5 that is
+// known has 32.
+enum TextureUnit {
+    kSampleIdsUnit = 0,
+    kSampleDepthsUnit = 1,
+    kMarkUnit = 2,
+    kFirstTriangleIdsUnit = 3
+};
 
 gl::Defines defines() {
-    return {{"FIRST_TRIANGLE_IDS_UNIT", kFirstTriangleIdsUnit},
-            {"DEPTH_IMAGE", kDepthImage},
-            {"TRIANGLE_ID_IMAGE", kTriangleIdImage},
-            {"MARK_IMAGE", kMarkImage},
-            {"COUNTER_BINDING", kCounterBinding},
-            {"GROUP_SIZE", kGroupSize},
-            {"ROWS_PER_THREAD", kRowsPerThread}};
+    return {{"SAMPLE_IDS_UNIT", kSampleIdsUnit},
+            {"SAMPLE_DEPTHS_UNIT", kSampleDepthsUnit},
+            {"MARK_UNIT", kMarkUnit},
+            {"FIRST_TRIANGLE_IDS_UNIT", kFirstTriangleIdsUnit}};
 }
 
-/// The whole image, one thread a pixel or a column of `rowsPerThread`.
-void dispatch(glm::ivec2 sizePx, int rowsPerThread) {
-    const glm::ivec2 groupPx(kGroupSize, kGroupSize * rowsPerThread);
-    const glm::uvec2 groups((sizePx + groupPx - 1) / groupPx);
-    glDispatchCompute(groups.x, groups.y, 1);
+gl::Program wholeImageProgram(const gl::ShaderLibrary& shaders, const char* file,
+                              const gl::Defines& defines) {
+    return gl::Program(shaders, {"depth_sampling/whole_image.vert.glsl", file}, defines);
+}
+
+void drawWholeImage(const gl::VertexArray& withoutAttributes) {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    withoutAttributes.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 /// What redundancy.glsl reads: the samples of `image` and what they are tested with.
 void bindTest(const gl::Program& program, const DepthImage& image, ImageSpan images) {
-    image.triangleId.bindImage(kTriangleIdImage, GL_READ_ONLY);
-    if (images.empty()) return;
-    image.depth.bindImage(kDepthImage, GL_READ_ONLY);
+    image.triangleId.bind(kSampleIdsUnit);
+    image.depth.bind(kSampleDepthsUnit);
     for (std::size_t i = 0; i < images.size(); ++i) {
         images[i]->triangleId.bind(static_cast<GLuint>(kFirstTriangleIdsUnit + i));
-        program.set(fmt::format("thereFromHere[{}]", i).c_str(),
+        program.set(fmt::format("otherFromHere[{}]", i).c_str(),
                     depth_images::reprojection(image.view, images[i]->view));
+        program.set(fmt::format("otherSizePx[{}]", i).c_str(), glm::vec2(images[i]->view.sizePx));
     }
 }
 
@@ -50,9 +55,8 @@ void bindTest(const gl::Program& program, const DepthImage& image, ImageSpan ima
 
 PixelMeasures::PixelMeasures(const gl::ShaderLibrary& shaders)
     : shaders_(shaders),
-      countProgram_(shaders, {"depth_sampling/count.comp.glsl"}, defines()),
-      counter_(sizeof(std::uint32_t)),
-      availabilityCounter_(2 * sizeof(std::uint32_t)) {}
+      countProgram_(wholeImageProgram(shaders, "depth_sampling/count.frag.glsl", defines())),
+      samplesProgram_(wholeImageProgram(shaders, "depth_sampling/samples.frag.glsl", defines())) {}
 
 const gl::Program& PixelMeasures::variant(Variants& variants, const char* file,
                                           std::size_t imageCount) {
@@ -61,7 +65,7 @@ const gl::Program& PixelMeasures::variant(Variants& variants, const char* file,
     if (found == variants.end()) {
         gl::Defines all = defines();
         all["IMAGE_COUNT"] = static_cast<int>(imageCount);
-        found = variants.emplace(imageCount, gl::Program(shaders_, {file}, all)).first;
+        found = variants.emplace(imageCount, wholeImageProgram(shaders_, file, all)).first;
     }
     return found->second;
 }
@@ -77,43 +81,52 @@ void PixelMeasures::mark(const DepthImage& image, gl::Texture& marks, ImageSpan 
                          bool isRedundant, std::uint32_t among, Mark bit) {
     GFXREPRO_ASSERT(marks.size() == glm::ivec3(image.view.sizePx, 1));
     const gl::Program& program =
-        variant(markPrograms_, "depth_sampling/mark.comp.glsl", images.size());
+        variant(markPrograms_, "depth_sampling/mark.frag.glsl", images.size());
+    const gl::Texture* target[] = {&marks};
+    const gl::Framebuffer framebuffer(target);
+    framebuffer.bind();
     program.use();
     bindTest(program, image, images);
+    marks.bind(kMarkUnit);
     program.set("isRedundant", isRedundant ? 1 : 0);
     program.set("among", among);
     program.set("bit", static_cast<unsigned>(bit));
-    marks.bindImage(kMarkImage, GL_READ_WRITE);
-    dispatch(image.view.sizePx, 1);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                    GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glTextureBarrier();  // before marks that were drawn are read
+    drawWholeImage(withoutAttributes_);
 }
 
 std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits) {
-    counter_.clear();
+    const auto framebuffer = gl::Framebuffer::withoutAttachments(glm::ivec2(marks.size()));
+    framebuffer.bind();
     countProgram_.use();
     countProgram_.set("bits", bits);
-    marks.bindImage(kMarkImage, GL_READ_ONLY);
-    counter_.bindStorage(kCounterBinding);
-    dispatch(glm::ivec2(marks.size()), kRowsPerThread);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    return counter_.read<std::uint32_t>(1).front();
+    marks.bind(kMarkUnit);
+    countQuery_.begin();
+    drawWholeImage(withoutAttributes_);
+    countQuery_.end();
+    return countQuery_.result();
 }
 
 void PixelMeasures::beginAvailability(const DepthImage& frame, ImageSpan images) {
-    availabilityCounter_.clear();
+    const auto framebuffer = gl::Framebuffer::withoutAttachments(frame.view.sizePx);
+    framebuffer.bind();
+    samplesProgram_.use();
+    frame.triangleId.bind(kSampleIdsUnit);
+    samplesQuery_.begin();
+    drawWholeImage(withoutAttributes_);
+    samplesQuery_.end();
+
     const gl::Program& program =
-        variant(availabilityPrograms_, "depth_sampling/availability.comp.glsl", images.size());
+        variant(availabilityPrograms_, "depth_sampling/availability.frag.glsl", images.size());
     program.use();
     bindTest(program, frame, images);
-    availabilityCounter_.bindStorage(kCounterBinding);
-    dispatch(frame.view.sizePx, kRowsPerThread);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    availableQuery_.begin();
+    drawWholeImage(withoutAttributes_);
+    availableQuery_.end();
 }
 
 PixelMeasures::Availability PixelMeasures::finishAvailability() {
-    const auto counts = availabilityCounter_.read<std::uint32_t>(2);
-    return {counts[0], counts[1]};
+    return {samplesQuery_.result(), availableQuery_.result()};
 }
 
 }  // namespace gfxrepro::depth_sampling

@@ -24,12 +24,12 @@ enum Mark : std::uint32_t {
     kAvailable = 32,  // of an output frame: in at least one reference image (measure 4)
 };
 
-/// Pixel redundancy of samples with images, tested one thread a sample ([xie2017] Algorithm 3):
+/// Pixel redundancy of samples with images, tested one fragment a sample ([xie2017] Algorithm 3):
 /// sample s of image I is redundant with image J when the pixel of J in which s lands holds the
 /// triangle of s. A sample outside of J or behind its eye is not.
 class PixelMeasures {
   public:
-    /// At most this many images in one test: GL promises a shader 16 textures.
+    /// At most this many images in one test.
     static constexpr std::size_t kMaxImages = 16;
 
     explicit PixelMeasures(const gl::ShaderLibrary& shaders);
@@ -65,9 +65,9 @@ class PixelMeasures {
 
     const gl::ShaderLibrary& shaders_;
     Variants markPrograms_, availabilityPrograms_;
-    gl::Program countProgram_;
-    gl::Buffer counter_;              // of countProgram_
-    gl::Buffer availabilityCounter_;  // samples, available
+    gl::Program countProgram_, samplesProgram_;
+    gl::VertexArray withoutAttributes_;
+    gl::SampleQuery countQuery_, samplesQuery_, availableQuery_;
 };
 
 }  // namespace gfxrepro::depth_sampling

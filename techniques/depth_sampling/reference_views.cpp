@@ -102,7 +102,9 @@ ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSetti
     centre.position = centre.target + back;
 
     checkUpright(centre);
-    const glm::vec3 right = glm::normalize(glm::cross(centre.up, back));
+    // The triangle's own axes; the views stay upright.
+    const glm::vec3 right =
+        turned(glm::normalize(glm::cross(centre.up, back)), glm::normalize(back), settings.rollRad);
     const glm::vec3 up = glm::normalize(glm::cross(back, right));
     const float side = settings.spread * glm::length(box.size());
     const float height = side * std::sqrt(3.0F) / 2.0F;

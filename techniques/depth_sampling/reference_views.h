@@ -20,6 +20,7 @@ struct ViewTriangleSettings {
     float distance = 1.0F;  // factor on the camera's distance from its target
     float yawRad = 0.0F;    // turns the camera about its target, about the up axis
     float pitchRad = 0.0F;  // … and about its right axis, upwards
+    float rollRad = 0.0F;   // turns the triangle in its plane, counter-clockwise seen from the eye
     float aspect = 1.0F;    // width : height
 };
 

@@ -141,6 +141,16 @@ bool VisibilitySequence::holds(std::size_t index, const SurfacePoint& point) con
     return isReached(index, point) && !anyHolds(index, point);
 }
 
+std::optional<std::size_t> VisibilitySequence::visibleFrom(const SurfacePoint& point,
+                                                           std::size_t first) const {
+    const std::size_t count = views_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t index = (first + i) % count;
+        if (isVisible(index, point)) return index;
+    }
+    return std::nullopt;
+}
+
 std::optional<SurfacePoint> VisibilitySequence::sample(std::size_t index, glm::ivec2 pixel) const {
     const View& view = views_[index];
     const glm::vec3 direction = rayThrough(view, glm::vec2(pixel) + 0.5F);

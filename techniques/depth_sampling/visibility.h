@@ -39,6 +39,11 @@ class VisibilitySequence {
     /// Whether one of images [0, count) does.
     bool anyHolds(std::size_t count, const SurfacePoint& point) const;
 
+    /// An image from whose view the point is visible; image `first` is tried first (with many
+    /// images a caller saves time with the answer for a point nearby; whether there is one does not
+    /// depend on it).
+    std::optional<std::size_t> visibleFrom(const SurfacePoint& point, std::size_t first = 0) const;
+
     /// The image's sample in the direction of a pixel's centre: what Algorithm 1 leaves there.
     std::optional<SurfacePoint> sample(std::size_t index, glm::ivec2 pixel) const;
 

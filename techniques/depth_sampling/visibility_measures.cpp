@@ -7,24 +7,6 @@
 #include <algorithm>
 
 namespace gfxrepro::depth_sampling {
-namespace {
-
-/// Whether one of the output frames sees the point. Begins with the frame that saw the point before
-/// (`hint`), which most often sees this one, too; the answer does not depend on it.
-bool isSeen(const VisibilitySequence& outputs, const SurfacePoint& point, std::size_t& hint) {
-    const std::size_t count = outputs.views().size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t frame = (hint + i) % count;
-        if (outputs.holds(frame, point)) {
-            hint = frame;
-            return true;
-        }
-    }
-    return false;
-}
-
-}  // namespace
-
 VisibilityCounts& VisibilityCounts::operator+=(const VisibilityCounts& other) {
     samples += other.samples;
     redundant += other.redundant;
@@ -41,7 +23,7 @@ VisibilityCounts countSamples(const VisibilitySequence& sequence, std::size_t in
     const std::size_t viewCount = conventional.views().size();
     const std::size_t earlierCount = std::min(index, viewCount);
     const auto countRows = [&](const tbb::blocked_range<int>& rows, VisibilityCounts counts) {
-        std::size_t hint = 0;
+        std::size_t frameBefore = 0;
         for (int y = rows.begin(); y < rows.end(); ++y) {
             for (int x = 0; x < size.x; ++x) {
                 const auto point = sequence.sample(index, {x, y});
@@ -52,7 +34,10 @@ VisibilityCounts countSamples(const VisibilitySequence& sequence, std::size_t in
                 ++counts.occludedLiterally;
                 if (conventional.anyHolds(viewCount, *point)) continue;
                 ++counts.occluded;
-                counts.useful += isSeen(outputs, *point, hint) ? 1 : 0;
+                const auto frame = outputs.visibleFrom(*point, frameBefore);
+                if (!frame) continue;
+                ++counts.useful;
+                frameBefore = *frame;
             }
         }
         return counts;

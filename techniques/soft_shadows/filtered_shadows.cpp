@@ -41,7 +41,7 @@ FilteredShadows::FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter 
     momentPyramid_.setFilter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
 }
 
-void FilteredShadows::makeMoments(const depth_images::View& view) const {
+void FilteredShadows::makeMoments(const depth_images::View& view) {
     moments_.use();
     moments_.set("nearM", view.nearM);
     moments_.set("farM", view.farM);
@@ -49,12 +49,12 @@ void FilteredShadows::makeMoments(const depth_images::View& view) const {
     momentPyramid_.bindImage(kMomentImage, GL_WRITE_ONLY);
     dispatch(view.sizePx);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
-    glGenerateTextureMipmap(momentPyramid_.id());
+    momentPyramid_.generateMipmaps();
 }
 
 void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
                              std::span<const ShadowCaster* const> casters,
-                             const gl::Texture& litShares) const {
+                             const gl::Texture& litShares) {
     const depth_images::View view = lightView(light, light.centre, settings_.sizePx);
     shadowMap_.drawShadowMap(view, casters);
     if (momentPyramid_.id() != 0) makeMoments(view);

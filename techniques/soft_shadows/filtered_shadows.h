@@ -22,14 +22,14 @@ class FilteredShadows {
     /// The share of the light that each output sample sees: R32F of the receivers' size, 1 where
     /// there is no surface.
     void render(const Receivers& receivers, const AreaLight& light,
-                std::span<const ShadowCaster* const> casters, const gl::Texture& litShares) const;
+                std::span<const ShadowCaster* const> casters, const gl::Texture& litShares);
 
     static gl::Texture makeShares(glm::ivec2 sizePx) {
         return gl::Texture::make2D(GL_R32F, sizePx);
     }
 
   private:
-    void makeMoments(const depth_images::View& view) const;
+    void makeMoments(const depth_images::View& view);
 
     ShadowMapSettings settings_;
     LightVisibility shadowMap_;

@@ -43,6 +43,23 @@ TEST(Run, SmokeFromConfigToReport) {
     EXPECT_TRUE(fs::exists(dir + "/report.html"));
 }
 
+TEST(Run, TableThatIsOnlyPrinted) {
+    const TemporaryFolder folder;
+    const std::string config = folder.write(
+        "table-1.yaml",
+        "table: p/1\ntitle: T\nprinted: {values: \"function,dimensions\\npanorama,2\"}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(gfxrepro({"check", config}).out, config + ": ok, p/1, 0 cases, 0 claims\n");
+    const ProcessResult run = gfxrepro({"reproduce", config, "--device", "software", "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(readFile(dir + "/tables/p-1.md"),
+              "# Table 1. T\n\nAs printed; nothing is measured.\n\n"
+              "| function | dimensions |\n| --- | ---: |\n| panorama | 2 |\n");
+    EXPECT_EQ(readFile(dir + "/tables/p-1.tex"),
+              "\\begin{tabular}{lr}\n\\toprule\nfunction & dimensions \\\\\n\\midrule\n"
+              "panorama & 2 \\\\\n\\bottomrule\n\\end{tabular}\n");
+}
+
 TEST(Run, SecondRunIntoOneFolderIsRefused) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {pause_ms: 1500}\n");

@@ -1,25 +1,33 @@
 // Pixel redundancy of a sample of image I with images J₀ … ([xie2017] Algorithm 3); include-only.
-// Reads the samples of I (depths, triangle ids) and the triangle ids of J₀ …. The test is the one
-// that the images were drawn with, on the same numbers: what was discarded is what counts as
-// redundant, to the last bit.
+// Reads the samples of I (depths, triangle ids) and the triangle ids of J₀ …. As it reads:
+//
+//     pointWorld = unproject(I.view, centrePx, depth);
+//     return projectToPixel(J.clipFromWorld, J.sizePx, pointWorld, landedPx)
+//         && isInside(landedPx, J.sizePx)
+//         && J.triangleId[ivec2(landedPx)] == triangleId;
+//
+// Both projections are linear in (x·d, y·d, d, 1), (x, y) being pixel coordinates and d the depth, so
+// that one matrix, multiplied out in double precision (depth_images::reprojection), does for both.
+// The renderer's fragments are tested by the same function on the same numbers.
 
 #include "shared/pixel_redundancy.glsl"
 
-layout(r32ui, binding = TRIANGLE_ID_IMAGE) readonly uniform uimage2D sampleTriangleIds;
+layout(binding = SAMPLE_IDS_UNIT) uniform usampler2D sampleTriangleIds;
 
 #if IMAGE_COUNT > 0
-layout(r32f, binding = DEPTH_IMAGE) readonly uniform image2D sampleDepths;
+layout(binding = SAMPLE_DEPTHS_UNIT) uniform sampler2D sampleDepths;
 layout(binding = FIRST_TRIANGLE_IDS_UNIT) uniform usampler2D triangleIds[IMAGE_COUNT];
-uniform mat4 thereFromHere[IMAGE_COUNT];  // reprojection()
+uniform mat4 otherFromHere[IMAGE_COUNT];
+uniform vec2 otherSizePx[IMAGE_COUNT];
 #endif
 
 // Whether one of the images holds the sample of I in `pixel`, which is of triangle `triangleId`.
 bool isRedundantWithAny(ivec2 pixel, uint triangleId) {
 #if IMAGE_COUNT > 0
-    vec3 sampleHere = vec3(vec2(pixel) + 0.5, imageLoad(sampleDepths, pixel).r);
+    vec3 sampleHere = vec3(vec2(pixel) + 0.5, texelFetch(sampleDepths, pixel, 0).r);
     for (int i = 0; i < IMAGE_COUNT; ++i) {
-        vec2 sizePx = vec2(textureSize(triangleIds[i], 0));
-        if (isPixelRedundant(triangleIds[i], sizePx, thereFromHere[i], sampleHere, triangleId)) {
+        if (isPixelRedundant(triangleIds[i], otherSizePx[i], otherFromHere[i], sampleHere,
+                             triangleId)) {
             return true;
         }
     }

@@ -61,7 +61,7 @@ struct Experiment {
     explicit Experiment(unsigned seed) : triangles(test::randomTriangles(40, seed)) {
         const View views[] = {
             test::viewFrom({-1.2F, -0.7F, 3.0F}, {61, 53}),
-            test::viewFrom({1.2F, -0.7F, 3.0F}, {48, 64}),
+            test::viewFrom({1.2F, -0.7F, 3.0F}, {49, 64}),
             // Within the scene: much of the others' samples is behind this eye.
             test::viewFrom({0.0F, 0.2F, 0.3F}, {37, 90}, {0.1F, 0.0F, -2.0F}),
         };
@@ -147,6 +147,8 @@ TEST_F(PixelMeasuresTest, ConventionalImagesHoldTheRedundantSamplesThatDoubleLoo
 }
 
 TEST_F(PixelMeasuresTest, NonRedundantImagesHoldTheOccludedAndUsefulSamplesThatDoubleLoopsFind) {
+    std::uint64_t occluded = 0;
+    std::uint64_t useful = 0;
     for (unsigned seed : {1U, 2U, 3U}) {
         const Experiment e(seed);
         const OnDevice conventional = onDevice(e.conventional);
@@ -175,12 +177,13 @@ TEST_F(PixelMeasuresTest, NonRedundantImagesHoldTheOccludedAndUsefulSamplesThatD
                 EXPECT_EQ(measures.count(marks, bit), countOf(actual, bit)) << bit;
             }
             EXPECT_EQ(measures.count(marks, kOccluded | kUseful), countOf(actual, kUseful));
-            if (i > 0) {
-                EXPECT_GT(countOf(expected.marks, kUseful), 0U);
-                EXPECT_GT(countOf(expected.marks, kOccluded), countOf(expected.marks, kUseful));
-            }
+            occluded += countOf(expected.marks, kOccluded);
+            useful += countOf(expected.marks, kUseful);
         }
     }
+    // The scenes do have what is compared.
+    EXPECT_GT(useful, 100U);
+    EXPECT_GT(occluded, useful + 100);
 }
 
 TEST_F(PixelMeasuresTest, AvailabilityIsThatOfDoubleLoops) {
@@ -228,43 +231,6 @@ TEST_F(PixelMeasuresTest, AnImageIsRedundantWithItself) {
     for (const HostDepthImage& image : e.conventional) {
         EXPECT_EQ(redundantCount(image, {&image, 1}), countOf(Expected(image).marks, kSample));
     }
-}
-
-// 1024 pixels and an eye far from the origin: the sample must land at the centre, not merely
-// inside.
-TEST_F(PixelMeasuresTest, PixelCentresLandAtCentresOfTheSameView) {
-    const View view = test::viewFrom({1000.0F, 40.0F, 3.0F}, {1024, 512}, {997.0F, 39.0F, 0.0F});
-    const glm::mat4 same = depth_images::reprojection(view, view);
-    for (const float depthM : {0.06F, 1.0F, 19.0F}) {
-        for (const glm::vec2 centre : {glm::vec2(0.5F), glm::vec2(1023.5F, 511.5F)}) {
-            const glm::vec4 landed = same * glm::vec4(centre * depthM, depthM, 1.0F);
-            EXPECT_NEAR(landed.x / landed.z, centre.x, 1e-3F);
-            EXPECT_NEAR(landed.y / landed.z, centre.y, 1e-3F);
-        }
-    }
-}
-
-TEST_F(PixelMeasuresTest, OneMatrixProjectsLikeUnprojectAndProject) {
-    const View from = test::viewFrom({-1.2F, -0.7F, 3.0F}, {61, 53});
-    const View to = test::viewFrom({0.3F, 0.2F, 0.5F}, {37, 90}, {0.1F, 0.0F, -2.0F});
-    const glm::mat4 matrix = depth_images::reprojection(from, to);
-    int before = 0;
-    for (int i = 0; i < 300; ++i) {
-        const glm::vec2 position(static_cast<float>(i % 61) + 0.25F,
-                                 static_cast<float>(i % 53) + 0.75F);
-        const float depthM = 0.1F + 0.02F * static_cast<float>(i);
-        const auto expected = project(to, unproject(from, position, depthM));
-        const glm::vec4 landed = matrix * glm::vec4(position * depthM, depthM, 1.0F);
-        ASSERT_EQ(landed.z > 0.0F, expected.has_value()) << i;
-        if (!expected) continue;
-        ++before;
-        // Positions far outside of the image are thousands of pixels: relative there.
-        const float tolerance = 1e-4F * std::max(10.0F, glm::length(*expected));
-        EXPECT_NEAR(landed.x / landed.z, expected->x, tolerance) << i;
-        EXPECT_NEAR(landed.y / landed.z, expected->y, tolerance) << i;
-    }
-    EXPECT_GT(before, 50);
-    EXPECT_LT(before, 250);
 }
 
 TEST_F(PixelMeasuresTest, SamplesBehindTheEyeAreNotRedundant) {
@@ -349,7 +315,13 @@ TEST_F(PixelMeasuresTest, EveryOneOfSixteenImagesIsTestedAndSeventeenAreRefused)
         EXPECT_EQ(redundantCount(image, HostImages(columns).first(count)), 4 * count);
     }
     columns.push_back(image);
-    EXPECT_DEATH(redundantCount(image, columns), "imageCount <= kMaxImages");
+    const OnDevice one = onDevice(image);
+    const OnDevice all = onDevice(columns);
+    gl::Texture marks = measures.makeMarks(one.images[0]);
+    // Nothing waits for the device in here: the forked process has none of the driver's threads.
+    EXPECT_DEATH(measures.mark(one.images[0], marks, all.span(), true, kSample, kRedundant),
+                 "imageCount <= kMaxImages");
+    EXPECT_DEATH(measures.beginAvailability(one.images[0], all.span()), "imageCount <= kMaxImages");
 }
 
 TEST_F(PixelMeasuresTest, MarksStayAndConditionsOnMarksHold) {

@@ -102,7 +102,7 @@ TEST_F(FourObjects, CIsThirdFromTheLeftAndSecondFromTheRight) {
 
 TEST_F(FourObjects, WhatHidesCFromTheRightIsSeenFromTheLeft) {
     // So that a non-redundant image at V₁ looks through it.
-    for (const glm::vec3& point : samplesOfC(true)) {
+    for (const glm::vec3& point : samplesOfC(false)) {
         const auto hit = tracer_->closestHit(right_, point - right_);
         ASSERT_TRUE(hit);
         EXPECT_TRUE(isVisible(hit->position, left_));

@@ -1,0 +1,360 @@
+// The technique as a whole: parameters, metrics, invariants of the definitions.
+#include "techniques/depth_sampling/depth_sampling.h"
+
+#include <map>
+#include <set>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "runner/scene/mesh_builder.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::depth_sampling {
+namespace {
+
+using test::errorText;
+
+config::Params paramsOf(const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'depth_sampling'");
+}
+
+/// Keeps what a technique records.
+class MetricRecorder final : public technique::Recorder {
+  public:
+    void metric(std::string_view metric, double value, std::string_view unit,
+                std::string_view pass) override {
+        const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);
+        EXPECT_TRUE(metrics.emplace(key, value).second) << key << " twice";
+        EXPECT_TRUE(std::isfinite(value)) << key;
+        if (unit == "%") {
+            // Sums over images may exceed 100.
+            EXPECT_GE(value, 0.0) << key;
+            EXPECT_LE(value, key.find("_sum_") != std::string::npos ? 1600.0 : 100.0) << key;
+        }
+    }
+    void image(std::string_view name, const image::ImageF& image) override {
+        images.emplace(name, image);
+    }
+    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
+    std::filesystem::path artifact(std::string_view) override { return {}; }
+
+    std::map<std::string, double> metrics;
+    std::map<std::string, image::ImageF> images;
+};
+
+class NoScenes final : public technique::SceneProvider {
+    const scene::Scene& load(const std::string& reference) override {
+        throw Error("no scene '" + reference + "' in this test");
+    }
+};
+
+class DepthSamplingTest : public test::GlTest {
+  protected:
+    using Metrics = std::map<std::string, double>;
+
+    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene,
+                            int sizePx = kSizePx) {
+        config::Params params = paramsOf(yaml);
+        const auto technique = kDepthSampling.create(params);
+        NoScenes scenes;
+        technique::SetupContext context{device,           shaders_, scenes,   scene,
+                                        {sizePx, sizePx}, 1,        profiler_};
+        technique->setup(context);
+        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
+        technique::FrameContext frame{0, 1, profiler_};
+        technique->render(frame);
+        passes_ = profiler_.collect();
+        MetricRecorder recorder;
+        technique->record(recorder);
+        profiler_.collect();
+        return recorder;
+    }
+    Metrics run(const std::string& yaml, const scene::Scene& scene) {
+        return recorded(yaml, &scene).metrics;
+    }
+
+    static constexpr int kSizePx = 96;
+    gl::ShaderLibrary shaders_{dataFolder("shaders")};
+    gl::Profiler profiler_{true};
+    std::vector<gl::PassTime> passes_;
+};
+
+scene::Camera lookingAt(const glm::vec3& eye, const glm::vec3& target) {
+    scene::Camera camera;
+    camera.position = eye;
+    camera.target = target;
+    camera.verticalFovRad = 2.0F * std::atan(0.5F);  // an image as high as its distance
+    return camera;
+}
+
+/// A card of side 1 a third of the way from the eye to a wall that fills the picture.
+scene::Scene cardBeforeWall() {
+    scene::MeshBuilder builder;
+    builder.addQuad({-0.5F, -0.5F, 1}, {0.5F, -0.5F, 1}, {0.5F, 0.5F, 1}, {-0.5F, 0.5F, 1});
+    builder.addQuad({-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0});
+    scene::Scene scene = scene::sceneOf(builder.take("card", -1));
+    scene.cameras = {lookingAt({0, 0, 4}, {0, 0, 0})};
+    return scene;
+}
+
+/// Boxes in front of a floor, many behind each other.
+scene::Scene clutter() {
+    scene::MeshBuilder builder;
+    builder.addBox({0, -1.1F, 0}, {3, 0.1F, 3});
+    Random random(7);
+    for (int i = 0; i < 90; ++i) {
+        const glm::vec3 centre(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const glm::vec3 half(random.uniform(0.02F, 0.2F), random.uniform(0.02F, 0.2F),
+                             random.uniform(0.02F, 0.2F));
+        builder.addBox(centre, half);
+    }
+    scene::Scene scene = scene::sceneOf(builder.take("clutter", -1));
+    scene.cameras = {lookingAt({1, 2, 5}, {0, 0, 0})};
+    return scene;
+}
+
+TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = paramsOf(yaml);
+            DepthSampling technique(params);
+        });
+    };
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("{placement: automatic, views: 4, candidates: 4}"), "no error");
+    EXPECT_EQ(message("{candidates: 8}"),
+              "case.yaml:1:14: 'candidates' needs 'placement: automatic'");
+    EXPECT_EQ(message("{placement: automatic, redundancy: visibility}"),
+              "case.yaml:1:13: 'placement: automatic' needs 'redundancy: pixel'");
+    EXPECT_EQ(message("{method: depth_peeling, placement: automatic}"),
+              "case.yaml:1:36: 'placement: automatic' chooses views; 'method: depth_peeling' has "
+              "only one");
+    EXPECT_EQ(message("{placement: automatic, views: 1}"),
+              "case.yaml:1:31: 'placement: automatic' needs 2 views or more; found 1");
+    EXPECT_EQ(message("{placement: automatic, views: 5, candidates: 4}"),
+              "case.yaml:1:46: 4 candidates are fewer than 5 views");
+    EXPECT_EQ(message("{redundancy: visibility, depth_format: unorm24}"),
+              "case.yaml:1:40: 'depth_format' needs 'redundancy: pixel'");
+    EXPECT_EQ(message("{redundancy: visibility, triangle_ids: primitive_id}"),
+              "case.yaml:1:40: 'triangle_ids' needs 'redundancy: pixel'");
+    EXPECT_EQ(message("{redundancy: visibility, measured: output_frame}"),
+              "case.yaml:1:36: 'measured: output_frame' needs 'redundancy: pixel'");
+    EXPECT_EQ(message("{output_frames: 10}"),
+              "case.yaml:1:17: 'output_frames' needs 'usefulness', 'availability', 'pictures' or "
+              "'measured: output_frame'");
+    EXPECT_EQ(message("{frame_size: 10}"),
+              "case.yaml:1:14: 'frame_size' needs 'usefulness', 'availability', 'pictures' or "
+              "'measured: output_frame'");
+    EXPECT_EQ(message("{frame_size: 10, availability: true}"), "no error");
+    EXPECT_EQ(message("{views: 17}"),
+              "case.yaml:1:9: technique 'depth_sampling': views is 17; allowed: 1 … 16 images");
+}
+
+TEST_F(DepthSamplingTest, NeedsASceneWithTriangles) {
+    EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
+              "technique 'depth_sampling' needs a scene; the config names none");
+    const scene::Scene empty{.name = "void"};
+    EXPECT_EQ(errorText([&] { recorded("{}", &empty); }),
+              "scene 'void' has no triangles to take depth images of");
+}
+
+// All views coincide: an image after the first is the next layer. The card covers 32 of 96 pixels
+// each way (side 1 at distance 3 in a picture that is 3 high there); behind it lies the wall.
+TEST_F(DepthSamplingTest, CoincidingViewsPeelAnalyticLayers) {
+    const scene::Scene scene = cardBeforeWall();
+    for (const std::string redundancy : {"pixel", "visibility"}) {
+        const std::string common = ", redundancy: " + redundancy +
+                                   ", view_spread: 0, usefulness: true, availability: true, "
+                                   "output_frames: 3}";
+        const Metrics peeled = run("{method: depth_peeling" + common, scene);
+        EXPECT_EQ(peeled.at("samples/image_0"), 96 * 96) << redundancy;
+        EXPECT_EQ(peeled.at("samples/image_1"), 32 * 32) << redundancy;
+        EXPECT_EQ(peeled.at("samples/image_2"), 0) << redundancy;
+        EXPECT_EQ(peeled.at("occluded_pct/image_0"), 0) << redundancy;
+        EXPECT_EQ(peeled.at("occluded_pct/image_1"), 100) << redundancy;
+        EXPECT_EQ(peeled.at("occluded_pct/image_2"), 0) << redundancy;
+        EXPECT_EQ(peeled.at("useful_pct/image_1"), 0) << redundancy;
+        EXPECT_EQ(peeled.at("available_min_pct"), 100) << redundancy;
+        Metrics nonRedundant = run("{method: non_redundant" + common, scene);
+        // By the letter no view comes before V₀.
+        EXPECT_EQ(nonRedundant.at("occluded_literal_pct/image_0"), 100) << redundancy;
+        nonRedundant["occluded_literal_pct/image_0"] = 0;
+        EXPECT_EQ(nonRedundant, peeled) << redundancy;
+        const Metrics conventional = run("{method: conventional" + common, scene);
+        EXPECT_EQ(conventional.at("redundant_pct/image_0"), 0) << redundancy;
+        EXPECT_EQ(conventional.at("redundant_pct/image_1"), 100) << redundancy;
+        EXPECT_EQ(conventional.at("occluded_literal_pct/image_1"), 0) << redundancy;
+    }
+}
+
+// One view: all output frames are taken from it.
+TEST_F(DepthSamplingTest, AnOutputFrameAtAReferenceViewFindsEverything) {
+    const scene::Scene scene = clutter();
+    for (const char* redundancy : {"pixel", "visibility"}) {
+        const Metrics metrics =
+            run(std::string("{views: 1, availability: true, output_frames: 2, redundancy: ") +
+                    redundancy + "}",
+                scene);
+        EXPECT_EQ(metrics.at("available_mean_pct"), 100) << redundancy;
+        EXPECT_EQ(metrics.at("available_min_pct"), 100) << redundancy;
+        EXPECT_EQ(metrics.at("unavailable_mean_pct"), 0) << redundancy;
+        EXPECT_EQ(metrics.at("output_frames"), 2) << redundancy;
+    }
+}
+
+TEST_F(DepthSamplingTest, MeasuresKeepTheirBounds) {
+    const scene::Scene scene = clutter();
+    for (const std::string redundancy : {"pixel", "visibility"}) {
+        std::map<std::string, Metrics> of;
+        for (const std::string method : {"conventional", "non_redundant", "depth_peeling"}) {
+            of[method] = run("{method: " + method + ", redundancy: " + redundancy +
+                                 ", usefulness: true, availability: true, output_frames: 20, "
+                                 "frame_size: 48}",
+                             scene);
+            const Metrics& metrics = of[method];
+            double usefulSumPct = 0.0;
+            for (const char* pass : {"/image_0", "/image_1", "/image_2"}) {
+                const auto at = [&](const std::string& name) { return metrics.at(name + pass); };
+                const std::string where = redundancy + " " + method + pass;
+                EXPECT_GT(at("samples"), 0) << where;
+                EXPECT_NEAR(at("useful_pct") * at("occluded_pct") / 100.0,
+                            at("useful_of_samples_pct"), 1e-9)
+                    << where;
+                EXPECT_LE(at("useful_of_samples_pct"), at("occluded_pct")) << where;
+                usefulSumPct += at("useful_of_samples_pct");
+                if (method == "conventional") {
+                    EXPECT_EQ(at("occluded_pct"), 0) << where;
+                    EXPECT_EQ(at("occluded_literal_pct"), 0) << where;
+                } else {
+                    EXPECT_EQ(at("redundant_pct"), 0) << where;  // claim N1
+                    EXPECT_GE(at("occluded_literal_pct"), at("occluded_pct")) << where;
+                }
+            }
+            EXPECT_NEAR(metrics.at("useful_sum_pct"), usefulSumPct, 1e-9);
+            EXPECT_LE(metrics.at("available_min_pct"), metrics.at("available_mean_pct"));
+        }
+        // Image 1 keeps every sample of the conventional image 1 that image 0 lacks; only the
+        // others make room for occluded ones. (Image 2 may lose some to occluded ones of image 1.)
+        const Metrics& conventional = of["conventional"];
+        const Metrics& nonRedundant = of["non_redundant"];
+        EXPECT_GT(nonRedundant.at("occluded_pct/image_1"), 0) << redundancy;
+        EXPECT_LE(nonRedundant.at("occluded_pct/image_1"), conventional.at("redundant_pct/image_1"))
+            << redundancy;
+        EXPECT_EQ(nonRedundant.at("samples/image_0"), conventional.at("samples/image_0"));
+        EXPECT_GE(nonRedundant.at("useful_sum_pct"), 0.1) << redundancy;
+        // A point that V sees is in V's non-redundant image, or in an earlier one. Not so by
+        // pixels: what was dropped lands beside the pixel that it was found in, as seen from a
+        // third view.
+        if (redundancy == "pixel") continue;
+        EXPECT_GE(nonRedundant.at("available_mean_pct"), conventional.at("available_mean_pct"));
+        EXPECT_GE(nonRedundant.at("available_min_pct"), conventional.at("available_min_pct"));
+        EXPECT_LT(conventional.at("available_min_pct"), 100);
+    }
+}
+
+// Only from the middle of V₀V₁ does one see the card behind the hole in a wall; the fixed views
+// stand at the ends. All is inside of every frustum: what lies outside does not decide.
+// (Conventional images: a non-redundant one sees the wall behind anyway, where the first wall is
+// redundant.)
+TEST_F(DepthSamplingTest, AutomaticPlacementFindsWhatTheEndsMiss) {
+    scene::MeshBuilder builder;
+    for (const float side : {-1.0F, 1.0F}) {
+        builder.addBox({side * 0.85F, 0, 0}, {0.45F, 1.3F, 0.05F});
+        builder.addBox({0, side * 0.85F, 0}, {0.4F, 0.45F, 0.05F});
+    }
+    builder.addBox({0, 0, -4}, {0.8F, 0.8F, 0.05F});
+    scene::Scene scene = scene::sceneOf(builder.take("hole", -1));
+    scene.cameras = {lookingAt({0, 0, 3}, {0, 0, 0})};
+    const std::string common =
+        "{method: conventional, views: 2, view_spread: 0.6, availability: true, output_frames: "
+        "40, placement: ";
+    const Metrics fixed = run(common + "fixed}", scene);
+    const Metrics automatic = run(common + "automatic, candidates: 8}", scene);
+    EXPECT_LT(automatic.at("unavailable_mean_pct"), 0.8 * fixed.at("unavailable_mean_pct"));
+}
+
+TEST_F(DepthSamplingTest, GeometryShaderIdsGiveTheSameSamples) {
+    const scene::Scene scene = clutter();
+    const std::string common = "{method: non_redundant, triangle_ids: ";
+    EXPECT_EQ(run(common + "geometry_shader}", scene), run(common + "primitive_id}", scene));
+}
+
+// The camera looks away from everything.
+TEST_F(DepthSamplingTest, NothingInViewIsZeroEverywhere) {
+    scene::Scene scene = cardBeforeWall();
+    scene.cameras = {lookingAt({0, 0, 4}, {0, 0, 40})};
+    for (const std::string method : {"conventional", "non_redundant", "depth_peeling"}) {
+        for (const std::string redundancy : {"pixel", "visibility"}) {
+            const Metrics metrics = run("{method: " + method + ", redundancy: " + redundancy +
+                                            ", usefulness: true, availability: true, "
+                                            "output_frames: 2}",
+                                        scene);
+            for (const auto& [name, value] : metrics) {
+                if (name == "reference_image_bytes" || name == "output_frames") continue;
+                EXPECT_EQ(value, 0.0) << method << " " << redundancy << " " << name;
+            }
+        }
+    }
+}
+
+TEST_F(DepthSamplingTest, RefusesViewsInsideOfGeometry) {
+    scene::MeshBuilder builder;
+    builder.addBox({0, 0, 0}, {1, 1, 1});
+    builder.addBox({0, 0, 4}, {2, 2, 2});
+    scene::Scene scene = scene::sceneOf(builder.take("boxes", -1));
+    scene.cameras = {lookingAt({0, 0, 4}, {0, 0, 0})};
+    const std::string rest =
+        " is inside of geometry or looks at an open surface from behind: 1024 of 1024 rays that "
+        "meet the scene meet the back of a single-sided triangle first; change 'view_distance', "
+        "'view_spread', 'view_yaw_deg' or 'view_pitch_deg', or make the material double-sided";
+    EXPECT_EQ(errorText([&] { run("{view_spread: 0}", scene); }), "view 0 at (0, 0, 4)" + rest);
+    EXPECT_EQ(errorText([&] { run("{view_distance: 2, view_spread: 0}", scene); }), "no error");
+    // A sheet that is drawn from both sides has no inside.
+    scene.materials = {scene::Material{.isDoubleSided = true}};
+    scene.meshes[0].material = 0;
+    EXPECT_EQ(errorText([&] { run("{view_spread: 0}", scene); }), "no error");
+}
+
+TEST_F(DepthSamplingTest, TimesImagesOrOneOutputFrame) {
+    const scene::Scene scene = clutter();
+    const auto passes = [&](gl::PassTime::Clock clock) {
+        std::set<std::string> names;
+        for (const gl::PassTime& pass : passes_) {
+            if (pass.clock == clock) names.insert(pass.pass);
+        }
+        return names;
+    };
+    using Names = std::set<std::string>;
+    run("{views: 2}", scene);
+    EXPECT_EQ(passes(gl::PassTime::Clock::Gpu), (Names{"image_0", "image_1", "reference_images"}));
+    run("{views: 2, redundancy: visibility}", scene);
+    EXPECT_EQ(passes(gl::PassTime::Clock::Cpu), (Names{"image_0", "image_1", "reference_images"}));
+    EXPECT_EQ(passes(gl::PassTime::Clock::Gpu), Names{});
+
+    const std::string common = "{method: non_redundant, output_frames: 1, ";
+    const Metrics frame = run(common + "measured: output_frame}", scene);
+    EXPECT_EQ(passes(gl::PassTime::Clock::Gpu), (Names{"availability_test", "output_frame"}));
+    const Metrics all = run(common + "availability: true}", scene);
+    EXPECT_EQ(frame.at("available_pct/output_frame"), all.at("available_mean_pct"));
+    EXPECT_FALSE(frame.contains("available_mean_pct"));
+}
+
+TEST_F(DepthSamplingTest, SavesPictures) {
+    const scene::Scene scene = clutter();
+    for (const char* redundancy : {"pixel", "visibility"}) {
+        const MetricRecorder recorder = recorded(
+            std::string("{views: 2, method: non_redundant, usefulness: true, pictures: true, "
+                        "output_frames: 2, frame_size: 40, redundancy: ") +
+                redundancy + "}",
+            &scene);
+        for (const char* name : {"image_0", "image_1", "classes_0", "classes_1"}) {
+            EXPECT_EQ(recorder.images.at(name).width(), kSizePx) << redundancy << name;
+        }
+        EXPECT_EQ(recorder.images.at("output_frame").width(), 40) << redundancy;
+        EXPECT_EQ(recorder.images.at("output_frame_truth").width(), 40) << redundancy;
+        EXPECT_EQ(recorder.images.size(), 6U) << redundancy;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::depth_sampling

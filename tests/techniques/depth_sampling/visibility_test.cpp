@@ -1,0 +1,280 @@
+#include "techniques/depth_sampling/visibility.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runner/core/random.h"
+#include "tests/techniques/depth_sampling/brute_visibility.h"
+#include "tests/techniques/depth_sampling/visibility_scenes.h"
+
+namespace gfxrepro::depth_sampling {
+namespace {
+
+using depth_images::View;
+using raycast::Faces;
+using raycast::RayTracer;
+
+struct Agreement {
+    int decided = 0;
+    int held = 0;
+    int unclear = 0;
+};
+
+/// Samples, and holds() of every image for every sample and for points of all triangles.
+Agreement expectAgreement(const scene::Scene& scene, const std::vector<View>& views,
+                          bool isNonRedundant) {
+    const RayTracer tracer(scene);
+    const VisibilitySequence sequence(tracer, views, isNonRedundant);
+    BruteVisibility brute(scene, views, isNonRedundant);
+    Agreement result;
+    const auto expectHeldAlike = [&](const SurfacePoint& point) {
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            brute.start();
+            const bool isHeld = brute.holds(i, point);
+            if (brute.isUnclear()) {
+                ++result.unclear;
+                continue;
+            }
+            ++result.decided;
+            result.held += isHeld ? 1 : 0;
+            EXPECT_EQ(sequence.holds(i, point), isHeld) << "image " << i;
+        }
+    };
+    for (std::size_t j = 0; j < views.size(); ++j) {
+        for (int pixel = 0; pixel < views[j].sizePx.x * views[j].sizePx.y; ++pixel) {
+            const glm::ivec2 at(pixel % views[j].sizePx.x, pixel / views[j].sizePx.x);
+            const auto sample = sequence.sample(j, at);
+            brute.start();
+            const auto expected = brute.sample(j, rayThrough(views[j], glm::vec2(at) + 0.5F));
+            if (brute.isUnclear()) {
+                ++result.unclear;
+                continue;
+            }
+            ++result.decided;
+            EXPECT_EQ(sample.has_value(), expected.has_value());
+            if (!sample || !expected) continue;
+            EXPECT_EQ(sample->triangleId, expected->triangleId);
+            EXPECT_LT(glm::distance(sample->positionWorld, expected->positionWorld), 1e-5F);
+            expectHeldAlike(*sample);
+        }
+    }
+    Random random(5);
+    const scene::Mesh mesh = flattened(scene);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        float b = random.uniform(0.0F, 1.0F);
+        float c = random.uniform(0.0F, 1.0F);
+        if (b + c > 1.0F) b = 1.0F - b, c = 1.0F - c;
+        const glm::uvec3 v = mesh.triangles[t];
+        expectHeldAlike({(1.0F - b - c) * mesh.positions[v.x] + b * mesh.positions[v.y] +
+                             c * mesh.positions[v.z],
+                         static_cast<std::uint32_t>(t + 1)});
+    }
+    return result;
+}
+
+void expectDecided(const Agreement& agreement) {
+    EXPECT_GT(agreement.decided, 1500);
+    EXPECT_GT(agreement.held, 300);
+    EXPECT_LT(agreement.unclear, agreement.decided / 20);
+}
+
+TEST(Visibility, ConventionalImagesAgreeWithALoopOverTriangles) {
+    expectDecided(expectAgreement(clutter(1), threeViews(24), false));
+}
+
+TEST(Visibility, NonRedundantImagesAgreeWithALoopOverTriangles) {
+    expectDecided(expectAgreement(clutter(2), threeViews(24), true));
+}
+
+TEST(Visibility, PeeledLayersAgreeWithALoopOverTriangles) {
+    const View view = threeViews(24)[0];
+    expectDecided(expectAgreement(clutter(3), {view, view, view, view}, true));
+}
+
+TEST(Visibility, ViewsThatComeAgainAgreeWithALoopOverTriangles) {
+    const std::vector<View> views = threeViews(20);
+    expectDecided(expectAgreement(clutter(4), {views[0], views[1], views[0], views[1]}, true));
+}
+
+TEST(Visibility, ConventionalImagesHoldWhatNothingOccludes) {
+    const scene::Scene scene = clutter(5);
+    const RayTracer tracer(scene);
+    const std::vector<View> views = threeViews(64);
+    const VisibilitySequence sequence(tracer, views, false);
+    int counts[2] = {0, 0};
+    for (int pixel = 0; pixel < 64 * 64; ++pixel) {
+        const auto point = sequence.sample(0, {pixel % 64, pixel / 64});
+        if (!point || !pixelOf(views[1], point->positionWorld)) continue;
+        if (!tracer.triangle(point->triangleId - 1).isDrawnFrom(views[1].eyeWorld)) continue;
+        const glm::vec3 towards = point->positionWorld - views[1].eyeWorld;
+        const float distance = glm::length(towards);
+        const float depthM = -(views[1].viewFromWorld * glm::vec4(point->positionWorld, 1.0F)).z;
+        if (depthM < views[1].nearM || depthM > views[1].farM) continue;
+        const bool isHeld =
+            !tracer.isOccluded(views[1].eyeWorld, towards, views[1].nearM * distance / depthM,
+                               distance * (1.0F - 1e-5F), Faces::Drawn, point->triangleId - 1);
+        EXPECT_EQ(sequence.holds(1, *point), isHeld);
+        ++counts[isHeld ? 1 : 0];
+    }
+    EXPECT_GT(counts[0], 100);
+    EXPECT_GT(counts[1], 100);
+}
+
+TEST(Visibility, PeeledLayersAreTheRanksAlongARay) {
+    scene::Scene scene = clutter(6);
+    for (scene::Mesh& mesh : scene.meshes) mesh.material = 1;  // double-sided
+    const RayTracer tracer(scene);
+    View view = threeViews(48)[0];
+    view.nearM = 0.01F;
+    view.farM = 100.0F;
+    constexpr std::size_t kLayers = 6;
+    const VisibilitySequence layers(tracer, std::vector<View>(kLayers, view), true);
+    std::size_t deepest = 0;
+    int disagreeing = 0;
+    for (int pixel = 0; pixel < 48 * 48; ++pixel) {
+        const glm::ivec2 at(pixel % 48, pixel / 48);
+        const std::vector<float> ranks =
+            tracer.crossings(view.eyeWorld, rayThrough(view, glm::vec2(at) + 0.5F));
+        deepest = std::max(deepest, ranks.size());
+        for (std::size_t j = 0; j < kLayers; ++j) {
+            const auto point = layers.sample(j, at);
+            const bool isThere = j < ranks.size();
+            const bool agrees =
+                point.has_value() == isThere &&
+                (!point ||
+                 std::abs(glm::distance(point->positionWorld, view.eyeWorld) - ranks[j]) < 1e-5F);
+            if (!agrees) ++disagreeing;
+            if (!point) continue;
+            for (std::size_t k = 0; k < kLayers; ++k) {
+                if (layers.holds(k, *point) != (j == k)) ++disagreeing;
+            }
+        }
+    }
+    EXPECT_GE(deepest, kLayers);
+    // A ray to a point is not the ray that found it, to the last place: next to an edge it may pass
+    // on the other side. crossings() tells the two sides of an edge apart.
+    EXPECT_LE(disagreeing, 5) << "of 48 * 48 * 6";
+}
+
+TEST(Visibility, NonRedundantImagesHoldWhatConventionalOnesHoldAndMore) {
+    const scene::Scene scene = clutter(7);
+    const RayTracer tracer(scene);
+    const std::vector<View> views = threeViews(64);
+    const VisibilitySequence conventional(tracer, views, false);
+    const VisibilitySequence nonRedundant(tracer, views, true);
+    int samples = 0;
+    int hidden = 0;
+    int lost = 0;
+    for (std::size_t j = 0; j < views.size(); ++j) {
+        for (int pixel = 0; pixel < 64 * 64; ++pixel) {
+            const glm::ivec2 at(pixel % 64, pixel / 64);
+            if (const auto point = conventional.sample(j, at)) {
+                EXPECT_TRUE(nonRedundant.anyHolds(views.size(), *point));
+            }
+            const auto point = nonRedundant.sample(j, at);
+            if (!point) continue;
+            ++samples;
+            EXPECT_FALSE(nonRedundant.anyHolds(j, *point));
+            int holders = 0;
+            for (std::size_t k = 0; k < views.size(); ++k) {
+                holders += nonRedundant.holds(k, *point) ? 1 : 0;
+            }
+            EXPECT_LE(holders, 1);
+            lost += nonRedundant.holds(j, *point) ? 0 : 1;
+            hidden += conventional.anyHolds(views.size(), *point) ? 0 : 1;
+        }
+    }
+    EXPECT_GT(samples, 2000);
+    EXPECT_GT(hidden, 100);
+    EXPECT_LE(lost, samples / 500);  // next to edges, as above
+}
+
+TEST(Visibility, PointsOfDepthImagesAreFoundAgain) {
+    const scene::Scene scene = clutter(8);
+    const RayTracer tracer(scene);
+    const std::vector<View> views = threeViews(64);
+    const VisibilitySequence sequence(tracer, views, true);
+    int samples = 0;
+    int lost = 0;
+    for (std::size_t j = 0; j < views.size(); ++j) {
+        for (int pixel = 0; pixel < 64 * 64; ++pixel) {
+            const glm::ivec2 at(pixel % 64, pixel / 64);
+            const auto point = sequence.sample(j, at);
+            if (!point) continue;
+            const float depthM =
+                -(views[j].viewFromWorld * glm::vec4(point->positionWorld, 1.0F)).z;
+            const glm::vec3 stored = unproject(views[j], glm::vec2(at) + 0.5F, depthM);
+            ++samples;
+            lost += sequence.holds(j, {stored, point->triangleId}) ? 0 : 1;
+        }
+    }
+    EXPECT_GT(samples, 2000);
+    EXPECT_LE(lost, samples / 500);
+}
+
+TEST(Visibility, SurfacesSeenAtASlantDoNotHideThemselves) {
+    scene::Scene scene;
+    scene.meshes = {squareAt({0, 0, 0}, 1.0F)};
+    scene.instances = {{0, glm::mat4(1.0F)}};
+    const RayTracer tracer(scene);
+    scene::Camera camera;
+    camera.position = {-1.5F, 0.1F, 0.01F};
+    camera.target = {0.3F, 0.2F, 0};
+    camera.up = {0, 0, 1};
+    const View view = depth_images::viewOf(camera, {16, 16});
+    const VisibilitySequence images(tracer, {view, view}, true);
+    // Rounded to 1 µm behind the surface, the ray meets it 0.2 mm before the point.
+    const SurfacePoint point{{0.3F, 0.2F, -1e-6F}, 1};
+    EXPECT_TRUE(images.holds(0, point));
+    EXPECT_FALSE(images.holds(1, point));
+}
+
+// [xie2017] Fig. 11 and 12: A hides C from both views; as V₀ has A, V₁ looks through it, past B.
+TEST(Visibility, OnlyNonRedundantImagesGetTheObjectHiddenFromAllViews) {
+    const FourObjects objects;
+    const RayTracer tracer(objects.scene);
+    const View left = objects.viewFrom(-1.0F);
+    const View right = objects.viewFrom(1.0F);
+    const View centre = objects.viewFrom(0.0F);
+    const VisibilitySequence conventional(tracer, {left, right}, false);
+    const VisibilitySequence nonRedundant(tracer, {left, right}, true);
+    const VisibilitySequence peeled(tracer, {centre, centre}, true);
+    const SurfacePoint c = objects.middleOfC();
+    EXPECT_FALSE(conventional.anyHolds(2, c));
+    EXPECT_FALSE(peeled.anyHolds(2, c));
+    EXPECT_FALSE(nonRedundant.holds(0, c));
+    EXPECT_TRUE(nonRedundant.holds(1, c));
+    const VisibilitySequence threeLayers(tracer, {centre, centre, centre}, true);
+    EXPECT_TRUE(threeLayers.holds(2, c));
+}
+
+TEST(Visibility, FrustumsEndWhatImagesHold) {
+    const FourObjects objects;
+    const RayTracer tracer(objects.scene);
+    const SurfacePoint a = objects.middleOfA();
+    const auto holds = [&](const View& view) {
+        return VisibilitySequence(tracer, {view}, false).holds(0, a);
+    };
+    const View view = objects.viewFrom(0.0F);
+    const float depthM = view.eyeWorld.z - a.positionWorld.z;
+    EXPECT_TRUE(holds(view));
+    View moved = view;
+    moved.nearM = depthM + 0.01F;
+    EXPECT_FALSE(holds(moved));
+    moved = view;
+    moved.farM = depthM - 0.01F;
+    EXPECT_FALSE(holds(moved));
+    moved = view;
+    moved.clipFromView[2].x = 2.0F;  // an image further to the right
+    EXPECT_FALSE(holds(moved));
+    // What lies before the near plane hides nothing.
+    moved = view;
+    moved.nearM = depthM + 0.01F;
+    const SurfacePoint b = objects.middleOfB();
+    EXPECT_FALSE(VisibilitySequence(tracer, {view}, false).holds(0, b));
+    EXPECT_TRUE(VisibilitySequence(tracer, {moved}, false).holds(0, b));
+}
+
+}  // namespace
+}  // namespace gfxrepro::depth_sampling
