@@ -110,8 +110,9 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
     if (reconstruction.method == Reconstruction::Classic) {
         refuseGiven(params, {"grazing_limit"}, "'reconstruction: hybrid'");
     }
-    if (method == Method::RayTraced) {
-        refuseGiven(params, {"shadow_map_size", "shadow_bias"}, "a method that draws shadow maps");
+    if (method == Method::RayTraced && !measuresErrors) {
+        refuseGiven(params, {"shadow_map_size", "shadow_bias"},
+                    "a method that draws shadow maps, or 'errors: true'");
     }
 }
 

@@ -1,13 +1,10 @@
 #version 450 core
 // [xie2017] Algorithm 5, step 3: estimates the visibility of one light sample for every output sample
-// from its shadow map, and notes it as one bit.
-
-layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
+// from its shadow map. Out: the sample's bit where it is seen, to be or-ed to those of the others.
 
 layout(binding = SHADOW_MAP_UNIT) uniform sampler2D shadowMap;
-layout(binding = POSITION_IMAGE, rgba32f) uniform readonly restrict image2D positions;
-layout(binding = NORMAL_IMAGE, rgba16f) uniform readonly restrict image2D normals;
-layout(binding = MASK_IMAGE, r32ui) uniform restrict uimage2D maskLayer;
+layout(binding = POSITION_UNIT) uniform sampler2D positions;
+layout(binding = NORMAL_UNIT) uniform sampler2D normals;
 
 uniform mat4 clipFromWorld;     // of the light sample's view
 uniform vec3 lightForward;      // unit, the view's axis
@@ -15,7 +12,12 @@ uniform vec3 lightPosition;
 uniform float biasPerDistance;  // bias in metres a metre of distance: texels · width of a texel
 uniform uint bit;
 
+layout(location = 0) out uint seen;
+
 bool isLit(vec3 position, vec3 normal) {
+    // A surface that is turned away from the light lies in its own shadow. A shadow map cannot tell
+    // where the surface is a thin one: the side that faces the light has the same depth.
+    if (dot(normal, lightPosition - position) <= 0.0) return false;
     // Off the surface along its normal: a texel's depth is that of its centre, up to half a diagonal
     // away, where a surface at angle t to the light is 0.71 texels · tan t nearer. Moved by one
     // texel along the normal a point clears 1 / cos t texels of depth, which is always more.
@@ -28,13 +30,14 @@ bool isLit(vec3 position, vec3 normal) {
         return true;
     }
     float caster = texelFetch(shadowMap, ivec2(texcoord.xy * vec2(textureSize(shadowMap, 0))), 0).r;
-    return texcoord.z <= caster;
+    // Receivers beyond the far plane (the floor) are lit where the map is empty.
+    return min(texcoord.z, 1.0) <= caster;
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(maskLayer)))) return;
-    vec4 position = imageLoad(positions, pixel);
-    bool isSeen = position.w == 0.0 || isLit(position.xyz, imageLoad(normals, pixel).xyz);
-    if (isSeen) imageStore(maskLayer, pixel, imageLoad(maskLayer, pixel) | uvec4(bit));
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 position = texelFetch(positions, pixel, 0);
+    bool isSeen =
+        position.w == 0.0 || isLit(position.xyz, texelFetch(normals, pixel, 0).xyz);
+    seen = isSeen ? bit : 0u;
 }
