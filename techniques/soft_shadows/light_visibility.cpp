@@ -68,8 +68,7 @@ LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
       framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
-      test_(shaders,
-            {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
+      test_(shaders, {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
             {{"SHADOW_MAP_UNIT", kShadowMapUnit},
              {"POSITION_UNIT", kPositionUnit},
              {"NORMAL_UNIT", kNormalUnit}}) {}
@@ -117,9 +116,14 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
                            const depth_images::View& lightView) const {
     test_.use();
     test_.set("clipFromWorld", lightView.clipFromWorld());
-    test_.set("lightForward", forwardOf(lightView));
     test_.set("lightPosition", lightView.eyeWorld);
     test_.set("biasPerDistance", biasPerDistance(lightView));
+    const glm::mat4 axes = glm::transpose(lightView.viewFromWorld);
+    test_.set("lightRight", glm::vec3(axes[0]));
+    test_.set("lightUp", glm::vec3(axes[1]));
+    test_.set("texelPerDistance", texelWidth(lightView));
+    test_.set("nearM", lightView.nearM);
+    test_.set("farM", lightView.farM);
     test_.set("bit", 1U << (sample % 32));
     shadowMap_.bind(kShadowMapUnit);
     receivers.positions.bind(kPositionUnit);
@@ -130,7 +134,7 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    // Bits gather without being read: twice as fast as images in a compute pass on llvmpipe.
+    // Bits gather without being read: faster than images in a compute pass on llvmpipe.
     glEnable(GL_COLOR_LOGIC_OP);
     glLogicOp(GL_OR);
     withoutAttributes_.bind();

@@ -51,8 +51,9 @@ class ShadowCaster {
 
 struct ShadowMapSettings {
     int sizePx = 1024;
-    /// How far a receiver is moved along its normal before the test, in texels at its distance.
-    /// Below 0.71 surfaces shadow themselves; higher values lift shadows off their casters.
+    /// How far a receiver is moved towards the light before the test, in texels at its distance.
+    /// Its plane is compared at the texel's centre, so planes need none; it covers surfaces that
+    /// bend within a texel. Higher values lift shadows off their casters.
     float biasTexels = 1.0F;
 };
 
