@@ -49,6 +49,10 @@ void SoftShadows::setup(technique::SetupContext& context) {
     if (context.scene->triangleCount() == 0) {
         throw Error("technique 'soft_shadows' needs a scene with triangles");
     }
+    if (glm::length(context.scene->bounds().size()) == 0.0F) {
+        throw Error(
+            "technique 'soft_shadows' needs a scene with some extent; all of its points are one");
+    }
     shaders_ = &context.shaders;
     scene_ = *context.scene;
     light_ = makeAreaLight(scene_.bounds(), params_.light);

@@ -74,7 +74,7 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
       referenceImages(params.getInt("reference_images", 4,
                                     {"depth images, or layers of depth_peeling", "images", 1, 16})),
       referenceSizePx(
-          params.getInt("reference_size", 1024, {"of a depth image", "pixels", 1, 16384})),
+          params.getInt("reference_size", 1024, {"of a depth image", "pixels", 1, 32768})),
       reconstruction(readReconstruction(params)),
       simplifyTo(number(params, "simplify_to", 1.0,
                         {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
