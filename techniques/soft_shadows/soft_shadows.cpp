@@ -134,8 +134,13 @@ void SoftShadows::render(technique::FrameContext& context) {
         }
         caster_ = makeCaster(std::move(meshes), profiler);
     }
-    const gl::GpuScope scope(profiler, "soft_shadow");
     const ShadowCaster* casters[] = {caster_ ? caster_.get() : &*geometry_};
+    if (params_.measured == Measured::DepthAndPass) {
+        const gl::GpuScope scope(profiler, "depth_and_pass");
+        visibility_->drawMapsAndPlainPasses(mask_, light_, params_.lightGrid, casters);
+        return;
+    }
+    const gl::GpuScope scope(profiler, "soft_shadow");
     if (params_.isFiltered()) {
         filtered_->render(receivers_, light_, casters, litShares_);
     } else {

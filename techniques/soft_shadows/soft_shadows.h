@@ -29,6 +29,11 @@ enum class Method {
     Variance,   // variance soft shadows
 };
 
+enum class Measured {
+    SoftShadow,
+    DepthAndPass,  // the yardstick: depth-only draws and plain passes
+};
+
 struct SoftShadowsParams {
     Method method = Method::NonRedundant;
     int referenceImages = 4;
@@ -41,6 +46,7 @@ struct SoftShadowsParams {
     ShadowMapSettings shadowMap;
     bool hasGround = true;
     float groundSize = 1.5F;  // side, in diagonals of the box
+    Measured measured = Measured::SoftShadow;
     bool measuresErrors = true;
     bool tracesTruth = false;
     bool showsPictures = false;

@@ -57,8 +57,10 @@ class SoftShadowsTest : public test::GlTest {
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         technique::FrameContext frame{0, 1, profiler_};
         technique->render(frame);
-        technique->render(frame);  // a repetition overwrites what the first has left
         profiler_.collect();
+        technique->render(frame);  // a repetition overwrites what the first has left
+        passes_.clear();
+        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
         MetricRecorder recorder;
         technique->record(recorder);
         profiler_.collect();
@@ -78,6 +80,7 @@ class SoftShadowsTest : public test::GlTest {
 
     gl::ShaderLibrary shaders_{dataFolder("shaders")};
     gl::Profiler profiler_{true};
+    std::vector<std::string> passes_;
 };
 
 constexpr const char* kReconstructing[] = {"non_redundant", "conventional", "depth_peeling"};
@@ -134,6 +137,11 @@ TEST(SoftShadowsParamsTest, RefusesWhatMeansNothing) {
     EXPECT_EQ(message("{method: ray_traced, errors: false, shadow_map_size: 64}"),
               "case.yaml:1:54: 'shadow_map_size' needs a method that draws shadow maps, or "
               "'errors: true'");
+    EXPECT_EQ(message("{method: pcss, measured: depth_and_pass}"),
+              "case.yaml:1:26: 'measured: depth_and_pass' needs a method that draws a shadow map "
+              "for each light sample");
+    EXPECT_EQ(message("{measured: depth_and_pass, pictures: true}"),
+              "case.yaml:1:38: 'pictures' needs 'measured: soft_shadow'");
     EXPECT_EQ(message("{light_ratio: -1}"),
               "case.yaml:1:15: technique 'soft_shadows': light_ratio is -1; allowed: 0 … 16 1");
 }
@@ -240,6 +248,19 @@ TEST_F(SoftShadowsTest, FloorBeyondTheFarPlaneIsLit) {
     const Metrics metrics =
         run("geometry", "ground_size: 12, traced_truth: true", plateOverFloor());
     EXPECT_LT(metrics.at("visibility_error_mean/ray_traced"), 1.0);
+}
+
+TEST_F(SoftShadowsTest, TimesItsThreeStepsOrTheYardstick) {
+    const scene::Scene scene = plateOverFloor();
+    run("non_redundant", "", scene);
+    EXPECT_EQ(passes_,
+              (std::vector<std::string>{"reference_images", "reconstruction", "soft_shadow"}));
+    const Metrics metrics = run("conventional", "measured: depth_and_pass", scene);
+    EXPECT_EQ(passes_,
+              (std::vector<std::string>{"reference_images", "reconstruction", "depth_and_pass"}));
+    EXPECT_FALSE(metrics.contains("visibility_error_mean/geometry"));
+    run("ray_traced", "", scene);
+    EXPECT_EQ(passes_, (std::vector<std::string>{"soft_shadow"}));
 }
 
 TEST_F(SoftShadowsTest, SameCaseGivesTheSameNumbersAndPictures) {
