@@ -37,6 +37,18 @@ float eyeDepth(const depth_images::View& view, float windowDepth) {
            (view.farM + view.nearM - ndc * (view.farM - view.nearM));
 }
 
+/// Whether what a pixel shows lies in the casters' box: no view has to hold the floor.
+bool isOfCasters(const depth_images::View& view, const scene::Box& casters, std::size_t pixel,
+                 float depth) {
+    const auto width = static_cast<std::size_t>(view.sizePx.x);
+    const glm::vec2 position(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
+    const glm::vec3 point = depth_images::unproject(view, position + 0.5F, depth);
+    // Half the way down to the floor: window depths are rounded.
+    const float margin = 5e-4F * glm::length(casters.size());
+    return glm::all(glm::greaterThan(point, casters.min - margin)) &&
+           glm::all(glm::lessThan(point, casters.max + margin));
+}
+
 /// Two texels of distance: less is the resolution of the reference images.
 float toleranceAt(const depth_images::View& view, float depth, int referenceSizePx) {
     return 2.0F * 2.0F * depth / (view.clipFromView[0].x * static_cast<float>(referenceSizePx));
@@ -183,8 +195,9 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
     LightViewAgreement agreement;
     for (std::size_t pixel = 0; pixel < truth.size(); ++pixel) {
         if (truth[pixel] == 1.0F) continue;
-        ++agreement.covered;
         const float depth = eyeDepth(view, truth[pixel]);
+        if (!isOfCasters(view, light_.casters, pixel, depth)) continue;
+        ++agreement.covered;
         const float difference = eyeDepth(view, measured[pixel]) - depth;
         const float tolerance = toleranceAt(view, depth, params_.referenceSizePx);
         agreement.missing += measured[pixel] == 1.0F || difference > tolerance ? 1 : 0;
