@@ -130,6 +130,10 @@ void SoftShadows::render(technique::FrameContext& context) {
         std::vector<ReconstructedMesh> meshes;
         {
             const gl::GpuScope scope(profiler, "reconstruction");
+            if (!offsetImages_.empty()) {
+                const gl::GpuScope offsetScope(profiler, "offset_images");
+                renderOffsetImages();
+            }
             meshes = reconstructMeshes();
         }
         caster_ = makeCaster(std::move(meshes), profiler);
@@ -156,21 +160,24 @@ void SoftShadows::renderReferenceImages() {
     }
 }
 
+// H of Algorithm 4. H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H
+// before it have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
+void SoftShadows::renderOffsetImages() {
+    for (std::size_t i = 0; i < offsetImages_.size(); ++i) {
+        std::vector<const depth_images::DepthImage*> earlier;
+        if (params_.method == Method::NonRedundant) earlier = firstOf(images_, i);
+        if (params_.method == Method::DepthPeeling) earlier = firstOf(offsetImages_, i);
+        renderer_->render(*drawable_, offsetImages_[i], earlier);
+    }
+}
+
 // [xie2017] Algorithm 5, step 2
 std::vector<ReconstructedMesh> SoftShadows::reconstructMeshes() {
     std::vector<ReconstructedMesh> meshes;
     meshCounts_.clear();
     for (std::size_t i = 0; i < images_.size(); ++i) {
-        const depth_images::DepthImage* offsetImage = nullptr;
-        if (!offsetImages_.empty()) {
-            // H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H before it
-            // have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
-            std::vector<const depth_images::DepthImage*> earlier;
-            if (params_.method == Method::NonRedundant) earlier = firstOf(images_, i);
-            if (params_.method == Method::DepthPeeling) earlier = firstOf(offsetImages_, i);
-            renderer_->render(*drawable_, offsetImages_[i], earlier);
-            offsetImage = &offsetImages_[i];
-        }
+        const depth_images::DepthImage* offsetImage =
+            offsetImages_.empty() ? nullptr : &offsetImages_[i];
         meshes.push_back(reconstructor_->reconstruct(images_[i], offsetImage, triangleNormals_));
         const ReconstructedMesh& mesh = meshes.back();
         meshCounts_.push_back({mesh.sampleCount, mesh.triangleCount, mesh.sizeBytes(),

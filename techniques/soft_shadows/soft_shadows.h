@@ -75,6 +75,7 @@ class SoftShadows final : public technique::Technique {
     std::vector<glm::vec3> referencePoints() const;
     void makeReferenceTargets();
     void renderReferenceImages();
+    void renderOffsetImages();
     std::vector<ReconstructedMesh> reconstructMeshes();
     std::unique_ptr<ShadowCaster> makeCaster(std::vector<ReconstructedMesh> meshes,
                                              gl::Profiler& profiler);
