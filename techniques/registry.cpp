@@ -2,6 +2,7 @@
 // objects are dropped by the linker.
 #include "runner/technique/technique.h"
 #include "techniques/depth_sampling/depth_sampling.h"
+#include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
 
@@ -10,6 +11,7 @@ namespace gfxrepro::technique {
 std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
         depth_sampling::kDepthSampling,
+        soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,
     };

@@ -274,6 +274,10 @@ void Texture::bindImage(GLuint unit, GLenum access) const {
     glBindImageTexture(unit, id(), 0, GL_TRUE, 0, access, format_);
 }
 
+void Texture::bindImageLayer(GLuint unit, int layer, GLenum access) const {
+    glBindImageTexture(unit, id(), 0, GL_FALSE, layer, access, format_);
+}
+
 SampleQuery::SampleQuery() {
     GLuint id = 0;
     glCreateQueries(GL_SAMPLES_PASSED, 1, &id);

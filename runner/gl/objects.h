@@ -133,6 +133,8 @@ class Texture {
     void bind(GLuint unit) const;
     /// Whole level 0 (all layers) as an image in the texture's own format.
     void bindImage(GLuint unit, GLenum access) const;
+    /// One layer of level 0 of an array.
+    void bindImageLayer(GLuint unit, int layer, GLenum access) const;
 
   private:
     void readBytes(GLenum pixelFormat, GLenum pixelType, void* data, std::size_t sizeBytes) const;

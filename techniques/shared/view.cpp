@@ -30,9 +30,13 @@ View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx) 
     view.farM = camera.farM;
     const float aspect = static_cast<float>(sizePx.x) / static_cast<float>(sizePx.y);
     view.clipFromView = glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM);
+    return withOffset(view, offsetPx);
+}
+
+View withOffset(View view, glm::vec2 offsetPx) {
     // A point seen offsetPx further right and up lands in the middle of the pixel: the image moves
     // left and down. w = −z, so the shift in normalized coordinates goes into the third column.
-    const glm::vec2 shift = 2.0F * offsetPx / glm::vec2(sizePx);
+    const glm::vec2 shift = 2.0F * offsetPx / glm::vec2(view.sizePx);
     view.clipFromView[2].x += shift.x;
     view.clipFromView[2].y += shift.y;
     return view;

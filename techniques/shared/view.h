@@ -21,9 +21,12 @@ struct View {
     glm::mat4 clipFromWorld() const { return clipFromView * viewFromWorld; }
 };
 
-/// The view of a camera. `offsetPx` moves the samples: pixel p samples where p + offsetPx would
-/// without it ((0.5, 0.5) is the half-pixel image H of [xie2017] algorithm 4).
+/// The view of a camera, its samples moved by `offsetPx` (see withOffset).
 View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx = glm::vec2(0.0F));
+
+/// The same view with its samples moved: pixel p samples where p + offsetPx does in `view` (half a
+/// pixel makes the offset image H of [xie2017] algorithm 4).
+View withOffset(View view, glm::vec2 offsetPx);
 
 /// Where a point lands, in pixel coordinates; may lie outside of the image. Nothing for points on
 /// or behind the plane through the eye. Same operations as projectToPixel in shared/view.glsl.

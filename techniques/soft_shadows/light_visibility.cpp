@@ -1,0 +1,165 @@
+#include "techniques/soft_shadows/light_visibility.h"
+
+#include <array>
+#include <cmath>
+
+#include "runner/gpu_scene/gpu_mesh.h"
+
+namespace gfxrepro::soft_shadows {
+namespace {
+
+constexpr unsigned kBaseColorUnit = 0;
+enum TextureUnit { kShadowMapUnit = 0, kPositionUnit = 1, kNormalUnit = 2 };
+
+void setDepthState() {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+/// Width of a shadow-map texel at a distance of one along the view's axis.
+float texelWidth(const depth_images::View& view) {
+    return 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x));
+}
+
+}  // namespace
+
+glm::vec3 forwardOf(const depth_images::View& view) {
+    return -glm::vec3(glm::transpose(view.viewFromWorld)[2]);
+}
+
+std::size_t Receivers::sizeBytes() const {
+    return positions.sizeBytes() + normals.sizeBytes() + shading.sizeBytes();
+}
+
+Receivers renderReceivers(const gl::ShaderLibrary& shaders,
+                          const depth_images::DrawableScene& scene,
+                          const depth_images::View& view) {
+    const gl::Program program(
+        shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"},
+        {{"POSITION", static_cast<int>(gpu_scene::kPosition)},
+         {"TEXCOORD", static_cast<int>(gpu_scene::kTexcoord)},
+         {"COLOR", static_cast<int>(gpu_scene::kColor)},
+         {"BASE_COLOR_UNIT", static_cast<int>(kBaseColorUnit)}});
+    Receivers receivers{view, gl::Texture::make2D(GL_RGBA32F, view.sizePx),
+                        gl::Texture::make2D(GL_RGBA16F, view.sizePx),
+                        gl::Texture::make2D(GL_RGBA8, view.sizePx)};
+    const gl::Texture depth = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx);
+    const gl::Texture* colours[] = {&receivers.positions, &receivers.normals, &receivers.shading};
+    const gl::Framebuffer framebuffer(colours, &depth);
+    framebuffer.bind();
+    for (int attachment = 0; attachment < 3; ++attachment) {
+        framebuffer.clearColour(attachment, glm::vec4(0.0F));
+    }
+    framebuffer.clearDepth(1.0F);
+    setDepthState();
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    program.use();
+    program.set("clipFromWorld", view.clipFromWorld());
+    program.set("eyeWorld", view.eyeWorld);
+    scene.draw(program, kBaseColorUnit);
+    return receivers;
+}
+
+LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
+                                 const ShadowMapSettings& settings)
+    : settings_(settings),
+      shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
+      framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
+      test_(shaders, {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
+            {{"SHADOW_MAP_UNIT", kShadowMapUnit},
+             {"POSITION_UNIT", kPositionUnit},
+             {"NORMAL_UNIT", kNormalUnit}}),
+      plainPass_(shaders,
+                 {"soft_shadows/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
+
+VisibilityMask LightVisibility::makeMask(glm::ivec2 sizePx, int gridSize) {
+    VisibilityMask mask;
+    mask.sampleCount = gridSize * gridSize;
+    for (int first = 0; first < mask.sampleCount; first += 32) {
+        VisibilityMask::Layer layer;
+        layer.bits = gl::Texture::make2D(GL_R32UI, sizePx);
+        const gl::Texture* target[] = {&layer.bits};
+        layer.framebuffer = gl::Framebuffer(target);
+        mask.layers.push_back(std::move(layer));
+    }
+    return mask;
+}
+
+void LightVisibility::accumulate(VisibilityMask& mask, const Receivers& receivers,
+                                 const AreaLight& light, int gridSize,
+                                 std::span<const ShadowCaster* const> casters) const {
+    for (VisibilityMask::Layer& layer : mask.layers) layer.bits.clearToZero();
+    for (int j = 0; j < gridSize; ++j) {
+        for (int i = 0; i < gridSize; ++i) {
+            const depth_images::View view =
+                lightView(light, light.sample(i, j, gridSize), settings_.sizePx);
+            drawShadowMap(view, casters);
+            test(mask, j * gridSize + i, receivers, view);
+        }
+    }
+}
+
+void LightVisibility::drawMapsAndPlainPasses(VisibilityMask& mask, const AreaLight& light,
+                                             int gridSize,
+                                             std::span<const ShadowCaster* const> casters) const {
+    for (int sample = 0; sample < mask.sampleCount; ++sample) {
+        drawShadowMap(lightView(light, light.sample(sample % gridSize, sample / gridSize, gridSize),
+                                settings_.sizePx),
+                      casters);
+        plainPass_.use();
+        plainPass_.set("bit", 1U << (sample % 32));
+        drawBits(mask, sample);
+    }
+}
+
+void LightVisibility::drawShadowMap(const depth_images::View& lightView,
+                                    std::span<const ShadowCaster* const> casters) const {
+    framebuffer_.bind();
+    setDepthState();
+    framebuffer_.clearDepth(1.0F);
+    for (const ShadowCaster* caster : casters) caster->draw(lightView);
+}
+
+float LightVisibility::biasPerDistance(const depth_images::View& lightView) const {
+    return settings_.biasTexels * texelWidth(lightView);
+}
+
+void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& receivers,
+                           const depth_images::View& lightView) const {
+    test_.use();
+    test_.set("clipFromWorld", lightView.clipFromWorld());
+    test_.set("lightPosition", lightView.eyeWorld);
+    test_.set("biasPerDistance", biasPerDistance(lightView));
+    const glm::mat4 axes = glm::transpose(lightView.viewFromWorld);
+    test_.set("lightRight", glm::vec3(axes[0]));
+    test_.set("lightUp", glm::vec3(axes[1]));
+    test_.set("texelPerDistance", texelWidth(lightView));
+    test_.set("nearM", lightView.nearM);
+    test_.set("farM", lightView.farM);
+    test_.set("bit", 1U << (sample % 32));
+    shadowMap_.bind(kShadowMapUnit);
+    receivers.positions.bind(kPositionUnit);
+    receivers.normals.bind(kNormalUnit);
+    drawBits(mask, sample);
+}
+
+/// A fragment of the program in use for every pixel; the bits that it puts out are added.
+void LightVisibility::drawBits(VisibilityMask& mask, int sample) const {
+    mask.layers[static_cast<std::size_t>(sample / 32)].framebuffer.bind();
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    // Bits gather without being read: faster than images in a compute pass on llvmpipe.
+    glEnable(GL_COLOR_LOGIC_OP);
+    glLogicOp(GL_OR);
+    withoutAttributes_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_COLOR_LOGIC_OP);
+}
+
+}  // namespace gfxrepro::soft_shadows

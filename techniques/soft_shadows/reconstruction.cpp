@@ -1,0 +1,229 @@
+#include "techniques/soft_shadows/reconstruction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::soft_shadows {
+namespace {
+
+enum TextureUnit : int { kDepthUnit = 0, kIdUnit = 1, kOffsetDepthUnit = 2, kOffsetIdUnit = 3 };
+enum ImageUnit : int { kFlagsUnit = 0, kPlacesUnit = 1 };
+enum StorageBinding : int {
+    kNormalBinding = 0,
+    kRunBinding = 1,
+    kVertexBinding = 2,
+    kIndexBinding = 3,
+};
+
+constexpr int kGroupWidth = 32;
+constexpr int kGroupHeight = 4;
+constexpr int kCountGroupSize = 64;
+constexpr int kScanGroupSize = 256;
+/// Corners that one invocation counts in sequence; short enough for some 10⁴ invocations in a
+/// megapixel, long enough that the scan over the runs costs little.
+constexpr int kRunLength = 32;
+static_assert(4 * kRunLength < 1 << 16, "places of vertices take 16 bits");
+
+/// Half pixels are stored in 16 bits.
+constexpr int kMaxSizePx = ((1 << 16) - 1) / 2;
+
+gl::Defines passDefines() {
+    return {{"DEPTH_UNIT", kDepthUnit},
+            {"ID_UNIT", kIdUnit},
+            {"OFFSET_DEPTH_UNIT", kOffsetDepthUnit},
+            {"OFFSET_ID_UNIT", kOffsetIdUnit},
+            {"FLAGS_UNIT", kFlagsUnit},
+            {"PLACES_UNIT", kPlacesUnit},
+            {"NORMAL_BINDING", kNormalBinding},
+            {"RUN_BINDING", kRunBinding},
+            {"VERTEX_BINDING", kVertexBinding},
+            {"INDEX_BINDING", kIndexBinding},
+            {"GROUP_WIDTH", kGroupWidth},
+            {"GROUP_HEIGHT", kGroupHeight},
+            {"COUNT_GROUP_SIZE", kCountGroupSize},
+            {"SCAN_GROUP_SIZE", kScanGroupSize},
+            {"RUN_LENGTH", kRunLength}};
+}
+
+gl::Program pass(const gl::ShaderLibrary& shaders, const char* name, Reconstruction method) {
+    const char* suffix = method == Reconstruction::Hybrid ? "hybrid" : "classic";
+    return {shaders, {fmt::format("soft_shadows/{}_{}.comp.glsl", name, suffix)}, passDefines()};
+}
+
+GLuint groupsFor(int count, int groupSize) {
+    return static_cast<GLuint>((count + groupSize - 1) / groupSize);
+}
+
+void dispatchCorners(glm::ivec2 cornersSize) {
+    glDispatchCompute(groupsFor(cornersSize.x, kGroupWidth), groupsFor(cornersSize.y, kGroupHeight),
+                      1);
+}
+
+/// H's pixel (x, y) must lie on the lower left corner of I's. 0.01: a hundredth of a pixel, far
+/// above rounding and far below the half pixel that is asked for.
+bool isHalfPixelToLowerLeft(const depth_images::View& offset, const depth_images::View& view) {
+    if (offset.sizePx != view.sizePx || offset.viewFromWorld != view.viewFromWorld) return false;
+    const glm::vec2 shift = glm::vec2(offset.clipFromView[2]) - glm::vec2(view.clipFromView[2]);
+    const glm::vec2 shiftPx = 0.5F * shift * glm::vec2(view.sizePx);
+    return glm::all(glm::lessThan(glm::abs(shiftPx + 0.5F), glm::vec2(0.01F)));
+}
+
+}  // namespace
+
+std::size_t ReconstructedMesh::sizeBytes() const {
+    return vertices.sizeBytes() + indices.sizeBytes();
+}
+
+glm::mat4 worldFromCorner(const depth_images::View& view) {
+    glm::mat4 matrix = worldFromPixels(view);
+    matrix[0] *= 0.5F;
+    matrix[1] *= 0.5F;
+    return matrix;
+}
+
+Reconstructor::Reconstructor(const gl::ShaderLibrary& shaders,
+                             const ReconstructionSettings& settings)
+    : settings_(settings),
+      classify_(pass(shaders, "classify", settings.method)),
+      count_(pass(shaders, "count", settings.method)),
+      scan_(shaders, {"soft_shadows/scan.comp.glsl"}, passDefines()),
+      emit_(pass(shaders, "emit", settings.method)) {}
+
+void Reconstructor::resizeScratch(glm::ivec2 imageSizePx) {
+    if (cornersSize_ == imageSizePx + 1) return;
+    cornersSize_ = imageSizePx + 1;
+    runsPerRow_ = (cornersSize_.x + kRunLength - 1) / kRunLength;
+    flags_ = gl::Texture::make2D(GL_R8UI, cornersSize_);
+    places_ = gl::Texture::make2D(GL_R32UI, cornersSize_);
+    const auto runs = static_cast<std::size_t>(runsPerRow_ * cornersSize_.y);
+    runs_ = gl::Buffer((runs + 1) * sizeof(glm::uvec4));
+}
+
+std::size_t Reconstructor::scratchBytes() const {
+    return flags_.sizeBytes() + places_.sizeBytes() + runs_.sizeBytes();
+}
+
+void Reconstructor::setGeometry(const gl::Program& program, const depth_images::View& view) const {
+    const auto setIfActive = [&](const char* name, const auto& value) {
+        if (program.isActive(name)) program.set(name, value);
+    };
+    const glm::mat4 rays = worldFromPixels(view);  // of depth 1
+    setIfActive("imageSizePx", view.sizePx);
+    setIfActive("rayOrigin", glm::vec3(rays[2]));
+    setIfActive("rayStepX", glm::vec3(rays[0]));
+    setIfActive("rayStepY", glm::vec3(rays[1]));
+    setIfActive("footprintPerDepth",
+                2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
+    setIfActive("grazingLimitPx", settings_.grazingLimitPx);
+    setIfActive("discontinuityPx", settings_.discontinuityPx);
+    setIfActive("runsPerRow", runsPerRow_);
+}
+
+glm::uvec4 Reconstructor::countElements(const depth_images::View& view) {
+    flags_.bindImage(kFlagsUnit, GL_READ_WRITE);
+    places_.bindImage(kPlacesUnit, GL_READ_WRITE);
+    runs_.bindStorage(kRunBinding);
+
+    classify_.use();
+    setGeometry(classify_, view);
+    dispatchCorners(cornersSize_);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+
+    const int runCount = runsPerRow_ * cornersSize_.y;
+    count_.use();
+    setGeometry(count_, view);
+    glDispatchCompute(groupsFor(runCount, kCountGroupSize), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+
+    scan_.use();
+    scan_.set("runCount", runCount);
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    const std::size_t totalsAt = static_cast<std::size_t>(runCount) * sizeof(glm::uvec4);
+    return runs_.read<glm::uvec4>(1, totalsAt).front();
+}
+
+void Reconstructor::emit(const ReconstructedMesh& mesh) {
+    emit_.use();
+    setGeometry(emit_, mesh.view);
+    mesh.vertices.bindStorage(kVertexBinding);
+    mesh.indices.bindStorage(kIndexBinding);
+    dispatchCorners(cornersSize_);
+    // The next image's classify overwrites what emit reads.
+    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
+                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+ReconstructedMesh Reconstructor::reconstruct(const depth_images::DepthImage& image,
+                                             const depth_images::DepthImage* offsetImage,
+                                             const gl::Buffer& triangleNormals) {
+    const depth_images::View& view = image.view;
+    if (std::max(view.sizePx.x, view.sizePx.y) > kMaxSizePx) {
+        throw UnsupportedError(
+            fmt::format("a depth image of {} × {} pixels cannot be made a mesh; at most {} a side",
+                        view.sizePx.x, view.sizePx.y, kMaxSizePx));
+    }
+    const bool isHybrid = settings_.method == Reconstruction::Hybrid;
+    resizeScratch(view.sizePx);
+    image.depth.bind(kDepthUnit);
+    image.triangleId.bind(kIdUnit);
+    if (isHybrid) {
+        GFXREPRO_ASSERT(offsetImage != nullptr && isHalfPixelToLowerLeft(offsetImage->view, view));
+        offsetImage->depth.bind(kOffsetDepthUnit);
+        offsetImage->triangleId.bind(kOffsetIdUnit);
+    }
+    triangleNormals.bindStorage(kNormalBinding);
+
+    const glm::uvec4 totals = countElements(view);
+    ReconstructedMesh mesh;
+    mesh.view = view;
+    mesh.vertexCount = totals.x;
+    mesh.triangleCount = totals.y;
+    mesh.sampleCount = totals.z;
+    mesh.fittedCorners = totals.w;
+    mesh.sharedCorners = isHybrid ? 4 * totals.z - totals.w : 0;
+    mesh.vertices = gl::Buffer(mesh.vertexCount * sizeof(CornerVertex));
+    mesh.indices = gl::Buffer(mesh.triangleCount * sizeof(glm::uvec3));
+    if (mesh.triangleCount > 0) emit(mesh);
+    return mesh;
+}
+
+gl::Buffer triangleNormals(const scene::Mesh& flattened, const gl::DeviceLimits& limits) {
+    const std::size_t bytes = flattened.triangles.size() * sizeof(glm::vec4);
+    if (static_cast<long long>(bytes) > limits.maxStorageBlockBytes) {
+        throw UnsupportedError(
+            fmt::format("the normals of {} triangles take {} bytes; the device's storage blocks "
+                        "hold {}",
+                        flattened.triangles.size(), bytes, limits.maxStorageBlockBytes));
+    }
+    std::vector<glm::vec4> normals;
+    normals.reserve(flattened.triangles.size());
+    for (const glm::uvec3& t : flattened.triangles) {
+        // In double: the cross product of a small triangle's edges would lose digits, or all.
+        const glm::dvec3 a(flattened.positions[t.x]);
+        const glm::dvec3 cross = glm::cross(glm::dvec3(flattened.positions[t.y]) - a,
+                                            glm::dvec3(flattened.positions[t.z]) - a);
+        const double length = glm::length(cross);
+        normals.emplace_back(length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0F), 0.0F);
+    }
+    return gl::Buffer::of(normals);
+}
+
+scene::Mesh toWorldMesh(const ReconstructedMesh& mesh) {
+    const glm::dmat4 toWorld(worldFromCorner(mesh.view));
+    scene::Mesh world;
+    world.name = "reconstruction";
+    world.positions.reserve(mesh.vertexCount);
+    for (const CornerVertex& v : mesh.vertices.read<CornerVertex>(mesh.vertexCount)) {
+        const double depth = v.depthM;
+        const glm::dvec4 corner(v.xHalfPx * depth, v.yHalfPx * depth, depth, 1.0);
+        world.positions.emplace_back(toWorld * corner);
+    }
+    world.triangles = mesh.indices.read<glm::uvec3>(mesh.triangleCount);
+    return world;
+}
+
+}  // namespace gfxrepro::soft_shadows

@@ -1,0 +1,103 @@
+// Meshes from depth images: [xie2017] Algorithm 4 (hybrid) and the classic four-neighbour mesh.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runner/gl/device.h"
+#include "runner/gl/program.h"
+#include "runner/scene/scene.h"
+#include "techniques/shared/depth_image.h"
+
+namespace gfxrepro::soft_shadows {
+
+enum class Reconstruction {
+    Hybrid,   // a quad a sample, corners from the offset image H or from the sample's plane
+    Classic,  // two triangles between four neighbouring samples, none across a discontinuity
+};
+
+struct ReconstructionSettings {
+    Reconstruction method = Reconstruction::Hybrid;
+    /// A corner (hybrid) or neighbour (classic) belongs to a sample when its depth differs from the
+    /// depth of the sample's plane there by at most this many pixel footprints (the width of a
+    /// pixel at the sample's depth). The thesis gives no threshold. Of ½ … 16, 4 to 8 gave the
+    /// fewest wrong pixels in depth maps of the meshes, seen from between their images.
+    float discontinuityPx = 4.0F;
+    /// A plane-fitted corner lies at most this many footprints nearer or farther than its sample:
+    /// bounds grazing planes, which the thesis does not discuss. A plane that slants by up to twice
+    /// as many footprints a pixel is met as it is; beyond, corners at outlines would stand out as
+    /// spikes. Of ½ … 16, 1 to 4 gave the fewest wrong pixels.
+    float grazingLimitPx = 2.0F;
+};
+
+/// A vertex of a reconstructed mesh.
+struct CornerVertex {
+    std::uint16_t xHalfPx = 0;  // pixel coordinates of the image, doubled
+    std::uint16_t yHalfPx = 0;
+    float depthM = 0.0F;  // distance along the view axis
+};
+static_assert(sizeof(CornerVertex) == 8);
+
+/// A reconstructed mesh on the device: CornerVertex a vertex, 32-bit indices, two triangles a quad:
+/// c₀c₁c₂, c₂c₃c₀, counter-clockwise seen from the eye. Order of vertices and triangles follows the
+/// image's rows.
+struct ReconstructedMesh {
+    depth_images::View view;
+    gl::Buffer vertices;
+    gl::Buffer indices;
+    std::uint32_t vertexCount = 0;
+    std::uint32_t triangleCount = 0;
+    std::uint32_t sampleCount = 0;    // samples of the image
+    std::uint32_t sharedCorners = 0;  // corners of quads taken from H (hybrid)
+    std::uint32_t fittedCorners = 0;  // corners of quads from planes (hybrid)
+
+    std::size_t sizeBytes() const;
+};
+
+/// Takes (x·d, y·d, d, 1) of a CornerVertex (x, y in half pixels, d its depth) into the world.
+glm::mat4 worldFromCorner(const depth_images::View& view);
+
+/// Rebuilds a mesh from depth image I and, for the hybrid method, its offset image H: the same
+/// view, moved by half a pixel to the lower left (viewOf with offset (−½, −½)), so that H's pixel
+/// (x, y) is the lower left corner of I's pixel (x, y); corners beyond H's last row and column are
+/// missing. `triangleNormals` holds the unit normal of every triangle of the scene (vec4 each, by
+/// id − 1): n of Algorithm 4 is the normal of the sample's triangle.
+class Reconstructor {
+  public:
+    Reconstructor(const gl::ShaderLibrary& shaders, const ReconstructionSettings& settings);
+
+    /// Waits for the device once, for the counts. Throws UnsupportedError for meshes beyond the
+    /// limit of a storage block, std::bad_alloc.
+    ReconstructedMesh reconstruct(const depth_images::DepthImage& image,
+                                  const depth_images::DepthImage* offsetImage,
+                                  const gl::Buffer& triangleNormals);
+
+    /// What is kept beside the meshes, of the size of the last image.
+    std::size_t scratchBytes() const;
+
+  private:
+    void resizeScratch(glm::ivec2 imageSizePx);
+    void setGeometry(const gl::Program& program, const depth_images::View& view) const;
+    /// Vertices, triangles, samples and plane-fitted corners of the mesh.
+    glm::uvec4 countElements(const depth_images::View& view);
+    void emit(const ReconstructedMesh& mesh);
+
+    ReconstructionSettings settings_;
+    gl::Program classify_, count_, scan_, emit_;
+
+    // A texel a corner, where up to four pixels meet: (width + 1) × (height + 1).
+    glm::ivec2 cornersSize_{0};
+    int runsPerRow_ = 0;
+    gl::Texture flags_;   // R8UI, what classify_ decided
+    gl::Texture places_;  // R32UI, places of the corner's vertices and triangles in its run
+    gl::Buffer runs_;     // uvec4 a run of corners: counts, then places; behind them the totals
+};
+
+/// The normals that Reconstructor takes. Throws UnsupportedError where they are beyond the limit of
+/// a storage block.
+gl::Buffer triangleNormals(const scene::Mesh& flattened, const gl::DeviceLimits& limits);
+
+/// The mesh in world space, read back: for PLY files and for simplification.
+scene::Mesh toWorldMesh(const ReconstructedMesh& mesh);
+
+}  // namespace gfxrepro::soft_shadows

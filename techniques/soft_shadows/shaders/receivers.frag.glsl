@@ -1,0 +1,24 @@
+#version 450 core
+// Out: world position (w = 1: there is a surface), geometric normal turned to the eye, unlit colour.
+
+in vec3 surfacePositionWorld;
+in vec2 surfaceTexcoord;
+in vec3 surfaceColor;
+
+layout(binding = BASE_COLOR_UNIT) uniform sampler2D baseColor;
+uniform int hasTexture;
+uniform float alphaCutoff;
+uniform vec3 eyeWorld;
+
+layout(location = 0) out vec4 position;
+layout(location = 1) out vec4 normal;
+layout(location = 2) out vec4 shading;
+
+void main() {
+    vec4 texel = hasTexture != 0 ? texture(baseColor, surfaceTexcoord) : vec4(1.0);
+    if (texel.a < alphaCutoff) discard;
+    vec3 n = normalize(cross(dFdx(surfacePositionWorld), dFdy(surfacePositionWorld)));
+    position = vec4(surfacePositionWorld, 1.0);
+    normal = vec4(dot(n, eyeWorld - surfacePositionWorld) < 0.0 ? -n : n, 0.0);
+    shading = vec4(surfaceColor * texel.rgb, 1.0);
+}

@@ -1,0 +1,95 @@
+#include "techniques/soft_shadows/shadow_casters.h"
+
+#include <algorithm>
+
+namespace gfxrepro::soft_shadows {
+namespace {
+
+/// llvmpipe keeps every triangle of a draw in memory until it is flushed.
+constexpr std::uint32_t kTrianglesPerDraw = 1 << 16;
+
+enum VertexLocation : GLuint { kHalfPxLocation = 0, kDepthLocation = 1 };
+
+gl::Program castProgram(const gl::ShaderLibrary& shaders) {
+    return {shaders, {"soft_shadows/cast_mesh.vert.glsl"}, gpu_scene::attributeDefines()};
+}
+
+gl::Program castCornersProgram(const gl::ShaderLibrary& shaders) {
+    return {shaders,
+            {"soft_shadows/cast_corners.vert.glsl"},
+            {{"HALF_PX_LOCATION", static_cast<int>(kHalfPxLocation)},
+             {"DEPTH_LOCATION", static_cast<int>(kDepthLocation)}}};
+}
+
+gl::VertexArray cornerArray(const ReconstructedMesh& mesh) {
+    gl::VertexArray array;
+    const GLuint id = array.id();
+    glVertexArrayVertexBuffer(id, 0, mesh.vertices.id(), 0, sizeof(CornerVertex));
+    glVertexArrayAttribFormat(id, kHalfPxLocation, 2, GL_UNSIGNED_SHORT, GL_FALSE, 0);
+    glVertexArrayAttribFormat(id, kDepthLocation, 1, GL_FLOAT, GL_FALSE,
+                              offsetof(CornerVertex, depthM));
+    for (const GLuint location : {kHalfPxLocation, kDepthLocation}) {
+        glVertexArrayAttribBinding(id, location, 0);
+        glEnableVertexArrayAttrib(id, location);
+    }
+    array.setIndices(mesh.indices);
+    return array;
+}
+
+}  // namespace
+
+SceneCaster::SceneCaster(const gl::ShaderLibrary& shaders, const depth_images::DrawableScene& scene)
+    : scene_(scene), program_(castProgram(shaders)) {}
+
+void SceneCaster::draw(const depth_images::View& lightView) const {
+    program_.use();
+    program_.set("clipFromWorld", lightView.clipFromWorld());
+    scene_.drawDepthOnly();
+}
+
+ReconstructedCaster::ReconstructedCaster(const gl::ShaderLibrary& shaders,
+                                         std::vector<ReconstructedMesh> meshes)
+    : meshes_(std::move(meshes)), program_(castCornersProgram(shaders)) {
+    for (const ReconstructedMesh& mesh : meshes_) vertexArrays_.push_back(cornerArray(mesh));
+}
+
+void ReconstructedCaster::draw(const depth_images::View& lightView) const {
+    glDisable(GL_CULL_FACE);  // a light may see a quad from behind
+    program_.use();
+    const glm::dmat4 clipFromWorld =
+        glm::dmat4(lightView.clipFromView) * glm::dmat4(lightView.viewFromWorld);
+    for (std::size_t i = 0; i < meshes_.size(); ++i) {
+        const ReconstructedMesh& mesh = meshes_[i];
+        program_.set("clipFromCorner",
+                     glm::mat4(clipFromWorld * glm::dmat4(worldFromCorner(mesh.view))));
+        vertexArrays_[i].bind();
+        for (std::uint32_t first = 0; first < mesh.triangleCount; first += kTrianglesPerDraw) {
+            const std::uint32_t count = std::min(mesh.triangleCount - first, kTrianglesPerDraw);
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                           reinterpret_cast<const void*>(first * sizeof(glm::uvec3)));
+            glFlush();
+        }
+    }
+}
+
+std::uint64_t ReconstructedCaster::triangleCount() const {
+    std::uint64_t count = 0;
+    for (const ReconstructedMesh& mesh : meshes_) count += mesh.triangleCount;
+    return count;
+}
+
+MeshCaster::MeshCaster(const gl::ShaderLibrary& shaders, const scene::Mesh& mesh)
+    : mesh_(mesh), program_(castProgram(shaders)) {}
+
+void MeshCaster::draw(const depth_images::View& lightView) const {
+    glDisable(GL_CULL_FACE);
+    program_.use();
+    program_.set("clipFromWorld", lightView.clipFromWorld());
+    constexpr int kPiece = static_cast<int>(kTrianglesPerDraw);
+    for (int first = 0; first < mesh_.triangleCount; first += kPiece) {
+        mesh_.draw(first, std::min(mesh_.triangleCount - first, kPiece));
+        glFlush();
+    }
+}
+
+}  // namespace gfxrepro::soft_shadows

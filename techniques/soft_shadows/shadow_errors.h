@@ -1,0 +1,61 @@
+// Visibility masks on the host: by shadow rays, and compared.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runner/image/image.h"
+#include "runner/raycast/ray_tracer.h"
+#include "techniques/soft_shadows/light_visibility.h"
+
+namespace gfxrepro::soft_shadows {
+
+struct HostReceivers {
+    glm::ivec2 sizePx{0};
+    std::vector<glm::vec4> positions, normals;  // as in Receivers, rows from the bottom
+    std::vector<glm::u8vec4> shading;
+};
+
+/// As VisibilityMask, layer by layer, rows from the bottom.
+struct HostVisibilityMask {
+    glm::ivec2 sizePx{0};
+    int sampleCount = 0;
+    std::vector<std::uint32_t> bits;
+
+    std::size_t pixelCount() const {
+        return static_cast<std::size_t>(sizePx.x) * static_cast<std::size_t>(sizePx.y);
+    }
+    /// Light samples that a pixel sees.
+    int litSamples(std::size_t pixel) const;
+};
+
+HostReceivers readReceivers(const Receivers& receivers);
+HostVisibilityMask readMask(const VisibilityMask& mask);
+
+/// The same bits by shadow rays. No shadow map and no bias but the offset along the normal that
+/// keeps a ray off its own triangle: 10⁻⁴ of the casters' diagonal. On all cores.
+HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostReceivers& receivers,
+                                   const AreaLight& light, int gridSize);
+
+/// Errors of a mask against the truth ([xie2017] Sec. 3.4.2), mean and maximum over all pixels of
+/// the output image, background included, in light samples of 256 whatever their true number.
+struct ShadowErrors {
+    double visibilityMean = 0.0, visibilityMax = 0.0;  // wrong samples
+    double intensityMean = 0.0, intensityMax = 0.0;    // |wrongly lit − wrongly dark|
+    std::vector<float> signedIntensity;                // a pixel: wrongly lit − wrongly dark
+};
+ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth);
+
+/// The share of the light that each pixel sees, 0 … 1.
+std::vector<float> litShares(const HostVisibilityMask& mask);
+
+/// The shadowed image: surface colour · (0.15 + 0.85 · share), rows from the top; no cosine, so
+/// that the picture shows visibility alone.
+image::ImageF shadowPicture(const HostReceivers& receivers, const std::vector<float>& litShares);
+
+/// As figure 16: green where too bright, red where too dark, over the darkened surface; an error of
+/// 64 light samples has the full colour.
+image::ImageF errorPicture(const HostReceivers& receivers,
+                           const std::vector<float>& signedIntensity);
+
+}  // namespace gfxrepro::soft_shadows

@@ -1,0 +1,119 @@
+// The technique `soft_shadows`: chapter 3 of xie2017. See README.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "runner/technique/technique.h"
+#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/soft_shadows/filtered_shadows.h"
+#include "techniques/soft_shadows/shadow_casters.h"
+#include "techniques/soft_shadows/shadow_errors.h"
+#include "techniques/soft_shadows/simplified.h"
+
+namespace gfxrepro::soft_shadows {
+
+/// What is recorded of a reconstructed mesh.
+struct MeshCounts {
+    std::uint64_t samples = 0, triangles = 0, bytes = 0, sharedCorners = 0, fittedCorners = 0;
+};
+
+enum class Method {
+    Geometry,      // shadow maps of the original geometry: the thesis's truth
+    NonRedundant,  // Algorithm 5
+    Conventional,
+    DepthPeeling,
+    RayTraced,  // shadow rays
+    Pcss,       // percentage-closer soft shadows
+    Variance,   // variance soft shadows
+};
+
+enum class Measured {
+    SoftShadow,
+    DepthAndPass,  // the yardstick: depth-only draws and plain passes
+};
+
+struct SoftShadowsParams {
+    Method method = Method::NonRedundant;
+    int referenceImages = 4;
+    int referenceSizePx = 1024;
+    ReconstructionSettings reconstruction;
+    float simplifyTo = 1.0F;             // share of the triangles; 1: as reconstructed
+    float simplificationError = 0.001F;  // of the box's diagonal
+    AreaLightSettings light;
+    int lightGrid = 16;
+    ShadowMapSettings shadowMap;
+    bool hasGround = true;
+    float groundSize = 1.5F;  // side, in diagonals of the box
+    Measured measured = Measured::SoftShadow;
+    bool measuresErrors = true;
+    bool tracesTruth = false;
+    bool showsPictures = false;
+    bool exportsMesh = false;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit SoftShadowsParams(config::Params& params);
+
+    /// Whether shadows come from meshes rebuilt from depth images.
+    bool reconstructs() const;
+    /// Whether shadows are shares of the light, not samples of it.
+    bool isFiltered() const { return method == Method::Pcss || method == Method::Variance; }
+};
+
+class SoftShadows final : public technique::Technique {
+  public:
+    explicit SoftShadows(config::Params& params);
+
+    void setup(technique::SetupContext& context) override;
+    void render(technique::FrameContext& context) override;
+    void record(technique::Recorder& recorder) override;
+
+  private:
+    /// Points that the reference images are taken from: the light's corners, then points inside;
+    /// for peeling, its centre again and again.
+    std::vector<glm::vec3> referencePoints() const;
+    void makeReferenceTargets();
+    void renderReferenceImages();
+    void renderOffsetImages();
+    std::vector<ReconstructedMesh> reconstructMeshes();
+    std::unique_ptr<ShadowCaster> makeCaster(std::vector<ReconstructedMesh> meshes,
+                                             gl::Profiler& profiler);
+
+    HostVisibilityMask measuredMask() const;
+    const HostVisibilityMask& geometryTruth();
+    const HostVisibilityMask& tracedTruth();
+    void recordErrors(technique::Recorder& recorder, const char* truthName,
+                      const HostVisibilityMask& truth);
+    void recordMeshes(technique::Recorder& recorder) const;
+    void recordLightView(technique::Recorder& recorder, const char* name,
+                         const glm::vec3& point) const;
+
+    SoftShadowsParams params_;
+    const gl::ShaderLibrary* shaders_ = nullptr;
+    scene::Scene scene_;  // with its ground
+    AreaLight light_;
+    std::optional<depth_images::DrawableScene> drawable_;
+    std::optional<SceneCaster> geometry_;
+    std::optional<raycast::RayTracer> tracer_;
+    Receivers receivers_;
+    HostReceivers hostReceivers_;
+    std::optional<LightVisibility> visibility_;
+    std::optional<FilteredShadows> filtered_;
+    VisibilityMask mask_;
+    gl::Texture litShares_;  // of filtered shadows
+    std::optional<HostVisibilityMask> tracedMask_, geometryTruth_, tracedTruth_;
+
+    gl::Buffer triangleNormals_;
+    std::optional<depth_images::DepthImageRenderer> renderer_;
+    std::optional<Reconstructor> reconstructor_;
+    std::vector<depth_images::DepthImage> images_;        // I of Algorithm 4
+    std::vector<depth_images::DepthImage> offsetImages_;  // H, hybrid only
+    std::unique_ptr<ShadowCaster> caster_;                // what casts in this method
+    std::vector<MeshCounts> meshCounts_;
+    float simplificationErrorM_ = 0.0F;
+};
+
+extern const technique::TechniqueInfo kSoftShadows;
+
+}  // namespace gfxrepro::soft_shadows

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <glm/trigonometric.hpp>
+
+#include "techniques/soft_shadows/soft_shadows.h"
+
+namespace gfxrepro::soft_shadows {
+namespace {
+
+constexpr config::Choice<Method> kMethods[] = {
+    {Method::Geometry, "geometry", "shadow maps of the original geometry"},
+    {Method::NonRedundant, "non_redundant",
+     "meshes from non-redundant depth images of the light's corners (algorithm 5)"},
+    {Method::Conventional, "conventional", "meshes from conventional depth images of the corners"},
+    {Method::DepthPeeling, "depth_peeling", "meshes from layers seen from the light's centre"},
+    {Method::RayTraced, "ray_traced", "a shadow ray to each light sample, on the CPU"},
+    {Method::Pcss, "pcss", "percentage-closer soft shadows from the light's centre"},
+    {Method::Variance, "variance", "variance soft shadows from the light's centre"},
+};
+constexpr config::Choice<Reconstruction> kReconstructions[] = {
+    {Reconstruction::Hybrid, "hybrid", "a quad a sample (algorithm 4)"},
+    {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
+};
+
+constexpr config::Choice<Measured> kMeasured[] = {
+    {Measured::SoftShadow, "soft_shadow", "the light's visibility"},
+    {Measured::DepthAndPass, "depth_and_pass",
+     "a yardstick: for each light sample a depth-only draw of the casters and a pass over the "
+     "image that only writes"},
+};
+
+float number(config::Params& params, const char* name, double fallback,
+             const config::ParamSpec& spec) {
+    return static_cast<float>(params.getDouble(name, fallback, spec));
+}
+
+AreaLightSettings readLight(config::Params& params) {
+    AreaLightSettings light;
+    light.sizeRatio =
+        number(params, "light_ratio", 1.0,
+               {"diagonal of the square light : diagonal of the scene's box; 0 is a point", "1",
+                0.0, 16.0});
+    light.height =
+        number(params, "light_height", 1.5,
+               {"distance of the light from the centre of the box", "diagonals", 0.01, 100.0});
+    light.azimuthRad = glm::radians(
+        number(params, "light_azimuth_deg", 35.0,
+               {"direction to the light about y, from +z towards +x", "°", -360.0, 360.0}));
+    light.elevationRad = glm::radians(
+        number(params, "light_elevation_deg", 60.0, {"… above the horizon", "°", -90.0, 90.0}));
+    return light;
+}
+
+ReconstructionSettings readReconstruction(config::Params& params) {
+    ReconstructionSettings settings;
+    settings.method = params.getEnum("reconstruction", Reconstruction::Hybrid, kReconstructions,
+                                     {"how depth images become meshes"});
+    settings.discontinuityPx = number(
+        params, "discontinuity", static_cast<double>(settings.discontinuityPx),
+        {"depth off a sample's plane at which a corner is another surface's", "pixels", 0.0, 1e6});
+    settings.grazingLimitPx = number(
+        params, "grazing_limit", static_cast<double>(settings.grazingLimitPx),
+        {"how far a plane-fitted corner may lie before or behind its sample", "pixels", 0.0, 1e6});
+    return settings;
+}
+
+/// Parameters that `method` does not read say so instead of being ignored.
+void refuseGiven(const config::Params& params, std::initializer_list<const char*> names,
+                 const char* needs) {
+    for (const char* name : names) {
+        if (params.isGiven(name)) {
+            throw Error(params.locationOf(name), fmt::format("'{}' needs {}", name, needs));
+        }
+    }
+}
+
+}  // namespace
+
+SoftShadowsParams::SoftShadowsParams(config::Params& params)
+    : method(params.getEnum("method", Method::NonRedundant, kMethods, {"where shadows come from"})),
+      referenceImages(params.getInt("reference_images", 4,
+                                    {"depth images, or layers of depth_peeling", "images", 1, 16})),
+      referenceSizePx(
+          params.getInt("reference_size", 1024, {"of a depth image", "pixels", 1, 32768})),
+      reconstruction(readReconstruction(params)),
+      simplifyTo(number(params, "simplify_to", 1.0,
+                        {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
+                         "reconstructed",
+                         "1", 0.001, 1.0})),
+      simplificationError(
+          number(params, "simplification_error", 0.001,
+                 {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
+      light(readLight(params)),
+      lightGrid(params.getInt("light_grid", 16, {"light samples along each edge", "1", 1, 64})),
+      hasGround(params.getBool("ground", true, {"a square floor under the scene"})),
+      groundSize(
+          number(params, "ground_size", 1.5, {"side of the floor", "diagonals", 0.0, 100.0})),
+      measured(params.getEnum("measured", Measured::SoftShadow, kMeasured, {"what is timed"})),
+      measuresErrors(
+          params.getBool("errors", true, {"compares with shadow maps of the original geometry"})),
+      tracesTruth(params.getBool("traced_truth", false, {"compares with shadow rays, too"})),
+      showsPictures(params.getBool("pictures", false,
+                                   {"shadows, errors, and the casters seen from the light"})),
+      exportsMesh(params.getBool("export_mesh", false, {"writes the meshes as PLY files"})) {
+    shadowMap.sizePx =
+        params.getInt("shadow_map_size", 1024, {"of a shadow map", "pixels", 1, 16384});
+    shadowMap.biasTexels =
+        number(params, "shadow_bias", 1.0,
+               {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
+    params.finish();
+    if (!reconstructs()) {
+        refuseGiven(params,
+                    {"reference_images", "reference_size", "reconstruction", "discontinuity",
+                     "grazing_limit", "simplify_to", "simplification_error", "export_mesh"},
+                    "a method that takes depth images: non_redundant, conventional or "
+                    "depth_peeling");
+    }
+    if (reconstruction.method == Reconstruction::Classic) {
+        refuseGiven(params, {"grazing_limit"}, "'reconstruction: hybrid'");
+    }
+    if (measured == Measured::DepthAndPass) {
+        if (method == Method::RayTraced || isFiltered()) {
+            throw Error(params.locationOf("measured"),
+                        "'measured: depth_and_pass' needs a method that draws a shadow map for "
+                        "each light sample");
+        }
+        refuseGiven(params, {"errors", "traced_truth", "pictures"}, "'measured: soft_shadow'");
+        measuresErrors = false;
+    }
+    if (method == Method::RayTraced && !measuresErrors) {
+        refuseGiven(params, {"shadow_map_size", "shadow_bias"},
+                    "a method that draws shadow maps, or 'errors: true'");
+    }
+}
+
+bool SoftShadowsParams::reconstructs() const {
+    return method == Method::NonRedundant || method == Method::Conventional ||
+           method == Method::DepthPeeling;
+}
+
+}  // namespace gfxrepro::soft_shadows

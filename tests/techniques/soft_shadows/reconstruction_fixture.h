@@ -1,0 +1,81 @@
+// A device, depth images of small scenes and their reconstruction.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "runner/core/files.h"
+#include "runner/gl/device.h"
+#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/soft_shadows/reconstruction.h"
+#include "tests/techniques/soft_shadows/reference_mesh.h"
+
+namespace gfxrepro::soft_shadows {
+
+using depth_images::viewOf;
+
+/// An image and its offset image, in the host's memory.
+struct ImagePair {
+    depth_images::HostDepthImage image;
+    depth_images::HostDepthImage offset;
+};
+
+/// A reconstruction, read back.
+struct HostMesh {
+    ReconstructedMesh mesh;
+    std::vector<CornerVertex> vertices;
+    std::vector<glm::uvec3> triangles;
+};
+
+class ReconstructionTest : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        device_.emplace(gl::Device::open({.name = "auto", .debug = gl::DebugOutput::Fatal}));
+    }
+    static void TearDownTestSuite() { device_.reset(); }
+    void TearDown() override { device_->finish("a test"); }
+
+    static gl::Device& device() { return *device_; }
+    static const gl::ShaderLibrary& shaders() {
+        static const gl::ShaderLibrary library(dataFolder("shaders"));
+        return library;
+    }
+
+    static HostMesh reconstruct(const ImagePair& images, std::span<const glm::vec3> normals,
+                                const ReconstructionSettings& settings) {
+        using depth_images::DepthFormat;
+        using depth_images::DepthImage;
+        DepthImage image(images.image.view, DepthFormat::Float32);
+        DepthImage offset(images.offset.view, DepthFormat::Float32);
+        writeDepthImage(images.image, image);
+        writeDepthImage(images.offset, offset);
+        std::vector<glm::vec4> padded;
+        for (const glm::vec3& n : normals) padded.emplace_back(n, 0.0F);
+        return readBack(
+            Reconstructor(shaders(), settings).reconstruct(image, &offset, gl::Buffer::of(padded)));
+    }
+
+    static HostMesh readBack(ReconstructedMesh mesh) {
+        HostMesh host;
+        host.vertices = mesh.vertices.read<CornerVertex>(mesh.vertexCount);
+        host.triangles = mesh.indices.read<glm::uvec3>(mesh.triangleCount);
+        host.mesh = std::move(mesh);
+        return host;
+    }
+
+  private:
+    static inline std::optional<gl::Device> device_;
+};
+
+/// An image without samples.
+depth_images::HostDepthImage emptyImage(const depth_images::View& view);
+/// Both without samples, seen from the origin.
+ImagePair emptyPair(glm::ivec2 sizePx);
+/// By ray casting: the nearest triangle, of either side, through the middle of each
+/// pixel.
+ImagePair traceImages(const scene::Mesh& mesh, const scene::Camera& camera, glm::ivec2 sizePx);
+/// A camera at the origin that looks along −z; a pixel's footprint at depth d is d · 2 / size.y.
+scene::Camera originCamera();
+
+}  // namespace gfxrepro::soft_shadows
