@@ -253,6 +253,17 @@ TEST_F(SoftShadowsTest, FloorBeyondTheFarPlaneIsLit) {
     EXPECT_LT(metrics.at("visibility_error_mean/ray_traced"), 1.0);
 }
 
+TEST_F(SoftShadowsTest, ThinSurfacesShadowTheirFarSides) {
+    // The camera looks at the dark side of a sheet that has no other geometry behind it.
+    scene::MeshBuilder builder;
+    builder.addQuad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+    scene::Scene scene = sceneFrom(builder);
+    scene.materials.push_back({.isDoubleSided = true});
+    scene.meshes.front().material = 0;
+    const Metrics metrics = run("geometry", "light_azimuth_deg: 180, traced_truth: true", scene);
+    EXPECT_LT(metrics.at("visibility_error_mean/ray_traced"), 1.0);
+}
+
 TEST_F(SoftShadowsTest, TimesItsThreeStepsOrTheYardstick) {
     const scene::Scene scene = plateOverFloor();
     run("non_redundant", "", scene);
