@@ -8,10 +8,8 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-constexpr int kGroupSize = 8;
 constexpr unsigned kBaseColorUnit = 0;
-enum TextureUnit { kShadowMapUnit = 0 };
-enum ImageUnit { kPositionImage = 0, kNormalImage = 1, kMaskImage = 2 };
+enum TextureUnit { kShadowMapUnit = 0, kPositionUnit = 1, kNormalUnit = 2 };
 
 void setDepthState() {
     glEnable(GL_DEPTH_TEST);
@@ -70,22 +68,28 @@ LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
       framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
-      test_(shaders, {"soft_shadows/shadow_test.comp.glsl"},
-            {{"GROUP_SIZE", kGroupSize},
-             {"SHADOW_MAP_UNIT", kShadowMapUnit},
-             {"POSITION_IMAGE", kPositionImage},
-             {"NORMAL_IMAGE", kNormalImage},
-             {"MASK_IMAGE", kMaskImage}}) {}
+      test_(shaders, {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
+            {{"SHADOW_MAP_UNIT", kShadowMapUnit},
+             {"POSITION_UNIT", kPositionUnit},
+             {"NORMAL_UNIT", kNormalUnit}}) {}
 
 VisibilityMask LightVisibility::makeMask(glm::ivec2 sizePx, int gridSize) {
-    const int samples = gridSize * gridSize;
-    return {gl::Texture::make2DArray(GL_R32UI, sizePx, (samples + 31) / 32), samples};
+    VisibilityMask mask;
+    mask.sampleCount = gridSize * gridSize;
+    for (int first = 0; first < mask.sampleCount; first += 32) {
+        VisibilityMask::Layer layer;
+        layer.bits = gl::Texture::make2D(GL_R32UI, sizePx);
+        const gl::Texture* target[] = {&layer.bits};
+        layer.framebuffer = gl::Framebuffer(target);
+        mask.layers.push_back(std::move(layer));
+    }
+    return mask;
 }
 
 void LightVisibility::accumulate(VisibilityMask& mask, const Receivers& receivers,
                                  const AreaLight& light, int gridSize,
                                  std::span<const ShadowCaster* const> casters) const {
-    mask.bits.clearToZero();
+    for (VisibilityMask::Layer& layer : mask.layers) layer.bits.clearToZero();
     for (int j = 0; j < gridSize; ++j) {
         for (int i = 0; i < gridSize; ++i) {
             const depth_images::View view =
@@ -112,17 +116,30 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
                            const depth_images::View& lightView) const {
     test_.use();
     test_.set("clipFromWorld", lightView.clipFromWorld());
-    test_.set("lightForward", forwardOf(lightView));
     test_.set("lightPosition", lightView.eyeWorld);
     test_.set("biasPerDistance", biasPerDistance(lightView));
+    const glm::mat4 axes = glm::transpose(lightView.viewFromWorld);
+    test_.set("lightRight", glm::vec3(axes[0]));
+    test_.set("lightUp", glm::vec3(axes[1]));
+    test_.set("texelPerDistance", texelWidth(lightView));
+    test_.set("nearM", lightView.nearM);
+    test_.set("farM", lightView.farM);
     test_.set("bit", 1U << (sample % 32));
     shadowMap_.bind(kShadowMapUnit);
-    receivers.positions.bindImage(kPositionImage, GL_READ_ONLY);
-    receivers.normals.bindImage(kNormalImage, GL_READ_ONLY);
-    mask.bits.bindImageLayer(kMaskImage, sample / 32, GL_READ_WRITE);
-    const glm::ivec2 groups = (receivers.view.sizePx + kGroupSize - 1) / kGroupSize;
-    glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+    receivers.positions.bind(kPositionUnit);
+    receivers.normals.bind(kNormalUnit);
+    mask.layers[static_cast<std::size_t>(sample / 32)].framebuffer.bind();
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    // Bits gather without being read: faster than images in a compute pass on llvmpipe.
+    glEnable(GL_COLOR_LOGIC_OP);
+    glLogicOp(GL_OR);
+    withoutAttributes_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_COLOR_LOGIC_OP);
 }
 
 }  // namespace gfxrepro::soft_shadows

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "runner/gl/program.h"
 #include "techniques/shared/drawable_scene.h"
@@ -25,9 +26,13 @@ Receivers renderReceivers(const gl::ShaderLibrary& shaders,
 
 /// One bit a light sample and output pixel: 1 where the pixel sees the sample. Sample (i, j) of an
 /// n × n light is number s = j·n + i, bit s mod 32 of layer s div 32. A pixel without a surface
-/// sees all.
+/// sees all. Layers are textures of their own, so that each can be drawn to.
 struct VisibilityMask {
-    gl::Texture bits;  // R32UI array
+    struct Layer {
+        gl::Texture bits;  // R32UI
+        gl::Framebuffer framebuffer;
+    };
+    std::vector<Layer> layers;
     int sampleCount = 0;
 };
 
@@ -46,8 +51,9 @@ class ShadowCaster {
 
 struct ShadowMapSettings {
     int sizePx = 1024;
-    /// How far a receiver is moved along its normal before the test, in texels at its distance.
-    /// Below 0.71 surfaces shadow themselves; higher values lift shadows off their casters.
+    /// How far a receiver is moved towards the light before the test, in texels at its distance.
+    /// Its plane is compared at the texel's centre, so planes need none; it covers surfaces that
+    /// bend within a texel. Higher values lift shadows off their casters.
     float biasTexels = 1.0F;
 };
 
@@ -79,6 +85,7 @@ class LightVisibility {
     gl::Texture shadowMap_;
     gl::Framebuffer framebuffer_;
     gl::Program test_;
+    gl::VertexArray withoutAttributes_;
 };
 
 }  // namespace gfxrepro::soft_shadows

@@ -68,8 +68,12 @@ HostReceivers readReceivers(const Receivers& receivers) {
 }
 
 HostVisibilityMask readMask(const VisibilityMask& mask) {
-    return {glm::ivec2(mask.bits.size()), mask.sampleCount,
-            mask.bits.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1)};
+    HostVisibilityMask host{glm::ivec2(mask.layers.front().bits.size()), mask.sampleCount, {}};
+    for (const VisibilityMask::Layer& layer : mask.layers) {
+        const auto bits = layer.bits.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+        host.bits.insert(host.bits.end(), bits.begin(), bits.end());
+    }
+    return host;
 }
 
 HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostReceivers& receivers,

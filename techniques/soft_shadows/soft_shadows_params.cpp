@@ -98,7 +98,7 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
         params.getInt("shadow_map_size", 1024, {"of a shadow map", "pixels", 1, 16384});
     shadowMap.biasTexels =
         number(params, "shadow_bias", 1.0,
-               {"how far a receiver is moved along its normal", "texels", 0.0, 1000.0});
+               {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
     params.finish();
     if (!reconstructs()) {
         refuseGiven(params,
@@ -110,8 +110,9 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
     if (reconstruction.method == Reconstruction::Classic) {
         refuseGiven(params, {"grazing_limit"}, "'reconstruction: hybrid'");
     }
-    if (method == Method::RayTraced) {
-        refuseGiven(params, {"shadow_map_size", "shadow_bias"}, "a method that draws shadow maps");
+    if (method == Method::RayTraced && !measuresErrors) {
+        refuseGiven(params, {"shadow_map_size", "shadow_bias"},
+                    "a method that draws shadow maps, or 'errors: true'");
     }
 }
 
