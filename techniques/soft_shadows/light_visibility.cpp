@@ -71,7 +71,9 @@ LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
       test_(shaders, {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
             {{"SHADOW_MAP_UNIT", kShadowMapUnit},
              {"POSITION_UNIT", kPositionUnit},
-             {"NORMAL_UNIT", kNormalUnit}}) {}
+             {"NORMAL_UNIT", kNormalUnit}}),
+      plainPass_(shaders,
+                 {"soft_shadows/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
 
 VisibilityMask LightVisibility::makeMask(glm::ivec2 sizePx, int gridSize) {
     VisibilityMask mask;
@@ -97,6 +99,19 @@ void LightVisibility::accumulate(VisibilityMask& mask, const Receivers& receiver
             drawShadowMap(view, casters);
             test(mask, j * gridSize + i, receivers, view);
         }
+    }
+}
+
+void LightVisibility::drawMapsAndPlainPasses(VisibilityMask& mask, const AreaLight& light,
+                                             int gridSize,
+                                             std::span<const ShadowCaster* const> casters) const {
+    for (int sample = 0; sample < mask.sampleCount; ++sample) {
+        drawShadowMap(lightView(light, light.sample(sample % gridSize, sample / gridSize, gridSize),
+                                settings_.sizePx),
+                      casters);
+        plainPass_.use();
+        plainPass_.set("bit", 1U << (sample % 32));
+        drawBits(mask, sample);
     }
 }
 
@@ -128,6 +143,11 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
     shadowMap_.bind(kShadowMapUnit);
     receivers.positions.bind(kPositionUnit);
     receivers.normals.bind(kNormalUnit);
+    drawBits(mask, sample);
+}
+
+/// A fragment of the program in use for every pixel; the bits that it puts out are added.
+void LightVisibility::drawBits(VisibilityMask& mask, int sample) const {
     mask.layers[static_cast<std::size_t>(sample / 32)].framebuffer.bind();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);

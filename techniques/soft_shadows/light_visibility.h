@@ -69,6 +69,11 @@ class LightVisibility {
     void accumulate(VisibilityMask& mask, const Receivers& receivers, const AreaLight& light,
                     int gridSize, std::span<const ShadowCaster* const> casters) const;
 
+    /// What accumulate() is measured against: the same shadow maps, and a pass that only writes
+    /// instead of each test. Leaves nothing of use in `mask`.
+    void drawMapsAndPlainPasses(VisibilityMask& mask, const AreaLight& light, int gridSize,
+                                std::span<const ShadowCaster* const> casters) const;
+
     /// The two halves of one light sample.
     void drawShadowMap(const depth_images::View& lightView,
                        std::span<const ShadowCaster* const> casters) const;
@@ -81,10 +86,13 @@ class LightVisibility {
     const gl::Texture& shadowMap() const { return shadowMap_; }
 
   private:
+    void drawBits(VisibilityMask& mask, int sample) const;
+
     ShadowMapSettings settings_;
     gl::Texture shadowMap_;
     gl::Framebuffer framebuffer_;
     gl::Program test_;
+    gl::Program plainPass_;
     gl::VertexArray withoutAttributes_;
 };
 

@@ -88,7 +88,11 @@ HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostR
         for (int sample = 0; sample < mask.sampleCount; ++sample) {
             const glm::vec3 toLight =
                 light.sample(sample % gridSize, sample / gridSize, gridSize) - origin;
-            if (isSurface && tracer.isOccluded(origin, toLight, 0.0F, glm::length(toLight))) {
+            // A surface that is turned away lies in its own shadow: no ray is needed.
+            const bool isTurnedAway =
+                glm::dot(glm::vec3(receivers.normals[pixel]), toLight) <= 0.0F;
+            if (isSurface &&
+                (isTurnedAway || tracer.isOccluded(origin, toLight, 0.0F, glm::length(toLight)))) {
                 continue;
             }
             mask.bits[static_cast<std::size_t>(sample / 32) * mask.pixelCount() + pixel] |=

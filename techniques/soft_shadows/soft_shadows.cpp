@@ -49,6 +49,10 @@ void SoftShadows::setup(technique::SetupContext& context) {
     if (context.scene->triangleCount() == 0) {
         throw Error("technique 'soft_shadows' needs a scene with triangles");
     }
+    if (glm::length(context.scene->bounds().size()) == 0.0F) {
+        throw Error(
+            "technique 'soft_shadows' needs a scene with some extent; all of its points are one");
+    }
     shaders_ = &context.shaders;
     scene_ = *context.scene;
     light_ = makeAreaLight(scene_.bounds(), params_.light);
@@ -126,12 +130,21 @@ void SoftShadows::render(technique::FrameContext& context) {
         std::vector<ReconstructedMesh> meshes;
         {
             const gl::GpuScope scope(profiler, "reconstruction");
+            if (!offsetImages_.empty()) {
+                const gl::GpuScope offsetScope(profiler, "offset_images");
+                renderOffsetImages();
+            }
             meshes = reconstructMeshes();
         }
         caster_ = makeCaster(std::move(meshes), profiler);
     }
-    const gl::GpuScope scope(profiler, "soft_shadow");
     const ShadowCaster* casters[] = {caster_ ? caster_.get() : &*geometry_};
+    if (params_.measured == Measured::DepthAndPass) {
+        const gl::GpuScope scope(profiler, "depth_and_pass");
+        visibility_->drawMapsAndPlainPasses(mask_, light_, params_.lightGrid, casters);
+        return;
+    }
+    const gl::GpuScope scope(profiler, "soft_shadow");
     if (params_.isFiltered()) {
         filtered_->render(receivers_, light_, casters, litShares_);
     } else {
@@ -147,21 +160,24 @@ void SoftShadows::renderReferenceImages() {
     }
 }
 
+// H of Algorithm 4. H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H
+// before it have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
+void SoftShadows::renderOffsetImages() {
+    for (std::size_t i = 0; i < offsetImages_.size(); ++i) {
+        std::vector<const depth_images::DepthImage*> earlier;
+        if (params_.method == Method::NonRedundant) earlier = firstOf(images_, i);
+        if (params_.method == Method::DepthPeeling) earlier = firstOf(offsetImages_, i);
+        renderer_->render(*drawable_, offsetImages_[i], earlier);
+    }
+}
+
 // [xie2017] Algorithm 5, step 2
 std::vector<ReconstructedMesh> SoftShadows::reconstructMeshes() {
     std::vector<ReconstructedMesh> meshes;
     meshCounts_.clear();
     for (std::size_t i = 0; i < images_.size(); ++i) {
-        const depth_images::DepthImage* offsetImage = nullptr;
-        if (!offsetImages_.empty()) {
-            // H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H before it
-            // have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
-            std::vector<const depth_images::DepthImage*> earlier;
-            if (params_.method == Method::NonRedundant) earlier = firstOf(images_, i);
-            if (params_.method == Method::DepthPeeling) earlier = firstOf(offsetImages_, i);
-            renderer_->render(*drawable_, offsetImages_[i], earlier);
-            offsetImage = &offsetImages_[i];
-        }
+        const depth_images::DepthImage* offsetImage =
+            offsetImages_.empty() ? nullptr : &offsetImages_[i];
         meshes.push_back(reconstructor_->reconstruct(images_[i], offsetImage, triangleNormals_));
         const ReconstructedMesh& mesh = meshes.back();
         meshCounts_.push_back({mesh.sampleCount, mesh.triangleCount, mesh.sizeBytes(),

@@ -29,6 +29,11 @@ enum class Method {
     Variance,   // variance soft shadows
 };
 
+enum class Measured {
+    SoftShadow,
+    DepthAndPass,  // the yardstick: depth-only draws and plain passes
+};
+
 struct SoftShadowsParams {
     Method method = Method::NonRedundant;
     int referenceImages = 4;
@@ -41,6 +46,7 @@ struct SoftShadowsParams {
     ShadowMapSettings shadowMap;
     bool hasGround = true;
     float groundSize = 1.5F;  // side, in diagonals of the box
+    Measured measured = Measured::SoftShadow;
     bool measuresErrors = true;
     bool tracesTruth = false;
     bool showsPictures = false;
@@ -69,6 +75,7 @@ class SoftShadows final : public technique::Technique {
     std::vector<glm::vec3> referencePoints() const;
     void makeReferenceTargets();
     void renderReferenceImages();
+    void renderOffsetImages();
     std::vector<ReconstructedMesh> reconstructMeshes();
     std::unique_ptr<ShadowCaster> makeCaster(std::vector<ReconstructedMesh> meshes,
                                              gl::Profiler& profiler);

@@ -22,6 +22,13 @@ constexpr config::Choice<Reconstruction> kReconstructions[] = {
     {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
 };
 
+constexpr config::Choice<Measured> kMeasured[] = {
+    {Measured::SoftShadow, "soft_shadow", "the light's visibility"},
+    {Measured::DepthAndPass, "depth_and_pass",
+     "a yardstick: for each light sample a depth-only draw of the casters and a pass over the "
+     "image that only writes"},
+};
+
 float number(config::Params& params, const char* name, double fallback,
              const config::ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, fallback, spec));
@@ -74,7 +81,7 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
       referenceImages(params.getInt("reference_images", 4,
                                     {"depth images, or layers of depth_peeling", "images", 1, 16})),
       referenceSizePx(
-          params.getInt("reference_size", 1024, {"of a depth image", "pixels", 1, 16384})),
+          params.getInt("reference_size", 1024, {"of a depth image", "pixels", 1, 32768})),
       reconstruction(readReconstruction(params)),
       simplifyTo(number(params, "simplify_to", 1.0,
                         {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
@@ -88,6 +95,7 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
       hasGround(params.getBool("ground", true, {"a square floor under the scene"})),
       groundSize(
           number(params, "ground_size", 1.5, {"side of the floor", "diagonals", 0.0, 100.0})),
+      measured(params.getEnum("measured", Measured::SoftShadow, kMeasured, {"what is timed"})),
       measuresErrors(
           params.getBool("errors", true, {"compares with shadow maps of the original geometry"})),
       tracesTruth(params.getBool("traced_truth", false, {"compares with shadow rays, too"})),
@@ -109,6 +117,15 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
     }
     if (reconstruction.method == Reconstruction::Classic) {
         refuseGiven(params, {"grazing_limit"}, "'reconstruction: hybrid'");
+    }
+    if (measured == Measured::DepthAndPass) {
+        if (method == Method::RayTraced || isFiltered()) {
+            throw Error(params.locationOf("measured"),
+                        "'measured: depth_and_pass' needs a method that draws a shadow map for "
+                        "each light sample");
+        }
+        refuseGiven(params, {"errors", "traced_truth", "pictures"}, "'measured: soft_shadow'");
+        measuresErrors = false;
     }
     if (method == Method::RayTraced && !measuresErrors) {
         refuseGiven(params, {"shadow_map_size", "shadow_bias"},

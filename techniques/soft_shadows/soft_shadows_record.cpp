@@ -25,7 +25,7 @@ ShadowErrors compareShares(const std::vector<float>& measured, const HostVisibil
 
 /// Window depths as seen from the light: how much of what the geometry shows the casters show, too.
 struct LightViewAgreement {
-    std::size_t covered = 0;  // pixels where the geometry is, within the box of the casters
+    std::size_t covered = 0;  // pixels where the geometry is
     std::size_t missing = 0;  // … and the casters are farther away or nothing
     std::size_t nearer = 0;   // … and they are nearer
 };
@@ -37,23 +37,21 @@ float eyeDepth(const depth_images::View& view, float windowDepth) {
            (view.farM + view.nearM - ndc * (view.farM - view.nearM));
 }
 
+/// Whether what a pixel shows lies in the casters' box: no view has to hold the floor.
+bool isOfCasters(const depth_images::View& view, const scene::Box& casters, std::size_t pixel,
+                 float depth) {
+    const auto width = static_cast<std::size_t>(view.sizePx.x);
+    const glm::vec2 position(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
+    const glm::vec3 point = depth_images::unproject(view, position + 0.5F, depth);
+    // Half the way down to the floor: window depths are rounded.
+    const float margin = 5e-4F * glm::length(casters.size());
+    return glm::all(glm::greaterThan(point, casters.min - margin)) &&
+           glm::all(glm::lessThan(point, casters.max + margin));
+}
+
 /// Two texels of distance: less is the resolution of the reference images.
 float toleranceAt(const depth_images::View& view, float depth, int referenceSizePx) {
     return 2.0F * 2.0F * depth / (view.clipFromView[0].x * static_cast<float>(referenceSizePx));
-}
-
-/// Whether the views of the light hold what `pixel` shows; the floor around the scene they need
-/// not.
-bool isInBox(const scene::Box& box, const depth_images::View& view, std::size_t pixel,
-             float depth) {
-    const auto width = static_cast<std::size_t>(view.sizePx.x);
-    const glm::vec2 centre(static_cast<float>(pixel % width) + 0.5F,
-                           static_cast<float>(pixel / width) + 0.5F);
-    const glm::vec3 point = depth_images::unproject(view, centre, depth);
-    // 10⁻⁴: points on the box's own faces belong to it, rounded or not.
-    const glm::vec3 slack(1e-4F * glm::length(box.size()));
-    return glm::all(glm::greaterThanEqual(point, box.min - slack)) &&
-           glm::all(glm::lessThanEqual(point, box.max + slack));
 }
 
 /// Depths lit by the slope of the depth, rows from the top; background where there is nothing.
@@ -126,6 +124,7 @@ void SoftShadows::record(technique::Recorder& recorder) {
         recorder.image("shadow", shadowPicture(hostReceivers_, shares));
     }
     if (params_.method == Method::RayTraced || params_.isFiltered()) return;
+    if (params_.measured != Measured::SoftShadow) return;
     recordLightView(recorder, "inside", light_.centre);
     // As far beyond the edge as the edge is from the centre, seen from there.
     recordLightView(recorder, "outside", light_.centre + 2.0F * light_.right);
@@ -197,7 +196,7 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
     for (std::size_t pixel = 0; pixel < truth.size(); ++pixel) {
         if (truth[pixel] == 1.0F) continue;
         const float depth = eyeDepth(view, truth[pixel]);
-        if (!isInBox(light_.casters, view, pixel, depth)) continue;
+        if (!isOfCasters(view, light_.casters, pixel, depth)) continue;
         ++agreement.covered;
         const float difference = eyeDepth(view, measured[pixel]) - depth;
         const float tolerance = toleranceAt(view, depth, params_.referenceSizePx);

@@ -40,7 +40,8 @@ float planeDepth(vec2 texcoord, vec3 position, vec3 normal, float receiverDepth)
     direction /= dot(direction, lightForward);  // length 1 along the axis
     float along = dot(normal, direction);
     float depth = dot(normal, position - lightPosition) / (abs(along) < 1e-6 ? 1e-6 : along);
-    return clamp(depth, 0.5 * receiverDepth, 1.5 * receiverDepth);
+    // Receivers beyond the far plane (the floor) are lit where the map is empty.
+    return min(clamp(depth, 0.5 * receiverDepth, 1.5 * receiverDepth), eyeDepth(1.0));
 }
 
 // Half the width, as a share of the map, within which casters at depth `blocker` hide parts of the
@@ -118,8 +119,13 @@ void main() {
         vec2 texcoord = clip.xy / clip.w * 0.5 + 0.5;
         bool isHeld = clip.w > 0.0 && all(greaterThanEqual(texcoord, vec2(0.0))) &&
                       all(lessThan(texcoord, vec2(1.0)));
-        float receiver = dot(position - lightPosition, lightForward);
-        if (isHeld) share = litShare(texcoord, position, normal, receiver);
+        float receiver = min(dot(position - lightPosition, lightForward), eyeDepth(1.0));
+        // What is turned away from the light's centre lies in its own shadow, as in shadow_test.
+        if (dot(normal, surface.xyz - lightPosition) >= 0.0) {
+            share = 0.0;
+        } else if (isHeld) {
+            share = litShare(texcoord, position, normal, receiver);
+        }
     }
     imageStore(litShares, pixel, vec4(share));
 }

@@ -1,0 +1,282 @@
+// The technique as a whole: parameters, metrics, scenes whose shadows every method knows.
+#include "techniques/soft_shadows/soft_shadows.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "runner/scene/mesh_builder.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::soft_shadows {
+namespace {
+
+using test::errorText;
+
+config::Params paramsOf(const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'soft_shadows'");
+}
+
+/// Keeps what a technique records.
+class MetricRecorder final : public technique::Recorder {
+  public:
+    void metric(std::string_view metric, double value, std::string_view,
+                std::string_view pass) override {
+        const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);
+        EXPECT_TRUE(metrics.emplace(key, value).second) << key << " twice";
+        EXPECT_TRUE(std::isfinite(value)) << key;
+    }
+    void image(std::string_view name, const image::ImageF& image) override {
+        images.emplace(name, image);
+    }
+    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
+    std::filesystem::path artifact(std::string_view) override { return {}; }
+
+    std::map<std::string, double> metrics;
+    std::map<std::string, image::ImageF> images;
+};
+
+class NoScenes final : public technique::SceneProvider {
+    const scene::Scene& load(const std::string& reference) override {
+        throw Error("no scene '" + reference + "' in this test");
+    }
+};
+
+class SoftShadowsTest : public test::GlTest {
+  protected:
+    using Metrics = std::map<std::string, double>;
+
+    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene) {
+        config::Params params = paramsOf(yaml);
+        const auto technique = kSoftShadows.create(params);
+        NoScenes scenes;
+        technique::SetupContext context{device, shaders_, scenes, scene, {48, 48}, 1, profiler_};
+        technique->setup(context);
+        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
+        technique::FrameContext frame{0, 1, profiler_};
+        technique->render(frame);
+        profiler_.collect();
+        technique->render(frame);  // a repetition overwrites what the first has left
+        passes_.clear();
+        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+        MetricRecorder recorder;
+        technique->record(recorder);
+        profiler_.collect();
+        return recorder;
+    }
+    /// `method` with references and shadow maps of 192², 16 light samples and what `more` says.
+    Metrics run(const std::string& method, const std::string& more, const scene::Scene& scene) {
+        const bool takesImages =
+            method == "non_redundant" || method == "conventional" || method == "depth_peeling";
+        const char* sizes = method == "ray_traced" ? ""
+                            : takesImages          ? ", shadow_map_size: 192, reference_size: 192"
+                                                   : ", shadow_map_size: 192";
+        const std::string yaml = fmt::format("{{method: {}, light_grid: 4{}{}{}}}", method, sizes,
+                                             more.empty() ? "" : ", ", more);
+        return recorded(yaml, &scene).metrics;
+    }
+
+    gl::ShaderLibrary shaders_{dataFolder("shaders")};
+    gl::Profiler profiler_{true};
+    std::vector<std::string> passes_;
+};
+
+constexpr const char* kReconstructing[] = {"non_redundant", "conventional", "depth_peeling"};
+
+scene::Scene sceneFrom(scene::MeshBuilder& builder) {
+    scene::Scene scene = scene::sceneOf(builder.take("test", -1));
+    scene::Camera camera;
+    camera.position = {1.0F, 4.0F, 5.0F};
+    camera.verticalFovRad = 0.8F;
+    scene.cameras = {camera};
+    return scene;
+}
+
+/// A plate that floats over a floor; the reference images see all that can cast.
+scene::Scene plateOverFloor() {
+    scene::MeshBuilder builder;
+    builder.addBox({0, -0.05F, 0}, {1.5F, 0.05F, 1.5F});
+    builder.addBox({0, 0.7F, 0}, {0.5F, 0.05F, 0.5F});
+    return sceneFrom(builder);
+}
+
+/// Boxes over a floor, many behind each other as seen from the light.
+scene::Scene clutter() {
+    scene::MeshBuilder builder;
+    builder.addBox({0, -1.1F, 0}, {1.5F, 0.1F, 1.5F});
+    Random random(7);
+    for (int i = 0; i < 60; ++i) {
+        const glm::vec3 centre(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const glm::vec3 half(random.uniform(0.05F, 0.25F), random.uniform(0.02F, 0.04F),
+                             random.uniform(0.05F, 0.25F));
+        builder.addBox(centre, half);
+    }
+    return sceneFrom(builder);
+}
+
+TEST(SoftShadowsParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = paramsOf(yaml);
+            SoftShadows technique(params);
+        });
+    };
+    const std::string needsImages =
+        "needs a method that takes depth images: non_redundant, conventional or depth_peeling";
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("{light_ratio: 0}"), "no error");  // a point
+    EXPECT_EQ(message("{method: geometry, reference_size: 64}"),
+              "case.yaml:1:36: 'reference_size' " + needsImages);
+    EXPECT_EQ(message("{method: pcss, simplify_to: 0.5}"),
+              "case.yaml:1:29: 'simplify_to' " + needsImages);
+    EXPECT_EQ(message("{reconstruction: classic, grazing_limit: 4}"),
+              "case.yaml:1:42: 'grazing_limit' needs 'reconstruction: hybrid'");
+    EXPECT_EQ(message("{method: ray_traced, shadow_map_size: 64}"), "no error");  // of the truth
+    EXPECT_EQ(message("{method: ray_traced, errors: false, shadow_map_size: 64}"),
+              "case.yaml:1:54: 'shadow_map_size' needs a method that draws shadow maps, or "
+              "'errors: true'");
+    EXPECT_EQ(message("{method: pcss, measured: depth_and_pass}"),
+              "case.yaml:1:26: 'measured: depth_and_pass' needs a method that draws a shadow map "
+              "for each light sample");
+    EXPECT_EQ(message("{measured: depth_and_pass, pictures: true}"),
+              "case.yaml:1:38: 'pictures' needs 'measured: soft_shadow'");
+    EXPECT_EQ(message("{light_ratio: -1}"),
+              "case.yaml:1:15: technique 'soft_shadows': light_ratio is -1; allowed: 0 … 16 1");
+}
+
+TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
+    const auto message = [&](const std::string& yaml, const scene::Scene* scene) {
+        return errorText([&] { recorded(yaml, scene); });
+    };
+    EXPECT_EQ(message("{}", nullptr), "technique 'soft_shadows' needs a scene");
+    const scene::Scene empty;
+    EXPECT_EQ(message("{}", &empty), "technique 'soft_shadows' needs a scene with triangles");
+    scene::MeshBuilder point;
+    point.addTriangle(glm::vec3(1), glm::vec3(1), glm::vec3(1));
+    const scene::Scene pointScene = sceneFrom(point);
+    EXPECT_EQ(message("{}", &pointScene),
+              "technique 'soft_shadows' needs a scene with some extent; all of its points are one");
+    const scene::Scene plate = plateOverFloor();
+    EXPECT_EQ(message("{light_height: 0.05}", &plate).substr(0, 18), "the light's point ");
+    EXPECT_EQ(message("{reference_size: 32768}", &plate),
+              fmt::format("a 2D texture of 32768 pixels is beyond this device's "
+                          "GL_MAX_TEXTURE_SIZE = {}",
+                          device.limits().maxTextureSizePx));
+}
+
+TEST_F(SoftShadowsTest, ShadowMapsOfTheGeometryAreTheTruth) {
+    const Metrics metrics = run("geometry", "traced_truth: true", plateOverFloor());
+    EXPECT_EQ(metrics.at("visibility_error_mean/geometry"), 0.0);
+    EXPECT_EQ(metrics.at("intensity_error_max/geometry"), 0.0);
+    EXPECT_EQ(metrics.at("missing_pct/inside"), 0.0);
+    // Only samples that pass the plate's edges within a texel or so differ.
+    EXPECT_GT(metrics.at("visibility_error_mean/ray_traced"), 0.0);
+    EXPECT_LT(metrics.at("visibility_error_mean/ray_traced"), 1.0);
+}
+
+TEST_F(SoftShadowsTest, ReferenceImagesThatSeeAllGiveTheTruth) {
+    const scene::Scene scene = plateOverFloor();
+    for (const char* method : kReconstructing) {
+        SCOPED_TRACE(method);
+        const Metrics metrics = run(method, "traced_truth: true", scene);
+        EXPECT_LT(metrics.at("visibility_error_mean/geometry"), 1.0);
+        EXPECT_LT(metrics.at("visibility_error_mean/ray_traced"), 1.5);
+        EXPECT_LE(metrics.at("bytes_per_sample"), 64.0);
+    }
+}
+
+TEST_F(SoftShadowsTest, HiddenCastersAreFoundByNonRedundantImagesOnly) {
+    const scene::Scene scene = clutter();
+    const Metrics nonRedundant = run("non_redundant", "", scene);
+    const Metrics conventional = run("conventional", "", scene);
+    for (const char* error : {"visibility_error_mean/geometry", "intensity_error_mean/geometry"}) {
+        EXPECT_LT(nonRedundant.at(error), 0.8 * conventional.at(error)) << error;
+    }
+}
+
+TEST_F(SoftShadowsTest, IntensityErrorsAreAtMostVisibilityErrors) {
+    const scene::Scene scene = clutter();
+    for (const char* method : kReconstructing) {
+        SCOPED_TRACE(method);
+        const Metrics metrics = run(method, "reconstruction: classic", scene);
+        for (const char* statistic : {"mean", "max"}) {
+            const double visibility =
+                metrics.at(fmt::format("visibility_error_{}/geometry", statistic));
+            EXPECT_GT(visibility, 0.0);
+            EXPECT_LE(metrics.at(fmt::format("intensity_error_{}/geometry", statistic)),
+                      visibility);
+        }
+    }
+}
+
+TEST_F(SoftShadowsTest, LightOfNoSizeCastsHardShadows) {
+    const scene::Scene scene = clutter();
+    for (const char* method : {"non_redundant", "depth_peeling", "ray_traced"}) {
+        SCOPED_TRACE(method);
+        const Metrics metrics = run(method, "light_ratio: 0", scene);
+        // All samples of the light are one: all of a pixel's are wrong in one direction, or none.
+        EXPECT_GT(metrics.at("visibility_error_mean/geometry"), 0.0);
+        EXPECT_EQ(metrics.at("visibility_error_mean/geometry"),
+                  metrics.at("intensity_error_mean/geometry"));
+        EXPECT_EQ(metrics.at("visibility_error_max/geometry"), 256.0);
+    }
+}
+
+TEST_F(SoftShadowsTest, FilteredShadowsAreNearTheTruthOfOnePlate) {
+    const scene::Scene scene = plateOverFloor();
+    // One plate is what both assume; the mean error stays below 2 % of the light's samples.
+    EXPECT_LT(run("pcss", "", scene).at("intensity_error_mean/geometry"), 5.0);
+    EXPECT_LT(run("variance", "", scene).at("intensity_error_mean/geometry"), 5.0);
+    // A search of no width finds what the shadow map says.
+    EXPECT_LT(run("pcss", "light_ratio: 0", scene).at("intensity_error_mean/geometry"), 1.0);
+}
+
+TEST_F(SoftShadowsTest, NothingCastsNothing) {
+    scene::MeshBuilder builder;
+    builder.addQuad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
+    const scene::Scene scene = sceneFrom(builder);
+    for (const char* method :
+         {"geometry", "non_redundant", "conventional", "depth_peeling", "ray_traced", "pcss"}) {
+        SCOPED_TRACE(method);
+        const Metrics metrics = run(method, "ground: false, traced_truth: true", scene);
+        EXPECT_EQ(metrics.at("intensity_error_max/geometry"), 0.0);
+        EXPECT_EQ(metrics.at("intensity_error_max/ray_traced"), 0.0);
+    }
+}
+
+TEST_F(SoftShadowsTest, FloorBeyondTheFarPlaneIsLit) {
+    // The floor of 12 diagonals reaches far behind what the light's views hold.
+    const Metrics metrics =
+        run("geometry", "ground_size: 12, traced_truth: true", plateOverFloor());
+    EXPECT_LT(metrics.at("visibility_error_mean/ray_traced"), 1.0);
+}
+
+TEST_F(SoftShadowsTest, TimesItsThreeStepsOrTheYardstick) {
+    const scene::Scene scene = plateOverFloor();
+    run("non_redundant", "", scene);
+    EXPECT_EQ(passes_, (std::vector<std::string>{"reference_images", "reconstruction",
+                                                 "offset_images", "soft_shadow"}));
+    const Metrics metrics = run("conventional", "measured: depth_and_pass", scene);
+    EXPECT_EQ(passes_, (std::vector<std::string>{"reference_images", "reconstruction",
+                                                 "offset_images", "depth_and_pass"}));
+    EXPECT_FALSE(metrics.contains("visibility_error_mean/geometry"));
+    run("ray_traced", "", scene);
+    EXPECT_EQ(passes_, (std::vector<std::string>{"soft_shadow"}));
+}
+
+TEST_F(SoftShadowsTest, SameCaseGivesTheSameNumbersAndPictures) {
+    const scene::Scene scene = clutter();
+    const char* yaml = "{reference_size: 96, shadow_map_size: 96, light_grid: 3, pictures: true}";
+    const MetricRecorder a = recorded(yaml, &scene);
+    const MetricRecorder b = recorded(yaml, &scene);
+    EXPECT_EQ(a.metrics, b.metrics);
+    ASSERT_EQ(a.images.size(), 7U);
+    for (const auto& [name, image] : a.images) {
+        EXPECT_TRUE(std::ranges::equal(image.values(), b.images.at(name).values())) << name;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::soft_shadows
