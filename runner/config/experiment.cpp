@@ -25,6 +25,8 @@ struct Identity {
     Kind kind;
     std::string_view label;
 };
+/// Begins the number in the id of a figure: papers count tables and figures apart.
+constexpr std::string_view kFigurePrefix = "figure-";
 constexpr Identity kIdentities[] = {{"table", Kind::Table, "Table"},
                                     {"figure", Kind::Figure, "Figure"},
                                     {"section", Kind::Section, "Section"},
@@ -64,7 +66,8 @@ void readIdentity(const Node& document, Experiment& experiment) {
     if (parts.size() != 2 || !isName(parts[0]) || !isName(parts[1])) {
         throwNotAllowed(name, found->key, "PAPER/NUMBER, such as zju2005/2.1");
     }
-    experiment.id = text;
+    experiment.id =
+        found->kind == Kind::Figure ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1] : text;
 }
 
 int outputSize(const Node& value, const std::string& axis) {
@@ -274,7 +277,9 @@ std::string Experiment::slug() const {
 std::string Experiment::label() const {
     const auto identity = std::find_if(std::begin(kIdentities), std::end(kIdentities),
                                        [&](const Identity& one) { return one.kind == kind; });
-    return std::string(identity->label) + " " + id.substr(id.find('/') + 1);
+    std::string number = id.substr(id.find('/') + 1);
+    if (kind == Kind::Figure) number.erase(0, kFigurePrefix.size());
+    return std::string(identity->label) + " " + number;
 }
 
 std::vector<CaseSpec> expandCases(const Experiment& experiment) {

@@ -125,7 +125,7 @@ struct Assumption {
 struct Experiment {
     enum class Kind { Table, Figure, Section, Sweep };
     Kind kind = Kind::Table;
-    std::string id;  // "zju2005/2.1": paper and number; sweeps: "sweep/bias"
+    std::string id;  // "zju2005/2.1": paper and number; "zju2005/figure-2.6"; "sweep/bias"
     std::string title;
     std::filesystem::path file;
     std::string technique;

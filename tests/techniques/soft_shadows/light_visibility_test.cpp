@@ -111,6 +111,15 @@ TEST_F(LightVisibilityTest, ShadowMapsSeeItUpToTheirTexels) {
     expectPlateShadow(byShadowMaps(light, sizePx), light, 3.0F * texel);
 }
 
+TEST_F(LightVisibilityTest, ReceiversBeyondTheFarPlaneAreShadowedByCastersOnly) {
+    AreaLight light = lightOver(scene, 1.0F);
+    // The plate alone: no view of the light reaches down to the floor.
+    light.casters = {{-0.5F, 0.9F, -0.5F}, {0.5F, 1.1F, 0.5F}};
+    const int sizePx = 512;
+    const float texel = glm::length(light.casters.size()) / static_cast<float>(sizePx);
+    expectPlateShadow(byShadowMaps(light, sizePx), light, 6.0F * texel);
+}
+
 TEST_F(LightVisibilityTest, LightOfNoSizeCastsHardShadows) {
     const AreaLight light = lightOver(scene, 0.0F);
     const HostVisibilityMask mask = byShadowMaps(light, 256);

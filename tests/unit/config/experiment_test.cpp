@@ -264,7 +264,8 @@ TEST_F(ExperimentTest, NamesOfExperiments) {
         const Experiment experiment = load(name + "\ntitle: t\ntechnique: x\n");
         return experiment.id + " | " + experiment.label() + " | " + experiment.slug();
     };
-    EXPECT_EQ(labelOf("figure: zju2005/2.6"), "zju2005/2.6 | Figure 2.6 | zju2005-2.6");
+    EXPECT_EQ(labelOf("table: xie2017/9"), "xie2017/9 | Table 9 | xie2017-9");
+    EXPECT_EQ(labelOf("figure: xie2017/9"), "xie2017/figure-9 | Figure 9 | xie2017-figure-9");
     EXPECT_EQ(labelOf("section: zju2005/2.5.3"), "zju2005/2.5.3 | Section 2.5.3 | zju2005-2.5.3");
     EXPECT_EQ(labelOf("sweep_of: speed"), "sweep/speed | Sweep speed | sweep-speed");
     EXPECT_EQ(loadError("title: t\ntechnique: x\n"),
