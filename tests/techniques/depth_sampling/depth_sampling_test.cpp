@@ -8,6 +8,7 @@
 #include "runner/core/random.h"
 #include "runner/scene/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/techniques/technique_recorder.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -18,45 +19,15 @@ config::Params paramsOf(const std::string& yaml) {
     return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'depth_sampling'");
 }
 
-/// Keeps what a technique records.
-class MetricRecorder final : public technique::Recorder {
-  public:
-    void metric(std::string_view metric, double value, std::string_view unit,
-                std::string_view pass) override {
-        const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);
-        EXPECT_TRUE(metrics.emplace(key, value).second) << key << " twice";
-        EXPECT_TRUE(std::isfinite(value)) << key;
-        if (unit == "%") {
-            // Sums over images may exceed 100.
-            EXPECT_GE(value, 0.0) << key;
-            EXPECT_LE(value, key.find("_sum_") != std::string::npos ? 1600.0 : 100.0) << key;
-        }
-    }
-    void image(std::string_view name, const image::ImageF& image) override {
-        images.emplace(name, image);
-    }
-    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
-    std::filesystem::path artifact(std::string_view) override { return {}; }
-
-    std::map<std::string, double> metrics;
-    std::map<std::string, image::ImageF> images;
-};
-
-class NoScenes final : public technique::SceneProvider {
-    const scene::Scene& load(const std::string& reference) override {
-        throw Error("no scene '" + reference + "' in this test");
-    }
-};
-
 class DepthSamplingTest : public test::GlTest {
   protected:
     using Metrics = std::map<std::string, double>;
 
-    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene,
-                            int sizePx = kSizePx) {
+    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene,
+                                  int sizePx = kSizePx) {
         config::Params params = paramsOf(yaml);
         const auto technique = kDepthSampling.create(params);
-        NoScenes scenes;
+        test::NoScenes scenes;
         technique::SetupContext context{device,           shaders_, scenes,   scene,
                                         {sizePx, sizePx}, 1,        profiler_};
         technique->setup(context);
@@ -64,7 +35,7 @@ class DepthSamplingTest : public test::GlTest {
         technique::FrameContext frame{0, 1, profiler_};
         technique->render(frame);
         passes_ = profiler_.collect();
-        MetricRecorder recorder;
+        test::MetricRecorder recorder;
         technique->record(recorder);
         profiler_.collect();
         return recorder;
@@ -342,7 +313,7 @@ TEST_F(DepthSamplingTest, TimesImagesOrOneOutputFrame) {
 TEST_F(DepthSamplingTest, SavesPictures) {
     const scene::Scene scene = clutter();
     for (const char* redundancy : {"pixel", "visibility"}) {
-        const MetricRecorder recorder = recorded(
+        const test::MetricRecorder recorder = recorded(
             std::string("{views: 2, method: non_redundant, usefulness: true, pictures: true, "
                         "output_frames: 2, frame_size: 40, redundancy: ") +
                 redundancy + "}",

@@ -9,6 +9,7 @@
 #include "runner/core/random.h"
 #include "runner/scene/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/techniques/technique_recorder.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
@@ -19,39 +20,14 @@ config::Params paramsOf(const std::string& yaml) {
     return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'soft_shadows'");
 }
 
-/// Keeps what a technique records.
-class MetricRecorder final : public technique::Recorder {
-  public:
-    void metric(std::string_view metric, double value, std::string_view,
-                std::string_view pass) override {
-        const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);
-        EXPECT_TRUE(metrics.emplace(key, value).second) << key << " twice";
-        EXPECT_TRUE(std::isfinite(value)) << key;
-    }
-    void image(std::string_view name, const image::ImageF& image) override {
-        images.emplace(name, image);
-    }
-    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
-    std::filesystem::path artifact(std::string_view) override { return {}; }
-
-    std::map<std::string, double> metrics;
-    std::map<std::string, image::ImageF> images;
-};
-
-class NoScenes final : public technique::SceneProvider {
-    const scene::Scene& load(const std::string& reference) override {
-        throw Error("no scene '" + reference + "' in this test");
-    }
-};
-
 class SoftShadowsTest : public test::GlTest {
   protected:
     using Metrics = std::map<std::string, double>;
 
-    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene) {
+    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene) {
         config::Params params = paramsOf(yaml);
         const auto technique = kSoftShadows.create(params);
-        NoScenes scenes;
+        test::NoScenes scenes;
         technique::SetupContext context{device, shaders_, scenes, scene, {48, 48}, 1, profiler_};
         technique->setup(context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
@@ -61,7 +37,7 @@ class SoftShadowsTest : public test::GlTest {
         technique->render(frame);  // a repetition overwrites what the first has left
         passes_.clear();
         for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-        MetricRecorder recorder;
+        test::MetricRecorder recorder;
         technique->record(recorder);
         profiler_.collect();
         return recorder;
@@ -280,8 +256,8 @@ TEST_F(SoftShadowsTest, TimesItsThreeStepsOrTheYardstick) {
 TEST_F(SoftShadowsTest, SameCaseGivesTheSameNumbersAndPictures) {
     const scene::Scene scene = clutter();
     const char* yaml = "{reference_size: 96, shadow_map_size: 96, light_grid: 3, pictures: true}";
-    const MetricRecorder a = recorded(yaml, &scene);
-    const MetricRecorder b = recorded(yaml, &scene);
+    const test::MetricRecorder a = recorded(yaml, &scene);
+    const test::MetricRecorder b = recorded(yaml, &scene);
     EXPECT_EQ(a.metrics, b.metrics);
     ASSERT_EQ(a.images.size(), 7U);
     for (const auto& [name, image] : a.images) {

@@ -1,0 +1,44 @@
+// A recorder and a scene provider for tests that run a technique whole.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::test {
+
+/// Keeps what a technique records.
+class MetricRecorder final : public technique::Recorder {
+  public:
+    void metric(std::string_view metric, double value, std::string_view unit,
+                std::string_view pass) override {
+        const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);
+        EXPECT_TRUE(metrics.emplace(key, value).second) << key << " twice";
+        EXPECT_TRUE(std::isfinite(value)) << key;
+        if (unit == "%") {
+            // Sums over images may exceed 100.
+            EXPECT_GE(value, 0.0) << key;
+            EXPECT_LE(value, key.find("_sum_") != std::string::npos ? 1600.0 : 100.0) << key;
+        }
+    }
+    void image(std::string_view name, const image::ImageF& image) override {
+        images.emplace(name, image);
+    }
+    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
+    std::filesystem::path artifact(std::string_view) override { return {}; }
+
+    std::map<std::string, double> metrics;
+    std::map<std::string, image::ImageF> images;
+};
+
+class NoScenes final : public technique::SceneProvider {
+    const scene::Scene& load(const std::string& reference) override {
+        throw Error("no scene '" + reference + "' in this test");
+    }
+};
+
+}  // namespace gfxrepro::test
