@@ -89,6 +89,31 @@ struct Camera {
     float farM = 1000.0F;
 };
 
+/// A camera's way through key frames, from the first to the last.
+struct CameraPath {
+    std::string name;
+    std::vector<Camera> keys;  // at least one; at equal steps of time
+};
+
+/// A light that shines the same in all directions. Its irradiance on a facing surface is
+/// intensity / (1 + (distance / radiusM)²): finite everywhere, falling with the square far away.
+struct PointLight {
+    glm::vec3 position{0.0F};
+    glm::vec3 intensity{1.0F};  // linear
+    float radiusM = 1.0F;
+};
+
+/// Movement of one instance over a path's time 0 … 1: it turns about an axis through a pivot and
+/// swings along a line.
+struct Motion {
+    int instance = 0;
+    glm::vec3 pivot{0.0F};  // world, rest pose
+    glm::vec3 axis{0.0F, 1.0F, 0.0F};
+    float turnRad = 0.0F;     // over the whole time
+    glm::vec3 swing{0.0F};    // metres from the rest pose, both ways
+    float swingCount = 1.0F;  // full periods over the whole time
+};
+
 /// Where a scene came from: what a manifest row and a table row say.
 struct Origin {
     enum class Kind { Real, StandIn, Generated };
@@ -106,6 +131,9 @@ struct Scene {
     std::vector<Instance> instances;
     PointCloud points;
     std::vector<Camera> cameras;
+    std::vector<CameraPath> paths;
+    std::vector<PointLight> lights;
+    std::vector<Motion> motions;  // at most one an instance
 
     /// Of everything that is instanced, in world space, and of the points.
     Box bounds() const;

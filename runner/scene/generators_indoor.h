@@ -1,0 +1,17 @@
+// Generators of the rooms of [xie2017] chapters 4 and 5: none was published, these have the printed
+// counts of triangles and reflectors.
+#pragma once
+
+#include <cstdint>
+
+#include "runner/config/params.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::scene {
+
+/// 280,000 triangles: 150,000 of diffuse and 130,000 of 25 reflective objects.
+Scene livingRoom(config::Params& params, std::uint64_t seed);
+/// 90,000 triangles: 44,000 of diffuse and 46,000 of 15 reflective objects.
+Scene bathroom(config::Params& params, std::uint64_t seed);
+
+}  // namespace gfxrepro::scene

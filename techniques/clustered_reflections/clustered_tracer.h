@@ -1,0 +1,58 @@
+// Steps 2 and 3 of [xie2017] Algorithm 6, as a tracer of reflections.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/clustered_reflections/clustering.h"
+#include "techniques/clustered_reflections/depth_image_marcher.h"
+#include "techniques/shared/reflections/environment_map.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// How the clusters' depth images are drawn.
+enum class ImageDrawing {
+    OneByOne,  // the thesis: a cluster's image is drawn, used and overwritten by the next
+    Atlas,     // all at once side by side: one multi-draw indirect, culled on the device
+};
+
+struct ClusteredSettings {
+    Clustering clustering = Clustering::NormalBins;
+    BinSettings bins;
+    CameraSettings camera;
+    ImageDrawing drawing = ImageDrawing::OneByOne;
+    March march = March::Linear;
+    /// Sec. 4.7.4: hits of a concave cluster on its own reflector show its diffuse colour; else the
+    /// reflector is left out of its own images.
+    bool seesConcaveSelf = false;
+};
+
+/// Passes, named as Table 14: `first_pass_and_clustering` (the caller draws the G-buffer under the
+/// same name), `cluster_cameras`, `depth_images`, `intersection`.
+class ClusteredTracer final : public reflections::ReflectionTracer {
+  public:
+    ClusteredTracer(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
+                    const reflections::GpuObjects& objects, const reflections::EnvironmentMap& map,
+                    const ClusteredSettings& settings, glm::ivec2 sizePx);
+    ~ClusteredTracer() override;
+
+    void update(const reflections::GpuObjects& objects, gl::Profiler& profiler) override;
+    void trace(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
+               reflections::ReflectionTarget& target, gl::Profiler& profiler) override;
+    std::size_t sizeBytes() const override;
+
+    /// Of the last trace(); these read back and wait for the device.
+    int clusterCount() const;
+    std::vector<ClusterCamera> cameras() const;
+    const Clusters& clusters() const;
+    /// Samples that took the environment map ([xie2017] Fig. 28), a byte a sample, rows from the
+    /// bottom.
+    std::vector<std::uint8_t> environmentSamples() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,73 @@
+// Step 2 of [xie2017] Algorithm 6: reflective samples into clusters (Sec. 4.3).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/profiler.h"
+#include "runner/gl/program.h"
+#include "techniques/shared/reflections/gbuffer.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// Bins of the normal's spherical coordinates, theta ∈ [0°, 360°) around y and phi ∈ [0°, 180°)
+/// from y. A reflector has at most maxThetaBins × maxPhiBins; its share a_R of the reflective
+/// samples and the number n_v of visible reflectors scale both down:
+///
+///     bins = clamp(round(maxBins · (a_R / n_v · bin_gain)^exponent), 1, maxBins)
+///
+/// (the printed line is scrambled; see the README). A planar reflector is one cluster.
+struct BinSettings {
+    int maxThetaBins = 13;
+    int maxPhiBins = 8;
+    float exponent = 0.25F;
+    float gain = 1.0F;
+};
+
+/// How samples are put into clusters.
+enum class Clustering {
+    NormalBins,  // Sec. 4.3
+    KdTree,      // the outlook of Sec. 4.7.4: splits by position and normal, largest first
+};
+
+/// At most so many: 16-bit ids; 25 reflectors × 13 × 8 = 2600 in the thesis.
+constexpr int kMaxClusters = 4096;
+
+/// On the device after ClusterBuilder::build(); nothing of it is read back in the frame.
+struct Clusters {
+    gl::Texture clusterOfSample;  // R16UI, the G-buffer's size: 1 + cluster; 0: not reflective
+    gl::Buffer samples;  // uint: x | y << 16 of the reflective samples, cluster by cluster,
+                         // row by row within each
+    gl::Buffer ranges;   // uvec4 a cluster: first sample, sample count, reflector, flags
+                         // (bit 0: planar); kMaxClusters entries, unused ones zero
+    gl::Buffer counts;   // uint: clusters, reflective samples, visible reflectors
+    std::size_t sizeBytes() const;
+};
+
+class ClusterBuilder {
+  public:
+    ClusterBuilder(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
+                   Clustering clustering, const BinSettings& bins, glm::ivec2 sizePx);
+    /// Clusters of at most kMaxClusters reflectors' bins; samples with `wanted` 0 are left out.
+    /// Cluster numbers are dense and ordered by reflector, phi bin, theta bin.
+    void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted);
+    const Clusters& clusters() const { return clusters_; }
+    std::size_t sizeBytes() const;
+
+  private:
+    Clustering clustering_;
+    BinSettings bins_;
+    Clusters clusters_;
+};
+
+/// The same on the host: what the device must give.
+struct HostClusters {
+    int clusterCount = 0, visibleReflectors = 0;
+    std::vector<std::uint16_t> clusterOfSample;  // 1 + cluster; 0: not reflective
+    std::vector<int> reflectorOfCluster;
+};
+HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
+                           const reflections::ReflectiveScene& scene, const BinSettings& bins);
+
+}  // namespace gfxrepro::clustered_reflections

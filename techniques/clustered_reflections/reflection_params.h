@@ -1,0 +1,36 @@
+// Parameters of clustered_reflections.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runner/config/params.h"
+#include "techniques/clustered_reflections/clustered_tracer.h"
+
+namespace gfxrepro::clustered_reflections {
+
+enum class Method {
+    Clustered,       // Algorithm 6
+    EnvironmentMap,  // the comparator of Table 12
+    ScreenSpace,     // rays marched in the eye's own depth image
+    RayTraced,       // on the same GL device
+    Embree,          // on the CPU: the truth
+};
+
+struct ReflectionParams {
+    Method method = Method::Clustered;
+    std::string view;  // a path or camera of the scene; empty: its first path, else first camera
+    bool hasMotion = false;
+    int supersampling = 2;
+    std::optional<float> glossiness;  // overrides the materials'
+    reflections::LobeSettings lobe;
+    reflections::ReflectorRule reflectors;
+    ClusteredSettings clustered;
+    bool measuresErrors = true;  // against Embree
+    bool showsPictures = false;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit ReflectionParams(config::Params& params);
+};
+
+}  // namespace gfxrepro::clustered_reflections

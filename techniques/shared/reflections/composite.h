@@ -1,0 +1,32 @@
+// Step 3.c.iii of [xie2017] Algorithm 6 and the average of supersampling.
+#pragma once
+
+#include "runner/gl/objects.h"
+#include "runner/gl/program.h"
+#include "runner/image/image.h"
+#include "techniques/shared/reflections/reflection_tracer.h"
+
+namespace gfxrepro::reflections {
+
+/// rgb = LERP(diffuse, reflected, s) a sample; an output pixel is the mean of its
+/// `supersampling`² samples.
+class Composite {
+  public:
+    Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling);
+    /// `showsReflectionOnly`: the reflected colour alone, black where nothing reflects ([xie2017]
+    /// Fig. 30).
+    void render(const GBuffer& gbuffer, const ReflectionTarget& reflection,
+                bool showsReflectionOnly = false);
+    const gl::Texture& output() const { return output_; }  // RGBA16F, linear
+    /// Rows from the top, 3 linear channels; waits for the device.
+    image::ImageF read() const;
+    std::size_t sizeBytes() const;
+
+  private:
+    gl::Program program_;
+    gl::Texture output_;
+    gl::Framebuffer framebuffer_;
+    int supersampling_;
+};
+
+}  // namespace gfxrepro::reflections

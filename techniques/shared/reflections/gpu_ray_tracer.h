@@ -1,0 +1,33 @@
+// Ray tracing on the same GL device: the baseline that a speed-up is fair against.
+#pragma once
+
+#include "techniques/shared/reflections/environment_map.h"
+#include "techniques/shared/reflections/gpu_bvh.h"
+#include "techniques/shared/reflections/reflection_tracer.h"
+
+namespace gfxrepro::reflections {
+
+/// GpuBvh, rebuilt by every update(), traversed in a compute shader: one invocation a ray of a
+/// compacted list of the samples that want one. Passes: `bvh_build` (and its parts), `ray_list`,
+/// `intersection`.
+class GpuRayTracer final : public ReflectionTracer {
+  public:
+    GpuRayTracer(const gl::ShaderLibrary& shaders, const GpuObjects& objects,
+                 const EnvironmentMap& map, const LobeSettings& lobe, float diagonalM);
+    void update(const GpuObjects& objects, gl::Profiler& profiler) override;
+    void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
+               gl::Profiler& profiler) override;
+    std::size_t sizeBytes() const override;
+    /// Samples of the last trace(); waits for the device.
+    std::uint32_t lastSampleCount() const;
+
+  private:
+    const EnvironmentMap& map_;
+    LobeSettings lobe_;
+    float diagonalM_;
+    GpuBvh bvh_;
+    gl::Program list_, trace_;
+    gl::Buffer samples_, arguments_;
+};
+
+}  // namespace gfxrepro::reflections

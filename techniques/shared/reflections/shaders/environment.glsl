@@ -1,0 +1,7 @@
+// The environment map as a fallback. The includer defines ENVIRONMENT_UNIT.
+
+layout(binding = ENVIRONMENT_UNIT) uniform samplerCube environmentMap;
+
+vec3 radianceFrom(vec3 direction) {
+    return textureLod(environmentMap, direction, 0.0).rgb;
+}

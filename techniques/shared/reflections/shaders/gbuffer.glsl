@@ -1,0 +1,32 @@
+// Reads what GBufferRenderer drew. The includer defines GBUFFER_UNIT, the first of four texture
+// units, and GBuffer::bind() fills them and the uniforms.
+#include "reflections/octahedral.glsl"
+
+layout(binding = GBUFFER_UNIT) uniform sampler2D gbufferDiffuse;
+layout(binding = GBUFFER_UNIT + 1) uniform sampler2D gbufferNormal;
+layout(binding = GBUFFER_UNIT + 2) uniform sampler2D gbufferDepth;
+layout(binding = GBUFFER_UNIT + 3) uniform usampler2D gbufferSurface;
+uniform mat4 gbufferWorldFromPixels;
+uniform vec3 gbufferEyeWorld;
+
+uint reflectorOf(uint surface) {
+    return surface & 0xFFFFu;
+}
+float reflectivityOf(uint surface) {
+    return float((surface >> 16) & 0xFFu) / 255.0;
+}
+float glossinessOf(uint surface) {
+    return float(surface >> 24) / 255.0;
+}
+
+vec3 gbufferPosition(ivec2 pixel) {
+    float depth = texelFetch(gbufferDepth, pixel, 0).r;
+    return (gbufferWorldFromPixels * vec4((vec2(pixel) + 0.5) * depth, depth, 1.0)).xyz;
+}
+vec3 gbufferUnitNormal(ivec2 pixel) {
+    return unitFromOctahedral(texelFetch(gbufferNormal, pixel, 0).rg);
+}
+// The mirror direction of a sample: unit.
+vec3 gbufferMirrorDirection(vec3 positionWorld, vec3 normalWorld) {
+    return normalize(reflect(positionWorld - gbufferEyeWorld, normalWorld));
+}

@@ -1,0 +1,18 @@
+// Records of a scene's objects, as GpuObjects writes them.
+
+struct Object {
+    mat4 worldFromMesh;
+    mat4 normalFromMesh;  // cofactors of the above: normals up to a positive factor
+    vec4 baseColor;       // linear; w: 1 for planar reflectors
+    vec4 emissive;        // linear
+    vec4 boundsCentre;    // world, in the present pose
+    vec4 boundsHalfSize;
+    uint firstTriangle;
+    uint triangleCount;
+    int textureLayer;  // −1: none
+    uint surface;      // reflector | s in 255ths << 16 | g in 255ths << 24, as in the G-buffer
+};
+
+layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects {
+    Object objects[];
+};
