@@ -7,6 +7,7 @@
 #include "runner/core/text.h"
 #include "runner/scene/generators.h"
 #include "runner/scene/load.h"
+#include "runner/scene/point_sampling.h"
 #include "runner/scene/refine.h"
 
 namespace gfxrepro::scene {
@@ -36,8 +37,20 @@ const Node& required(const Node& map, const std::string& what, std::string_view 
     return *value;
 }
 
+std::optional<long long> readCount(const Node& source, const std::string& key,
+                                   const std::string& of) {
+    const Node* node = source.find(key);
+    if (!node) return std::nullopt;
+    const long long count = node->asInteger();
+    if (count < 1) {
+        throw Error(node->location(),
+                    key + " is " + node->text() + "; allowed: a number of " + of + ", at least 1");
+    }
+    return count;
+}
+
 SceneSource readFileSource(const Node& node) {
-    requireKeys(node, "source", {"file", "refine_to"});
+    requireKeys(node, "source", {"file", "points", "refine_to"});
     SceneSource source;
     const Node& file = required(node, "source", "file");
     source.file = file.text();
@@ -45,19 +58,14 @@ SceneSource readFileSource(const Node& node) {
         throw Error(file.location(),
                     "file is '" + source.file + "', but must be a path within the assets folder");
     }
-    if (const Node* refineTo = node.find("refine_to")) {
-        source.refineTo = refineTo->asInteger();
-        if (*source.refineTo < 1) {
-            throw Error(refineTo->location(), "refine_to is " + refineTo->text() +
-                                                  "; allowed: a number of triangles, at least 1");
-        }
-        source.kind = Origin::Kind::StandIn;
-    }
+    source.refineTo = readCount(node, "refine_to", "triangles");
+    source.points = readCount(node, "points", "points");
+    if (source.refineTo || source.points) source.kind = Origin::Kind::StandIn;
     return source;
 }
 
 SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
-    requireKeys(node, "source", {"generator", "params", "seed"});
+    requireKeys(node, "source", {"generator", "params", "points", "seed"});
     SceneSource source;
     const Node& generator = required(node, "source", "generator");
     source.generator = findGenerator(generator.text(), generator.location()).name;
@@ -69,6 +77,7 @@ SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
         }
         source.seed = static_cast<std::uint64_t>(value);
     }
+    source.points = readCount(node, "points", "points");
     source.kind = isGenerated ? Origin::Kind::Generated : Origin::Kind::StandIn;
     return source;
 }
@@ -116,13 +125,14 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
 
 /// "file, refined to N triangles" or "generator g, seed n: {params}".
 std::string descriptionOf(const SceneSource& source) {
+    std::string text = source.file;
     if (!source.generator.empty()) {
-        return "generator " + source.generator + ", seed " + std::to_string(source.seed) +
+        text = "generator " + source.generator + ", seed " + std::to_string(source.seed) +
                (source.params.isNull() ? "" : ": " + source.params.toFlowText());
     }
-    return source.file + (source.refineTo
-                              ? ", refined to " + std::to_string(*source.refineTo) + " triangles"
-                              : "");
+    if (source.refineTo) text += ", refined to " + std::to_string(*source.refineTo) + " triangles";
+    if (source.points) text += ", sampled to " + std::to_string(*source.points) + " points";
+    return text;
 }
 
 /// All instances as one mesh of the wanted count; materials and cameras stay.
@@ -135,6 +145,20 @@ void refine(Scene& scene, const SceneSource& source) {
     } catch (const Error& error) {
         throw Error(source.where, source.file + ": " + error.what());
     }
+}
+
+/// The wanted number of complete points instead of meshes.
+void turnIntoPoints(Scene& scene, const SceneSource& source) {
+    const auto count = static_cast<std::size_t>(*source.points);
+    try {
+        scene.points = scene.points.positions.empty() ? sampledPoints(scene, count)
+                                                      : thinnedPoints(scene.points, count);
+        completePoints(scene.points);
+    } catch (const Error& error) {
+        throw Error(source.where, descriptionOf(source) + ": " + error.what());
+    }
+    scene.meshes.clear();
+    scene.instances.clear();
 }
 
 bool isUserFile(const std::string& reference) {
@@ -196,9 +220,12 @@ SceneSource Catalog::resolve(const Node& reference) const {
 
 std::string Catalog::contentKey(const Node& reference) const {
     const SceneSource source = resolve(reference);
+    const std::string points =
+        source.points ? " sampled to " + std::to_string(*source.points) : std::string();
     if (!source.generator.empty()) {
         return sha256("generator " + std::to_string(kGeneratorVersion) + ' ' + source.generator +
-                      ' ' + std::to_string(source.seed) + ' ' + source.params.toFlowText());
+                      ' ' + std::to_string(source.seed) + ' ' + source.params.toFlowText() +
+                      points);
     }
     const fs::path path = assetsFolder_ / source.file;
     FileDigest& digest = digests_[path];
@@ -208,7 +235,7 @@ std::string Catalog::contentKey(const Node& reference) const {
         digest = {sizeBytes, time, sha256OfFile(path)};
     }
     return sha256("file " + digest.sha256 + ' ' +
-                  (source.refineTo ? std::to_string(*source.refineTo) : "as it is"));
+                  (source.refineTo ? std::to_string(*source.refineTo) : "as it is") + points);
 }
 
 Scene Catalog::load(const Node& reference) const {
@@ -223,6 +250,7 @@ Scene Catalog::load(const Node& reference) const {
         config::Params params(source.params, "generator '" + source.generator + "'");
         scene = findGenerator(source.generator, source.where).generate(params, source.seed);
     }
+    if (source.points) turnIntoPoints(scene, source);
     scene.name = reference.text();
     scene.origin = {source.kind, descriptionOf(source), sha256};
     return scene;

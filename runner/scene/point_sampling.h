@@ -8,27 +8,29 @@
 
 namespace gfxrepro::scene {
 
-/// `count` points on the triangles of a scene, by area: a triangle's share of a low-discrepancy
-/// sequence. Normals interpolated (the triangle's where the mesh has none), colours of material
-/// times vertex times texture (left out when everything is white), radii so that neighbouring discs
-/// touch: √(area / (count · π)) · 1.5. Same seed, same bytes. Throws Error for scenes without area.
-PointCloud sampledPoints(const Scene& scene, std::size_t count, std::uint64_t seed);
+/// `count` points on the triangles of a scene: evenly by area, and within a triangle by the R₂
+/// sequence (Roberts 2018). Normals interpolated (the triangle's where the mesh has none), colours
+/// of material times vertex (none when all are white; textures are not read), radii 1.5 times those
+/// of discs that together have the surface's area: neighbours overlap. Same input, same bytes.
+/// Throws Error for scenes without area and for no points.
+PointCloud sampledPoints(const Scene& scene, std::size_t count);
 
-/// `count` of the points, spread evenly (every point stands for its neighbours in a covariance
-/// tree); all of them where there are not more.
+/// `count` of the points, at equal steps along a space-filling curve (Morton order); all of them
+/// where there are not more. Radii grow by √(all / count).
 PointCloud thinnedPoints(const PointCloud& points, std::size_t count);
 
 /// What completePoints() did.
 struct PointRepairs {
     std::size_t dropped = 0;     // positions that are not finite
-    std::size_t duplicates = 0;  // points at the place of another: dropped, too
+    std::size_t duplicates = 0;  // points at the place of another one: dropped, too
     std::size_t normals = 0;     // estimated: missing, not finite or zero
     std::size_t radii = 0;       // estimated: missing, not finite or not positive
 };
-/// Normals by local covariance of the 16 nearest neighbours, turned the way of their neighbours
-/// (outwards at the topmost point of each connected part); radii as the mean distance to the 6
-/// nearest neighbours. In parallel. A single point gets radius 1 and the normal +y, equal points
-/// likewise. Throws Error when no point is left.
+/// Makes every attribute but the colour complete. Normals are the least principal axis of the 16
+/// nearest neighbours, turned the way of neighbours that have one, else upwards at the topmost
+/// point of each connected part (Hoppe et al. 1992); radii are the mean distance to the 6 nearest
+/// neighbours. A point without neighbours gets the normal +y and the radius 1. Throws Error when no
+/// point is left.
 PointRepairs completePoints(PointCloud& points);
 
 }  // namespace gfxrepro::scene
