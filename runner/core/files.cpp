@@ -49,7 +49,13 @@ std::string readFile(const fs::path& path) {
 }
 
 void writeFileAtomic(const fs::path& path, std::string_view content) {
-    if (path.has_parent_path()) fs::create_directories(path.parent_path());
+    if (path.has_parent_path()) {
+        std::error_code failure;
+        fs::create_directories(path.parent_path(), failure);
+        if (failure) {
+            throw Error("cannot create " + path.parent_path().string() + ": " + failure.message());
+        }
+    }
     fs::path temporary = path;
     temporary += ".tmp" + std::to_string(::getpid());
     {
@@ -113,10 +119,13 @@ fs::path dataFolder(std::string_view name) {
 fs::path assetsFolder(const std::string& given) {
     if (!given.empty()) return given;
     if (const std::string folder = environment("GFXREPRO_ASSETS"); !folder.empty()) return folder;
-    if (const std::string cache = environment("XDG_CACHE_HOME"); !cache.empty()) {
-        return fs::path(cache) / "gfxrepro/assets";
-    }
-    return fs::path(environment("HOME")) / ".cache/gfxrepro/assets";
+    return cacheFolder() / "assets";
+}
+
+fs::path cacheFolder() {
+    const std::string cache = environment("XDG_CACHE_HOME");
+    return (cache.empty() ? fs::path(environment("HOME")) / ".cache" : fs::path(cache)) /
+           "gfxrepro";
 }
 
 }  // namespace gfxrepro

@@ -39,8 +39,11 @@ class MappedFile {
 /// were tried.
 std::filesystem::path dataFolder(std::string_view name);
 
+/// What may be made again at any time: ${XDG_CACHE_HOME:-~/.cache}/gfxrepro. It need not exist.
+std::filesystem::path cacheFolder();
+
 /// The folder of real models: `given` (from --assets), else GFXREPRO_ASSETS, else
-/// ${XDG_CACHE_HOME:-~/.cache}/gfxrepro/assets. It need not exist.
+/// cacheFolder()/assets. It need not exist.
 std::filesystem::path assetsFolder(const std::string& given = "");
 
 }  // namespace gfxrepro

@@ -10,35 +10,46 @@
 
 namespace gfxrepro::point_splatting {
 
-/// As the vertex stage reads it (shaders/decode_point.glsl):
-///   word 0: x, y, z of the 256³ grid in the patch's box (8 bits each), cell x, y (3), z (2)
-///   word 1: theta (8), phi (8), tangents (2 × 2) and two bits that the quad's corner takes in the
-///           thesis (0 here: the corner is the vertex's number), radius (8: into the table)
+/// As the vertex stage reads it (shaders/decode_point.glsl), lowest bits first:
+///   position: x, y, z of the 256³ grid in the patch's box (8 bits each), then the cell's x (3),
+///             y (3) and z (2) within
+///   surface:  theta (8), phi (8), tangent (2), bitangent (2), corner (2), unused (2), radius (8)
+/// The corner is 0: a quad's corner is the number of its vertex, so that a drawn point takes one
+/// record. The thesis keeps it in the record, of which a point then takes four.
 struct CompressedPoint {
     std::uint32_t position = 0;
     std::uint32_t surface = 0;
+    bool operator==(const CompressedPoint&) const = default;
 };
 static_assert(sizeof(CompressedPoint) == 8);
 
-/// 256 radii, ascending, made by clustering a model's radii (Sec. 3.3.2.5): one-dimensional
-/// k-means of their logarithms.
-using RadiusTable = std::vector<float>;
-RadiusTable clusteredRadii(std::span<const float> radii);
-/// Binary search for the nearest entry.
-std::uint8_t nearestRadius(const RadiusTable& table, float radius);
+/// 256 radii, ascending: the middles of clusters of a model's radii (Sec. 3.3.2.5), by k-means of
+/// their logarithms in one dimension. Fewer different radii are all kept.
+std::vector<float> clusteredRadii(std::span<const float> radii);
+/// Index of the nearest radius of an ascending table of 1 to 256, by binary search.
+std::uint8_t nearestRadius(std::span<const float> table, float radius);
+
+/// The tangent of a normal by its two bits: (0, −n.z, n.y), (n.z, 0, −n.x), (−n.y, n.x, 0), of unit
+/// length (Sec. 3.3.2.3; three choices fit two bits). The one that drops the smallest component of
+/// the normal is the longest, and never zero.
+int tangentChoice(const glm::vec3& normal);
+glm::vec3 tangentOf(const glm::vec3& normal, int choice);
 
 struct DecodedPoint {
-    glm::vec3 position{0.0F}, normal{0.0F}, tangent{0.0F}, bitangent{0.0F};
+    glm::vec3 position{0.0F}, normal{0.0F};
+    glm::vec3 tangent{0.0F}, bitangent{0.0F};  // orthonormal: bitangent = normal × tangent
     float radius = 0.0F;
 };
-CompressedPoint compress(const glm::vec3& position, const glm::vec3& normal, float radius,
-                         const scene::Box& patchBounds, const RadiusTable& table);
-DecodedPoint decompress(const CompressedPoint& point, const scene::Box& patchBounds,
-                        const RadiusTable& table);
+/// `normal` is of unit length, `position` in the box.
+CompressedPoint compressed(const glm::vec3& position, const glm::vec3& normal, float radius,
+                           const scene::Box& patchBounds, std::span<const float> radiusTable);
+DecodedPoint decoded(const CompressedPoint& point, const scene::Box& patchBounds,
+                     std::span<const float> radiusTable);
 
-/// Largest possible errors, from the grids alone: what measured errors must not pass.
-glm::vec3 positionErrorBound(const scene::Box& patchBounds);  // half a cell an axis
-float normalErrorBoundRad();                                  // half a step in theta and phi
+/// Largest possible errors, from the grids alone: half a cell of 2048 × 2048 × 1024 in the box, and
+/// half a step of theta (of 256 over 360°) and of phi (of 256 over 180°) together.
+glm::vec3 positionErrorBound(const scene::Box& patchBounds);
+float normalErrorBoundRad();
 
 /// An uncompressed point as the thesis counts it: 60 bytes.
 struct FullPoint {

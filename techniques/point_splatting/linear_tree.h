@@ -11,51 +11,55 @@
 
 namespace gfxrepro::point_splatting {
 
+/// When a subtree is a patch: with at most `maxPatchPoints` points whose normals lie within
+/// `patchConeRad` of their mean (fewer patches where flat, more where curved), or with at most
+/// `minPatchPoints`.
 struct TreeSettings {
-    /// A subtree is a patch when it has at most `maxPatchPoints` points and its normals lie within
-    /// `patchConeRad` of their mean (fewer patches where flat, more where curved), or at most
-    /// `minPatchPoints` points.
     std::uint32_t maxPatchPoints = 4096;
     std::uint32_t minPatchPoints = 256;
     float patchConeRad = 0.35F;
 };
 
-/// One level of a patch's linear binary tree: the first `count` points of the patch stand for all.
-/// Departure [zju2005] Sec. 3.2.2: inner nodes are not stored beside the points. The node of a
-/// subtree is the point of it that lies nearest to its mean, stored at the shallowest level that it
-/// stands for, so levels are prefixes of one array: a point takes its 8 bytes once (the printed
-/// tree takes twice that), and the order is progressive.
+/// One level of a patch's linear binary tree: the patch's first `count` points stand for all.
 struct Level {
     std::uint32_t count = 0;
-    float minRadius = 0.0F, maxRadius = 0.0F, meanRadius = 0.0F;  // of the discs at this level
+    float minRadius = 0.0F, maxRadius = 0.0F, meanRadius = 0.0F;  // of this level's discs
     float radiusScale = 1.0F;  // a point's own radius times this covers what it stands for
 };
 
+/// Deeper levels are one with the last.
 constexpr std::uint32_t kMaxLevels = 24;
 
+/// A subtree. Its nodes lie breadth-first: level by level, each level behind all coarser ones.
 struct Patch {
     std::uint32_t firstPoint = 0;
     std::uint32_t pointCount = 0;
-    std::uint32_t levelCount = 0;  // the last level has all points
     std::uint32_t firstLevel = 0;  // into PointModel::levels
+    std::uint32_t levelCount = 0;  // the last level has all points
     scene::Box bounds;             // of the points' centres
     glm::vec3 meanNormal{0.0F, 1.0F, 0.0F};
-    float coneRad = 0.0F;    // every normal lies within this of the mean; π: no culling
-    float curvature = 0.0F;  // λ₀ / (λ₀ + λ₁ + λ₂) of the positions' covariance
+    float coneRad = 0.0F;  // every normal lies within this of the mean; π: any direction
+    float curvature = 0.0F;  // λ₀ / (λ₀ + λ₁ + λ₂) of the positions' covariance, 0 … 1/3
 };
 
-/// Points in the order of patches, each breadth-first. Colours are empty where the data has none.
+/// Points in the order of patches. Colours are empty where the data has none.
+///
+/// Departure [zju2005] Sec. 3.2.2: a node holds the point of its subtree that is nearest to the
+/// subtree's mean, not a point made up for it, and that point goes no further down. So the tree has
+/// as many nodes as there are points, a point takes its 8 bytes once (8 bytes a node of the printed
+/// tree are 16 a point), and a level is drawn with the coarser ones: a prefix of the array, whose
+/// points are all samples of the surface.
 struct PointModel {
     std::vector<glm::vec3> positions, normals;
     std::vector<float> radii;
-    std::vector<glm::u8vec4> colors;  // sRGB, linear alpha unused
+    std::vector<glm::vec3> colors;  // linear
     std::vector<Patch> patches;
     std::vector<Level> levels;
     scene::Box bounds;
 };
 
-/// Splits at the mean along the principal axis (the first median where all points fall to one
-/// side), in parallel; the same points give the same bytes. `points` are complete
+/// Splits subtrees through their mean, across the principal axis (in halves where all points fall
+/// to one side), in parallel; the same points give the same model. `points` are complete
 /// (scene::completePoints). Throws Error for no points.
 PointModel buildModel(const scene::PointCloud& points, const TreeSettings& settings);
 

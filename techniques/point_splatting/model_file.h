@@ -5,21 +5,25 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "techniques/point_splatting/compressed_point.h"
 #include "techniques/point_splatting/linear_tree.h"
 
 namespace gfxrepro::point_splatting {
 
-/// Views into a mapped file (or into memory, where nothing is cached); valid while it lives.
+/// A point model with its compressed points, in a mapped file; spans are valid while it lives.
 class ModelFile {
   public:
-    /// Opens `folder`/<key>.points, or builds and writes it (to a temporary name, then renamed: two
-    /// processes may do so at once). `key` is a hash of the content and the settings; a file that
-    /// is cut off, of another version or of another key is built again. An unwritable folder:
-    /// kept in memory, with a warning.
-    static ModelFile openOrBuild(const std::filesystem::path& folder, const std::string& key,
+    /// Maps `folder`/<key>.points, made of `points` first where it is not there, is cut off, or is
+    /// another version's. It is written whole under a temporary name and renamed, so that several
+    /// processes may do so at once. Where the folder cannot be written the model stays in memory.
+    /// Throws Error for no points.
+    static ModelFile openOrBuild(const std::filesystem::path& folder,
                                  const scene::PointCloud& points, const TreeSettings& settings);
+    /// A digest of points and settings.
+    static std::string keyOf(const scene::PointCloud& points, const TreeSettings& settings);
+
     ~ModelFile();
     ModelFile(ModelFile&&) noexcept;
     ModelFile& operator=(ModelFile&&) noexcept;
@@ -30,18 +34,18 @@ class ModelFile {
     std::span<const glm::vec3> positions() const;
     std::span<const glm::vec3> normals() const;
     std::span<const float> radii() const;
-    std::span<const glm::u8vec4> colors() const;  // empty: none
-    const RadiusTable& radiusTable() const;
+    std::span<const glm::u8vec4> colors() const;  // sRGB; empty: the data has none
+    std::span<const float> radiusTable() const;
     const scene::Box& bounds() const;
-    bool wasBuilt() const;  // this time
+
+    bool wasBuilt() const { return wasBuilt_; }  // by openOrBuild(), else found
+    bool isKept() const;                         // on disk
 
   private:
-    struct Impl;
-    explicit ModelFile(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    struct Content;
+    explicit ModelFile(std::unique_ptr<Content> content, bool wasBuilt);
+    std::unique_ptr<Content> content_;
+    bool wasBuilt_ = false;
 };
-
-/// The key of points with settings: a digest of both and of the file's version.
-std::string modelKey(const scene::PointCloud& points, const TreeSettings& settings);
 
 }  // namespace gfxrepro::point_splatting

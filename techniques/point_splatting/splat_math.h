@@ -5,19 +5,23 @@
 
 namespace gfxrepro::point_splatting {
 
-/// Orthonormal tangents of a unit normal: the first of (0, −n_z, n_y), (n_z, 0, −n_x),
-/// (−n_y, n_x, 0) that is longest, normalized, and n × it (Sec. 3.3.2.3).
-struct Tangents {
-    glm::dvec3 s, t;
+/// A splat in eye space with z the distance along the view axis (positive before the eye).
+struct EyeSplat {
+    glm::dvec3 centre{0.0, 0.0, 1.0};     // (o)
+    glm::dvec3 tangent{1.0, 0.0, 0.0};    // (s), unit
+    glm::dvec3 bitangent{0.0, 1.0, 0.0};  // (t), unit, at right angles to (s)
+    double radius = 1.0;                  // r_k
 };
-Tangents tangentsOf(const glm::dvec3& normal);
 
-/// J of Eq. (8), for focal length 1: d(x/z, y/z) of moves along s and t from o, all in eye space
-/// with z the distance along the view axis.
-glm::dmat2 screenJacobian(const glm::dvec3& o, const glm::dvec3& s, const glm::dvec3& t);
-
-/// H = J V^r Jᵀ + V^h of Eq. (3) in pixels², with the radii's squares on the diagonals.
-glm::dmat2 ewaCovariance(const glm::dvec3& o, const Tangents& tangents, double radius,
-                         double focalPx, double lowPassRadiusPx);
+/// J of Eq. (8): derivatives of (x / z, y / z) along s and t, in columns. For focal length 1.
+glm::dmat2 screenJacobian(const EyeSplat& splat);
+/// |J| of Eq. (11), from the angle between the view ray and the normal.
+double jacobianDeterminant(const EyeSplat& splat);
+/// S_proj = π r_k² cos θ / o_z², for focal length 1 (the text of it lost o_z², which Eq. 12 needs).
+double projectedArea(const EyeSplat& splat);
+/// C_η = √(2 tan²(fov / 2) + 1) of Eq. (13), for a square window.
+double cEta(double fovRad);
+/// H = J V^r Jᵀ + V^h of Eq. (3), in pixels².
+glm::dmat2 ewaCovariance(const EyeSplat& splat, double focalPx, double lowPassRadiusPx);
 
 }  // namespace gfxrepro::point_splatting

@@ -1,0 +1,210 @@
+#include "techniques/point_splatting/model_file.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "runner/core/error.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+
+namespace gfxrepro::point_splatting {
+
+namespace {
+
+/// Goes up when the file's layout or the tree's making changes.
+constexpr std::uint32_t kVersion = 1;
+constexpr char kMagic[8] = {'g', 'f', 'x', 'p', 'o', 'i', 'n', 't'};
+constexpr std::size_t kAlignment = 64;
+
+enum Section { kPatches, kLevels, kCompressed, kPositions, kNormals, kRadii, kColors, kTable };
+constexpr std::size_t kSections = 8;
+
+struct Header {
+    char magic[8];
+    std::uint32_t version;
+    char key[64];
+    scene::Box bounds;
+    std::uint64_t sizeBytes;  // of the whole file: a cut-off one is known by it
+    struct {
+        std::uint64_t offsetBytes, sizeBytes;
+    } sections[kSections];
+};
+
+std::size_t aligned(std::size_t offset) {
+    return (offset + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+std::uint8_t srgbOf(float linear) {
+    const float c = std::clamp(linear, 0.0F, 1.0F);
+    const float encoded = c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1.0F / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(255.0F * encoded));
+}
+
+template <class T>
+std::span<const std::byte> bytesOf(const std::vector<T>& values) {
+    return std::as_bytes(std::span<const T>(values));
+}
+
+std::string serialized(const PointModel& model, const std::string& key) {
+    const std::vector<float> table = clusteredRadii(model.radii);
+    std::vector<CompressedPoint> points(model.positions.size());
+    tbb::parallel_for(std::size_t{0}, model.patches.size(), [&](std::size_t p) {
+        const Patch& patch = model.patches[p];
+        for (std::size_t i = patch.firstPoint; i < patch.firstPoint + patch.pointCount; ++i) {
+            points[i] = compressed(model.positions[i], model.normals[i], model.radii[i],
+                                   patch.bounds, table);
+        }
+    });
+    std::vector<glm::u8vec4> colors;
+    colors.reserve(model.colors.size());
+    for (const glm::vec3& c : model.colors) {
+        colors.emplace_back(srgbOf(c.x), srgbOf(c.y), srgbOf(c.z), 255);
+    }
+    const std::array<std::span<const std::byte>, kSections> sections{
+        bytesOf(model.patches), bytesOf(model.levels), bytesOf(points), bytesOf(model.positions),
+        bytesOf(model.normals), bytesOf(model.radii),  bytesOf(colors), bytesOf(table)};
+
+    Header header{};
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    header.version = kVersion;
+    std::memcpy(header.key, key.data(), sizeof header.key);
+    header.bounds = model.bounds;
+    std::size_t offset = aligned(sizeof header);
+    for (std::size_t s = 0; s < kSections; ++s) {
+        header.sections[s] = {offset, sections[s].size()};
+        offset = aligned(offset + sections[s].size());
+    }
+    header.sizeBytes = offset;
+    std::string file(offset, '\0');
+    std::memcpy(file.data(), &header, sizeof header);
+    for (std::size_t s = 0; s < kSections; ++s) {
+        if (sections[s].empty()) continue;
+        std::memcpy(file.data() + header.sections[s].offsetBytes, sections[s].data(),
+                    sections[s].size());
+    }
+    return file;
+}
+
+/// Nothing when the bytes are not a whole file of this version and key.
+std::optional<Header> headerOf(std::span<const std::byte> bytes, const std::string& key) {
+    Header header;
+    if (bytes.size() < sizeof header) return std::nullopt;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
+        key.compare(0, key.size(), header.key, sizeof header.key) != 0 ||
+        header.sizeBytes != bytes.size()) {
+        return std::nullopt;
+    }
+    for (const auto& section : header.sections) {
+        if (section.sizeBytes > bytes.size() ||
+            section.offsetBytes > bytes.size() - section.sizeBytes) {
+            return std::nullopt;
+        }
+    }
+    return header;
+}
+
+}  // namespace
+
+struct ModelFile::Content {
+    std::unique_ptr<MappedFile> file;
+    std::string memory;  // where there is no file
+    Header header{};
+
+    std::span<const std::byte> bytes() const {
+        return file ? file->bytes() : std::as_bytes(std::span<const char>(memory));
+    }
+    template <class T>
+    std::span<const T> section(Section which) const {
+        const auto& place = header.sections[which];
+        return {reinterpret_cast<const T*>(bytes().data() + place.offsetBytes),
+                static_cast<std::size_t>(place.sizeBytes) / sizeof(T)};
+    }
+};
+
+namespace {
+
+/// The mapped file where it is what the key says.
+template <class Content>
+std::unique_ptr<Content> mapped(const std::filesystem::path& path, const std::string& key) {
+    if (!std::filesystem::is_regular_file(path)) return nullptr;
+    auto content = std::make_unique<Content>();
+    content->file = std::make_unique<MappedFile>(path);
+    const std::optional<Header> header = headerOf(content->bytes(), key);
+    if (!header) return nullptr;
+    content->header = *header;
+    return content;
+}
+
+}  // namespace
+
+ModelFile::ModelFile(std::unique_ptr<Content> content, bool wasBuilt)
+    : content_(std::move(content)), wasBuilt_(wasBuilt) {}
+ModelFile::~ModelFile() = default;
+ModelFile::ModelFile(ModelFile&&) noexcept = default;
+ModelFile& ModelFile::operator=(ModelFile&&) noexcept = default;
+
+std::string ModelFile::keyOf(const scene::PointCloud& points, const TreeSettings& settings) {
+    std::string parts = "points " + std::to_string(kVersion);
+    parts += ' ' + sha256(bytesOf(points.positions)) + ' ' + sha256(bytesOf(points.normals));
+    parts += ' ' + sha256(bytesOf(points.radii)) + ' ' + sha256(bytesOf(points.colors));
+    parts += ' ' + std::to_string(settings.maxPatchPoints);
+    parts += ' ' + std::to_string(settings.minPatchPoints);
+    parts += ' ' + std::to_string(settings.patchConeRad);
+    return sha256(parts);
+}
+
+ModelFile ModelFile::openOrBuild(const std::filesystem::path& folder,
+                                 const scene::PointCloud& points, const TreeSettings& settings) {
+    const std::string key = keyOf(points, settings);
+    const std::filesystem::path path = folder / (key + ".points");
+    if (auto content = mapped<Content>(path, key)) return ModelFile(std::move(content), false);
+
+    auto content = std::make_unique<Content>();
+    content->memory = serialized(buildModel(points, settings), key);
+    content->header = *headerOf(content->bytes(), key);
+    try {
+        writeFileAtomic(path, content->memory);
+    } catch (const Error&) {
+        return ModelFile(std::move(content), true);  // isKept() tells
+    }
+    if (auto kept = mapped<Content>(path, key)) content = std::move(kept);
+    return ModelFile(std::move(content), true);
+}
+
+std::span<const Patch> ModelFile::patches() const {
+    return content_->section<Patch>(kPatches);
+}
+std::span<const Level> ModelFile::levels() const {
+    return content_->section<Level>(kLevels);
+}
+std::span<const CompressedPoint> ModelFile::compressed() const {
+    return content_->section<CompressedPoint>(kCompressed);
+}
+std::span<const glm::vec3> ModelFile::positions() const {
+    return content_->section<glm::vec3>(kPositions);
+}
+std::span<const glm::vec3> ModelFile::normals() const {
+    return content_->section<glm::vec3>(kNormals);
+}
+std::span<const float> ModelFile::radii() const {
+    return content_->section<float>(kRadii);
+}
+std::span<const glm::u8vec4> ModelFile::colors() const {
+    return content_->section<glm::u8vec4>(kColors);
+}
+std::span<const float> ModelFile::radiusTable() const {
+    return content_->section<float>(kTable);
+}
+const scene::Box& ModelFile::bounds() const {
+    return content_->header.bounds;
+}
+bool ModelFile::isKept() const {
+    return content_->file != nullptr;
+}
+
+}  // namespace gfxrepro::point_splatting
