@@ -1,0 +1,3 @@
+#include "techniques/clustered_reflections/clustering.h"
+
+#include "tests/gl/gl_fixture.h"
