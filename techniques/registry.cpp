@@ -1,6 +1,7 @@
 // Every technique, one line each. A table, not self-registration: a static library's unreferenced
 // objects are dropped by the linker.
 #include "runner/technique/technique.h"
+#include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
@@ -10,6 +11,7 @@ namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
+        clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
         soft_shadows::kSoftShadows,
         template_::kTemplate,

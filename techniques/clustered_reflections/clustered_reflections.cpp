@@ -50,8 +50,8 @@ std::unique_ptr<reflections::ReflectionTracer> ClusteredReflections::makeTracer(
             return std::make_unique<reflections::EnvironmentTracer>(shaders, *map_, lobe,
                                                                     diagonalM);
         case Method::ScreenSpace:
-            return std::make_unique<reflections::ScreenSpaceTracer>(
-                shaders, *map_, lobe, diagonalM, params_.thickness * diagonalM);
+            return std::make_unique<reflections::ScreenSpaceTracer>(shaders, *map_, lobe, diagonalM,
+                                                                    params_.thickness * diagonalM);
         case Method::RayTraced:
             return std::make_unique<reflections::GpuRayTracer>(shaders, *objects_, *map_, lobe,
                                                                diagonalM);
@@ -73,9 +73,8 @@ std::unique_ptr<reflections::ReflectionTracer> ClusteredReflections::makeTracer(
 void ClusteredReflections::render(technique::FrameContext& context) {
     gl::Profiler& profiler = context.profiler;
     const glm::vec2 size(outputSizePx_);
-    const scene::Camera camera =
-        reflections::cameraFor(scene_->scene(), params_.view, context.frame, context.frameCount,
-                               size.x / size.y);
+    const scene::Camera camera = reflections::cameraFor(
+        scene_->scene(), params_.view, context.frame, context.frameCount, size.x / size.y);
     gbuffer_->view = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) {
         const double time = reflections::frameTime(context.frame, context.frameCount);

@@ -49,8 +49,10 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 void ClusteredReflections::recordShares(technique::Recorder& recorder,
                                         const HostGBuffer& gbuffer) const {
     std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::uint64_t diffuseTriangles = 0, reflectiveTriangles = 0;
     for (const reflections::Object& object : scene_->objects()) {
         isPlanar[static_cast<std::size_t>(object.reflector)] = object.isPlanar ? 1 : 0;
+        (object.reflector == 0 ? diffuseTriangles : reflectiveTriangles) += object.triangleCount;
     }
     std::vector<std::size_t> samples(isPlanar.size());
     for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
@@ -65,6 +67,9 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
     recorder.metric("reflective_pct", percent(reflective, gbuffer.surface.size()), "%");
     recorder.metric("planar_pct", percent(planar, reflective), "%");
     recorder.metric("visible_reflectors", static_cast<double>(visible), "reflector");
+    recorder.metric("reflectors", scene_->reflectorCount(), "reflector");
+    recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");
+    recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles), "triangle");
 }
 
 // Sec. 4.7.1 counts what holds colours and depths of the screen and of a cluster as frame buffers.
@@ -114,15 +119,14 @@ void ClusteredReflections::recordErrors(technique::Recorder& recorder, const Hos
     recorder.metric("psnr_db", shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
     recorder.image("truth", truth);
-    recorder.image("error", errorPicture(picture, truth, 1.0F));
-    recorder.image("error_50", errorPicture(picture, truth, 50.0F));
+    recorder.image("error", errorPicture(picture, truth, 1));
+    recorder.image("error_50", errorPicture(picture, truth, 50));
 }
 
 void ClusteredReflections::recordClusters(technique::Recorder& recorder, const HostGBuffer& gbuffer,
                                           const image::ImageF& picture) {
-    const auto clusterOfSample =
-        clusteredTracer_->clusters().clusterOfSample.read<std::uint16_t>(GL_RED_INTEGER,
-                                                                         GL_UNSIGNED_SHORT, 1);
+    const auto clusterOfSample = clusteredTracer_->clusters().clusterOfSample.read<std::uint16_t>(
+        GL_RED_INTEGER, GL_UNSIGNED_SHORT, 1);
     const auto clustered = static_cast<std::size_t>(
         std::ranges::count_if(clusterOfSample, [](std::uint16_t c) { return c != 0; }));
     const std::vector<std::uint8_t> environment = clusteredTracer_->environmentSamples();

@@ -21,8 +21,7 @@ bool isInFrustum(const ClusterCamera& camera, const glm::vec3& point, float tole
     const glm::vec4 clip = camera.clipFromWorld * glm::vec4(point, 1.0F);
     const float limit = (1.0F + kFrustumMargin) * clip.w;
     if (clip.w <= 0.0F || std::abs(clip.x) > limit || std::abs(clip.y) > limit) return false;
-    const float depth =
-        glm::dot(point - glm::vec3(camera.eyeWorld), glm::vec3(camera.planeNormal));
+    const float depth = glm::dot(point - glm::vec3(camera.eyeWorld), glm::vec3(camera.planeNormal));
     return depth >= camera.eyeWorld.w - toleranceM &&
            depth <= (1.0F + kFrustumMargin) * camera.planeNormal.w + toleranceM;
 }

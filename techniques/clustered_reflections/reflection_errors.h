@@ -43,13 +43,13 @@ struct OcclusionInput {
 
 /// A hit Q of a sample's mirror ray counts as seen by its cluster's camera when it lies in the
 /// camera's frustum and nothing lies before it on the line from e_c, but what is before the near
-/// plane and the cluster's own reflector, which the depth image leaves out. Rays, not images, decide,
-/// so that the measure does not depend on the resolution. Samples whose mirror ray leaves the scene,
-/// or ends before Q (glossy samples' far plane), miss nothing.
+/// plane and the cluster's own reflector, which the depth image leaves out. Rays, not images,
+/// decide, so that the measure does not depend on the resolution. Samples whose mirror ray leaves
+/// the scene, or ends before Q (glossy samples' far plane), miss nothing.
 ///
-/// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays start off
-/// their surface. Of a planar cluster the line from e_c to Q is the mirror ray itself, but for that
-/// start: without the tolerance, edges that the two pass on different sides would count.
+/// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays start
+/// off their surface. Of a planar cluster the line from e_c to Q is the mirror ray itself, but for
+/// that start: without the tolerance, edges that the two pass on different sides would count.
 constexpr float kOcclusionTolerance = 2.0F * reflections::EmbreeTracer::kStart;
 OcclusionErrors occlusionErrors(const OcclusionInput& input);
 

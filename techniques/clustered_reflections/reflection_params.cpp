@@ -38,9 +38,9 @@ reflections::LobeSettings readLobe(config::Params& params) {
     reflections::LobeSettings lobe;
     lobe.rays = params.getInt(
         "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});
-    lobe.maxHalfAngleRad = glm::radians(
-        number(params, "lobe_half_angle_deg", 34.4,
-               {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
+    lobe.maxHalfAngleRad =
+        glm::radians(number(params, "lobe_half_angle_deg", 34.4,
+                            {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
     lobe.farExponent =
         number(params, "far_exponent", static_cast<double>(lobe.farExponent),
                {"e of the distance where reflections of glossiness g end: diagonal · (1 − g)^e",
@@ -96,7 +96,8 @@ void refuseGiven(const config::Params& params, std::initializer_list<const char*
 }  // namespace
 
 ReflectionParams::ReflectionParams(config::Params& params)
-    : method(params.getEnum("method", Method::Clustered, kMethods, {"where reflections come from"})),
+    : method(
+          params.getEnum("method", Method::Clustered, kMethods, {"where reflections come from"})),
       view(params.getText("view", "",
                           {"a path or camera of the scene; none: its first path, else its first "
                            "camera"})),
@@ -120,9 +121,9 @@ ReflectionParams::ReflectionParams(config::Params& params)
     reflectors.maxRoughness =
         number(params, "reflector_roughness", static_cast<double>(reflectors.maxRoughness),
                {"materials up to this roughness reflect", "1", 0.0, 1.0});
-    thickness = number(params, "thickness", static_cast<double>(thickness),
-                       {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0,
-                        10.0});
+    thickness =
+        number(params, "thickness", static_cast<double>(thickness),
+               {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});
     measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
     params.finish();

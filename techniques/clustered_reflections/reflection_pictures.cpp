@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/image/srgb.h"
+
 namespace gfxrepro::clustered_reflections {
 
 using reflections::HostGBuffer;
 
 namespace {
-
-float linearOf(float shown) {
-    return shown <= 0.04045F ? shown / 12.92F : std::pow((shown + 0.055F) / 1.055F, 2.4F);
-}
 
 /// Mean colour of each output pixel's samples, rows from the top.
 template <class Color>
@@ -41,13 +39,14 @@ glm::vec3 colorOf(std::uint16_t number) {
 
 }  // namespace
 
-image::ImageF errorPicture(const image::ImageF& picture, const image::ImageF& truth, float gain) {
+image::ImageF errorPicture(const image::ImageF& picture, const image::ImageF& truth, int gain) {
     const image::Image8 a = image::toSrgb8(picture);
     const image::Image8 b = image::toSrgb8(truth);
+    const std::array<float, 256> linear = image::srgbDecoding();  // pictures are shown as sRGB
     image::ImageF error(picture.width(), picture.height(), picture.channels());
     for (std::size_t i = 0; i < error.values().size(); ++i) {
-        const auto difference = static_cast<float>(std::abs(int{a.values()[i]} - b.values()[i]));
-        error.values()[i] = linearOf(std::min(gain * difference / 255.0F, 1.0F));
+        const int difference = std::abs(int{a.values()[i]} - int{b.values()[i]});
+        error.values()[i] = linear[static_cast<std::size_t>(std::min(gain * difference, 255))];
     }
     return error;
 }
@@ -71,8 +70,9 @@ std::vector<std::uint16_t> reflectorNumbers(const HostGBuffer& gbuffer) {
 
 image::ImageF markedPicture(const image::ImageF& picture, const std::vector<std::uint8_t>& marks,
                             const HostGBuffer& gbuffer, int supersampling) {
-    const image::ImageF shares = averaged(
-        gbuffer, supersampling, [&](std::size_t i) { return glm::vec3(marks[i] != 0 ? 1.0F : 0.0F); });
+    const image::ImageF shares = averaged(gbuffer, supersampling, [&](std::size_t i) {
+        return glm::vec3(marks[i] != 0 ? 1.0F : 0.0F);
+    });
     image::ImageF marked = picture;
     for (int y = 0; y < marked.height(); ++y) {
         for (int x = 0; x < marked.width(); ++x) {

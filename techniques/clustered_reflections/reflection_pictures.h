@@ -10,7 +10,7 @@
 namespace gfxrepro::clustered_reflections {
 
 /// Fig. 26: |picture − truth| of the values that are shown, times `gain`.
-image::ImageF errorPicture(const image::ImageF& picture, const image::ImageF& truth, float gain);
+image::ImageF errorPicture(const image::ImageF& picture, const image::ImageF& truth, int gain);
 
 /// Fig. 22 and 23: a colour a number (a reflector or cluster), 0 is grey; of the samples, averaged
 /// to output pixels.
