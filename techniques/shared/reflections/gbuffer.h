@@ -45,6 +45,7 @@ struct HostGBuffer {
     glm::mat4 worldFromPixels{1.0F};
     std::vector<glm::vec3> diffuse;
     std::vector<glm::vec3> normalWorld;
+    std::vector<glm::vec2> normalOctahedral;  // as stored: for replays that must be exact
     std::vector<float> depthM;
     std::vector<std::uint32_t> surface;
 
