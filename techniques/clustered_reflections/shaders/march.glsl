@@ -1,0 +1,172 @@
+// [xie2017] Algorithm 7: a ray against a depth image, as depth_image_marcher.h has it. MARCH is 0
+// for a texel a step, 1 for stepping over whole tiles whose content lies behind the ray.
+//
+// The image holds nearM / z, z being the distance along the axis, and 0 where nothing is: linear in
+// the image, as 1 / (k1 + k2·u) is the ray's z, so that both are compared without a division, and
+// "behind" is "smaller". Texels are numbered in the whole texture; the image begins at originPx.
+
+struct MarchImage {
+    mat4 clipFromWorld;  // clip w: z; clip z from −w to w
+    ivec2 originPx;
+    ivec2 sizePx;
+    float nearM;
+};
+
+struct MarchHit {
+    vec2 positionPx;  // in the image, where the ray first is behind
+    float fraction;   // u
+    float along;      // where on the way from begin to end, 0 … 1, the ray meets the stored depth
+    int steps;
+};
+
+// The includer reads its image. storedAt: nearM / z of a texel. isOwnAt: whether the texel shows
+// the cluster's own reflector. nearestIn: the largest storedAt of the 2^level × 2^level texels of a
+// tile, or more; level 1 … MARCH_LEVELS.
+float storedAt(ivec2 texel);
+bool isOwnAt(ivec2 texel);
+float nearestIn(ivec2 tile, int level);
+
+// Keeps of [t.x, t.y] what lies on the inner side of a plane, to which the ends have these signed
+// distances.
+void cut(float begin, float end, inout vec2 t) {
+    if (begin < 0.0) t.x = end < 0.0 ? 2.0 : max(t.x, begin / (begin - end));
+    if (end < 0.0 && !(begin < 0.0)) t.y = min(t.y, begin / (begin - end));
+}
+
+struct ProjectedRay {
+    vec2 beginPx, deltaPx;
+    float k1, k2;  // times nearM
+    int steps;
+    vec2 kept;  // of the way from begin to end
+};
+
+bool project(MarchImage image, vec3 beginWorld, vec3 endWorld, out ProjectedRay ray) {
+    vec4 begin = image.clipFromWorld * vec4(beginWorld, 1.0);
+    vec4 end = image.clipFromWorld * vec4(endWorld, 1.0);
+    vec2 size = vec2(image.sizePx);
+    // Half a texel outwards: the outermost rays run along the edge.
+    vec2 border = 1.0 + 1.0 / size;
+    vec2 t = vec2(0.0, 1.0);
+    cut(border.x * begin.w + begin.x, border.x * end.w + end.x, t);
+    cut(border.x * begin.w - begin.x, border.x * end.w - end.x, t);
+    cut(border.y * begin.w + begin.y, border.y * end.w + end.y, t);
+    cut(border.y * begin.w - begin.y, border.y * end.w - end.y, t);
+    cut(begin.w + begin.z, end.w + end.z, t);
+    cut(begin.w - begin.z, end.w - end.z, t);
+    ray.kept = t;
+    if (!(t.x <= t.y)) return false;  // nothing is left
+
+    vec4 from = begin + (end - begin) * t.x;
+    vec4 to = begin + (end - begin) * t.y;
+    if (!(from.w > 0.0 && to.w > 0.0)) return false;
+    ray.beginPx = (from.xy / from.w * 0.5 + 0.5) * size;
+    ray.deltaPx = (to.xy / to.w * 0.5 + 0.5) * size - ray.beginPx;
+    ray.k1 = image.nearM / from.w;
+    ray.k2 = image.nearM / to.w - ray.k1;
+    float longest = max(abs(ray.deltaPx.x), abs(ray.deltaPx.y));
+    ray.steps = max(int(ceil(longest)), 1);
+    return true;
+}
+
+// The texel of a sample, in the whole texture.
+ivec2 texelOf(MarchImage image, ProjectedRay ray, float u) {
+    ivec2 texel = ivec2(floor(ray.beginPx + u * ray.deltaPx));
+    return image.originPx + clamp(texel, ivec2(0), image.sizePx - 1);
+}
+
+MarchHit hitAt(ProjectedRay ray, int step, float stored, int steps) {
+    float perStep = 1.0 / float(ray.steps);
+    float u = float(step) * perStep;
+    // The ray meets the stored depth between this sample and the one before; 1 / z is linear there.
+    float met = ray.k2 < 0.0 ? clamp((stored - ray.k1) / ray.k2, u - perStep, u) : u;
+    met = max(met, 0.0);
+    // From the image back to the ray, perspective undone.
+    float kEnd = ray.k1 + ray.k2;
+    float along = met * kEnd / ((1.0 - met) * ray.k1 + met * kEnd);
+    return MarchHit(ray.beginPx + u * ray.deltaPx, u, mix(ray.kept.x, ray.kept.y, along), steps);
+}
+
+#if MARCH == 0
+
+bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
+    ProjectedRay ray;
+    if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
+    float perStep = 1.0 / float(ray.steps);
+    bool hasLeftOwn = false;
+    for (int step = 0; step <= ray.steps; ++step) {
+        float u = float(step) * perStep;
+        ivec2 texel = texelOf(image, ray, u);
+        float stored = storedAt(texel);
+        bool isBehind = ray.k1 + ray.k2 * u < stored;
+        if (isBehind && (hasLeftOwn || !isOwnAt(texel))) {
+            hit = hitAt(ray, step, stored, step + 1);
+            return true;
+        }
+        hasLeftOwn = hasLeftOwn || !isBehind;
+    }
+    return false;
+}
+
+#else
+
+// The last sample from `step` on whose texel lies in the same tile. Positions grow or fall with u,
+// in floating point too, so that all between two samples of one tile lie in it.
+int lastInTile(MarchImage image, ProjectedRay ray, int step, ivec2 tile, int level) {
+    vec2 edge = vec2(((tile + ivec2(greaterThan(ray.deltaPx, vec2(0.0)))) << level) -
+                     image.originPx);
+    // Steps to the edge; an axis along which the ray does not move never gets there.
+    vec2 most = vec2(float(ray.steps));
+    vec2 steps = clamp((edge - ray.beginPx) / ray.deltaPx * most, vec2(0.0), most);
+    if (ray.deltaPx.x == 0.0) steps.x = most.x;
+    if (ray.deltaPx.y == 0.0) steps.y = most.y;
+    int last = clamp(int(min(steps.x, steps.y)), step, ray.steps);
+    // Rounding, or an edge that is met just at a sample: a sample fewer, or none.
+    float perStep = 1.0 / float(ray.steps);
+    for (int attempt = 0; attempt < 2 && last > step; ++attempt) {
+        if ((texelOf(image, ray, float(last) * perStep) >> level) == tile) return last;
+        --last;
+    }
+    return (texelOf(image, ray, float(last) * perStep) >> level) == tile ? last : step;
+}
+
+bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
+    const int kFirstLevel = 2;  // rays of a few texels, as all of a planar reflector, skip nothing
+    ProjectedRay ray;
+    if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
+    float perStep = 1.0 / float(ray.steps);
+    bool hasLeftOwn = false;
+    int level = ray.steps < 8 ? 0 : kFirstLevel;
+    int fetches = 0;
+    for (int step = 0; step <= ray.steps;) {
+        float u = float(step) * perStep;
+        ivec2 texel = texelOf(image, ray, u);
+        float k = ray.k1 + ray.k2 * u;
+        ++fetches;
+        if (level == 0) {
+            float stored = storedAt(texel);
+            bool isBehind = k < stored;
+            if (isBehind && (hasLeftOwn || !isOwnAt(texel))) {
+                hit = hitAt(ray, step, stored, fetches);
+                return true;
+            }
+            hasLeftOwn = hasLeftOwn || !isBehind;
+            ++step;
+            // Up again where a tile begins; a ray that stays near a surface stays low.
+            if (ray.steps >= 8 && (step & 3) == 0) level = 1;
+            continue;
+        }
+        ivec2 tile = texel >> level;
+        int last = lastInTile(image, ray, step, tile, level);
+        float farthest = min(k, ray.k1 + ray.k2 * (float(last) * perStep));
+        if (farthest < nearestIn(tile, level)) {
+            --level;
+        } else {
+            hasLeftOwn = true;
+            step = last + 1;
+            level = min(level + 1, MARCH_LEVELS);
+        }
+    }
+    return false;
+}
+
+#endif
