@@ -48,10 +48,10 @@ ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx
     colour_.setFilter(GL_LINEAR, GL_LINEAR);
     nearest_.setFilter(GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST);
     if (hasPyramid) {
-        pyramid_ = gl::Program(shaders,
-                               {"clustered_reflections/whole_image.vert.glsl",
-                                "clustered_reflections/nearest_depths.frag.glsl"},
-                               imageDefines());
+        pyramid_ = gl::Program(
+            shaders,
+            {"reflections/whole_image.vert.glsl", "clustered_reflections/nearest_depths.frag.glsl"},
+            imageDefines());
     }
 }
 
@@ -111,7 +111,8 @@ std::size_t ClusterImages::sizeBytes() const {
 
 glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings) {
     constexpr std::uint32_t kNoRoom = 2;  // of cluster_camera.glsl
-    if ((camera.flags & kNoRoom) != 0 || camera.sizePx.x <= 0 || camera.sizePx.y <= 0) return {0, 0};
+    if ((camera.flags & kNoRoom) != 0 || camera.sizePx.x <= 0 || camera.sizePx.y <= 0)
+        return {0, 0};
     const float largest = static_cast<float>(std::max(camera.sizePx.x, camera.sizePx.y));
     const float scale =
         std::min(settings.depthImageScale, static_cast<float>(settings.maxSizePx) / largest);
@@ -147,12 +148,13 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
         if (reflectorOfObject_[i] == camera.reflector && !seesSelf) continue;
         const scene::Box& box = objects.boundsWorld()[i];
         if (box.isEmpty()) continue;
-        const bool isInside = std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
-            const glm::vec3 normal(plane);
-            return glm::dot(normal, box.centre()) + plane.w +
-                       glm::dot(glm::abs(normal), 0.5F * box.size()) >=
-                   0.0F;
-        });
+        const bool isInside =
+            std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+                const glm::vec3 normal(plane);
+                return glm::dot(normal, box.centre()) + plane.w +
+                           glm::dot(glm::abs(normal), 0.5F * box.size()) >=
+                       0.0F;
+            });
         if (isInside) seen.push_back(i);
     }
     return seen;
