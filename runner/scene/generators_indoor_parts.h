@@ -18,7 +18,12 @@ glm::mat4 placed(const glm::vec3& position, float turnRad = 0.0F);
 /// The same, leaning: y of the part runs along `up` (any length).
 glm::mat4 placedAlong(const glm::vec3& position, const glm::vec3& up);
 
-// --- surfaces (generators_indoor_surfaces.cpp) ---
+/// A part given in its own frame (rigid).
+void addFramed(MeshBuilder& builder, const glm::mat4& frame, std::vector<glm::vec3> positions,
+               std::vector<glm::vec3> normals, std::span<const glm::uvec3> triangles,
+               std::span<const glm::vec2> texcoords);
+
+// --- surfaces (generators_indoor_surfaces.cpp; generators_indoor_boxes.cpp: what is flat) ---
 
 /// A surface of revolution is described by its outline: (radius, height), from the bottom outwards
 /// and up, and down again on the inside. A point that stands there twice is a sharp edge.
