@@ -34,7 +34,7 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
     const glm::vec3 direction = (target - eye) / length;
     const float cosine = glm::dot(direction, glm::vec3(camera.planeNormal));
     if (cosine <= 0.0F) return false;  // beside the camera: not in its frustum either
-    // The mirror rays start that far before the near plane, too.
+    // The truth's rays meet nothing nearer to their surface, either.
     float start = camera.eyeWorld.w / cosine + toleranceM;
     const float end = length - toleranceM;
     while (start < end) {
@@ -91,7 +91,8 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
     });
     for (std::size_t i = 0; i < count; ++i) {
         if (input.clusterOfSample[i] == 0) continue;
-        const bool isPlanar = (input.cameras[input.clusterOfSample[i] - 1U].flags & 1U) != 0;
+        const bool isPlanar =
+            (input.cameras[input.clusterOfSample[i] - 1U].flags & kPlanarCluster) != 0;
         ++errors.reflective;
         errors.missing += errors.isMissing[i];
         errors.planar += isPlanar ? 1 : 0;

@@ -47,9 +47,9 @@ struct OcclusionInput {
 /// decide, so that the measure does not depend on the resolution. Samples whose mirror ray leaves
 /// the scene, or ends before Q (glossy samples' far plane), miss nothing.
 ///
-/// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays start
-/// off their surface. Of a planar cluster the line from e_c to Q is the mirror ray itself, but for
-/// that start: without the tolerance, edges that the two pass on different sides would count.
+/// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays pass
+/// over before their surface. The line from e_c to Q of a planar cluster is the mirror ray itself
+/// up to rounding: without the tolerance, edges that the two pass on different sides would count.
 constexpr float kOcclusionTolerance = 2.0F * reflections::EmbreeTracer::kStart;
 OcclusionErrors occlusionErrors(const OcclusionInput& input);
 
