@@ -1,6 +1,8 @@
 // Radiance around one point: the fallback of rays that meet nothing, and the comparator.
 #pragma once
 
+#include <cstdint>
+
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
@@ -16,6 +18,8 @@ class EnvironmentMap {
     static constexpr int kFaceSizePx = 512;
     EnvironmentMap(const gl::ShaderLibrary& shaders, const glm::vec3& centreWorld);
     void render(const GpuObjects& objects);
+    /// How often it was drawn: what was read of it is stale when this has grown.
+    std::uint64_t version() const { return version_; }
     void bind(unsigned unit) const { cube_.bind(unit); }
     const gl::Texture& cube() const { return cube_; }
     const glm::vec3& centreWorld() const { return centreWorld_; }
@@ -32,6 +36,7 @@ class EnvironmentMap {
     Host read() const;
 
   private:
+    std::uint64_t version_ = 0;
     glm::vec3 centreWorld_;
     gl::Texture cube_, depth_;
     gl::Program program_;
