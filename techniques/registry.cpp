@@ -2,6 +2,7 @@
 // objects are dropped by the linker.
 #include "runner/technique/technique.h"
 #include "techniques/depth_sampling/depth_sampling.h"
+#include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
@@ -11,6 +12,7 @@ namespace gfxrepro::technique {
 std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
         depth_sampling::kDepthSampling,
+        ray_tracing::kRayTracing,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,
