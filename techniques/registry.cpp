@@ -3,6 +3,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
+#include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
@@ -13,6 +14,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
+        ray_tracing::kRayTracing,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,

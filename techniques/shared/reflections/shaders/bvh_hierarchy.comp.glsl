@@ -46,11 +46,11 @@ void main() {
     int j = i + reach * d;
 
     // They are split behind the last leaf that shares more with i than the far end does.
-    int common = commonBits(i, code, j);
+    int inBoth = commonBits(i, code, j);
     int split = 0;
     for (int step = reach; step > 1;) {
         step = (step + 1) / 2;
-        if (commonBits(i, code, i + (split + step) * d) > common) split += step;
+        if (commonBits(i, code, i + (split + step) * d) > inBoth) split += step;
     }
     int gamma = i + split * d + min(d, 0);
 

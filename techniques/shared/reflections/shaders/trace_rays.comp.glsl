@@ -42,7 +42,10 @@ vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction) {
         texcoord += weights[i] * vec2(texcoords[2u * vertex], texcoords[2u * vertex + 1u]);
     }
     Object object = objects[objectOfTriangle[hit.triangle]];
-    normal = normalize(mat3(object.normalFromMesh) * normal);
+    normal = mat3(object.normalFromMesh) * normal;
+    // Where opposite normals cancel out in the middle of a triangle, as in surface.glsl.
+    if (dot(normal, normal) == 0.0) normal = -direction;
+    normal = normalize(normal);
     if (dot(normal, direction) > 0.0) normal = -normal;
     return shadeDiffuse(origin + hit.t * direction, normal, albedoOf(object, texcoord, color),
                         object.emissive.rgb);
@@ -56,11 +59,13 @@ void traceSample(ivec2 pixel) {
     vec3 sum = vec3(0.0);
     float weightSum = 0.0;
     float mirrorDistance = 0.0;
-    for (int i = 0; i < rays; ++i) {
-        vec3 direction = lobeDirection(mirror, glossiness, i, rays);
+    // Ray −1 of a glossy sample is the mirror ray, for its distance only.
+    for (int i = glossiness > 0.0 ? -1 : 0; i < rays; ++i) {
+        vec3 direction = i < 0 ? mirror : lobeDirection(mirror, glossiness, i, rays);
         RayHit hit;
         bool isHit = closestHit(origin, direction, rayStart, 1e30, hit);
-        if (i == 0 && isHit) mirrorDistance = hit.t;
+        if ((i < 0 || glossiness <= 0.0) && isHit) mirrorDistance = hit.t;
+        if (i < 0) continue;
         float weight = isHit ? fadeOf(glossiness, hit.t) : (glossiness > 0.0 ? 0.0 : 1.0);
         if (weight == 0.0) continue;
         weightSum += weight;
