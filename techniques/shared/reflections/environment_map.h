@@ -4,12 +4,13 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
-/// A cube map of the scene's diffuse colours from the middle of its box (or where told), its
-/// background (0.18, 0.20, 0.24) where nothing is seen. Made once; render() again for moved
-/// objects. Shaders: shaders/environment.glsl, `radianceFrom(direction)`.
+/// A cube map of the scene's diffuse colours from the middle of its box (or where told),
+/// kBackground where nothing is seen. Made once; render() again for moved objects. Shaders:
+/// shaders/environment.glsl, `radianceFrom(direction)`.
 class EnvironmentMap {
   public:
     static constexpr int kFaceSizePx = 512;
@@ -36,12 +37,14 @@ class EnvironmentMap {
     gl::Program program_;
 };
 
-/// Environment mapping: every ray takes the map in its direction, wherever it starts.
+/// Environment mapping: every ray takes the map in its direction, wherever it starts. All rays
+/// weigh the same, glossy ones too: the map knows no distances to fade by. Passes:
+/// `environment_map` when it is drawn again, `intersection`.
 class EnvironmentTracer final : public ReflectionTracer {
   public:
     EnvironmentTracer(const gl::ShaderLibrary& shaders, EnvironmentMap& map,
                       const LobeSettings& lobe, float diagonalM);
-    /// Draws the map again when an object has moved.
+    /// Draws the map, again when an object has moved.
     void update(const GpuObjects& objects, gl::Profiler& profiler) override;
     void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
                gl::Profiler& profiler) override;
@@ -52,7 +55,8 @@ class EnvironmentTracer final : public ReflectionTracer {
     LobeSettings lobe_;
     float diagonalM_;
     gl::Program program_;
-    std::vector<glm::mat4> poses_;
+    WholeImage wholeImage_;
+    std::vector<glm::mat4> poses_;  // in which the map was drawn
 };
 
 }  // namespace gfxrepro::reflections
