@@ -9,24 +9,18 @@ namespace gfxrepro::clustered_reflections {
 namespace {
 
 /// Borders between n bins begin here.
-std::size_t firstBorder(int bins) { return static_cast<std::size_t>((bins - 1) * (bins - 2) / 2); }
+std::size_t firstBorder(int bins) {
+    return static_cast<std::size_t>((bins - 1) * (bins - 2) / 2);
+}
 
-bool isInSecondHalf(const glm::vec2& v) { return !(v.y > 0.0F || (v.y == 0.0F && v.x > 0.0F)); }
+bool isInSecondHalf(const glm::vec2& v) {
+    return !(v.y > 0.0F || (v.y == 0.0F && v.x > 0.0F));
+}
 
 /// Is the angle of a at least that of b, both in [0°, 360°) from +x? As in assign_bins.frag.
 bool isAtLeast(const glm::vec2& a, const glm::vec2& b) {
     if (isInSecondHalf(a) != isInSecondHalf(b)) return isInSecondHalf(a);
     return b.x * a.y >= b.y * a.x;
-}
-
-/// directionFromOctahedral() of reflections/octahedral.glsl.
-glm::vec3 directionFromOctahedral(const glm::vec2& e) {
-    glm::vec3 v(e, 1.0F - std::abs(e.x) - std::abs(e.y));
-    if (v.z < 0.0F) {
-        v = {(1.0F - std::abs(e.y)) * (e.x >= 0.0F ? 1.0F : -1.0F),
-             (1.0F - std::abs(e.x)) * (e.y >= 0.0F ? 1.0F : -1.0F), v.z};
-    }
-    return v;
 }
 
 }  // namespace
@@ -73,7 +67,7 @@ glm::ivec2 BinTables::binsOf(std::uint32_t area, std::uint32_t total, std::uint3
 }
 
 glm::ivec2 BinTables::binOf(const glm::vec2& normalOctahedral, const glm::ivec2& bins) const {
-    const glm::vec3 n = directionFromOctahedral(normalOctahedral);
+    const glm::vec3 n = reflections::directionFromOctahedral(normalOctahedral);
     glm::ivec2 bin(0);
     if (n.x != 0.0F || n.z != 0.0F) {
         for (int k = 1; k < bins.x; ++k) {

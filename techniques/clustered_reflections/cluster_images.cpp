@@ -110,7 +110,6 @@ std::size_t ClusterImages::sizeBytes() const {
 }
 
 glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings) {
-    constexpr std::uint32_t kNoRoom = 2;  // of cluster_camera.glsl
     if ((camera.flags & kNoRoom) != 0 || camera.sizePx.x <= 0 || camera.sizePx.y <= 0)
         return {0, 0};
     const float largest = static_cast<float>(std::max(camera.sizePx.x, camera.sizePx.y));

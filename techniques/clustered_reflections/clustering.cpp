@@ -39,8 +39,8 @@ constexpr int kGroupSize = 64;
 constexpr int kScanGroupSize = 256;
 /// Samples of a column that one invocation counts; 16 thousand invocations in half a megapixel.
 constexpr int kStripLength = 32;
-/// Of the counting sort's matrix, bins × blocks: 1 MiB. 128 bins leave 2048 blocks, 512 samples each
-/// in a megapixel; 4096 bins leave 64.
+/// Of the counting sort's matrix, bins × blocks: 1 MiB. 128 bins leave 2048 blocks, 512 samples
+/// each in a megapixel; 4096 bins leave 64.
 constexpr int kMatrixEntries = 1 << 18;
 constexpr int kMaxBlocks = 4096;
 constexpr int kPieceLength = kMatrixEntries / kScanGroupSize;
@@ -71,9 +71,7 @@ gl::Defines defines(int groupSize) {
 }
 
 gl::Program compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize) {
-    return {shaders,
-            {fmt::format("clustered_reflections/{}.comp.glsl", name)},
-            defines(groupSize)};
+    return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines(groupSize)};
 }
 
 gl::Program wholeImage(const gl::ShaderLibrary& shaders, const char* name) {

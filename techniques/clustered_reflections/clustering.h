@@ -13,8 +13,9 @@
 namespace gfxrepro::clustered_reflections {
 
 /// Bins of the normal's spherical coordinates, theta ∈ [0°, 360°) around +y, from +x towards +z,
-/// and phi ∈ [0°, 180°] from +y (normals are those turned to the eye, in the world). A reflector has at most maxThetaBins × maxPhiBins; its share a_R of the reflective
-/// samples and the number n_v of visible reflectors scale both down:
+/// and phi ∈ [0°, 180°] from +y (normals are those turned to the eye, in the world). A reflector
+/// has at most maxThetaBins × maxPhiBins; its share a_R of the reflective samples and the number
+/// n_v of visible reflectors scale both down:
 ///
 ///     bins = clamp(round(maxBins · (a_R / n_v · bin_gain)^exponent), 1, maxBins)
 ///
@@ -53,8 +54,8 @@ class ClusterBuilder {
     ClusterBuilder(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                    Clustering clustering, const BinSettings& bins, glm::ivec2 sizePx);
     ~ClusterBuilder();
-    /// Samples with `wanted` 0 are left out, of the areas too. Cluster numbers are dense and ordered
-    /// by reflector, phi bin, theta bin.
+    /// Samples with `wanted` 0 are left out, of the areas too. Cluster numbers are dense and
+    /// ordered by reflector, phi bin, theta bin.
     void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted);
     const Clusters& clusters() const { return clusters_; }
     std::size_t sizeBytes() const;

@@ -37,17 +37,16 @@ float signNotZero(float value) {
     return value >= 0.0F ? 1.0F : -1.0F;
 }
 
-/// unitFromOctahedral of shaders/octahedral.glsl.
-glm::vec3 unitFromOctahedral(const glm::vec2& e) {
+}  // namespace
+
+glm::vec3 directionFromOctahedral(const glm::vec2& e) {
     glm::vec3 v(e, 1.0F - std::abs(e.x) - std::abs(e.y));
     if (v.z < 0.0F) {
         v = glm::vec3((1.0F - std::abs(v.y)) * signNotZero(v.x),
                       (1.0F - std::abs(v.x)) * signNotZero(v.y), v.z);
     }
-    return glm::normalize(v);
+    return v;
 }
-
-}  // namespace
 
 GBuffer::GBuffer(const depth_images::View& ofView)
     : view(ofView),
@@ -103,7 +102,9 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     host.surface = gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
     for (std::size_t i = 0; i < host.depthM.size(); ++i) {
         host.diffuse.emplace_back(diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]);
-        host.normalWorld.push_back(unitFromOctahedral({normals[2 * i], normals[2 * i + 1]}));
+        host.normalOctahedral.emplace_back(normals[2 * i], normals[2 * i + 1]);
+        host.normalWorld.push_back(
+            glm::normalize(directionFromOctahedral(host.normalOctahedral.back())));
     }
     return host;
 }

@@ -61,6 +61,9 @@ struct HostGBuffer {
     /// The mirror direction at a sample: unit.
     glm::vec3 mirrorDirection(glm::ivec2 pixel) const;
 };
+/// As shaders/octahedral.glsl has it: not of unit length, but the same as on the device.
+glm::vec3 directionFromOctahedral(const glm::vec2& e);
+
 /// Reads back; waits for the device.
 HostGBuffer readGBuffer(const GBuffer& gbuffer);
 
