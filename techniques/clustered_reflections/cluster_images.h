@@ -70,7 +70,7 @@ glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settin
 /// Whether the cluster's own reflector is drawn: Sec. 4.7.4, second way. A cluster is concave when
 /// its rays converge: d_f < d_n, f > 1.
 inline bool isConcave(const ClusterCamera& camera) {
-    return camera.centreWorld.w > 1.0F && (camera.flags & 1U) == 0U;
+    return camera.centreWorld.w > 1.0F && (camera.flags & kPlanarCluster) == 0U;
 }
 
 /// The thesis's way: a cluster's image at the texture's origin, objects culled on the CPU.

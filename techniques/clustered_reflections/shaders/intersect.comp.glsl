@@ -15,8 +15,8 @@ layout(binding = 2, r8ui) uniform writeonly uimage2D tookEnvironment;
 
 void main() {
     if (gl_GlobalInvocationID.x >= sampleCount) return;
-    uint packed = samples[firstSample + gl_GlobalInvocationID.x];
-    ivec2 pixel = ivec2(packed & 0xFFFFu, packed >> 16);
+    uint sampleAt = samples[firstSample + gl_GlobalInvocationID.x];
+    ivec2 pixel = ivec2(sampleAt & 0xFFFFu, sampleAt >> 16);
     Reflection reflection = reflectionAt(pixel, cluster);
     imageStore(radiance, pixel, vec4(reflection.radiance, 1.0));
     imageStore(distanceM, pixel, vec4(reflection.distance));

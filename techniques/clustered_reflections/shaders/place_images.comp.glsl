@@ -26,8 +26,8 @@ ivec2 wantedSize(uint cluster) {
     return clamp(ivec2(ceil(vec2(size) * scale)), ivec2(1), ivec2(maxSizePx));
 }
 
-ivec2 scaledSize(uint packed, float scale) {
-    ivec2 size = ivec2(packed & 0xFFFFu, packed >> 16);
+ivec2 scaledSize(uint sizes, float scale) {
+    ivec2 size = ivec2(sizes & 0xFFFFu, sizes >> 16);
     if (size.x == 0 || scale == 1.0) return size;
     return max(ivec2(vec2(size) * scale), ivec2(1));
 }
