@@ -31,17 +31,17 @@ void addOvalBody(MeshBuilder& builder, const glm::vec3& centre, const glm::vec2&
 
 // Outside and inside meet at the rim's top.
 void addTubOutside(MeshBuilder& builder) {
-    constexpr glm::vec2 kOutline[] = {{0.150F, 0.000F}, {0.148F, 0.012F}, {0.135F, 0.03F},
-                                      {0.100F, 0.130F}, {0.062F, 0.300F}, {0.034F, 0.450F},
-                                      {0.016F, 0.530F}, {0.002F, 0.552F}, {0.000F, 0.570F},
+    constexpr glm::vec2 kOutline[] = {{0.150F, 0.000F}, {0.148F, 0.012F},  {0.135F, 0.03F},
+                                      {0.100F, 0.130F}, {0.062F, 0.300F},  {0.034F, 0.450F},
+                                      {0.016F, 0.530F}, {0.002F, 0.552F},  {0.000F, 0.570F},
                                       {0.006F, 0.584F}, {0.018F, kTubRimM}};
     addOvalBody(builder, kTubCentre, kTubHalf, 0.25F, indoor::smoothed(kOutline, 34), 96);
 }
 
 void addTubInside(MeshBuilder& builder) {
-    constexpr glm::vec2 kOutline[] = {{0.018F, kTubRimM}, {0.034F, 0.587F}, {0.048F, 0.570F},
-                                      {0.058F, 0.530F},   {0.078F, 0.430F}, {0.110F, 0.290F},
-                                      {0.150F, 0.185F},   {0.210F, 0.140F}, {0.300F, 0.126F},
+    constexpr glm::vec2 kOutline[] = {{0.018F, kTubRimM},  {0.034F, 0.587F}, {0.048F, 0.570F},
+                                      {0.058F, 0.530F},    {0.078F, 0.430F}, {0.110F, 0.290F},
+                                      {0.150F, 0.185F},    {0.210F, 0.140F}, {0.300F, 0.126F},
                                       {kTubHalf.y, 0.124F}};
     addOvalBody(builder, kTubCentre, kTubHalf, 0.25F, indoor::smoothed(kOutline, 38), 96);
 }
@@ -52,7 +52,7 @@ void addBasin(MeshBuilder& builder) {
         {0.085F, 0.000F}, {0.080F, 0.006F}, {0.050F, 0.040F}, {0.020F, 0.090F}, {0.003F, 0.132F},
         {0.000F, 0.142F}, {0.004F, 0.149F}, {0.010F, 0.149F}, {0.015F, 0.142F}, {0.024F, 0.118F},
         {0.048F, 0.070F}, {0.090F, 0.036F}, {0.140F, 0.026F}, {kHalf.x, 0.025F}};
-    addOvalBody(builder, kBasinCentre, kHalf, 0.15F, indoor::smoothed(kOutline, 44), 56);
+    addOvalBody(builder, kBasinCentre, kHalf, 0.15F, indoor::smoothed(kOutline, 38), 48);
 }
 
 // A bow front of two lacquered drawers: half an oval in plan, with a shadow gap between them.
@@ -90,13 +90,13 @@ void addToilet(MeshBuilder& builder) {
         float y, back, front, half;  // distances from the wall, half width
     };
     constexpr Section kSections[] = {
-        {0.000F, 0.05F, 0.50F, 0.120F}, {0.012F, 0.045F, 0.51F, 0.125F},
-        {0.100F, 0.05F, 0.51F, 0.122F}, {0.220F, 0.05F, 0.56F, 0.140F},
-        {0.310F, 0.05F, 0.625F, 0.168F}, {0.360F, 0.05F, 0.645F, 0.178F},
-        {0.388F, 0.05F, 0.650F, 0.180F}, {0.396F, 0.055F, 0.645F, 0.176F},
-        {0.400F, 0.06F, 0.638F, 0.170F}, {0.404F, 0.06F, 0.645F, 0.176F},
+        {0.000F, 0.05F, 0.50F, 0.120F},   {0.012F, 0.045F, 0.51F, 0.125F},
+        {0.100F, 0.05F, 0.51F, 0.122F},   {0.220F, 0.05F, 0.56F, 0.140F},
+        {0.310F, 0.05F, 0.625F, 0.168F},  {0.360F, 0.05F, 0.645F, 0.178F},
+        {0.388F, 0.05F, 0.650F, 0.180F},  {0.396F, 0.055F, 0.645F, 0.176F},
+        {0.400F, 0.06F, 0.638F, 0.170F},  {0.404F, 0.06F, 0.645F, 0.176F},
         {0.412F, 0.055F, 0.660F, 0.186F}, {0.432F, 0.055F, 0.660F, 0.186F},
-        {0.440F, 0.06F, 0.652F, 0.180F}, {0.446F, 0.10F, 0.600F, 0.140F},
+        {0.440F, 0.06F, 0.652F, 0.180F},  {0.446F, 0.10F, 0.600F, 0.140F},
         {0.450F, 0.36F, 0.36F, 0.0F}};
     constexpr int kLast = static_cast<int>(std::size(kSections)) - 1;
     constexpr int kSteps = 3;
@@ -112,7 +112,7 @@ void addToilet(MeshBuilder& builder) {
         return glm::vec3(kRoom.x - (0.5F * (front + back) + xz.x), glm::mix(a.y, b.y, t),
                          kToiletZ - xz.y);
     };
-    addLoft(builder, at, {64, kLast * kSteps, true, glm::vec2(1.0F)});
+    addLoft(builder, at, {52, kLast * kSteps, true, glm::vec2(1.0F)});
 
     constexpr float kDepth = 0.17F, kHalf = 0.19F, kLow = 0.40F, kHigh = 0.80F;
     constexpr glm::vec2 kCistern[] = {{0.085F, kLow},           {0.012F, kLow},
@@ -121,9 +121,9 @@ void addToilet(MeshBuilder& builder) {
                                       {0.004F, kHigh - 0.034F}, {-0.004F, kHigh - 0.032F},
                                       {-0.005F, kHigh - 0.01F}, {0.002F, kHigh},
                                       {0.085F, kHigh + 0.004F}};
-    const indoor::Outline outline = indoor::smoothed(kCistern, 30);
+    const indoor::Outline outline = indoor::smoothed(kCistern, 24);
     const glm::vec3 centre(kRoom.x - 0.5F * kDepth - 0.005F, 0.0F, kToiletZ);
-    addOvalBody(builder, centre, {0.5F * kDepth, kHalf}, 0.85F, outline, 48);
+    addOvalBody(builder, centre, {0.5F * kDepth, kHalf}, 0.85F, outline, 40);
 }
 
 void addShowerWall(MeshBuilder& builder) {

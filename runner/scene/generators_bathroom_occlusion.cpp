@@ -13,7 +13,7 @@ namespace {
 constexpr int kDirections = 96;
 constexpr float kRangeM = 0.9F;     // what is further away takes nothing
 constexpr float kStrength = 0.85F;  // what is shut in on all sides keeps the rest
-constexpr float kLiftM = 0.015F;    // rays start off the surface, whose own solid is only roughly it
+constexpr float kLiftM = 0.015F;  // rays start off the surface, whose own solid is only roughly it
 
 /// Even over the cosine around +y: points of a Vogel spiral on the disc, lifted to the hemisphere.
 std::array<glm::vec3, kDirections> hemisphere() {
@@ -110,8 +110,7 @@ void darken(Mesh& mesh, std::span<const Occluder> occluders) {
     Box reach = mesh.bounds();
     std::vector<Occluder> near;
     for (const Occluder& occluder : occluders) {
-        const glm::vec3 apart =
-            glm::max(occluder.min - reach.max, reach.min - occluder.max);
+        const glm::vec3 apart = glm::max(occluder.min - reach.max, reach.min - occluder.max);
         if (std::max({apart.x, apart.y, apart.z}) < kRangeM) near.push_back(occluder);
     }
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

@@ -27,7 +27,8 @@ struct LoftGrid {
 void addLoft(MeshBuilder& builder, const std::function<glm::vec3(float u, float v)>& at,
              const LoftGrid& grid);
 
-/// Cloth: a sheet of this thickness, thinner towards its rim, closed all around. `at` is its middle.
+/// Cloth: a sheet of this thickness, thinner towards its rim, closed all around. `at` is its
+/// middle.
 void addCloth(MeshBuilder& builder, const std::function<glm::vec3(float u, float v)>& at,
               float thicknessM, int cellsU, int cellsV);
 

@@ -76,10 +76,8 @@ void addCloth(MeshBuilder& builder, const std::function<glm::vec3(float u, float
               float thicknessM, int cellsU, int cellsV) {
     constexpr float kStep = 1e-3F;  // of u and v, for the sheet's normal
     const auto side = [&](float u, float v, float sign) {
-        const glm::vec3 du =
-            at(std::min(u + kStep, 1.0F), v) - at(std::max(u - kStep, 0.0F), v);
-        const glm::vec3 dv =
-            at(u, std::min(v + kStep, 1.0F)) - at(u, std::max(v - kStep, 0.0F));
+        const glm::vec3 du = at(std::min(u + kStep, 1.0F), v) - at(std::max(u - kStep, 0.0F), v);
+        const glm::vec3 dv = at(u, std::min(v + kStep, 1.0F)) - at(u, std::max(v - kStep, 0.0F));
         const float rim = std::min({u, 1.0F - u, v, 1.0F - v});
         const float share = 0.45F + 0.55F * std::min(1.0F, rim * 14.0F);
         return at(u, v) + glm::normalize(glm::cross(du, dv)) * (0.5F * thicknessM * share * sign);
