@@ -118,11 +118,10 @@ ReflectionParams::ReflectionParams(config::Params& params)
                                 "0 … 1",
                                 given));
     }
-    reflectors.maxRoughness =
-        number(params, "reflector_roughness", static_cast<double>(reflectors.maxRoughness),
-               {"materials up to this roughness reflect", "1", 0.0, 1.0});
+    reflectors.maxRoughness = number(params, "reflector_roughness", 0.4,
+                                     {"materials up to this roughness reflect", "1", 0.0, 1.0});
     thickness =
-        number(params, "thickness", static_cast<double>(thickness),
+        number(params, "thickness", 0.02,
                {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});
     measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});

@@ -66,7 +66,8 @@ TEST_F(OcclusionTest, ToleratesEdgesThatAreMissedByLittle) {
 }
 
 TEST_F(OcclusionTest, WhatLeavesTheFrustumIsNotSeen) {
-    camera_.clipFromWorld = glm::frustum(-0.5F, 1.0F, -1.0F, 1.0F, 1.0F, 11.0F) *
+    // The camera's right is −x.
+    camera_.clipFromWorld = glm::frustum(-1.0F, 0.5F, -1.0F, 1.0F, 1.0F, 11.0F) *
                             glm::lookAt(glm::vec3(0, 0, -1), glm::vec3(0), glm::vec3(0, 1, 0));
     EXPECT_TRUE(isSeen({-2.9F, 0, 5}));
     EXPECT_FALSE(isSeen({-3.1F, 0, 5}));
