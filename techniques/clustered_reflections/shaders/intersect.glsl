@@ -49,7 +49,9 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
         MarchHit hit;
         if (march(image, begin, begin + direction * rayLength, hit)) {
             float distance = hit.along * rayLength;
-            result.radiance += mix(diffuse, colourAt(image, hit.positionPx),
+            // Departure [xie2017] Algorithm 7: the colour where the ray meets the surface, not at
+            // the first sample behind it, which zigzags along edges by up to a texel.
+            result.radiance += mix(diffuse, colourAt(image, hit.metPx),
                                    fadeOf(glossiness, distance));
             if (i == 0) result.distance = distance;
         } else if (glossiness > 0.0) {

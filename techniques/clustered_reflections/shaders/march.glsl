@@ -14,8 +14,9 @@ struct MarchImage {
 
 struct MarchHit {
     vec2 positionPx;  // in the image, where the ray first is behind
-    float fraction;   // u
-    float along;      // where on the way from begin to end, 0 … 1, the ray meets the stored depth
+    vec2 metPx;       // where it meets the surface, at most a step before
+    float fraction;   // u of positionPx
+    float along;      // where on the way from begin to end, 0 … 1, it meets the surface
     int steps;
 };
 
@@ -74,16 +75,37 @@ ivec2 texelOf(MarchImage image, ProjectedRay ray, float u) {
     return image.originPx + clamp(texel, ivec2(0), image.sizePx - 1);
 }
 
-MarchHit hitAt(ProjectedRay ray, int step, float stored, int steps) {
+// What the image shows at a place, between texels where they belong to one surface: nearM / z is
+// linear on a plane. Where they differ by more than a quarter they do not: the nearest texel.
+float storedBetween(MarchImage image, vec2 positionPx) {
+    vec2 place = clamp(positionPx, vec2(0.5), vec2(image.sizePx) - 0.5) - 0.5;
+    ivec2 first = image.originPx + ivec2(place);
+    ivec2 last = min(first + 1, image.originPx + image.sizePx - 1);
+    vec4 texels = vec4(storedAt(first), storedAt(ivec2(last.x, first.y)),
+                       storedAt(ivec2(first.x, last.y)), storedAt(last));
+    vec2 weight = fract(place);
+    float least = min(min(texels.x, texels.y), min(texels.z, texels.w));
+    float most = max(max(texels.x, texels.y), max(texels.z, texels.w));
+    vec2 rows = mix(texels.xz, texels.yw, weight.x);
+    if (least > 0.75 * most) return mix(rows.x, rows.y, weight.y);
+    vec2 columns = weight.x < 0.5 ? texels.xz : texels.yw;
+    return weight.y < 0.5 ? columns.x : columns.y;
+}
+
+MarchHit hitAt(MarchImage image, ProjectedRay ray, int step, int steps) {
     float perStep = 1.0 / float(ray.steps);
     float u = float(step) * perStep;
-    // The ray meets the stored depth between this sample and the one before; 1 / z is linear there.
-    float met = ray.k2 < 0.0 ? clamp((stored - ray.k1) / ray.k2, u - perStep, u) : u;
-    met = max(met, 0.0);
+    float before = max(u - perStep, 0.0);
+    vec2 positionPx = ray.beginPx + u * ray.deltaPx;
+    // Between this sample and the one before the ray meets the surface, both taken as straight.
+    float behind = storedBetween(image, positionPx) - (ray.k1 + ray.k2 * u);
+    float inFront = ray.k1 + ray.k2 * before -
+                    storedBetween(image, ray.beginPx + before * ray.deltaPx);
+    float met = behind > 0.0 && inFront >= 0.0 ? mix(before, u, inFront / (inFront + behind)) : u;
     // From the image back to the ray, perspective undone.
     float kEnd = ray.k1 + ray.k2;
     float along = met * kEnd / ((1.0 - met) * ray.k1 + met * kEnd);
-    return MarchHit(ray.beginPx + u * ray.deltaPx, u, mix(ray.kept.x, ray.kept.y, along), steps);
+    return MarchHit(positionPx, ray.beginPx + met * ray.deltaPx, u, mix(ray.kept.x, ray.kept.y, along), steps);
 }
 
 #if MARCH == 0
@@ -99,7 +121,7 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
         float stored = storedAt(texel);
         bool isBehind = ray.k1 + ray.k2 * u < stored;
         if (isBehind && (hasLeftOwn || !isOwnAt(texel))) {
-            hit = hitAt(ray, step, stored, step + 1);
+            hit = hitAt(image, ray, step, step + 1);
             return true;
         }
         hasLeftOwn = hasLeftOwn || !isBehind;
@@ -146,7 +168,7 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
             float stored = storedAt(texel);
             bool isBehind = k < stored;
             if (isBehind && (hasLeftOwn || !isOwnAt(texel))) {
-                hit = hitAt(ray, step, stored, fetches);
+                hit = hitAt(image, ray, step, fetches);
                 return true;
             }
             hasLeftOwn = hasLeftOwn || !isBehind;
