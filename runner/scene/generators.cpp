@@ -5,6 +5,7 @@
 
 #include "runner/core/random.h"
 #include "runner/core/text.h"
+#include "runner/scene/generators_indoor.h"
 #include "runner/scene/generators_outdoor.h"
 #include "runner/scene/generators_shapes.h"
 #include "runner/scene/refine.h"
@@ -183,6 +184,7 @@ constexpr GeneratorInfo kGenerators[] = {
     {"city", "a downtown seen from above: streets, towers, houses, trees and cars", &city},
     {"four_objects", "four boxes, one of which two views do not see", &fourObjects},
     {"grass", "bent blades on uneven ground", &grass},
+    {"living_room", "a furnished room with 25 reflective objects", &livingRoom},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
     {"tree", "a deciduous tree with a dense crown of leaves", &tree},
 };
