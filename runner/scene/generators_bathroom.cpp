@@ -236,21 +236,21 @@ Camera lookingAt(const glm::vec3& position, const glm::vec3& target, float fovRa
 }
 
 void addCameras(Scene& scene) {
-    scene.cameras.push_back(lookingAt({3.02F, 1.62F, 3.75F}, {1.22F, 0.82F, 1.2F}, 1.1F));
+    scene.cameras.push_back(lookingAt({3.02F, 1.62F, 3.75F}, {1.42F, 0.8F, 1.2F}, 1.12F));
     scene.cameras.back().name = "overview";
     constexpr float kFov = 1.0F;
     scene.paths.push_back({"path_1",
-                           {lookingAt({2.3F, 1.5F, 3.3F}, {1.4F, 0.6F, 0.6F}, kFov),
-                            lookingAt({1.8F, 1.35F, 2.5F}, {1.3F, 0.45F, 0.6F}, kFov),
-                            lookingAt({1.2F, 1.3F, 1.9F}, {1.3F, 0.4F, 0.6F}, kFov),
-                            lookingAt({1.0F, 1.3F, 1.7F}, {2.2F, 0.6F, 0.4F}, kFov),
-                            lookingAt({1.5F, 1.4F, 2.2F}, {3.1F, 0.7F, 1.4F}, kFov)}});
+                           {lookingAt({2.3F, 1.5F, 3.0F}, {1.5F, 0.55F, 0.6F}, kFov),
+                            lookingAt({1.8F, 1.5F, 2.6F}, {1.5F, 0.42F, 0.65F}, kFov),
+                            lookingAt({1.3F, 1.6F, 2.3F}, {1.35F, 0.33F, 0.8F}, kFov),
+                            lookingAt({1.1F, 1.55F, 2.35F}, {1.9F, 0.43F, 0.65F}, kFov),
+                            lookingAt({1.4F, 1.4F, 2.3F}, {3.0F, 0.7F, 1.2F}, kFov)}});
     scene.paths.push_back({"path_2",
-                           {lookingAt({2.5F, 1.5F, 2.9F}, {0.4F, 0.9F, 2.2F}, kFov),
-                            lookingAt({1.6F, 1.4F, 2.7F}, {0.2F, 0.9F, 2.3F}, kFov),
-                            lookingAt({1.4F, 1.35F, 2.3F}, {0.5F, 0.7F, 1.2F}, kFov),
-                            lookingAt({1.5F, 1.35F, 2.1F}, {1.3F, 0.5F, 0.6F}, kFov),
-                            lookingAt({1.6F, 1.4F, 2.2F}, {3.0F, 0.6F, 1.2F}, kFov)}});
+                           {lookingAt({1.65F, 1.45F, 2.85F}, {0.3F, 0.6F, 2.3F}, kFov),
+                            lookingAt({1.35F, 1.4F, 2.6F}, {0.25F, 0.62F, 2.3F}, kFov),
+                            lookingAt({1.35F, 1.42F, 2.05F}, {0.75F, 0.35F, 1.1F}, kFov),
+                            lookingAt({1.5F, 1.55F, 2.05F}, {1.3F, 0.28F, 0.85F}, kFov),
+                            lookingAt({1.7F, 1.4F, 2.2F}, {2.95F, 0.6F, 1.15F}, kFov)}});
 }
 
 }  // namespace
