@@ -26,6 +26,7 @@ class Room {
     /// Returns the instance. Reflectors are told by a reflectivity above 0.
     int add(MeshBuilder& builder, const char* name, const Material& material) {
         const int index = static_cast<int>(scene.meshes.size());
+        builder.setColor(glm::vec3(1.0F));  // for what it builds next
         scene.materials.push_back(material);
         scene.materials.back().name = name;
         scene.meshes.push_back(builder.take(name, index));
@@ -107,14 +108,16 @@ void addShell(Room& room, std::uint64_t seed) {
     MeshBuilder builder, view;
     addTiledWalls(builder);
     room.addDiffuse(builder, "wall_tiles", glm::vec3(1.0F),
-                    room.addTexture(indoor::tilesTexture({0.93F, 0.94F, 0.92F},
-                                                         {0.72F, 0.73F, 0.72F}, 5, seed)));
+                    room.addTexture(glazedTilesTexture(
+                        {{0.94F, 0.95F, 0.93F}, {0.76F, 0.77F, 0.75F}, 3, 6, 0.03F}, seed)));
     addPaintedWalls(builder);
     room.addDiffuse(builder, "painted_walls", {0.72F, 0.74F, 0.68F});
     addFloor(builder);
     room.addDiffuse(builder, "floor", glm::vec3(1.0F),
                     room.addTexture(indoor::tilesTexture({0.50F, 0.52F, 0.54F},
                                                          {0.36F, 0.37F, 0.38F}, 4, seed + 1)));
+    addDoor(builder);
+    room.addDiffuse(builder, "door", {0.78F, 0.79F, 0.76F});
     addWindow(builder, view);
     room.addDiffuse(builder, "window", {0.86F, 0.86F, 0.84F});
     Material outdoors = glowing(glm::vec3(1.0F), glm::vec3(0.0F));
@@ -196,7 +199,7 @@ Moving addReflectors(Room& room, std::uint64_t seed) {
     room.addReflector(builder, "toilet", kCeramic, kGlazed, 0);
     addShowerWall(builder);
     const int mosaic = room.addTexture(
-        indoor::tilesTexture({0.16F, 0.42F, 0.44F}, {0.62F, 0.66F, 0.64F}, 8, seed + 5));
+        glazedTilesTexture({{0.20F, 0.46F, 0.47F}, {0.66F, 0.70F, 0.68F}, 4, 8, 0.14F}, seed + 5));
     room.addReflector(builder, "shower_wall", glm::vec3(1.0F), 0.35F, 0, mosaic);
     addBasinTap(builder);
     room.addReflector(builder, "basin_tap", kSteel, kChrome, 0);
@@ -216,8 +219,8 @@ Moving addReflectors(Room& room, std::uint64_t seed) {
 }
 
 void addLights(Scene& scene) {
-    scene.lights = {{{1.15F, 1.75F, 0.45F}, glm::vec3(0.34F, 0.37F, 0.42F), 1.4F},  // the window
-                    {kPendant - glm::vec3(0.0F, 0.05F, 0.0F), glm::vec3(0.42F, 0.38F, 0.31F), 1.5F},
+    scene.lights = {{{1.15F, 1.75F, 0.45F}, glm::vec3(0.42F, 0.46F, 0.52F), 1.5F},  // the window
+                    {kPendant - glm::vec3(0.0F, 0.05F, 0.0F), glm::vec3(0.50F, 0.46F, 0.39F), 1.6F},
                     {{0.35F, 1.8F, kVanityZ}, glm::vec3(0.2F, 0.18F, 0.14F), 0.9F},  // wall lamps
                     {{2.6F, 2.1F, 3.4F}, glm::vec3(0.14F, 0.14F, 0.15F), 1.5F}};  // from the door
 }
@@ -233,21 +236,21 @@ Camera lookingAt(const glm::vec3& position, const glm::vec3& target, float fovRa
 }
 
 void addCameras(Scene& scene) {
-    scene.cameras.push_back(lookingAt({2.55F, 1.62F, 3.75F}, {1.25F, 0.72F, 0.9F}, 1.0F));
+    scene.cameras.push_back(lookingAt({3.02F, 1.62F, 3.75F}, {1.42F, 0.8F, 1.2F}, 1.12F));
     scene.cameras.back().name = "overview";
     constexpr float kFov = 1.0F;
     scene.paths.push_back({"path_1",
-                           {lookingAt({2.3F, 1.5F, 3.3F}, {1.4F, 0.6F, 0.6F}, kFov),
-                            lookingAt({1.8F, 1.35F, 2.5F}, {1.3F, 0.45F, 0.6F}, kFov),
-                            lookingAt({1.2F, 1.3F, 1.9F}, {1.3F, 0.4F, 0.6F}, kFov),
-                            lookingAt({1.0F, 1.3F, 1.7F}, {2.2F, 0.6F, 0.4F}, kFov),
-                            lookingAt({1.5F, 1.4F, 2.2F}, {3.1F, 0.7F, 1.4F}, kFov)}});
+                           {lookingAt({2.3F, 1.5F, 3.0F}, {1.5F, 0.55F, 0.6F}, kFov),
+                            lookingAt({1.8F, 1.5F, 2.6F}, {1.5F, 0.42F, 0.65F}, kFov),
+                            lookingAt({1.3F, 1.6F, 2.3F}, {1.35F, 0.33F, 0.8F}, kFov),
+                            lookingAt({1.1F, 1.55F, 2.35F}, {1.9F, 0.43F, 0.65F}, kFov),
+                            lookingAt({1.4F, 1.4F, 2.3F}, {3.0F, 0.7F, 1.2F}, kFov)}});
     scene.paths.push_back({"path_2",
-                           {lookingAt({2.5F, 1.5F, 2.9F}, {0.4F, 0.9F, 2.2F}, kFov),
-                            lookingAt({1.6F, 1.4F, 2.7F}, {0.2F, 0.9F, 2.3F}, kFov),
-                            lookingAt({1.4F, 1.35F, 2.3F}, {0.5F, 0.7F, 1.2F}, kFov),
-                            lookingAt({1.5F, 1.35F, 2.1F}, {1.3F, 0.5F, 0.6F}, kFov),
-                            lookingAt({1.6F, 1.4F, 2.2F}, {3.0F, 0.6F, 1.2F}, kFov)}});
+                           {lookingAt({1.65F, 1.45F, 2.85F}, {0.3F, 0.6F, 2.3F}, kFov),
+                            lookingAt({1.35F, 1.4F, 2.6F}, {0.25F, 0.62F, 2.3F}, kFov),
+                            lookingAt({1.35F, 1.42F, 2.05F}, {0.75F, 0.35F, 1.1F}, kFov),
+                            lookingAt({1.5F, 1.55F, 2.05F}, {1.3F, 0.28F, 0.85F}, kFov),
+                            lookingAt({1.7F, 1.4F, 2.2F}, {2.95F, 0.6F, 1.15F}, kFov)}});
 }
 
 }  // namespace

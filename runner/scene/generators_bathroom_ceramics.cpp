@@ -1,5 +1,8 @@
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "runner/scene/generators_bathroom_parts.h"
 #include "runner/scene/generators_indoor_parts.h"
@@ -29,21 +32,36 @@ void addOvalBody(MeshBuilder& builder, const glm::vec3& centre, const glm::vec2&
 
 }  // namespace
 
-// Outside and inside meet at the rim's top.
+namespace {
+
+/// Pieces of an outline one after the other, each with its own fineness.
+indoor::Outline joined(std::initializer_list<std::pair<std::span<const glm::vec2>, int>> parts) {
+    indoor::Outline all;
+    for (const auto& [points, pieces] : parts) {
+        const indoor::Outline part = indoor::smoothed(points, pieces);
+        all.insert(all.end(), part.begin() + (all.empty() ? 0 : 1), part.end());
+    }
+    return all;
+}
+
+}  // namespace
+
+// The rim belongs to the outside; the inside begins where it has turned down.
 void addTubOutside(MeshBuilder& builder) {
-    constexpr glm::vec2 kOutline[] = {{0.150F, 0.000F}, {0.148F, 0.012F},  {0.135F, 0.03F},
-                                      {0.100F, 0.130F}, {0.062F, 0.300F},  {0.034F, 0.450F},
-                                      {0.016F, 0.530F}, {0.002F, 0.552F},  {0.000F, 0.570F},
-                                      {0.006F, 0.584F}, {0.018F, kTubRimM}};
-    addOvalBody(builder, kTubCentre, kTubHalf, 0.25F, indoor::smoothed(kOutline, 34), 96);
+    constexpr glm::vec2 kWall[] = {{0.150F, 0.000F}, {0.148F, 0.012F}, {0.135F, 0.03F},
+                                   {0.100F, 0.130F}, {0.062F, 0.300F}, {0.034F, 0.450F},
+                                   {0.014F, 0.540F}};
+    constexpr glm::vec2 kRim[] = {{0.014F, 0.540F}, {0.004F, 0.556F},   {0.000F, 0.570F},
+                                  {0.006F, 0.584F}, {0.020F, kTubRimM}, {0.034F, 0.585F},
+                                  {0.044F, 0.572F}, {0.052F, 0.548F}};
+    addOvalBody(builder, kTubCentre, kTubHalf, 0.25F, joined({{kWall, 14}, {kRim, 20}}), 100);
 }
 
 void addTubInside(MeshBuilder& builder) {
-    constexpr glm::vec2 kOutline[] = {{0.018F, kTubRimM},  {0.034F, 0.587F}, {0.048F, 0.570F},
-                                      {0.058F, 0.530F},    {0.078F, 0.430F}, {0.110F, 0.290F},
-                                      {0.150F, 0.185F},    {0.210F, 0.140F}, {0.300F, 0.126F},
-                                      {kTubHalf.y, 0.124F}};
-    addOvalBody(builder, kTubCentre, kTubHalf, 0.25F, indoor::smoothed(kOutline, 38), 96);
+    constexpr glm::vec2 kOutline[] = {{0.052F, 0.548F}, {0.062F, 0.500F},    {0.080F, 0.420F},
+                                      {0.110F, 0.300F}, {0.150F, 0.205F},    {0.210F, 0.150F},
+                                      {0.300F, 0.130F}, {kTubHalf.y, 0.124F}};
+    addOvalBody(builder, kTubCentre, kTubHalf, 0.25F, indoor::smoothed(kOutline, 36), 100);
 }
 
 void addBasin(MeshBuilder& builder) {

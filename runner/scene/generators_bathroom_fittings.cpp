@@ -35,7 +35,7 @@ void addThreeWalls(MeshBuilder& builder, float lowM, float highM, float tileM) {
 }  // namespace
 
 void addTiledWalls(MeshBuilder& builder) {
-    constexpr float kTileM = 0.8F;
+    constexpr float kTileM = 0.63F;
     addThreeWalls(builder, 0.0F, kTilesM, kTileM);
     // The window wall beside the polished panel: behind the shower's wall.
     const float left = kRoom.x - kShowerRadiusM;
@@ -61,6 +61,26 @@ void addPaintedWalls(MeshBuilder& builder) {
 void addFloor(MeshBuilder& builder) {
     addGrid(builder, {0.0F, 0.0F, kRoom.z}, {kRoom.x, 0.0F, 0.0F}, {0.0F, 0.0F, -kRoom.z}, 0.1F,
             1.2F);
+}
+
+// A panelled door with its casing and handle, in the wall opposite the window.
+void addDoor(MeshBuilder& builder) {
+    constexpr float kLeft = 0.55F, kRight = 1.4F, kHigh = 2.05F, kCasing = 0.075F;
+    const float z = kRoom.z;
+    const auto board = [&](float x0, float y0, float x1, float y1, float out) {
+        addCorners(builder, {x0, y0, z - out}, {x1, y1, z});
+    };
+    board(kLeft, 0.0F, kRight, kHigh, 0.02F);
+    board(kLeft - kCasing, 0.0F, kLeft, kHigh + kCasing, 0.035F);
+    board(kRight, 0.0F, kRight + kCasing, kHigh + kCasing, 0.035F);
+    board(kLeft, kHigh, kRight, kHigh + kCasing, 0.035F);
+    for (const float y : {0.16F, 1.1F}) {
+        board(kLeft + 0.13F, y, kRight - 0.13F, y + 0.8F, 0.028F);
+        board(kLeft + 0.17F, y + 0.04F, kRight - 0.17F, y + 0.76F, 0.034F);
+    }
+    const glm::vec3 handle(kLeft + 0.06F, 1.02F, z - 0.055F);
+    addRod(builder, {handle.x, handle.y, z}, handle, 0.01F, 8);
+    addRod(builder, handle, handle + glm::vec3(0.11F, 0.0F, 0.0F), 0.009F, 8);
 }
 
 // Two casements in a deep reveal, with a sill; the panes show what is outside.
@@ -102,7 +122,7 @@ void addWoodwork(MeshBuilder& builder) {
         const glm::vec2 xz = ovalAt(0.5F * u - 0.25F, axes, 0.55F);
         return glm::vec3(std::max(xz.x, 0.0F), kCounterM - 0.035F + point.y, kVanityZ + xz.y);
     };
-    addLoft(builder, counter, {40, 7, false, {2.0F, 1.0F}});
+    addLoft(builder, counter, {40, 7, false, glm::vec2(1.6F), true});
     for (const float top : kShelvesM) {
         indoor::addPanel(builder, {kRoom.x - 0.26F, top - 0.028F, 2.35F}, {kRoom.x, top, 3.3F},
                          0.6F);
@@ -231,7 +251,7 @@ void addBottles(MeshBuilder& builder, Random& random) {
                               {kJar, {kRoom.x - 0.09F, 0.804F, kToiletZ - 0.12F}, 0.036F, 0.08F}};
     for (const Bottle& bottle : bottles) {
         builder.setColor(kColors[random.index(6)]);
-        indoor::Outline outline = indoor::smoothed(bottle.outline, 16);
+        indoor::Outline outline = indoor::smoothed(bottle.outline, 15);
         for (glm::vec2& point : outline) point *= glm::vec2(bottle.radius, bottle.height);
         indoor::addLathe(builder, outline, 16, indoor::placed(bottle.foot));
     }

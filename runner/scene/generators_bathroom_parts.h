@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runner/core/random.h"
+#include "runner/image/image.h"
 #include "runner/scene/mesh_builder.h"
 
 namespace gfxrepro::scene::bathroom_parts {
@@ -23,6 +24,7 @@ struct LoftGrid {
     int cellsU = 1, cellsV = 1;
     bool isClosed = true;
     glm::vec2 texcoordScale{1.0F};
+    bool isProjected = false;  // texture coordinates are (x, z) · texcoordScale
 };
 void addLoft(MeshBuilder& builder, const std::function<glm::vec3(float u, float v)>& at,
              const LoftGrid& grid);
@@ -36,6 +38,14 @@ void addCloth(MeshBuilder& builder, const std::function<glm::vec3(float u, float
 /// Texture coordinates are the place in the world / tileM, so that neighbours' tiles meet.
 void addGrid(MeshBuilder& builder, const glm::vec3& corner, const glm::vec3& across,
              const glm::vec3& up, float cellM, float tileM = 1.0F);
+
+/// Glazed tiles in a running bond, `columns` × `rows` (even) of them: 512², RGB, sRGB, repeating.
+struct Tiles {
+    glm::vec3 glazeSrgb{0.9F}, groutSrgb{0.7F};
+    int columns = 4, rows = 8;
+    float toneRange = 0.03F;  // from tile to tile
+};
+image::Image8 glazedTilesTexture(const Tiles& tiles, std::uint64_t seed);
 
 /// (x, z) on an oval with these half axes, counter-clockwise seen from above; squareness 0 is an
 /// ellipse, 1 nearly a rectangle.
@@ -79,11 +89,12 @@ void addPendant(MeshBuilder& builder);
 
 /// A window in the wall z = 0.
 constexpr glm::vec2 kWindowMin(0.55F, 1.2F), kWindowMax(1.75F, 2.2F);
-constexpr float kWainscotM = 1.02F;  // height of the polished panel behind the tub
+constexpr float kWainscotM = 0.9F;  // height of the polished panel behind the tub
 constexpr float kTilesM = 1.26F;     // height of the tiles on the other walls
 void addTiledWalls(MeshBuilder& builder);
 void addPaintedWalls(MeshBuilder& builder);
 void addFloor(MeshBuilder& builder);
+void addDoor(MeshBuilder& builder);
 void addWindow(MeshBuilder& builder, MeshBuilder& view);
 /// Counter, wall shelves with their brackets, mirror frame, stool.
 void addWoodwork(MeshBuilder& builder);

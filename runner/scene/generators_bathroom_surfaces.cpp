@@ -44,7 +44,10 @@ void addLoft(MeshBuilder& builder, const std::function<glm::vec3(float u, float 
             const float u = static_cast<float>(i) / static_cast<float>(grid.cellsU);
             const bool isSeam = grid.isClosed && i == grid.cellsU;
             rows.positions.push_back(isSeam ? rows.positions[rows.index(0, j)] : at(u, v));
-            texcoords.emplace_back(u * grid.texcoordScale.x, -v * grid.texcoordScale.y);
+            const glm::vec3& position = rows.positions.back();
+            const glm::vec2 place =
+                grid.isProjected ? glm::vec2(position.x, position.z) : glm::vec2(u, -v);
+            texcoords.push_back(place * grid.texcoordScale);
         }
     }
     rows.normals.resize(rows.positions.size(), glm::vec3(0.0F));
@@ -125,6 +128,41 @@ void addGrid(MeshBuilder& builder, const glm::vec3& corner, const glm::vec3& acr
     }
     const std::vector<glm::vec3> normals(positions.size(), normal);
     builder.addIndexed(positions, normals, triangles, texcoords);
+}
+
+image::Image8 glazedTilesTexture(const Tiles& tiles, std::uint64_t seed) {
+    constexpr int kSize = 512;
+    constexpr float kGroutPx = 2.5F, kBevelPx = 3.0F;  // half a joint; its rounded shoulder
+    Random random(seed, 17);
+    std::vector<float> tones;
+    for (int i = 0; i < tiles.columns * tiles.rows; ++i) {
+        tones.push_back(1.0F - tiles.toneRange * random.uniform());
+    }
+    const glm::vec2 sizePx(static_cast<float>(kSize) / static_cast<float>(tiles.columns),
+                           static_cast<float>(kSize) / static_cast<float>(tiles.rows));
+    image::Image8 texture(kSize, kSize, 3);
+    for (int y = 0; y < kSize; ++y) {
+        const auto row = static_cast<int>((static_cast<float>(y) + 0.5F) / sizePx.y);
+        const float shift = row % 2 == 0 ? 0.0F : 0.5F * sizePx.x;
+        for (int x = 0; x < kSize; ++x) {
+            const glm::vec2 place(static_cast<float>(x) + 0.5F + shift,
+                                  static_cast<float>(y) + 0.5F);
+            const auto column = static_cast<int>(place.x / sizePx.x);
+            const glm::vec2 in = place - sizePx * glm::vec2(column, row);
+            const glm::vec2 edge = glm::min(in, sizePx - in);
+            const float inside =
+                std::clamp((std::min(edge.x, edge.y) - kGroutPx) / kBevelPx, 0.0F, 1.0F);
+            const auto tile =
+                static_cast<std::size_t>(row * tiles.columns + column % tiles.columns);
+            const glm::vec3 color = glm::mix(tiles.groutSrgb, tiles.glazeSrgb * tones[tile],
+                                             inside * inside * (3.0F - 2.0F * inside));
+            for (int c = 0; c < 3; ++c) {
+                texture.at(x, y, c) =
+                    static_cast<std::uint8_t>(std::clamp(color[c], 0.0F, 1.0F) * 255.0F + 0.5F);
+            }
+        }
+    }
+    return texture;
 }
 
 glm::vec2 ovalAt(float u, const glm::vec2& halfAxes, float squareness) {

@@ -92,7 +92,8 @@ void addTowels(MeshBuilder& builder) {
     builder.setColor(kTerracotta);
     addHanging(builder, {{kRailX, 1.18F, kTowelRailZ}, 0.38F, 0.52F, 0.40F, 0.022F}, 20, 24);
     builder.setColor(kCream);
-    addHanging(builder, {{kRailX, 1.48F, kTowelRailZ + 0.03F}, 0.28F, 0.21F, 0.15F, 0.022F}, 14, 12);
+    addHanging(builder, {{kRailX, 1.48F, kTowelRailZ + 0.03F}, 0.28F, 0.21F, 0.15F, 0.022F}, 14,
+               12);
     const glm::vec3 stool = kStool + glm::vec3(0.0F, kStoolM, 0.0F);
     builder.setColor(kSage);
     addFolded(builder, stool, {0.105F, 0.075F}, 0.020F, 0.25F, 36);
