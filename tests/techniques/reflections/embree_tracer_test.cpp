@@ -118,7 +118,7 @@ TEST_F(EmbreeTracerTest, MirrorSphereShowsTheRoom) {
     scene::Scene source = mirrorFloorRoom();
     source.materials[2] = matt({0.2F, 0.2F, 0.9F});
     const glm::vec3 centre(0.2F, 1.0F, 0.3F);
-    add(source, sphere(centre), mirror());
+    addPart(source, sphere(centre), mirror());
     Prepared prepared(shaders, source, camera({0.4F, 1.3F, 1.9F}, centre), kSizePx);
     EmbreeTracer tracer(prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
@@ -293,9 +293,9 @@ TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
 TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
     scene::Scene source;
     source.name = "floor and ball";
-    add(source, rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}), mirror());
-    add(source, block({glm::vec3(-0.2F, 0.1F, -2.9F), glm::vec3(0.2F, 2.0F, -2.5F)}),
-        glowing({1.0F, 0.5F, 0.0F}));
+    addPart(source, rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}), mirror());
+    addPart(source, block({glm::vec3(-0.2F, 0.1F, -2.9F), glm::vec3(0.2F, 2.0F, -2.5F)}),
+            glowing({1.0F, 0.5F, 0.0F}));
     Prepared prepared(shaders, source, camera({0, 1.5F, 2.5F}, {0, 0, 0}), kSizePx);
     EmbreeTracer tracer(prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);

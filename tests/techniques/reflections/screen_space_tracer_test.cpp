@@ -17,11 +17,11 @@ constexpr float kThicknessM = 0.3F;
 scene::Scene pillarsOnMirror(float glossiness = 0.0F) {
     scene::Scene scene;
     scene.name = "pillars";
-    add(scene, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror(glossiness));
-    add(scene, block({glm::vec3(-0.8F, 0.0F, -1.2F), glm::vec3(-0.1F, 1.2F, -0.6F)}),
-        matt({0.9F, 0.2F, 0.1F}));
-    add(scene, block({glm::vec3(0.5F, 0.0F, -0.4F), glm::vec3(0.7F, 0.8F, -0.2F)}),
-        matt({0.1F, 0.3F, 0.9F}));
+    addPart(scene, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror(glossiness));
+    addPart(scene, block({glm::vec3(-0.8F, 0.0F, -1.2F), glm::vec3(-0.1F, 1.2F, -0.6F)}),
+            matt({0.9F, 0.2F, 0.1F}));
+    addPart(scene, block({glm::vec3(0.5F, 0.0F, -0.4F), glm::vec3(0.7F, 0.8F, -0.2F)}),
+            matt({0.1F, 0.3F, 0.9F}));
     return scene;
 }
 
@@ -106,9 +106,9 @@ TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
 TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
     scene::Scene source;
     source.name = "sign";
-    add(source, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror());
-    add(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
-    add(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));
+    addPart(source, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror());
+    addPart(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
+    addPart(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));
     const Prepared prepared(shaders, source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kSizePx);
     EmbreeTracer embree(prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);

@@ -7,9 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "runner/core/files.h"
 #include "techniques/shared/reflections/embree_tracer.h"
-#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
 
@@ -43,15 +42,6 @@ inline scene::Mesh rectangle(const glm::vec3& centre, const glm::vec3& u, const 
     return mesh;
 }
 
-/// Adds a mesh of one material as an object of its own.
-inline void add(scene::Scene& scene, scene::Mesh mesh, const scene::Material& material,
-                const glm::mat4& worldFromMesh = glm::mat4(1.0F)) {
-    mesh.material = static_cast<int>(scene.materials.size());
-    scene.materials.push_back(material);
-    scene.instances.push_back({static_cast<int>(scene.meshes.size()), worldFromMesh});
-    scene.meshes.push_back(std::move(mesh));
-}
-
 /// The inside of a box: walls −x, +x, −y (the floor), +y, −z, +z are objects 0 to 5.
 inline void addRoom(scene::Scene& scene, const scene::Box& box,
                     const std::vector<scene::Material>& materials) {
@@ -62,7 +52,7 @@ inline void addRoom(scene::Scene& scene, const scene::Box& box,
         centre[axis] = side % 2 == 0 ? box.min[axis] : box.max[axis];
         u[(axis + 1) % 3] = half[(axis + 1) % 3];
         v[(axis + 2) % 3] = half[(axis + 2) % 3];
-        add(scene, rectangle(centre, u, v), materials[static_cast<std::size_t>(side)]);
+        addPart(scene, rectangle(centre, u, v), materials[static_cast<std::size_t>(side)]);
     }
 }
 
@@ -136,9 +126,8 @@ struct Prepared {
     }
 };
 
-class TracerTest : public test::GlTest {
+class TracerTest : public ReflectionsTest {
   protected:
-    gl::ShaderLibrary shaders{dataFolder("shaders")};
     gl::Profiler profiler{true};
 };
 
