@@ -26,7 +26,8 @@ enum Unit : unsigned {
 };
 enum ImageUnit : unsigned { kRadianceImage = 0, kDistanceImage = 1 };
 
-constexpr int kListGroupWidth = 16, kListGroupHeight = 16;
+constexpr int kTileWidth = 8, kTileHeight = 4;  // of ray_list.comp.glsl
+constexpr int kListGroupSize = 64;
 constexpr unsigned kTraceGroupSize = 64;
 /// Work groups along one axis that every device takes; beyond, invocations take several samples.
 constexpr unsigned kMaxGroups = 65535;
@@ -54,15 +55,14 @@ gl::Defines passDefines() {
                     {"GBUFFER_UNIT", static_cast<unsigned>(kGBufferUnit)},
                     {"RADIANCE_IMAGE", static_cast<unsigned>(kRadianceImage)},
                     {"DISTANCE_IMAGE", static_cast<unsigned>(kDistanceImage)},
-                    {"LIST_GROUP_WIDTH", kListGroupWidth},
-                    {"LIST_GROUP_HEIGHT", kListGroupHeight},
+                    {"LIST_GROUP_SIZE", kListGroupSize},
                     {"TRACE_GROUP_SIZE", kTraceGroupSize},
                     {"MAX_GROUPS", kMaxGroups}});
     return defines;
 }
 
-GLuint groupsFor(int count, int groupSize) {
-    return static_cast<GLuint>((count + groupSize - 1) / groupSize);
+int ceilDivided(int count, int size) {
+    return (count + size - 1) / size;
 }
 
 }  // namespace
@@ -108,7 +108,8 @@ void GpuRayTracer::listSamples(const GBuffer& gbuffer, const gl::Texture* wanted
     if (wanted) wanted->bind(kWantedUnit);
     list_.set("isChosen", wanted ? 1 : 0);
     setLobe(list_, lobe_, diagonalM_);
-    glDispatchCompute(groupsFor(size.x, kListGroupWidth), groupsFor(size.y, kListGroupHeight), 1);
+    const int tiles = ceilDivided(size.x, kTileWidth) * ceilDivided(size.y, kTileHeight);
+    glDispatchCompute(static_cast<GLuint>(ceilDivided(tiles, kListGroupSize)), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 

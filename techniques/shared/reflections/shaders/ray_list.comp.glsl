@@ -1,10 +1,11 @@
 #version 450 core
 // GpuRayTracer, first pass: a list of the samples that want rays, without gaps, and the arguments
-// of the indirect dispatch that traces them.
+// of the indirect dispatch that traces them. An invocation takes a tile of 8 × 4 samples, so that
+// neighbours in the list are neighbours in the image: their rays go the same way through the BVH.
 #include "reflections/gbuffer.glsl"
 #include "reflections/lobe.glsl"
 
-layout(local_size_x = LIST_GROUP_WIDTH, local_size_y = LIST_GROUP_HEIGHT) in;
+layout(local_size_x = LIST_GROUP_SIZE) in;
 
 layout(binding = WANTED_UNIT) uniform usampler2D wanted;
 layout(std430, binding = SAMPLES_BINDING) restrict writeonly buffer Samples {
@@ -18,32 +19,38 @@ layout(std430, binding = ARGUMENTS_BINDING) restrict buffer Arguments {
 
 uniform bool isChosen;  // whether `wanted` counts
 
-shared uint groupSamples, groupRays, groupBegin;
+ivec2 sampleOf(ivec2 tile, int place) {
+    return ivec2(8, 4) * tile + ivec2(place & 7, place >> 3);
+}
 
 void main() {
-    bool isFirst = gl_LocalInvocationIndex == 0u;
-    if (isFirst) groupSamples = groupRays = 0u;
-    barrier();
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    uint surface = 0u;
-    if (all(lessThan(pixel, textureSize(gbufferSurface, 0)))) {
-        surface = texelFetch(gbufferSurface, pixel, 0).r;
-        if (isChosen && texelFetch(wanted, pixel, 0).r == 0u) surface = 0u;
+    ivec2 size = textureSize(gbufferSurface, 0);
+    int tilesPerRow = (size.x + 7) / 8;
+    int index = int(gl_GlobalInvocationID.x);
+    ivec2 tile = ivec2(index % tilesPerRow, index / tilesPerRow);
+    if (4 * tile.y >= size.y) return;
+
+    uint found = 0u;  // a bit a sample
+    uint rays = 0u;
+    for (int place = 0; place < 32; ++place) {
+        ivec2 pixel = sampleOf(tile, place);
+        if (any(greaterThanEqual(pixel, size))) continue;
+        uint surface = texelFetch(gbufferSurface, pixel, 0).r;
+        if (reflectorOf(surface) == 0u) continue;
+        if (isChosen && texelFetch(wanted, pixel, 0).r == 0u) continue;
+        found |= 1u << place;
+        rays += uint(raysOf(glossinessOf(surface)));
     }
-    bool hasRays = reflectorOf(surface) != 0u;
-    uint place = 0u;
-    if (hasRays) {
-        place = atomicAdd(groupSamples, 1u);
-        atomicAdd(groupRays, uint(raysOf(glossinessOf(surface))));
+    if (found == 0u) return;
+    // The order of tiles in the list is left to chance: each sample writes only its own pixel.
+    uint count = uint(bitCount(found));
+    uint begin = atomicAdd(sampleCount, count);
+    atomicAdd(rayCount, rays);
+    atomicMax(groups[0],
+              min((begin + count + TRACE_GROUP_SIZE - 1u) / TRACE_GROUP_SIZE, MAX_GROUPS));
+    while (found != 0u) {
+        ivec2 pixel = sampleOf(tile, findLSB(found));
+        samples[begin++] = uint(pixel.x) | (uint(pixel.y) << 16);
+        found &= found - 1u;
     }
-    barrier();
-    if (isFirst && groupSamples > 0u) {
-        // The order of groups in the list is left to chance; each sample writes only its own pixel.
-        groupBegin = atomicAdd(sampleCount, groupSamples);
-        atomicAdd(rayCount, groupRays);
-        uint end = groupBegin + groupSamples;
-        atomicMax(groups[0], min((end + TRACE_GROUP_SIZE - 1u) / TRACE_GROUP_SIZE, MAX_GROUPS));
-    }
-    barrier();
-    if (hasRays) samples[groupBegin + place] = uint(pixel.x) | (uint(pixel.y) << 16);
 }
