@@ -36,8 +36,7 @@ struct AtlasHeader {
 
 AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                            const reflections::ReflectiveScene& scene,
-                           const reflections::GpuObjects& objects, const CameraSettings& settings,
-                           bool seesConcaveSelf)
+                           const reflections::GpuObjects& objects, const CameraSettings& settings)
     : settings_(settings),
       places_(kMaxClusters * sizeof(glm::ivec4)),
       order_(sizeof(AtlasHeader) + kMaxClusters * sizeof(std::uint32_t)) {
@@ -45,7 +44,6 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
     gl::Defines defines = imageDefines();
     defines["ATLAS"] = 1;
     defines["PLACE_STEP_PX"] = kPlaceStepPx;
-    defines["SEES_OWN"] = seesConcaveSelf ? 1 : 0;
     place_ = gl::Program(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
     cull_ = gl::Program(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
     draw_ = gl::Program(shaders,

@@ -11,8 +11,7 @@ namespace gfxrepro::clustered_reflections {
 class AtlasPainter {
   public:
     AtlasPainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
-                 const reflections::GpuObjects& objects, const CameraSettings& settings,
-                 bool seesConcaveSelf);
+                 const reflections::GpuObjects& objects, const CameraSettings& settings);
     /// `counts` are Clusters::counts. Leaves cameras and places bound for the intersection.
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
               const gl::Buffer& counts, ClusterImages& target);

@@ -29,6 +29,7 @@ gl::Defines imageDefines() {
     define("kImageNearestUnit", kImageNearestUnit);
     define("kClusterOfSampleUnit", kClusterOfSampleUnit);
     define("kMaxClusters", kMaxClusters);
+    define("kConcaveCluster", kConcaveCluster);
     define("MARCH_LEVELS", kPyramidLevels);
     return defines;
 }
@@ -39,12 +40,11 @@ ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx
     : hasPyramid_(hasPyramid),
       colour_(gl::Texture::make2D(GL_RGB10_A2, sizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
-      nearest_(gl::Texture::make2D(GL_R32F, hasPyramid ? (sizePx + 1) / 2 : glm::ivec2(1),
+      nearest_(gl::Texture::make2D(GL_R32F, hasPyramid ? sizePx / 4 : glm::ivec2(1),
                                    hasPyramid ? kPyramidLevels : 1)),
       framebuffer_(std::array<const gl::Texture*, 1>{&colour_}, &depth_),
       nearestFramebuffer_(std::array<const gl::Texture*, 1>{&nearest_}) {
-    GFXREPRO_ASSERT(!hasPyramid || sizePx.x % (1 << kPyramidLevels) == 0);
-    GFXREPRO_ASSERT(!hasPyramid || sizePx.y % (1 << kPyramidLevels) == 0);
+    GFXREPRO_ASSERT(!hasPyramid || sizePx % kLargestTilePx == glm::ivec2(0));
     colour_.setFilter(GL_LINEAR, GL_LINEAR);
     nearest_.setFilter(GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST);
     if (hasPyramid) {
@@ -91,7 +91,8 @@ void ClusterImages::endDrawing(glm::ivec2 sizePx) {
             glTextureParameteri(nearest_.id(), GL_TEXTURE_MAX_LEVEL, level - 1);
             nearest_.bind(kImageDepthUnit);
         }
-        const int tilePx = 2 << level;
+        const int tilePx = 4 << level;
+        pyramid_.set("factor", level == 0 ? 4 : 2);
         glViewport(0, 0, (sizePx.x + tilePx - 1) / tilePx, (sizePx.y + tilePx - 1) / tilePx);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
@@ -122,8 +123,7 @@ glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settin
 // ---- OneByOnePainter ----
 
 OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
-                                 const reflections::ReflectiveScene& scene, bool seesConcaveSelf)
-    : seesConcaveSelf_(seesConcaveSelf) {
+                                 const reflections::ReflectiveScene& scene) {
     for (const reflections::Object& object : scene.objects()) {
         reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
     }
@@ -141,7 +141,7 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
     const std::array<glm::vec4, 6> planes = {rows[3] + rows[0], rows[3] - rows[0],
                                              rows[3] + rows[1], rows[3] - rows[1],
                                              rows[3] + rows[2], rows[3] - rows[2]};
-    const bool seesSelf = seesConcaveSelf_ && isConcave(camera);
+    const bool seesSelf = (camera.flags & kConcaveCluster) != 0;
     std::vector<std::uint32_t> seen;
     for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
         if (reflectorOfObject_[i] == camera.reflector && !seesSelf) continue;

@@ -33,10 +33,12 @@ enum ImageUnit : unsigned {
 };
 gl::Defines imageDefines();
 
-/// Levels above the depth image: tiles of 2 … 32 texels a side.
-constexpr int kPyramidLevels = 5;
+/// Levels above the depth image: tiles of 4, 8, 16 and 32 texels a side. (Tiles of 2 would cost
+/// more memory than all others and skip next to nothing.)
+constexpr int kPyramidLevels = 4;
+constexpr int kLargestTilePx = 2 << kPyramidLevels;
 
-/// The texture that holds one cluster's image, or those of all. 8 bytes a texel, 4/3 more with the
+/// The texture that holds one cluster's image, or those of all. 8 bytes a texel, 1/3 more with the
 /// pyramid. The depth buffer holds near distance / z: the hardware's own depth, reversed and with
 /// the far plane at infinity, so that no second target keeps what the march compares.
 class ClusterImages {
@@ -67,26 +69,22 @@ class ClusterImages {
 /// a texel. (0, 0): no image. shaders/place_images.comp.glsl has the same.
 glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings);
 
-/// Whether the cluster's own reflector is drawn: Sec. 4.7.4, second way. A cluster is concave when
-/// its rays converge: d_f < d_n, f > 1.
-inline bool isConcave(const ClusterCamera& camera) {
-    return camera.centreWorld.w > 1.0F && (camera.flags & kPlanarCluster) == 0U;
-}
+/// Another bit of ClusterCamera::flags: the cluster is concave (ConcavityPass). Its images show its
+/// own reflector: [xie2017] Sec. 4.7.4, second way.
+constexpr std::uint32_t kConcaveCluster = 8;
 
 /// The thesis's way: a cluster's image at the texture's origin, objects culled on the CPU.
 class OneByOnePainter {
   public:
-    OneByOnePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
-                    bool seesConcaveSelf);
+    OneByOnePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene);
     /// The cameras are bound to kCamerasBinding; `camera` is the cluster's.
     void draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
               const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target);
-    /// Objects in the frustum, without the own reflector unless it is to be seen.
+    /// Objects in the frustum, without the own reflector unless the cluster is marked concave.
     std::vector<std::uint32_t> objectsSeen(const reflections::GpuObjects& objects,
                                            const ClusterCamera& camera) const;
 
   private:
-    bool seesConcaveSelf_;
     std::vector<std::uint32_t> reflectorOfObject_;
     gl::Program program_;
 };

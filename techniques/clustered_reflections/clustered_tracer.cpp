@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "techniques/clustered_reflections/cluster_atlas.h"
+#include "techniques/clustered_reflections/cluster_concavity.h"
 #include "techniques/clustered_reflections/cluster_intersection.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -29,11 +30,12 @@ struct ClusteredTracer::Impl {
           images(shaders, kImagesSizePx, settings.march == March::Hierarchical),
           intersection(shaders, settings.camera, settings.march, settings.seesConcaveSelf, sizePx) {
         if (settings.drawing == ImageDrawing::Atlas) {
-            atlas.emplace(shaders, scene, gpuObjects, settings.camera, settings.seesConcaveSelf);
+            atlas.emplace(shaders, scene, gpuObjects, settings.camera);
         } else {
-            oneByOne.emplace(shaders, scene, settings.seesConcaveSelf);
+            oneByOne.emplace(shaders, scene);
             places = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
         }
+        if (settings.seesConcaveSelf) concavity.emplace(shaders);
     }
 
     int clusterCount() const {
@@ -90,6 +92,7 @@ struct ClusteredTracer::Impl {
     const reflections::EnvironmentMap& map;
     ClusterBuilder builder;
     ClusterCameras clusterCameras;
+    std::optional<ConcavityPass> concavity;
     ClusterImages images;
     ClusterIntersection intersection;
     std::optional<AtlasPainter> atlas;
@@ -119,6 +122,10 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
     {
         const gl::GpuScope scope(profiler, "cluster_cameras");
         impl_->clusterCameras.build(gbuffer, impl_->builder.clusters());
+        if (impl_->concavity) {
+            impl_->concavity->mark(gbuffer, impl_->builder.clusters(),
+                                   impl_->clusterCameras.cameras());
+        }
     }
     impl_->intersection.clearEnvironmentSamples();
     if (impl_->atlas) {

@@ -6,6 +6,9 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
+/// As in shaders/march.glsl.
+constexpr float kLeaving = 1.0F / 32.0F;
+
 /// The part of a ray inside the frustum, projected: shaders/march.glsl has the same operations.
 struct ProjectedRay {
     glm::vec2 beginPx{0.0F}, deltaPx{0.0F};
@@ -75,7 +78,7 @@ std::optional<MarchHit> marchOnHost(const HostMarchImage& image, const glm::vec3
         const float depthM = 1.0F / (ray->k1 + ray->k2 * u);
         const float storedM = image.depthAt(positionPx);
         const bool isBehind = storedM > 0.0F && depthM > storedM;
-        hasLeftOwn |= !isBehind;
+        hasLeftOwn |= !(storedM > 0.0F) || depthM < storedM * (1.0F - kLeaving);
         if (!isBehind) continue;
         if (hasLeftOwn || image.isOwn.empty() || image.isOwn[texelAt(image, positionPx)] == 0) {
             return MarchHit{positionPx, u, depthM, step + 1};

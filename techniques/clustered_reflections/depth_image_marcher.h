@@ -39,7 +39,7 @@ struct MarchHit {
 /// texel around the image: the outermost rays run along its edge, and rounding must not lose them.
 ///
 /// The own reflector (Sec. 4.7.4, second way) counts once the ray has been seen in front of
-/// something: before, it has not left the surface that it starts from.
+/// something by 1/32 of its depth: before, it has not left the surface that it starts from.
 std::optional<MarchHit> marchOnHost(const HostMarchImage& image, const glm::vec3& beginWorld,
                                     const glm::vec3& endWorld);
 

@@ -29,12 +29,8 @@ bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {
 
 bool isSeen(uint object, uint cluster) {
     if (places[cluster].z == 0) return false;
-    if ((objects[object].surface & 0xFFFFu) == cameras[cluster].reflector) {
-        // Sec. 4.7.4, second way: only concave clusters see themselves.
-        bool isConcave = cameras[cluster].centreWorld.w > 1.0 &&
-                         (cameras[cluster].flags & kPlanarCluster) == 0u;
-        if (SEES_OWN == 0 || !isConcave) return false;
-    }
+    bool isOwn = (objects[object].surface & 0xFFFFu) == cameras[cluster].reflector;
+    if (isOwn && (cameras[cluster].flags & kConcaveCluster) == 0u) return false;
     mat4 rows = transpose(cameras[cluster].clipFromWorld);
     vec3 centre = objects[object].boundsCentre.xyz;
     vec3 halfSize = objects[object].boundsHalfSize.xyz;

@@ -4,6 +4,9 @@
 // The image holds nearM / z, z being the distance along the axis, and 0 where nothing is: linear in
 // the image, as 1 / (k1 + k2·u) is the ray's z, so that both are compared without a division, and
 // "behind" is "smaller". Texels are numbered in the whole texture; the image begins at originPx.
+//
+// SEES_OWN is 1 where the image may show the cluster's own reflector. It counts once the ray has
+// been in front of something by kLeaving: before, it has not left the surface that it starts from.
 
 struct MarchImage {
     mat4 clipFromWorld;  // clip w: z; clip z from −w to w
@@ -21,8 +24,8 @@ struct MarchHit {
 };
 
 // The includer reads its image. storedAt: nearM / z of a texel. isOwnAt: whether the texel shows
-// the cluster's own reflector. nearestIn: the largest storedAt of the 2^level × 2^level texels of a
-// tile, or more; level 1 … MARCH_LEVELS.
+// the cluster's own reflector. nearestIn: the largest storedAt of the texels of a tile, or more;
+// level 1 … MARCH_LEVELS with tiles of 4, 8, 16, … texels a side.
 float storedAt(ivec2 texel);
 bool isOwnAt(ivec2 texel);
 float nearestIn(ivec2 tile, int level);
@@ -33,6 +36,10 @@ void cut(float begin, float end, inout vec2 t) {
     if (begin < 0.0) t.x = end < 0.0 ? 2.0 : max(t.x, begin / (begin - end));
     if (end < 0.0 && !(begin < 0.0)) t.y = min(t.y, begin / (begin - end));
 }
+
+// Part of the distance. Less, and a ray is taken to have left its own surface where that slopes
+// within a texel; more, and near parts of a bowl are not seen.
+const float kLeaving = 1.0 / 32.0;
 
 struct ProjectedRay {
     vec2 beginPx, deltaPx;
@@ -114,17 +121,18 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
     ProjectedRay ray;
     if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
     float perStep = 1.0 / float(ray.steps);
-    bool hasLeftOwn = false;
+    bool hasLeftOwn = SEES_OWN == 0;
     for (int step = 0; step <= ray.steps; ++step) {
         float u = float(step) * perStep;
         ivec2 texel = texelOf(image, ray, u);
         float stored = storedAt(texel);
-        bool isBehind = ray.k1 + ray.k2 * u < stored;
+        float k = ray.k1 + ray.k2 * u;
+        bool isBehind = k < stored;
         if (isBehind && (hasLeftOwn || !isOwnAt(texel))) {
             hit = hitAt(image, ray, step, step + 1);
             return true;
         }
-        hasLeftOwn = hasLeftOwn || !isBehind;
+        hasLeftOwn = hasLeftOwn || k * (1.0 - kLeaving) > stored;
     }
     return false;
 }
@@ -133,8 +141,8 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
 
 // The last sample from `step` on whose texel lies in the same tile. Positions grow or fall with u,
 // in floating point too, so that all between two samples of one tile lie in it.
-int lastInTile(MarchImage image, ProjectedRay ray, int step, ivec2 tile, int level) {
-    vec2 edge = vec2(((tile + ivec2(greaterThan(ray.deltaPx, vec2(0.0)))) << level) -
+int lastInTile(MarchImage image, ProjectedRay ray, int step, ivec2 tile, int shift) {
+    vec2 edge = vec2(((tile + ivec2(greaterThan(ray.deltaPx, vec2(0.0)))) << shift) -
                      image.originPx);
     // Steps to the edge; an axis along which the ray does not move never gets there.
     vec2 most = vec2(float(ray.steps));
@@ -145,19 +153,19 @@ int lastInTile(MarchImage image, ProjectedRay ray, int step, ivec2 tile, int lev
     // Rounding, or an edge that is met just at a sample: a sample fewer, or none.
     float perStep = 1.0 / float(ray.steps);
     for (int attempt = 0; attempt < 2 && last > step; ++attempt) {
-        if ((texelOf(image, ray, float(last) * perStep) >> level) == tile) return last;
+        if ((texelOf(image, ray, float(last) * perStep) >> shift) == tile) return last;
         --last;
     }
-    return (texelOf(image, ray, float(last) * perStep) >> level) == tile ? last : step;
+    return (texelOf(image, ray, float(last) * perStep) >> shift) == tile ? last : step;
 }
 
 bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
-    const int kFirstLevel = 2;  // rays of a few texels, as all of a planar reflector, skip nothing
+    const int kFewSteps = 8;  // rays of a few texels, as all of a planar reflector, skip nothing
     ProjectedRay ray;
     if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
     float perStep = 1.0 / float(ray.steps);
-    bool hasLeftOwn = false;
-    int level = ray.steps < 8 ? 0 : kFirstLevel;
+    bool hasLeftOwn = SEES_OWN == 0;
+    int level = ray.steps < kFewSteps ? 0 : 1;
     int fetches = 0;
     for (int step = 0; step <= ray.steps;) {
         float u = float(step) * perStep;
@@ -171,16 +179,19 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
                 hit = hitAt(image, ray, step, fetches);
                 return true;
             }
-            hasLeftOwn = hasLeftOwn || !isBehind;
+            hasLeftOwn = hasLeftOwn || k * (1.0 - kLeaving) > stored;
             ++step;
             // Up again where a tile begins; a ray that stays near a surface stays low.
-            if (ray.steps >= 8 && (step & 3) == 0) level = 1;
+            if (ray.steps >= kFewSteps && (step & 3) == 0) level = 1;
             continue;
         }
-        ivec2 tile = texel >> level;
-        int last = lastInTile(image, ray, step, tile, level);
+        ivec2 tile = texel >> (level + 1);
+        int last = lastInTile(image, ray, step, tile, level + 1);
         float farthest = min(k, ray.k1 + ray.k2 * (float(last) * perStep));
-        if (farthest < nearestIn(tile, level)) {
+        float nearest = nearestIn(tile, level);
+        // Whether it leaves its own surface in this tile is found texel by texel, as without tiles.
+        bool leaves = hasLeftOwn || farthest * (1.0 - kLeaving) > nearest;
+        if (farthest < nearest || !leaves) {
             --level;
         } else {
             hasLeftOwn = true;

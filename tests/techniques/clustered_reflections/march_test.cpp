@@ -9,7 +9,7 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-constexpr int kLevels = 5;
+constexpr int kLevels = 4;  // of tiles of 4 texels and more
 constexpr int kTextureSidePx = 256;
 
 /// Where the image lies in its texture: not at a corner of tiles.
@@ -28,7 +28,7 @@ uniform ivec2 originPx, sizePx;
 uniform float nearM;
 float storedAt(ivec2 texel) { return texelFetch(stored, texel, 0).r; }
 bool isOwnAt(ivec2 texel) { return texelFetch(own, texel, 0).r > 0.5; }
-float nearestIn(ivec2 tile, int level) { return texelFetch(stored, tile, level).r; }
+float nearestIn(ivec2 tile, int level) { return texelFetch(stored, tile, level + 1).r; }
 void main() {
     uint ray = gl_GlobalInvocationID.x;
     if (ray >= hits.length()) return;
@@ -157,8 +157,9 @@ class MarchTest : public test::GlTest {
         std::filesystem::copy(dataFolder("shaders") / "clustered_reflections",
                               folder.path() / "clustered_reflections");
         for (const int march : {0, 1}) {
-            programs.push_back(program({{"march_test.comp.glsl", kMarchShader}},
-                                       {{"MARCH", march}, {"MARCH_LEVELS", kLevels}}));
+            programs.push_back(
+                program({{"march_test.comp.glsl", kMarchShader}},
+                        {{"MARCH", march}, {"MARCH_LEVELS", kLevels}, {"SEES_OWN", 1}}));
         }
     }
 
@@ -176,7 +177,7 @@ class MarchTest : public test::GlTest {
             }
         }
         own.upload(GL_RED, GL_FLOAT, marks.data());
-        for (int i = 0, side = kTextureSidePx; i <= kLevels; ++i, side /= 2) {
+        for (int i = 0, side = kTextureSidePx; i <= kLevels + 1; ++i, side /= 2) {
             glTextureSubImage2D(stored.id(), i, 0, 0, side, side, GL_RED, GL_FLOAT, level.data());
             std::vector<float> next(static_cast<std::size_t>(side * side / 4));
             for (int y = 0; y < side; ++y) {
@@ -190,7 +191,7 @@ class MarchTest : public test::GlTest {
     }
 
     DeviceHits marched(March march, const Image& image, const std::vector<Ray>& rays) {
-        gl::Texture stored = gl::Texture::make2D(GL_R32F, glm::ivec2(kTextureSidePx), kLevels + 1);
+        gl::Texture stored = gl::Texture::make2D(GL_R32F, glm::ivec2(kTextureSidePx), kLevels + 2);
         gl::Texture own = gl::Texture::make2D(GL_R32F, glm::ivec2(kTextureSidePx));
         upload(image, stored, own);
         std::vector<glm::vec4> ends;
