@@ -185,6 +185,7 @@ constexpr GeneratorInfo kGenerators[] = {
     {"city", "a downtown seen from above: streets, towers, houses, trees and cars", &city},
     {"four_objects", "four boxes, one of which two views do not see", &fourObjects},
     {"grass", "bent blades on uneven ground", &grass},
+    {"living_room", "a furnished room with 25 reflective objects", &livingRoom},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
     {"tree", "a deciduous tree with a dense crown of leaves", &tree},
 };

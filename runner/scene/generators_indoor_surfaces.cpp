@@ -222,8 +222,15 @@ void addSheet(MeshBuilder& builder, const std::function<glm::vec3(float, float)>
     };
     for (int j = 0; j <= cellsV; ++j) {
         for (int i = 0; i <= cellsU; ++i) {
-            const glm::vec3 du = positions[vertex(i + 1, j)] - positions[vertex(i - 1, j)];
-            const glm::vec3 dv = positions[vertex(i, j + 1)] - positions[vertex(i, j - 1)];
+            // Across the seam of a sheet that closes, one-sided differences would show it.
+            const bool closesU = positions[vertex(0, j)] == positions[vertex(cellsU, j)];
+            const bool closesV = positions[vertex(i, 0)] == positions[vertex(i, cellsV)];
+            const int left = i == 0 && closesU ? cellsU - 1 : i - 1;
+            const int right = i == cellsU && closesU ? 1 : i + 1;
+            const int below = j == 0 && closesV ? cellsV - 1 : j - 1;
+            const int above = j == cellsV && closesV ? 1 : j + 1;
+            const glm::vec3 du = positions[vertex(right, j)] - positions[vertex(left, j)];
+            const glm::vec3 dv = positions[vertex(i, above)] - positions[vertex(i, below)];
             const glm::vec3 normal = glm::cross(du, dv);
             const float length = glm::length(normal);
             normals.push_back(length > 0.0F ? normal / length : glm::vec3(0, 1, 0));
