@@ -69,12 +69,27 @@ class Room {
     Scene scene;
 };
 
-Material textured(const glm::vec3& color, int texture, bool isDoubleSided) {
+Material foliage() {
     Material material;
-    material.baseColor = glm::vec4(color, 1.0F);
-    material.baseColorTexture = texture;
-    material.isDoubleSided = isDoubleSided;
+    material.baseColor = glm::vec4(1.0F);
+    material.isDoubleSided = true;
     return material;
+}
+
+/// Where a leaf at this place goes that grows before the window wall and beside the shower: what
+/// is nearer than `kBendM` is pushed back, never nearer than `kLeastM`.
+glm::vec3 clearOfWalls(glm::vec3 position) {
+    constexpr float kBendM = 0.12F, kLeastM = 0.02F, kRoomM = kBendM - kLeastM;
+    const auto pushed = [&](float distance) {
+        return distance >= kBendM ? distance
+                                  : kLeastM + kRoomM * kRoomM / (kRoomM + kBendM - distance);
+    };
+    position.z = pushed(position.z);
+    const glm::vec2 fromCorner(position.x - kRoom.x, position.z);
+    const float radius = glm::length(fromCorner);
+    const glm::vec2 moved =
+        fromCorner * ((kShowerRadiusM + pushed(radius - kShowerRadiusM)) / radius);
+    return {kRoom.x + moved.x, position.y, moved.y};
 }
 
 Material glowing(const glm::vec3& color, const glm::vec3& emissive) {
@@ -147,7 +162,9 @@ void addFurniture(Room& room, Random& random, std::uint64_t seed) {
     indoor::addLathe(builder, indoor::smoothed(kPotOutline, 14), 26, indoor::placed(kPot));
     room.addDiffuse(builder, "pot", {0.6F, 0.56F, 0.5F});
     indoor::addPalm(builder, 1.15F, 8, 2, random, indoor::placed(kPot + glm::vec3(0, 0.17F, 0)));
-    room.add(builder, "palm", textured(glm::vec3(1.0F), -1, true));
+    room.add(builder, "palm", foliage());
+    for (glm::vec3& position : room.scene.meshes.back().positions)
+        position = clearOfWalls(position);
     constexpr glm::vec2 kPaper[] = {{0.022F, -0.05F}, {0.055F, -0.05F}, {0.055F, -0.05F},
                                     {0.055F, 0.05F},  {0.055F, 0.05F},  {0.022F, 0.05F}};
     indoor::addLathe(builder, kPaper, 32,
