@@ -149,6 +149,7 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
         occlusionErrors({gbuffer, truthOf(gbuffer).samples, clusterOfSample,
                          clusteredTracer_->cameras(), *scene_, truthTracer_->rays(), params_.lobe});
     recorder.metric("occlusion_error_pct", percent(errors.missing, errors.reflective), "%");
+    recorder.metric("occlusion_hidden_pct", percent(errors.hidden, errors.reflective), "%");
     recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
                     "%");
     if (!params_.showsPictures) return;

@@ -19,12 +19,13 @@ namespace gfxrepro::clustered_reflections {
 ///
 ///     bins = clamp(round(maxBins · (a_R / n_v · bin_gain)^exponent), 1, maxBins)
 ///
-/// (the printed line is scrambled; see the README). A planar reflector is one cluster.
+/// (the printed line is scrambled; see the README). A planar reflector is one cluster. The
+/// defaults, 2 · (a_R / n_v)^¼, are calibrated on the counts of Table 19.
 struct BinSettings {
     int maxThetaBins = 13;
     int maxPhiBins = 8;
     float exponent = 0.25F;
-    float gain = 1.0F;
+    float gain = 16.0F;
 };
 
 /// How samples are put into clusters.

@@ -50,20 +50,20 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
 
 }  // namespace
 
-bool isSeenBy(const ClusterCamera& camera, const glm::vec3& pointWorld,
+Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld,
               const OcclusionInput& input) {
     const float toleranceM = kOcclusionTolerance * input.scene.diagonalM();
-    if (!isInFrustum(camera, pointWorld, toleranceM)) return false;
-    if (isClear(camera, pointWorld, toleranceM, input)) return true;
+    if (!isInFrustum(camera, pointWorld, toleranceM)) return Sight::OutOfFrustum;
+    if (isClear(camera, pointWorld, toleranceM, input)) return Sight::Seen;
     // Past the edge that hides it by less than the tolerance: four lines beside it.
     const glm::vec3 axis = glm::normalize(pointWorld - glm::vec3(camera.eyeWorld));
     const glm::vec3 other = std::abs(axis.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     const glm::vec3 right = toleranceM * glm::normalize(glm::cross(axis, other));
     const glm::vec3 up = glm::cross(right, axis);
     for (const glm::vec3& offset : {right, -right, up, -up}) {
-        if (isClear(camera, pointWorld + offset, toleranceM, input)) return true;
+        if (isClear(camera, pointWorld + offset, toleranceM, input)) return Sight::Seen;
     }
-    return false;
+    return Sight::Hidden;
 }
 
 OcclusionErrors occlusionErrors(const OcclusionInput& input) {
@@ -74,6 +74,7 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
     GFXREPRO_ASSERT_EQ(input.clusterOfSample.size(), count);
     OcclusionErrors errors;
     errors.isMissing.assign(count, 0);
+    std::vector<std::uint8_t> isHidden(count, 0);
     const float diagonalM = input.scene.diagonalM();
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         const float distanceM = input.truth[i].distanceM;
@@ -87,7 +88,9 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
         const glm::vec3 hit =
             gbuffer.positionWorld(pixel) + distanceM * gbuffer.mirrorDirection(pixel);
         const ClusterCamera& camera = input.cameras[input.clusterOfSample[i] - 1U];
-        errors.isMissing[i] = isSeenBy(camera, hit, input) ? 0 : 1;
+        const Sight sight = sightOf(camera, hit, input);
+        errors.isMissing[i] = sight == Sight::Seen ? 0 : 1;
+        isHidden[i] = sight == Sight::Hidden ? 1 : 0;
     });
     for (std::size_t i = 0; i < count; ++i) {
         if (input.clusterOfSample[i] == 0) continue;
@@ -95,6 +98,7 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
             (input.cameras[input.clusterOfSample[i] - 1U].flags & kPlanarCluster) != 0;
         ++errors.reflective;
         errors.missing += errors.isMissing[i];
+        errors.hidden += isHidden[i];
         errors.planar += isPlanar ? 1 : 0;
         errors.planarMissing += isPlanar ? errors.isMissing[i] : 0;
     }

@@ -27,6 +27,7 @@ double shownPsnrDb(const image::ImageF& picture, const image::ImageF& truth);
 struct OcclusionErrors {
     std::vector<std::uint8_t> isMissing;  // a sample
     std::size_t reflective = 0, missing = 0;
+    std::size_t hidden = 0;                     // missing, though in the camera's frustum
     std::size_t planar = 0, planarMissing = 0;  // of those, samples of planar clusters
 };
 
@@ -53,8 +54,9 @@ struct OcclusionInput {
 constexpr float kOcclusionTolerance = 2.0F * reflections::EmbreeTracer::kStart;
 OcclusionErrors occlusionErrors(const OcclusionInput& input);
 
-/// Whether `camera` sees a point of the world, as above.
-bool isSeenBy(const ClusterCamera& camera, const glm::vec3& pointWorld,
+/// Of a point of the world, as above.
+enum class Sight : std::uint8_t { Seen, Hidden, OutOfFrustum };
+Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld,
               const OcclusionInput& input);
 
 }  // namespace gfxrepro::clustered_reflections

@@ -60,7 +60,7 @@ BinSettings readBins(config::Params& params) {
                             "bin_gain)^e, at most 1",
                             "1", 0.0, 8.0});
     bins.gain = number(params, "bin_gain", static_cast<double>(bins.gain),
-                       {"more: finer clusters", "1", 0.0, 1e6});
+                       {"more: finer clusters", "1", 1e-6, 1e6});
     return bins;
 }
 

@@ -36,7 +36,7 @@ class OcclusionTest : public testing::Test {
         return reflections::ReflectiveScene(scene);
     }
     bool isSeen(const glm::vec3& point) const {
-        return isSeenBy(camera_, point, {gbuffer_, {}, {}, {}, scene_, rays_, {}});
+        return sightOf(camera_, point, {gbuffer_, {}, {}, {}, scene_, rays_, {}}) == Sight::Seen;
     }
 
     reflections::ReflectiveScene scene_;
@@ -106,6 +106,7 @@ TEST_F(OcclusionTest, CountsSamplesByTheirClusters) {
         occlusionErrors({gbuffer_, truth, clusters, cameras, scene_, rays_, {}});
     EXPECT_EQ(errors.reflective, 3U);
     EXPECT_EQ(errors.missing, 1U);
+    EXPECT_EQ(errors.hidden, 1U);
     EXPECT_EQ(errors.planar, 3U);
     EXPECT_EQ(errors.planarMissing, 1U);
     EXPECT_EQ(errors.isMissing[7], 1);
