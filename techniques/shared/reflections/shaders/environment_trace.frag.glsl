@@ -10,7 +10,7 @@ layout(binding = WANTED_UNIT) uniform usampler2D wanted;
 uniform int hasWanted;
 
 layout(location = 0) out vec4 radiance;
-layout(location = 1) out float distance;
+layout(location = 1) out float distanceM;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -25,5 +25,5 @@ void main() {
         sum += radianceFrom(lobeDirection(mirror, glossiness, i, count));
     }
     radiance = vec4(sum / float(count), 1.0);
-    distance = 0.0;  // not known
+    distanceM = 0.0;  // not known
 }
