@@ -10,6 +10,7 @@
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
+    // clang-format off: one line each
     static const TechniqueInfo kTechniques[] = {
         depth_sampling::kDepthSampling,
         ray_tracing::kRayTracing,
@@ -17,6 +18,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         template_::kTemplate,
         voxelization::kVoxelization,
     };
+    // clang-format on
     return kTechniques;
 }
 
