@@ -11,6 +11,7 @@
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
+    // clang-format off: one line each
     static const TechniqueInfo kTechniques[] = {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
@@ -19,6 +20,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         template_::kTemplate,
         voxelization::kVoxelization,
     };
+    // clang-format on
     return kTechniques;
 }
 
