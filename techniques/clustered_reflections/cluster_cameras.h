@@ -11,8 +11,9 @@ namespace gfxrepro::clustered_reflections {
 
 /// Bits of ClusterCamera::flags.
 constexpr std::uint32_t kPlanarCluster = 1;
-constexpr std::uint32_t kNoRoom = 2;     // between near and far (glossy): no image, no march
-constexpr std::uint32_t kEyeBehind = 4;  // the eye is not before the fitting plane (see below)
+constexpr std::uint32_t kNoRoom = 2;      // between near and far (glossy): no image, no march
+constexpr std::uint32_t kEyeBehind = 4;   // the eye is not before the fitting plane (see below)
+constexpr std::uint32_t kRaysTurned = 8;  // some rays are beyond CameraSettings::maxSlope
 
 /// A cluster's camera as shaders/cluster_camera.glsl has it (std430). It looks along the normal of
 /// the fitting plane, which is its near plane; an off-centre frustum. Geometry between samples that
@@ -60,10 +61,11 @@ constexpr int kMaxShift = 16;
 /// plane, and its resolution from p, the mean distance of samples that are neighbours in a row or
 /// column, on the fitting plane as seen from e_c.
 ///
-/// f of a planar reflector is 1 exactly. f is raised where e_c would not lie behind every sample,
-/// at 1.5 times the farthest one's distance from the plane. The image's y axis is the eye's up on
-/// the plane, or its x axis the eye's left, whichever lies flatter on it. Half a pixel p is left
-/// around the box. Every sum is taken in a fixed order: two runs give the same bits.
+/// f of a planar reflector is 1 exactly; with kRaysTurned it is at most 1. It is raised where e_c
+/// would not lie behind every sample, at 1.5 times the farthest one's distance from the plane. The
+/// image's y axis is the eye's up on the plane, or its x axis the eye's left, whichever lies
+/// flatter on it. Half a pixel p is left around the box. Every sum is taken in a fixed order: two
+/// runs give the same bits.
 class ClusterCameras {
   public:
     ClusterCameras(const gl::ShaderLibrary& shaders, const CameraSettings& settings);

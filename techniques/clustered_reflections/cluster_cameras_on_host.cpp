@@ -73,10 +73,10 @@ class HostCamera {
     void fitPlane();
     void setAxes();
     void shiftEye();
-    void addEnds(PlaneBox& box, glm::ivec2 pixel) const;
-    dvec3 endPoint(const dvec3& start, const dvec3& direction) const;
+    void addEnds(PlaneBox& box, glm::ivec2 pixel);
+    dvec3 endPoint(const dvec3& start, const dvec3& direction);
     double pixelDistance() const;
-    ClusterCamera imagePlane() const;
+    ClusterCamera imagePlane();
 
     const reflections::HostGBuffer& gbuffer_;
     const std::vector<glm::ivec2>& samples_;
@@ -124,14 +124,15 @@ void HostCamera::fitPlane() {
     frame_.eye.z = -std::max(frame_.eye.z, leastHeight);
 }
 
-dvec3 HostCamera::endPoint(const dvec3& start, const dvec3& direction) const {
+dvec3 HostCamera::endPoint(const dvec3& start, const dvec3& direction) {
     const dvec2 lateral(direction);
     const double steepest = std::max(glm::length(lateral) / double{settings_.maxSlope}, 1e-6);
+    if (direction.z < steepest) flags_ |= kRaysTurned;
     const double way = std::max(frame_.farDistance - start.z, 0.0);
     return {dvec2(start) + lateral / std::max(direction.z, steepest) * way, start.z + way};
 }
 
-void HostCamera::addEnds(PlaneBox& box, glm::ivec2 pixel) const {
+void HostCamera::addEnds(PlaneBox& box, glm::ivec2 pixel) {
     const dvec3 p = position(pixel), start = frame_.of(p - frame_.centre);
     const dvec3 axis = frame_.of(glm::normalize(glm::reflect(p - eye(), normal(pixel))));
     if (frame_.glossiness <= 0.0) {
@@ -156,12 +157,13 @@ void HostCamera::shiftEye() {
     for (const glm::ivec2 pixel : samples_) {
         const dvec3 start = frame_.of(position(pixel) - frame_.centre);
         starts.add(frame_.projected(start));
-        addEnds(ends, pixel);
+        if (!isPlanar_ || frame_.glossiness > 0.0) addEnds(ends, pixel);
         frame_.farthestBehind = std::min(frame_.farthestBehind, start.z);
     }
     if (isPlanar_) return;
     const double near = starts.diagonal(), far = ends.diagonal();
     f_ = near > 0.0 && far > 0.0 ? std::min(near / far, double{kMaxShift}) : 1.0;
+    if ((flags_ & kRaysTurned) != 0) f_ = std::min(f_, 1.0);
     const double leastHeight = double{kLeastHeight} * double{settings_.diagonalM};
     f_ = std::max(f_, std::max(-1.5 * frame_.farthestBehind, leastHeight) / -frame_.eye.z);
     frame_.eye *= f_;
@@ -187,7 +189,7 @@ double HostCamera::pixelDistance() const {
     return pairs > 0 ? std::max(sum / pairs, 1e-3 * facing) : facing;
 }
 
-ClusterCamera HostCamera::imagePlane() const {
+ClusterCamera HostCamera::imagePlane() {
     PlaneBox box;
     for (const glm::ivec2 pixel : samples_) {
         box.add(frame_.projected(frame_.of(position(pixel) - frame_.centre)));

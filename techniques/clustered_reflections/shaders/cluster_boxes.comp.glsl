@@ -33,8 +33,9 @@ vec4 extended(vec4 box, vec2 p) {
 
 // Where a ray meets the far plane. Rays beyond the greatest slope are turned to it: they leave the
 // image at its side, and miss from there on. 1e-6: straight back; its lateral part is as small.
-vec3 endPoint(ClusterFrame frame, vec3 start, vec3 direction) {
+vec3 endPoint(ClusterFrame frame, vec3 start, vec3 direction, inout bool isTurned) {
     float steepest = max(length(direction.xy) / maxSlope, 1e-6);
+    if (direction.z < steepest) isTurned = true;
     vec2 slope = direction.xy / max(direction.z, steepest);
     float way = max(frame.centre.w - start.z, 0.0);
     return vec3(start.xy + slope * way, start.z + way);
@@ -42,14 +43,14 @@ vec3 endPoint(ClusterFrame frame, vec3 start, vec3 direction) {
 
 // Rays on the rim of the lobe, in its circumscribed octagon: cones project to conics, which a
 // polygon of their points would cut.
-vec4 withRim(vec4 box, ClusterFrame frame, vec3 start, vec3 axis) {
+vec4 withRim(vec4 box, ClusterFrame frame, vec3 start, vec3 axis, inout bool isTurned) {
     float width = tan(frame.axisX.w * lobeMaxHalfAngle) / cos(radians(22.5));
     vec3 other = abs(axis.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     vec3 tangent = normalize(cross(axis, other)), bitangent = cross(axis, tangent);
     for (int k = 0; k < 8; ++k) {
         float angle = radians(45.0) * float(k);
         vec3 rim = axis + width * (cos(angle) * tangent + sin(angle) * bitangent);
-        box = extended(box, projected(frame, endPoint(frame, start, rim)));
+        box = extended(box, projected(frame, endPoint(frame, start, rim, isTurned)));
     }
     return box;
 }
@@ -81,6 +82,7 @@ void main() {
     vec4 starts = kNoBox, ends = kNoBox;
     float farthestBehind = 0.0;
     vec2 distances = vec2(0.0);
+    bool isTurned = false;
     for (uint i = range.x; i < range.y; ++i) {
         ivec2 pixel = pixelOf(samples[i]);
         vec3 position = gbufferPosition(pixel);
@@ -93,9 +95,10 @@ void main() {
             vec3 mirrored = gbufferMirrorDirection(position, gbufferUnitNormal(pixel));
             vec3 direction = toFrame(frame, mirrored);
             if (isGlossy) {
-                ends = withRim(ends, frame, start, direction);
+                ends = withRim(ends, frame, start, direction, isTurned);
             } else {
-                ends = extended(ends, projected(frame, endPoint(frame, start, direction)));
+                vec3 end = endPoint(frame, start, direction, isTurned);
+                ends = extended(ends, projected(frame, end));
             }
         }
 #if WHOLE_IMAGE
@@ -104,5 +107,5 @@ void main() {
     }
     partials[kPartials * chunk] = starts;
     partials[kPartials * chunk + 1u] = ends;
-    partials[kPartials * chunk + 2u] = vec4(farthestBehind, distances, 0.0);
+    partials[kPartials * chunk + 2u] = vec4(farthestBehind, distances, float(isTurned));
 }

@@ -130,7 +130,7 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
         throw Error(fmt::format(
             "scene {}: reflections need triangles, it has none{}", scene_.name,
             transmissiveCount_ > 0
-                ? fmt::format(" ({} transmissive objects are left out)", transmissiveCount_)
+                ? fmt::format(" (transmissive objects left out: {})", transmissiveCount_)
                 : std::string()));
     }
     std::vector<int> layerOfTexture(scene_.textures.size(), -1);
