@@ -10,7 +10,8 @@
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
-    // clang-format off: one line each
+    // One line each:
+    // clang-format off
     static const TechniqueInfo kTechniques[] = {
         depth_sampling::kDepthSampling,
         ray_tracing::kRayTracing,
