@@ -11,7 +11,8 @@
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
-    // clang-format off: one line each
+    // One line each:
+    // clang-format off
     static const TechniqueInfo kTechniques[] = {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
