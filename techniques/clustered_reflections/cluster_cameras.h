@@ -9,7 +9,7 @@
 
 namespace gfxrepro::clustered_reflections {
 
-/// Bits of ClusterCamera::flags; 8 is kConcaveCluster of cluster_images.h.
+/// Bits of ClusterCamera::flags; cluster_images.h has one more, kConcaveCluster.
 constexpr std::uint32_t kPlanarCluster = 1;
 constexpr std::uint32_t kNoRoom = 2;       // between near and far (glossy): no image, no march
 constexpr std::uint32_t kEyeBehind = 4;    // the eye is not before the fitting plane (see below)
