@@ -50,7 +50,7 @@ std::optional<long long> readCount(const Node& source, const std::string& key,
 }
 
 SceneSource readFileSource(const Node& node) {
-    requireKeys(node, "source", {"file", "points", "refine_to"});
+    requireKeys(node, "source", {"file", "points", "refine_to", "up"});
     SceneSource source;
     const Node& file = required(node, "source", "file");
     source.file = file.text();
@@ -60,6 +60,12 @@ SceneSource readFileSource(const Node& node) {
     }
     source.refineTo = readCount(node, "refine_to", "triangles");
     source.points = readCount(node, "points", "points");
+    if (const Node* up = node.find("up")) {
+        if (up->text() != "y" && up->text() != "z") {
+            throw Error(up->location(), "up is '" + up->text() + "'; allowed: y | z");
+        }
+        source.isZUp = up->text() == "z";
+    }
     if (source.refineTo || source.points) source.kind = Origin::Kind::StandIn;
     return source;
 }
@@ -133,6 +139,18 @@ std::string descriptionOf(const SceneSource& source) {
     if (source.refineTo) text += ", refined to " + std::to_string(*source.refineTo) + " triangles";
     if (source.points) text += ", sampled to " + std::to_string(*source.points) + " points";
     return text;
+}
+
+/// What was up +z stands up +y.
+void turnUp(Scene& scene) {
+    const auto turned = [](const glm::vec3& v) { return glm::vec3(v.x, v.z, -v.y); };
+    const glm::mat4 turn(glm::vec4(turned({1, 0, 0}), 0), glm::vec4(turned({0, 1, 0}), 0),
+                         glm::vec4(turned({0, 0, 1}), 0), glm::vec4(0, 0, 0, 1));
+    for (Instance& instance : scene.instances) {
+        instance.worldFromMesh = turn * instance.worldFromMesh;
+    }
+    for (glm::vec3& position : scene.points.positions) position = turned(position);
+    for (glm::vec3& normal : scene.points.normals) normal = turned(normal);
 }
 
 /// All instances as one mesh of the wanted count; materials and cameras stay.
@@ -235,7 +253,8 @@ std::string Catalog::contentKey(const Node& reference) const {
         digest = {sizeBytes, time, sha256OfFile(path)};
     }
     return sha256("file " + digest.sha256 + ' ' +
-                  (source.refineTo ? std::to_string(*source.refineTo) : "as it is") + points);
+                  (source.refineTo ? std::to_string(*source.refineTo) : "as it is") +
+                  (source.isZUp ? " z up" : "") + points);
 }
 
 Scene Catalog::load(const Node& reference) const {
@@ -245,6 +264,7 @@ Scene Catalog::load(const Node& reference) const {
     if (source.generator.empty()) {
         scene = loadScene(assetsFolder_ / source.file);
         sha256 = scene.origin.sha256;
+        if (source.isZUp) turnUp(scene);
         if (source.refineTo) refine(scene, source);
     } else {
         config::Params params(source.params, "generator '" + source.generator + "'");

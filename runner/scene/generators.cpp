@@ -22,6 +22,9 @@ enum class ModelShape {
     Cube,
     Dragon,
     Duck,
+    Hand,
+    Head,
+    Hip,
     Hugo,
     LinkedTori,
     Sphere,
@@ -37,6 +40,9 @@ constexpr config::Choice<ModelShape> kModelShapes[] = {
     {ModelShape::Cube, "cube", "[-1, 1]³ with sharp edges"},
     {ModelShape::Dragon, "dragon", "long body with crest, legs and horns"},
     {ModelShape::Duck, "duck", "rubber duck"},
+    {ModelShape::Hand, "hand", "open hand, palm to the front"},
+    {ModelShape::Head, "head", "human head with neck"},
+    {ModelShape::Hip, "hip", "hip bone with socket and foramen"},
     {ModelShape::Hugo, "hugo", "standing man"},
     {ModelShape::LinkedTori, "linked_tori", "two rings through each other"},
     {ModelShape::Sphere, "sphere", "radius 1"},
@@ -58,6 +64,12 @@ sdf::Shape shapeOf(ModelShape shape, std::uint32_t seed) {
             return shapes::dragon(seed);
         case ModelShape::Duck:
             return shapes::duck(seed);
+        case ModelShape::Hand:
+            return shapes::hand(seed);
+        case ModelShape::Head:
+            return shapes::head(seed);
+        case ModelShape::Hip:
+            return shapes::hip(seed);
         case ModelShape::Hugo:
             return shapes::hugo(seed);
         case ModelShape::LinkedTori:

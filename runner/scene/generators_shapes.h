@@ -14,6 +14,9 @@ sdf::Shape buddha(std::uint32_t seed);
 sdf::Shape bunny(std::uint32_t seed);
 sdf::Shape dragon(std::uint32_t seed);
 sdf::Shape duck(std::uint32_t seed);
+sdf::Shape hand(std::uint32_t seed);
+sdf::Shape head(std::uint32_t seed);
+sdf::Shape hip(std::uint32_t seed);
 sdf::Shape hugo(std::uint32_t seed);
 sdf::Shape wagner(std::uint32_t seed);
 

@@ -118,6 +118,27 @@ TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {
               "prints all)");
 }
 
+TEST(Catalog, TurnsFilesWhoseUpIsZ) {
+    const Folders folders;
+    folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.obj, up: z}]\n");
+    folders.folder.write("assets/a.obj", "v 0 0 0\nv 1 0 0\nv 0 2 3\nf 1 2 3\n");
+    const Mesh mesh = flattened(folders.catalog().load(reference("m/x")));
+    ASSERT_EQ(mesh.positions.size(), 3U);
+    EXPECT_EQ(mesh.positions[2], glm::vec3(0, 3, -2));
+
+    folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: z, points: 5}]\n");
+    folders.folder.write("assets/a.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                         "property float y\nproperty float z\nproperty float nx\n"
+                         "property float ny\nproperty float nz\nend_header\n1 2 3 0 0 1\n");
+    const PointCloud points = folders.catalog().load(reference("m/x")).points;
+    ASSERT_EQ(points.positions.size(), 1U);
+    EXPECT_EQ(points.positions[0], glm::vec3(1, 3, -2));
+    EXPECT_EQ(points.normals[0], glm::vec3(0, 1, 0));
+    EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: x}]\n"),
+              "DIR/scenes/m/x.yaml:3:29: up is 'x'; allowed: y | z");
+}
+
 TEST(Catalog, RefusesBadEntries) {
     const Folders f;
     EXPECT_EQ(f.errorOf("scene: m/z\ndoc: d\nsources: [{file: a.ply}]\n"),

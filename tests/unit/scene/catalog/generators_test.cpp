@@ -59,8 +59,8 @@ TEST_P(ModelShape, IsClosedManifoldOutwardAndOfTheWantedCounts) {
 
 INSTANTIATE_TEST_SUITE_P(All, ModelShape,
                          testing::Values("blade", "brain", "buddha", "bunny", "cube", "dragon",
-                                         "duck", "hugo", "linked_tori", "sphere", "torus",
-                                         "wagner"),
+                                         "duck", "hand", "head", "hip", "hugo", "linked_tori",
+                                         "sphere", "torus", "wagner"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Generators, SameSeedSameBytes) {
@@ -134,7 +134,8 @@ TEST(Generators, BadParametersAreLocated) {
     EXPECT_EQ(
         test::errorText([] { generated("{shape: dargon}"); }),
         "t.yaml:1:9: generator 'sdf_model': shape is 'dargon'; allowed: blade | brain | buddha | "
-        "bunny | cube | dragon | duck | hugo | linked_tori | sphere | torus | wagner");
+        "bunny | cube | dragon | duck | hand | head | hip | hugo | linked_tori | sphere | torus | "
+        "wagner");
     EXPECT_EQ(test::errorText([] { generated("{triangels: 1000}"); }),
               "t.yaml:1:2: generator 'sdf_model': unknown parameter 'triangels'; did you mean "
               "'triangles'?");
