@@ -19,7 +19,7 @@ namespace gfxrepro::scene {
 struct SceneSource {
     std::string file;  // relative to the assets folder, or absolute; empty: generated
     std::optional<long long>
-        refineTo;  // triangles: longest edges are split until the count is reached
+        refineTo;        // triangles: longest edges are split until the count is reached
     bool isZUp = false;  // the file's up is +z: turned so that it is +y
     std::optional<long long> points;  // the surface sampled (or its points thinned) to this many
     std::string generator;
