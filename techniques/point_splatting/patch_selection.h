@@ -1,4 +1,4 @@
-// What is drawn of each patch: culling, level, splat mode (zju2005 Sec. 3.2.3.2, 3.3.1).
+// What is drawn of each patch: culling, level and splat mode (zju2005 Sec. 3.2.3.2, 3.3.1).
 #pragma once
 
 #include <cstdint>
@@ -6,57 +6,68 @@
 #include <span>
 #include <vector>
 
+#include "runner/scene/scene.h"
 #include "techniques/point_splatting/linear_tree.h"
 
 namespace gfxrepro::point_splatting {
 
 enum class SplatMode : std::uint8_t {
     FullEwa,         // H = J V^r Jᵀ + V^h (Eq. 3)
-    Reconstruction,  // H = J V^r Jᵀ: the low-pass filter left out, for splats large on the screen
-    LowPass,         // H = V^h: the reconstruction filter left out, for small ones
+    Reconstruction,  // H = J V^r Jᵀ: splats that are large on the screen need no low-pass filter
+    LowPass,         // H = V^h: small ones are no more than the low-pass filter
     Sprite,          // an opaque square
 };
 
-/// Which mode a whole model is drawn with.
+/// How a whole model is drawn.
 enum class SplatMethod { Adaptive, FullEwa, Reconstruction, LowPass, Sprites };
 
 struct SelectionSettings {
     SplatMethod method = SplatMethod::Adaptive;
-    bool cullsFrustum = true, cullsCones = true;
+    bool cullsFrustum = true, cullsCones = true, choosesLevels = true;
     float cMin = 0.3F, cMax = 3.0F;
-    /// The level is the coarsest whose largest radius projects to at most this many pixels at the
-    /// box's nearest corner; `fineTargetPx` for patches that are curved (curvature above
-    /// `curvedAbove`), have wide cones or lie at the silhouette. Thresholds are not given by the
-    /// thesis.
-    float targetRadiusPx = 1.5F;
-    float fineTargetPx = 0.75F;
-    float curvedAbove = 0.02F;
-    bool choosesLevels = true;  // else the last level of every patch
+    float lowPassRadiusPx = 0.7F;  // r_h
+    /// The level is the coarsest whose largest radius is at most this many pixels at the nearest
+    /// corner of the patch's box; half of it for patches that are curved, have wide cones or lie at
+    /// the silhouette (Sec. 3.3.1.2, which gives no thresholds).
+    float targetRadiusPx = 2.0F;
+    float curvedAbove = 0.02F;  // λ₀ / Σλ; a sphere's cap of 40° has it
+    float wideAboveRad = 0.6F;
 };
 
+/// A pinhole view of points, in the model's space.
 struct PatchView {
-    glm::mat4 viewFromModel{1.0F};
+    glm::mat4 viewFromModel{1.0F};  // looks along −z
     glm::mat4 clipFromView{1.0F};
     glm::vec3 eyeModel{0.0F};
     glm::ivec2 sizePx{0};
-    float focalPx = 1.0F;  // pixels: sizePx.y / (2·tan(fov / 2))
-    float fovRad = 0.7F;   // of the square window's side: C_η of Eq. (13)
+    float focalPx = 1.0F;  // height / (2·tan(fov / 2))
+    float fovRad = 0.7F;   // vertical
     float nearM = 0.01F;
 };
+PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx);
 
 struct DrawnPatch {
     std::uint32_t patch = 0;
     std::uint32_t level = 0;  // of the patch
     SplatMode mode = SplatMode::FullEwa;
-    bool isSilhouette = false;
 };
 
-/// S_proj / S_h of the mean radius and C_η: the mode by c_min and c_max (Eq. 11–13).
-SplatMode modeFor(float projectedRatio, float cEta, const SelectionSettings& settings);
+/// The mode by `ratio` = S_proj / S_h: reconstruction alone above c_max, the low-pass alone where
+/// C_η times it is below c_min, else both (from Eq. 13).
+SplatMode modeFor(float ratio, float cEta, const SelectionSettings& settings);
 
-/// Visible patches, in the models' order. No allocation beyond `drawn`, no tree traversal.
-void selectPatches(std::span<const Patch> patches, std::span<const Level> levels,
-                   const PatchView& view, const SelectionSettings& settings,
-                   std::vector<DrawnPatch>& drawn);
+/// Why patches are not drawn.
+struct SelectionCounts {
+    std::uint32_t outside = 0, turnedAway = 0, drawn = 0;
+    std::uint64_t points = 0;  // drawn
+};
+
+/// The visible patches in the model's order, into `drawn` (cleared). Distances are to the nearest
+/// point of the box, so that nothing is taken for farther than it is. A patch is at the silhouette
+/// when its cone holds normals on both sides of its view rays; such are always drawn by full EWA
+/// where the method is Adaptive (Sec. 3.3.1.3).
+SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Level> levels,
+                              const PatchView& view, const SelectionSettings& settings,
+                              std::vector<DrawnPatch>& drawn);
 
 }  // namespace gfxrepro::point_splatting

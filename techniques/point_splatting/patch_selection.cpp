@@ -1,0 +1,156 @@
+#include "techniques/point_splatting/patch_selection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "techniques/point_splatting/splat_math.h"
+
+namespace gfxrepro::point_splatting {
+
+namespace {
+
+/// Planes of the frustum, a·x + b·y + c·z + d ≥ 0 inside, of unit normal: from the rows of the
+/// matrix to clip space (Gribb and Hartmann 2001).
+std::array<glm::vec4, 6> frustumPlanes(const glm::mat4& clipFromModel) {
+    const glm::mat4 rows = glm::transpose(clipFromModel);
+    std::array<glm::vec4, 6> planes;
+    for (int axis = 0; axis < 3; ++axis) {
+        planes[static_cast<std::size_t>(2 * axis)] = rows[3] + rows[axis];
+        planes[static_cast<std::size_t>(2 * axis) + 1] = rows[3] - rows[axis];
+    }
+    for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
+    return planes;
+}
+
+/// Whether the box, grown by the radius of its splats, is outside of one plane.
+bool isOutside(const std::array<glm::vec4, 6>& planes, const scene::Box& box, float radius) {
+    const glm::vec3 centre = box.centre(), half = 0.5F * box.size();
+    return std::any_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+        const glm::vec3 normal(plane);
+        const float reach = glm::dot(glm::abs(normal), half) + radius;
+        return glm::dot(normal, centre) + plane.w < -reach;
+    });
+}
+
+/// How the patch's normals stand to the rays from the eye to its points.
+enum class Facing { Towards, Silhouette, Away };
+
+Facing facingOf(const Patch& patch, float radius, const glm::vec3& eye) {
+    const glm::vec3 toEye = eye - patch.bounds.centre();
+    const float distance = glm::length(toEye);
+    const float reach = 0.5F * glm::length(patch.bounds.size()) + radius;
+    if (distance <= reach) return Facing::Silhouette;  // the eye is among the points
+    // The ray to any point is within `spread` of that to the centre.
+    const float spread = std::asin(reach / distance);
+    const float angle =
+        std::acos(std::clamp(glm::dot(patch.meanNormal, toEye) / distance, -1.0F, 1.0F));
+    if (angle - patch.coneRad - spread > glm::half_pi<float>()) return Facing::Away;
+    return angle + patch.coneRad + spread > glm::half_pi<float>() ? Facing::Silhouette
+                                                                  : Facing::Towards;
+}
+
+/// Distance along the view axis of the box's nearest corner, at least the near plane's.
+float nearestDepth(const scene::Box& box, const PatchView& view) {
+    const glm::vec4 row = -glm::transpose(view.viewFromModel)[2];
+    const glm::vec3 axis(row);
+    const float centre = glm::dot(axis, box.centre()) + row.w;
+    return std::max(centre - glm::dot(glm::abs(axis), 0.5F * box.size()), view.nearM);
+}
+
+std::uint32_t levelFor(const Patch& patch, std::span<const Level> levels, float depth,
+                       float targetPx, const PatchView& view) {
+    for (std::uint32_t l = 0; l < patch.levelCount; ++l) {
+        if (levels[patch.firstLevel + l].maxRadius * view.focalPx / depth <= targetPx) return l;
+    }
+    return patch.levelCount - 1;
+}
+
+SplatMode fixedMode(SplatMethod method) {
+    switch (method) {
+        case SplatMethod::Reconstruction:
+            return SplatMode::Reconstruction;
+        case SplatMethod::LowPass:
+            return SplatMode::LowPass;
+        case SplatMethod::Sprites:
+            return SplatMode::Sprite;
+        case SplatMethod::Adaptive:
+        case SplatMethod::FullEwa:
+            break;
+    }
+    return SplatMode::FullEwa;
+}
+
+}  // namespace
+
+PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx) {
+    PatchView view;
+    const float aspect = static_cast<float>(sizePx.x) / static_cast<float>(sizePx.y);
+    view.viewFromModel = glm::lookAt(camera.position, camera.target, camera.up);
+    view.clipFromView = glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM);
+    view.eyeModel = camera.position;
+    view.sizePx = sizePx;
+    view.fovRad = camera.verticalFovRad;
+    view.focalPx = 0.5F * static_cast<float>(sizePx.y) / std::tan(0.5F * camera.verticalFovRad);
+    view.nearM = camera.nearM;
+    return view;
+}
+
+SplatMode modeFor(float ratio, float cEta, const SelectionSettings& settings) {
+    if (ratio > settings.cMax) return SplatMode::Reconstruction;
+    if (cEta * ratio < settings.cMin) return SplatMode::LowPass;
+    return SplatMode::FullEwa;
+}
+
+SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Level> levels,
+                              const PatchView& view, const SelectionSettings& settings,
+                              std::vector<DrawnPatch>& drawn) {
+    drawn.clear();
+    SelectionCounts counts;
+    const std::array<glm::vec4, 6> planes = frustumPlanes(view.clipFromView * view.viewFromModel);
+    const auto cEtaOfView = static_cast<float>(cEta(static_cast<double>(view.fovRad)));
+    for (std::uint32_t p = 0; p < patches.size(); ++p) {
+        const Patch& patch = patches[p];
+        // The first level's discs are the largest.
+        const float reach = levels[patch.firstLevel].maxRadius;
+        if (settings.cullsFrustum && isOutside(planes, patch.bounds, reach)) {
+            ++counts.outside;
+            continue;
+        }
+        const Facing facing = facingOf(patch, reach, view.eyeModel);
+        if (settings.cullsCones && facing == Facing::Away) {
+            ++counts.turnedAway;
+            continue;
+        }
+        const float depth = nearestDepth(patch.bounds, view);
+        const bool isFine = facing == Facing::Silhouette ||
+                            patch.curvature > settings.curvedAbove ||
+                            patch.coneRad > settings.wideAboveRad;
+        DrawnPatch item;
+        item.patch = p;
+        item.level = patch.levelCount - 1;
+        if (settings.choosesLevels) {
+            const float target = settings.targetRadiusPx * (isFine ? 0.5F : 1.0F);
+            item.level = levelFor(patch, levels, depth, target, view);
+        }
+        const Level& level = levels[patch.firstLevel + item.level];
+        item.mode = fixedMode(settings.method);
+        if (settings.method == SplatMethod::Adaptive && facing != Facing::Silhouette) {
+            // S_proj of the level's mean radius, as it faces the eye, in pixels.
+            const glm::vec3 toEye = glm::normalize(view.eyeModel - patch.bounds.centre());
+            const float cosine = std::abs(glm::dot(patch.meanNormal, toEye));
+            const float radiusPx = level.meanRadius * view.focalPx / depth;
+            const float lowPass = settings.lowPassRadiusPx;
+            item.mode =
+                modeFor(radiusPx * radiusPx * cosine / (lowPass * lowPass), cEtaOfView, settings);
+        }
+        drawn.push_back(item);
+        ++counts.drawn;
+        counts.points += level.count;
+    }
+    return counts;
+}
+
+}  // namespace gfxrepro::point_splatting
