@@ -1,21 +1,13 @@
 // Draws patches as splats in three passes: visibility, accumulation, normalization and shading.
 #pragma once
 
+#include <array>
 #include <span>
-#include <vector>
 
-#include "runner/gl/objects.h"
 #include "runner/gl/profiler.h"
-#include "runner/gl/program.h"
-#include "techniques/point_splatting/model_file.h"
-#include "techniques/point_splatting/patch_selection.h"
+#include "techniques/point_splatting/device_points.h"
 
 namespace gfxrepro::point_splatting {
-
-enum class PointStorage {
-    Compressed,    // 8 bytes, decoded in the vertex stage
-    Uncompressed,  // 60 bytes
-};
 
 struct SplatSettings {
     PointStorage storage = PointStorage::Compressed;
@@ -25,23 +17,45 @@ struct SplatSettings {
     glm::vec3 lightDirectionView{0.3F, 0.5F, 0.8F};
 };
 
-/// A model on the device.
+/// A model on the device. Each mode has programs of its own, so that it does its own work only.
 class SplatRenderer {
   public:
     SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& model,
                   const SplatSettings& settings, glm::ivec2 sizePx);
-    /// Passes: `visibility`, `splats`, `normalization` (sprites: `sprites` alone).
+    /// Passes: `visibility`, `splats`, `normalization` (sprites: `sprites` alone). Either all
+    /// patches are drawn as sprites or none.
     void render(std::span<const DrawnPatch> drawn, const PatchView& view, gl::Profiler& profiler);
-    /// RGBA8 linear, alpha 1 where something was drawn.
+    /// RGBA8, linear. Alpha is the coverage, 1 but at edges (sprites: everywhere); the colour is
+    /// multiplied by it, as over black.
     const gl::Texture& output() const { return output_; }
-    /// Sum of the weights a pixel before normalization (R of an RGBA16F target): for tests.
-    const gl::Texture& accumulated() const { return accumulated_; }
-    std::size_t pointBytes() const;   // what holds the points on the device
-    std::size_t targetBytes() const;  // images
+    /// RGBA16F before normalization: Σ w n in view space, and Σ w in alpha. For tests.
+    const gl::Texture& accumulated() const { return normalSums_; }
+    std::size_t pointBytes() const { return points_.sizeBytes(); }  // what holds the points
+    std::size_t targetBytes() const;                                // images
 
   private:
+    /// Of one mode; ellipses are quads, the others GL points.
+    struct ModePrograms {
+        gl::Program visibility, splats;
+    };
+    void upload(std::span<const DrawnPatch> drawn);
+    void drawBatches(bool isVisibility, const PatchView& view);
+    void drawSprites(const PatchView& view);
+    void normalize(const PatchView& view);
+    void issue(const Batch& batch) const;
+    void setUp(const gl::Program& program, const PatchView& view) const;
+
     SplatSettings settings_;
-    gl::Texture accumulated_, normals_, depth_, output_;
+    glm::ivec2 sizePx_;
+    DevicePoints points_;
+    std::array<ModePrograms, 3> modes_;  // by SplatMode
+    gl::Program sprites_, normalization_;
+    gl::Texture normalSums_, colorSums_, depth_, output_;
+    gl::Framebuffer visibilityTarget_, sumTarget_, outputTarget_, spriteTarget_;
+
+    DrawList drawList_;
+    gl::Buffer quadIndices_, records_, commands_;
+    gl::VertexArray drawnArray_, noAttributes_;
 };
 
 }  // namespace gfxrepro::point_splatting

@@ -1,0 +1,73 @@
+#version 450 core
+// A corner of the parallelogram around a splat's ellipse on the screen: full EWA (Eq. 3), or with
+// RECONSTRUCTION the reconstruction filter alone. Four vertices a point; the corner is the vertex's
+// number. With VISIBILITY the parallelogram of the disc of radius r_k (not of the cutoff), which
+// overlapping discs close the surface with, at its depth plus ε, and no fragment shader.
+#include "point_splatting/decode_point.glsl"
+#include "point_splatting/splat_shape.glsl"
+#include "point_splatting/splat_view.glsl"
+
+layout(location = BOX_MIN_LOCATION) in vec4 boxMinScale;  // of the drawn patch; w: radiusScale
+layout(location = BOX_SIZE_LOCATION) in vec3 boxSize;
+
+uniform float cutoff;
+
+#ifndef VISIBILITY
+out vec2 positionInSplat;  // standard deviations
+flat out vec4 normalViewWeight;
+#ifdef COLORS
+flat out vec3 color;
+#endif
+#endif
+
+/// 1 / o_z where the splat's plane is met at `offsetPx` from its centre: linear on the screen.
+float inverseZAt(EyeSplat splat, vec2 offsetPx, float footprint) {
+    float z = splat.centre.z;
+    float slant = dot(splat.normal, splat.centre) / z;
+    // Seen edge-on the plane has no single depth; the reach bounds what 1e-4 leaves.
+    slant = slant < 0.0 ? min(slant, -1e-4) : max(slant, 1e-4);
+    float inverseZ = (1.0 + dot(splat.normal.xy, offsetPx) / (focalPx * slant)) / z;
+    float reach = cutoff * max(splat.radius, footprint);
+    return clamp(inverseZ, 1.0 / (z + reach), 1.0 / max(z - reach, nearM));
+}
+
+void main() {
+    uint index = uint(gl_VertexID) >> 2;
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1) * 2.0 - 1.0;
+    SplatPoint point = pointAt(index, boxMinScale.xyz, boxSize);
+    mat3 turn = mat3(eyeFromModel);
+    EyeSplat splat = EyeSplat((eyeFromModel * vec4(point.position, 1.0)).xyz, turn * point.tangent,
+                              turn * point.bitangent, turn * point.normal,
+                              point.radius * boxMinScale.w);
+    if (!(splat.centre.z > nearM)) {
+        gl_Position = kNowhere;
+        return;
+    }
+#ifdef RECONSTRUCTION
+    SplatShape shape = reconstructionShape(splat);
+    float footprint = 0.0;
+#else
+    SplatShape shape = fullEwaShape(splat);
+    float footprint = lowPassRadiusPx * splat.centre.z / focalPx;
+#endif
+#ifdef VISIBILITY
+    vec2 offsetPx = shape.axes * corner;
+#else
+    vec2 offsetPx = shape.axes * (cutoff * corner);
+#endif
+    float inverseZ = inverseZAt(splat, offsetPx, footprint);
+    vec2 ndc = ndcOf(splat.centre) + offsetPx / focalPx * ndcPerSlope;
+#ifdef VISIBILITY
+    gl_Position =
+        vec4(ndc, visibilityDepth(inverseZ, splat.centre, splat.radius, footprint), 1.0);
+#else
+    gl_Position = vec4(ndc, depthNdc(inverseZ), 1.0);
+    positionInSplat = cutoff * corner;
+    // Estimated normals have no certain side: all face the eye. Back to a z that points to it.
+    vec3 facing = dot(splat.normal, splat.centre) > 0.0 ? -splat.normal : splat.normal;
+    normalViewWeight = vec4(facing.xy, -facing.z, shape.weight);
+#ifdef COLORS
+    color = colorAt(index);
+#endif
+#endif
+}

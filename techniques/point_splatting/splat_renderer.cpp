@@ -1,0 +1,260 @@
+#include "techniques/point_splatting/splat_renderer.h"
+
+#include <algorithm>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::point_splatting {
+
+namespace {
+
+/// Quads that 16-bit indices reach.
+constexpr std::uint32_t kMaxRange = 1U << 14;
+/// llvmpipe keeps every primitive of a draw in memory until it is flushed.
+constexpr std::uint32_t kMaxBatch = 1U << 16;
+
+enum VertexLocation : GLuint { kBoxMinLocation = 0, kBoxSizeLocation = 1 };
+enum TextureUnit { kNormalSumUnit = 0, kColorSumUnit = 1 };
+
+/// DrawElementsIndirectCommand, or DrawArraysIndirectCommand with a word to spare.
+struct Command {
+    std::uint32_t words[5];
+};
+
+Command commandOf(const PointRange& range, bool isQuads) {
+    if (isQuads) return {{6 * range.count, 1, 0, 4 * range.first, range.record}};
+    return {{range.count, 1, range.first, range.record, 0}};
+}
+
+bool isQuads(SplatMode mode) {
+    return mode == SplatMode::FullEwa || mode == SplatMode::Reconstruction;
+}
+
+gl::Buffer quadIndices() {
+    std::vector<std::uint16_t> indices;
+    indices.reserve(std::size_t{6} * kMaxRange);
+    for (std::uint32_t quad = 0; quad < kMaxRange; ++quad) {
+        for (const std::uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U}) {
+            indices.push_back(static_cast<std::uint16_t>(4 * quad + corner));
+        }
+    }
+    return gl::Buffer::of(indices);
+}
+
+gl::Defines passDefines(const DevicePoints& points) {
+    gl::Defines defines = points.defines();
+    defines["BOX_MIN_LOCATION"] = static_cast<int>(kBoxMinLocation);
+    defines["BOX_SIZE_LOCATION"] = static_cast<int>(kBoxSizeLocation);
+    defines["NORMAL_SUM_UNIT"] = kNormalSumUnit;
+    defines["COLOR_SUM_UNIT"] = kColorSumUnit;
+    return defines;
+}
+
+gl::Program modeProgram(const gl::ShaderLibrary& shaders, const gl::Defines& common, SplatMode mode,
+                        bool isVisibility) {
+    gl::Defines defines = common;
+    if (mode == SplatMode::Reconstruction) defines["RECONSTRUCTION"] = 1;
+    if (mode == SplatMode::LowPass) defines["ROUND"] = 1;
+    if (isVisibility) defines["VISIBILITY"] = 1;
+    std::vector<std::string> files{isQuads(mode) ? "point_splatting/ellipse_splat.vert.glsl"
+                                                 : "point_splatting/round_splat.vert.glsl"};
+    if (!isVisibility) files.emplace_back("point_splatting/splat.frag.glsl");
+    return {shaders, files, defines};
+}
+
+/// Grows to hold the values, by doubling.
+template <class T>
+bool writeGrowing(gl::Buffer& buffer, const std::vector<T>& values) {
+    const std::size_t wanted = values.size() * sizeof(T);
+    const bool grows = buffer.sizeBytes() < wanted;
+    if (grows) buffer = gl::Buffer(std::max(wanted, 2 * buffer.sizeBytes()));
+    buffer.write(std::span<const T>(values));
+    return grows;
+}
+
+void bindRecords(const gl::VertexArray& array, const gl::Buffer& records) {
+    glVertexArrayVertexBuffer(array.id(), 0, records.id(), 0, sizeof(DrawnRecord));
+}
+
+gl::VertexArray drawnArray(const gl::Buffer& indices) {
+    gl::VertexArray array;
+    const GLuint id = array.id();
+    array.setIndices(indices);
+    glVertexArrayAttribFormat(id, kBoxMinLocation, 4, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribFormat(id, kBoxSizeLocation, 3, GL_FLOAT, GL_FALSE,
+                              offsetof(DrawnRecord, boxSize));
+    for (const GLuint location : {kBoxMinLocation, kBoxSizeLocation}) {
+        glVertexArrayAttribBinding(id, location, 0);
+        glEnableVertexArrayAttrib(id, location);
+    }
+    // One record an instance: a draw's base instance is its patch's record.
+    glVertexArrayBindingDivisor(id, 0, 1);
+    return array;
+}
+
+}  // namespace
+
+SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& model,
+                             const SplatSettings& settings, glm::ivec2 sizePx)
+    : settings_(settings),
+      sizePx_(sizePx),
+      points_(model, settings.storage),
+      quadIndices_(quadIndices()),
+      drawnArray_(drawnArray(quadIndices_)) {
+    settings_.lightDirectionView = glm::normalize(settings.lightDirectionView);
+    const gl::Defines defines = passDefines(points_);
+    for (const SplatMode mode :
+         {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass}) {
+        ModePrograms& programs = modes_[static_cast<std::size_t>(mode)];
+        programs.visibility = modeProgram(shaders, defines, mode, true);
+        programs.splats = modeProgram(shaders, defines, mode, false);
+    }
+    sprites_ = {
+        shaders, {"point_splatting/sprite.vert.glsl", "point_splatting/sprite.frag.glsl"}, defines};
+    normalization_ = {
+        shaders,
+        {"point_splatting/whole_image.vert.glsl", "point_splatting/normalization.frag.glsl"},
+        defines};
+
+    depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
+    normalSums_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
+    output_ = gl::Texture::make2D(GL_RGBA8, sizePx);
+    std::vector<const gl::Texture*> sums{&normalSums_};
+    if (points_.hasColors()) {
+        colorSums_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
+        sums.push_back(&colorSums_);
+    }
+    const std::array<const gl::Texture*, 1> output{&output_};
+    visibilityTarget_ = gl::Framebuffer({}, &depth_);
+    sumTarget_ = gl::Framebuffer(sums, &depth_);
+    outputTarget_ = gl::Framebuffer(output);
+    spriteTarget_ = gl::Framebuffer(output, &depth_);
+}
+
+std::size_t SplatRenderer::targetBytes() const {
+    std::size_t size = depth_.sizeBytes() + normalSums_.sizeBytes() + output_.sizeBytes();
+    if (points_.hasColors()) size += colorSums_.sizeBytes();
+    return size;
+}
+
+void SplatRenderer::upload(std::span<const DrawnPatch> drawn) {
+    drawList_.assign(points_, drawn, kMaxRange, kMaxBatch);
+    if (drawList_.ranges.empty()) return;
+    std::vector<Command> commands;
+    commands.reserve(drawList_.ranges.size());
+    for (const Batch& batch : drawList_.batches) {
+        for (std::uint32_t i = 0; i < batch.rangeCount; ++i) {
+            commands.push_back(
+                commandOf(drawList_.ranges[batch.firstRange + i], isQuads(batch.mode)));
+        }
+    }
+    writeGrowing(commands_, commands);
+    if (writeGrowing(records_, drawList_.records)) bindRecords(drawnArray_, records_);
+}
+
+void SplatRenderer::render(std::span<const DrawnPatch> drawn, const PatchView& view,
+                           gl::Profiler& profiler) {
+    GFXREPRO_ASSERT(view.sizePx == sizePx_);
+    const auto isSprite = [](const DrawnPatch& d) { return d.mode == SplatMode::Sprite; };
+    const bool isSprites = !drawn.empty() && isSprite(drawn.front());
+    GFXREPRO_ASSERT(std::all_of(drawn.begin(), drawn.end(),
+                                [&](const DrawnPatch& d) { return isSprite(d) == isSprites; }));
+    upload(drawn);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_TRUE);
+    if (isSprites) {
+        const gl::GpuScope scope(profiler, "sprites");
+        drawSprites(view);
+    } else {
+        {
+            const gl::GpuScope scope(profiler, "visibility");
+            drawBatches(true, view);
+        }
+        {
+            const gl::GpuScope scope(profiler, "splats");
+            drawBatches(false, view);
+        }
+        const gl::GpuScope scope(profiler, "normalization");
+        normalize(view);
+    }
+    glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
+    glDisable(GL_BLEND);
+    if (isVisibility) {
+        visibilityTarget_.clearDepth(1.0F);
+        visibilityTarget_.bind();
+    } else {
+        sumTarget_.clearColour(0, glm::vec4(0.0F));
+        if (points_.hasColors()) sumTarget_.clearColour(1, glm::vec4(0.0F));
+        sumTarget_.bind();
+        glDepthMask(GL_FALSE);
+        glEnable(GL_BLEND);
+        glBlendEquation(GL_FUNC_ADD);
+        glBlendFunc(GL_ONE, GL_ONE);
+    }
+    const gl::Program* inUse = nullptr;
+    for (const Batch& batch : drawList_.batches) {
+        const ModePrograms& programs = modes_[static_cast<std::size_t>(batch.mode)];
+        const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
+        if (inUse != &program) {
+            setUp(program, view);
+            inUse = &program;
+        }
+        issue(batch);
+    }
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+}
+
+void SplatRenderer::drawSprites(const PatchView& view) {
+    glDisable(GL_BLEND);
+    spriteTarget_.clearColour(0, glm::vec4(0.0F));
+    spriteTarget_.clearDepth(1.0F);
+    spriteTarget_.bind();
+    setUp(sprites_, view);
+    for (const Batch& batch : drawList_.batches) issue(batch);
+}
+
+void SplatRenderer::normalize(const PatchView& view) {
+    outputTarget_.bind();
+    glDisable(GL_DEPTH_TEST);
+    setUp(normalization_, view);
+    normalSums_.bind(kNormalSumUnit);
+    if (points_.hasColors()) colorSums_.bind(kColorSumUnit);
+    noAttributes_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void SplatRenderer::issue(const Batch& batch) const {
+    points_.bind(batch.piece);
+    drawnArray_.bind();
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
+    const auto* offset = reinterpret_cast<const void*>(batch.firstRange * sizeof(Command));
+    const auto count = static_cast<GLsizei>(batch.rangeCount);
+    if (isQuads(batch.mode)) {
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, offset, count,
+                                    sizeof(Command));
+    } else {
+        glMultiDrawArraysIndirect(GL_POINTS, offset, count, sizeof(Command));
+    }
+    glFlush();
+}
+
+void SplatRenderer::setUp(const gl::Program& program, const PatchView& view) const {
+    program.use();
+    setView(program, view);
+    const auto set = [&](const char* name, const auto& value) {
+        if (program.isActive(name)) program.set(name, value);
+    };
+    set("lowPassRadiusPx", settings_.lowPassRadiusPx);
+    set("cutoff", settings_.cutoff);
+    set("visibilityOffset", settings_.visibilityOffset);
+    set("lightDirectionView", settings_.lightDirectionView);
+}
+
+}  // namespace gfxrepro::point_splatting
