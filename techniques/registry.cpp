@@ -3,6 +3,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
+#include "techniques/point_splatting/point_splatting.h"
 #include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
@@ -16,6 +17,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
+        point_splatting::kPointSplatting,
         ray_tracing::kRayTracing,
         soft_shadows::kSoftShadows,
         template_::kTemplate,

@@ -158,6 +158,14 @@ std::string ModelFile::keyOf(const scene::PointCloud& points, const TreeSettings
     return sha256(parts);
 }
 
+ModelFile ModelFile::build(const scene::PointCloud& points, const TreeSettings& settings) {
+    const std::string key = sha256("");  // nothing looks for it
+    auto content = std::make_unique<Content>();
+    content->memory = serialized(buildModel(points, settings), key);
+    content->header = *headerOf(content->bytes(), key);
+    return ModelFile(std::move(content), true);
+}
+
 ModelFile ModelFile::openOrBuild(const std::filesystem::path& folder,
                                  const scene::PointCloud& points, const TreeSettings& settings) {
     const std::string key = keyOf(points, settings);

@@ -21,6 +21,8 @@ class ModelFile {
     /// Throws Error for no points.
     static ModelFile openOrBuild(const std::filesystem::path& folder,
                                  const scene::PointCloud& points, const TreeSettings& settings);
+    /// In memory only.
+    static ModelFile build(const scene::PointCloud& points, const TreeSettings& settings);
     /// A digest of points and settings.
     static std::string keyOf(const scene::PointCloud& points, const TreeSettings& settings);
 

@@ -98,6 +98,16 @@ PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx) {
     return view;
 }
 
+std::uint32_t arrivedLevel(const Patch& patch, std::span<const Level> levels, float share) {
+    // Counts are exact in double precision.
+    const double arrived = static_cast<double>(share) * static_cast<double>(patch.pointCount);
+    std::uint32_t level = patch.levelCount - 1;
+    while (level > 0 && static_cast<double>(levels[patch.firstLevel + level].count) > arrived) {
+        --level;
+    }
+    return level;
+}
+
 SplatMode modeFor(float ratio, float cEta, const SelectionSettings& settings) {
     if (ratio > settings.cMax) return SplatMode::Reconstruction;
     if (cEta * ratio < settings.cMin) return SplatMode::LowPass;
@@ -130,10 +140,10 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
                             patch.coneRad > settings.wideAboveRad;
         DrawnPatch item;
         item.patch = p;
-        item.level = patch.levelCount - 1;
+        item.level = arrivedLevel(patch, levels, settings.prefixShare);
         if (settings.choosesLevels) {
             const float target = settings.targetRadiusPx * (isFine ? 0.5F : 1.0F);
-            item.level = levelFor(patch, levels, depth, target, view);
+            item.level = std::min(item.level, levelFor(patch, levels, depth, target, view));
         }
         const Level& level = levels[patch.firstLevel + item.level];
         item.mode = fixedMode(settings.method);

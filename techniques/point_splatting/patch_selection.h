@@ -32,7 +32,13 @@ struct SelectionSettings {
     float targetRadiusPx = 2.0F;
     float curvedAbove = 0.02F;  // λ₀ / Σλ; a sphere's cap of 40° has it
     float wideAboveRad = 0.6F;
+    /// Of each patch's points, those that have arrived: finer levels are not drawn (Sec. 3.5:
+    /// progressive transmission).
+    float prefixShare = 1.0F;
 };
+
+/// The finest level within `share` of a patch's points, at least the first.
+std::uint32_t arrivedLevel(const Patch& patch, std::span<const Level> levels, float share);
 
 /// A pinhole view of points, in the model's space.
 struct PatchView {

@@ -1,0 +1,92 @@
+// The technique `point_splatting`: chapter 3 of zju2005. See README.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/scene/point_sampling.h"
+#include "runner/technique/technique.h"
+#include "techniques/point_splatting/model_file.h"
+#include "techniques/point_splatting/patch_selection.h"
+#include "techniques/point_splatting/splat_renderer.h"
+
+namespace gfxrepro::point_splatting {
+
+enum class Method {
+    Adaptive,  // the thesis's: a filter a patch
+    FullEwa,
+    Reconstruction,
+    LowPass,
+    Sprites,  // opaque squares, as QSplat
+};
+
+/// From where a model is seen: on a turntable, from as far as frames it.
+struct ViewSettings {
+    float distance = 1.0F;  // of the framing camera's
+    float rotationRad = 0.0F;
+    glm::vec3 lookAt{0.5F};  // in the model's box
+};
+
+struct PointSplattingParams {
+    Method method = Method::Adaptive;
+    SplatSettings splats;
+    SelectionSettings selection;
+    TreeSettings tree;
+    ViewSettings view;
+    int points = 1'000'000;  // of a surface
+    bool keepsModel = true;
+    bool measuresErrors = false;
+    bool measuresCompression = false;
+    bool measuresSpeed = false;
+    bool showsPictures = false;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit PointSplattingParams(config::Params& params);
+};
+
+/// The box seen from `settings.distance` times as far as frames it at no rotation.
+scene::Camera turntableCamera(const scene::Box& box, float aspect, const ViewSettings& settings);
+
+class PointSplatting final : public technique::Technique {
+  public:
+    explicit PointSplatting(config::Params& params);
+
+    void setup(technique::SetupContext& context) override;
+    void render(technique::FrameContext& context) override;
+    void record(technique::Recorder& recorder) override;
+
+  private:
+    /// The scene's points, or points of its surface.
+    scene::PointCloud takePoints(const scene::Scene* scene);
+    scene::Camera cameraAt(int frame, int frameCount) const;
+    /// What another way of drawing shows of the last view, `scale` times as large.
+    image::ImageF drawnWith(const SplatSettings& splats, const SelectionSettings& selection,
+                            int scale) const;
+
+    void recordModel(technique::Recorder& recorder) const;
+    void recordDrawn(technique::Recorder& recorder) const;
+    void recordCompression(technique::Recorder& recorder) const;
+    void recordSpeed(technique::Recorder& recorder);
+    void recordErrors(technique::Recorder& recorder, const image::ImageF& picture) const;
+
+    PointSplattingParams params_;
+    std::optional<SourceLocation> pointsAt_;  // of the parameter `points` where given
+    const gl::ShaderLibrary* shaders_ = nullptr;
+    glm::ivec2 sizePx_{0};
+    scene::PointRepairs repairs_;
+    std::optional<ModelFile> model_;
+    double preprocessMs_ = 0.0;
+    scene::Box framedBox_;
+    std::optional<SplatRenderer> renderer_;
+
+    PatchView view_;  // of the last frame
+    scene::Camera camera_;
+    std::vector<DrawnPatch> drawn_;
+    SelectionCounts counts_;
+};
+
+extern const technique::TechniqueInfo kPointSplatting;
+
+}  // namespace gfxrepro::point_splatting

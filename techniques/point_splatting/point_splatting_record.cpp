@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "runner/gl/gl.h"
+#include "runner/metrics/flip.h"
+#include "runner/metrics/image_error.h"
+#include "runner/metrics/statistics.h"
+#include "techniques/point_splatting/compression_errors.h"
+#include "techniques/point_splatting/point_splatting.h"
+
+namespace gfxrepro::point_splatting {
+namespace {
+
+/// Samples a pixel along each axis of the reference.
+constexpr int kSupersampling = 4;
+
+/// Blocks of `factor`² pixels averaged.
+image::ImageF averaged(const image::ImageF& image, int factor) {
+    image::ImageF result(image.width() / factor, image.height() / factor, image.channels());
+    const float weight = 1.0F / static_cast<float>(factor * factor);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < image.channels(); ++c) {
+                result.at(x / factor, y / factor, c) += weight * image.at(x, y, c);
+            }
+        }
+    }
+    return result;
+}
+
+/// As a display shows it: sRGB of 8 bits, in [0, 1].
+image::ImageF shown(const image::ImageF& linear) {
+    const image::Image8 encoded = image::toSrgb8(linear);
+    image::ImageF result(linear.width(), linear.height(), linear.channels());
+    std::transform(encoded.values().begin(), encoded.values().end(), result.values().begin(),
+                   [](std::uint8_t value) { return static_cast<float>(value) / 255.0F; });
+    return result;
+}
+
+void recordDifference(technique::Recorder& recorder, const image::ImageF& truth,
+                      const image::ImageF& picture, const char* truthName) {
+    // Equal images would have no number.
+    constexpr double kMostDb = 100.0;
+    const image::ImageF a = shown(truth), b = shown(picture);
+    recorder.metric("psnr_db", std::min(metrics::peakSignalToNoiseDb(a, b), kMostDb), "dB",
+                    truthName);
+    recorder.metric("ssim", metrics::structuralSimilarity(a, b), "1", truthName);
+    recorder.metric("flip_mean", metrics::flip(truth, picture), "1", truthName);
+}
+
+double percent(double part, double whole) {
+    return whole > 0.0 ? 100.0 * part / whole : 0.0;
+}
+
+}  // namespace
+
+void PointSplatting::record(technique::Recorder& recorder) {
+    recordModel(recorder);
+    recordDrawn(recorder);
+    if (params_.measuresCompression) recordCompression(recorder);
+    if (params_.measuresSpeed) recordSpeed(recorder);
+    if (!params_.showsPictures && !params_.measuresErrors) return;
+    const image::ImageF picture = renderer_->output().readImage(3);
+    if (params_.showsPictures) recorder.image("image", picture);
+    if (params_.measuresErrors) recordErrors(recorder, picture);
+}
+
+void PointSplatting::recordModel(technique::Recorder& recorder) const {
+    const auto count = [&](const char* name, std::size_t value, const char* unit) {
+        recorder.metric(name, static_cast<double>(value), unit);
+    };
+    const std::size_t points = model_->positions().size();
+    count("points", points, "point");
+    count("patches", model_->patches().size(), "patch");
+    count("normals_estimated", repairs_.normals, "point");
+    count("radii_estimated", repairs_.radii, "point");
+    count("points_dropped", repairs_.dropped + repairs_.duplicates, "point");
+    recorder.metric("preprocess_ms", preprocessMs_, "ms", model_->wasBuilt() ? "built" : "mapped");
+    count("point_bytes", renderer_->pointBytes(), "byte");
+    count("target_bytes", renderer_->targetBytes(), "byte");
+    recorder.metric("bytes_per_point",
+                    static_cast<double>(renderer_->pointBytes()) / static_cast<double>(points),
+                    "byte");
+    if (params_.selection.prefixShare >= 1.0F) return;
+    std::size_t arrived = 0;
+    for (const Patch& patch : model_->patches()) {
+        const std::uint32_t level =
+            arrivedLevel(patch, model_->levels(), params_.selection.prefixShare);
+        arrived += model_->levels()[patch.firstLevel + level].count;
+    }
+    count("arrived_bytes", arrived * sizeof(CompressedPoint), "byte");
+}
+
+void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
+    const auto drawn = static_cast<double>(counts_.points);
+    const auto all = static_cast<double>(model_->positions().size());
+    recorder.metric("drawn_points", drawn, "point");
+    recorder.metric("drawn_pct", percent(drawn, all), "%");
+    recorder.metric("patches_drawn", counts_.drawn, "patch");
+    recorder.metric("patches_outside", counts_.outside, "patch");
+    recorder.metric("patches_turned_away", counts_.turnedAway, "patch");
+
+    std::array<double, 4> ofMode{};
+    for (const DrawnPatch& item : drawn_) {
+        const Patch& patch = model_->patches()[item.patch];
+        ofMode[static_cast<std::size_t>(item.mode)] +=
+            model_->levels()[patch.firstLevel + item.level].count;
+    }
+    constexpr std::array<const char*, 4> kNames{"full_ewa", "reconstruction", "low_pass", "sprite"};
+    for (std::size_t mode = 0; mode < ofMode.size(); ++mode) {
+        recorder.metric("mode_pct", percent(ofMode[mode], drawn), "%", kNames[mode]);
+    }
+}
+
+void PointSplatting::recordCompression(technique::Recorder& recorder) const {
+    // Table 3.1; `bits_stored` of the tangents is their byte, shared with the quad's corner.
+    struct Attribute {
+        const char* name;
+        int before, after, stored;
+    };
+    constexpr Attribute kAttributes[] = {
+        {"position", 96, 32, 32}, {"normal", 96, 16, 16}, {"tangents", 192, 4, 8},
+        {"corner", 64, 2, 0},     {"radius", 32, 8, 8},
+    };
+    Attribute total{"total", 0, 0, 0};
+    const auto bits = [&](const Attribute& attribute) {
+        recorder.metric("bits_before", attribute.before, "bit", attribute.name);
+        recorder.metric("bits_after", attribute.after, "bit", attribute.name);
+        recorder.metric("bits_stored", attribute.stored, "bit", attribute.name);
+    };
+    for (const Attribute& attribute : kAttributes) {
+        bits(attribute);
+        total.before += attribute.before;
+        total.after += attribute.after;
+        total.stored += attribute.stored;
+    }
+    static_assert(sizeof(FullPoint) * 8 == 480 && sizeof(CompressedPoint) * 8 == 64);
+    GFXREPRO_ASSERT_EQ(total.before, static_cast<int>(8 * sizeof(FullPoint)));
+    GFXREPRO_ASSERT_EQ(total.stored, static_cast<int>(8 * sizeof(CompressedPoint)));
+    bits(total);
+
+    const CompressionErrors errors = compressionErrors(*model_);
+    const auto record = [&](const char* name, const ErrorStatistics& error, const char* unit) {
+        recorder.metric("compression_error_mean", error.mean, unit, name);
+        recorder.metric("compression_error_max", error.max, unit, name);
+        if (error.ofBound > 0.0) {
+            recorder.metric("compression_error_of_bound", error.ofBound, "1", name);
+        }
+    };
+    record("position", errors.positionPct, "% of the patch's diagonal");
+    record("normal", errors.normalDeg, "°");
+    record("tangents", errors.tangentDeg, "°");
+    record("radius", errors.radiusPct, "% of the radius");
+}
+
+void PointSplatting::recordSpeed(technique::Recorder& recorder) {
+    // Frames of their own, from selection to the finished image, without stops between the passes.
+    constexpr int kFrames = 5;
+    std::vector<double> seconds;
+    for (int i = 0; i < kFrames; ++i) {
+        gl::Profiler unread(false);
+        glFinish();
+        const auto begin = std::chrono::steady_clock::now();
+        counts_ =
+            selectPatches(model_->patches(), model_->levels(), view_, params_.selection, drawn_);
+        renderer_->render(drawn_, view_, unread);
+        glFinish();
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+        seconds.push_back(elapsed.count());
+    }
+    const double median = metrics::summarize(seconds, metrics::Statistic::Median);
+    recorder.metric("drawn_points_per_second", static_cast<double>(counts_.points) / median,
+                    "point/s");
+    recorder.metric("model_points_per_second",
+                    static_cast<double>(model_->positions().size()) / median, "point/s");
+}
+
+void PointSplatting::recordErrors(technique::Recorder& recorder,
+                                  const image::ImageF& picture) const {
+    const auto compare = [&](const image::ImageF& truth, const char* name) {
+        recordDifference(recorder, truth, picture, name);
+        if (!params_.showsPictures) return;
+        recorder.image(name, truth);
+        recorder.image(fmt::format("flip_{}", name), metrics::flipMap(truth, picture));
+    };
+    // All points, uncompressed, by full EWA at 4 × 4 samples a pixel.
+    SplatSettings splats = params_.splats;
+    splats.storage = PointStorage::Uncompressed;
+    SelectionSettings all = params_.selection;
+    all.method = SplatMethod::FullEwa;
+    all.choosesLevels = false;
+    all.prefixShare = 1.0F;
+    compare(averaged(drawnWith(splats, all, kSupersampling), kSupersampling), "supersampled");
+
+    // The same levels and bytes by full EWA.
+    if (params_.method != Method::FullEwa) {
+        SelectionSettings fullEwa = params_.selection;
+        fullEwa.method = SplatMethod::FullEwa;
+        compare(drawnWith(params_.splats, fullEwa, 1), "full_ewa");
+    }
+    // The same levels and filters of 60 bytes a point.
+    if (params_.splats.storage == PointStorage::Compressed) {
+        compare(drawnWith(splats, params_.selection, 1), "uncompressed");
+    }
+}
+
+}  // namespace gfxrepro::point_splatting
