@@ -17,6 +17,7 @@ namespace {
 struct Surfel {
     glm::vec3 positions[3], normals[3], colors[3];
     double area = 0.0;
+    bool isColored = false;
 };
 
 std::vector<Surfel> surfelsOf(const Scene& scene) {
@@ -30,8 +31,11 @@ std::vector<Surfel> surfelsOf(const Scene& scene) {
             mesh.material < 0
                 ? glm::vec3(Material{}.baseColor)
                 : glm::vec3(scene.materials[static_cast<std::size_t>(mesh.material)].baseColor);
+        const bool isColored =
+            !mesh.colors.empty() || (mesh.material >= 0 && base != glm::vec3(1.0F));
         for (const glm::uvec3& triangle : mesh.triangles) {
             Surfel surfel;
+            surfel.isColored = isColored;
             for (int k = 0; k < 3; ++k) {
                 const std::size_t v = triangle[k];
                 surfel.positions[k] =
@@ -97,7 +101,7 @@ PointCloud sampledPoints(const Scene& scene, std::size_t count) {
     points.normals.reserve(count);
     points.colors.reserve(count);
     double passed = 0.0;  // area before the surfel
-    bool isWhite = true;
+    bool isColored = false;
     for (const Surfel& surfel : surfels) {
         passed += surfel.area;
         // The last point is due by rounding even where the sum falls short of it.
@@ -109,10 +113,10 @@ PointCloud sampledPoints(const Scene& scene, std::size_t count) {
             points.positions.push_back(blended(surfel.positions, weights));
             points.normals.push_back(length > 0.0F ? normal / length : glm::vec3(0.0F));
             points.colors.push_back(blended(surfel.colors, weights));
-            isWhite = isWhite && points.colors.back() == glm::vec3(1.0F);
+            isColored = isColored || surfel.isColored;
         }
     }
-    if (isWhite) points.colors.clear();
+    if (!isColored) points.colors.clear();
     const double radius = 1.5 * std::sqrt(step / glm::pi<double>());
     points.radii.assign(points.positions.size(), static_cast<float>(radius));
     return points;

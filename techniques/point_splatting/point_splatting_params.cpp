@@ -2,6 +2,7 @@
 
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
+#include <string>
 
 #include "techniques/point_splatting/point_splatting.h"
 
@@ -27,7 +28,9 @@ constexpr config::Choice<LevelChoice> kLevels[] = {
 
 float number(config::Params& params, const char* name, float fallback,
              const config::ParamSpec& spec) {
-    return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
+    // 0.7, not what a float makes of it, goes into manifests.
+    const double written = std::stod(fmt::format("{:g}", fallback));
+    return static_cast<float>(params.getDouble(name, written, spec));
 }
 
 SplatMethod splatMethod(Method method) {
