@@ -63,9 +63,7 @@ void main() {
 #else
     gl_Position = vec4(ndc, depthNdc(inverseZ), 1.0);
     positionInSplat = cutoff * corner;
-    // Estimated normals have no certain side: all face the eye. Back to a z that points to it.
-    vec3 facing = dot(splat.normal, splat.centre) > 0.0 ? -splat.normal : splat.normal;
-    normalViewWeight = vec4(facing.xy, -facing.z, shape.weight);
+    normalViewWeight = vec4(shadedNormal(splat.normal, splat.centre), shape.weight);
 #ifdef COLORS
     color = colorAt(index);
 #endif

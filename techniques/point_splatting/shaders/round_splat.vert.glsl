@@ -41,8 +41,7 @@ void main() {
     centrePx = (0.5 * ndc + 0.5) * sizePx;
     vec3 normal = mat3(eyeFromModel) * point.normal;
     EyeSplat splat = EyeSplat(centre, vec3(0.0), vec3(0.0), normal, radius);
-    vec3 facing = dot(normal, centre) > 0.0 ? -normal : normal;
-    normalViewWeight = vec4(facing.xy, -facing.z, lowPassWeight(splat));
+    normalViewWeight = vec4(shadedNormal(normal, centre), lowPassWeight(splat));
 #ifdef COLORS
     color = colorAt(index);
 #endif

@@ -13,6 +13,14 @@ vec2 ndcOf(vec3 centre) { return centre.xy / centre.z * ndcPerSlope + ndcOffset;
 
 float depthNdc(float inverseZ) { return depthFromInverseZ.x * inverseZ + depthFromInverseZ.y; }
 
+/// A normal in view space, where z points to the eye. Surfaces seen from behind are shaded like
+/// those seen from before, but splats that only reach around a silhouette keep their side: turned
+/// over, they would be lit from the wrong one. 0.3: the slant that they may have.
+vec3 shadedNormal(vec3 normal, vec3 centre) {
+    bool isBehind = dot(normal, centre) > 0.3 * length(centre);
+    return (isBehind ? -normal : normal) * vec3(1.0, 1.0, -1.0);
+}
+
 #ifdef VISIBILITY
 uniform float visibilityOffset;  // in radii
 
