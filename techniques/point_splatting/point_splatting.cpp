@@ -71,7 +71,13 @@ void PointSplatting::setup(technique::SetupContext& context) {
         std::chrono::steady_clock::now() - begin;
     preprocessMs_ = elapsed.count();
     framedBox_ = framedBox(*model_);
-    renderer_.emplace(context.shaders, *model_, params_.splats, sizePx_);
+    if (params_.method == Method::Compute) {
+        ComputeSplatSettings settings;
+        settings.storage = params_.splats.storage;
+        splatter_.emplace(context.shaders, *model_, settings, sizePx_);
+    } else {
+        renderer_.emplace(context.shaders, *model_, params_.splats, sizePx_);
+    }
 }
 
 scene::Camera PointSplatting::cameraAt(int frame, int frameCount) const {
@@ -85,12 +91,30 @@ scene::Camera PointSplatting::cameraAt(int frame, int frameCount) const {
 void PointSplatting::render(technique::FrameContext& context) {
     camera_ = cameraAt(context.frame, context.frameCount);
     view_ = patchViewOf(camera_, sizePx_);
+    draw(context.profiler);
+}
+
+void PointSplatting::draw(gl::Profiler& profiler) {
     {
-        const gl::CpuScope scope(context.profiler, "selection");
+        const gl::CpuScope scope(profiler, "selection");
         counts_ =
             selectPatches(model_->patches(), model_->levels(), view_, params_.selection, drawn_);
     }
-    renderer_->render(drawn_, view_, context.profiler);
+    if (splatter_) {
+        splatter_->render(drawn_, view_, profiler);
+    } else {
+        renderer_->render(drawn_, view_, profiler);
+    }
+}
+
+const gl::Texture& PointSplatting::output() const {
+    return splatter_ ? splatter_->output() : renderer_->output();
+}
+std::size_t PointSplatting::pointBytes() const {
+    return splatter_ ? splatter_->pointBytes() : renderer_->pointBytes();
+}
+std::size_t PointSplatting::targetBytes() const {
+    return splatter_ ? splatter_->targetBytes() : renderer_->targetBytes();
 }
 
 image::ImageF PointSplatting::drawnWith(const SplatSettings& splats,

@@ -8,6 +8,7 @@
 
 #include "runner/scene/point_sampling.h"
 #include "runner/technique/technique.h"
+#include "techniques/point_splatting/compute_splatter.h"
 #include "techniques/point_splatting/model_file.h"
 #include "techniques/point_splatting/patch_selection.h"
 #include "techniques/point_splatting/splat_renderer.h"
@@ -20,6 +21,7 @@ enum class Method {
     Reconstruction,
     LowPass,
     Sprites,  // opaque squares, as QSplat
+    Compute,  // one pixel a point, by compute shaders
 };
 
 /// From where a model is seen: on a turntable, from as far as frames it.
@@ -61,6 +63,10 @@ class PointSplatting final : public technique::Technique {
     /// The scene's points, or points of its surface.
     scene::PointCloud takePoints(const scene::Scene* scene);
     scene::Camera cameraAt(int frame, int frameCount) const;
+    void draw(gl::Profiler& profiler);
+    const gl::Texture& output() const;
+    std::size_t pointBytes() const;
+    std::size_t targetBytes() const;
     /// What another way of drawing shows of the last view, `scale` times as large.
     image::ImageF drawnWith(const SplatSettings& splats, const SelectionSettings& selection,
                             int scale) const;
@@ -80,6 +86,7 @@ class PointSplatting final : public technique::Technique {
     double preprocessMs_ = 0.0;
     scene::Box framedBox_;
     std::optional<SplatRenderer> renderer_;
+    std::optional<ComputeSplatter> splatter_;  // in its place by Method::Compute
 
     PatchView view_;  // of the last frame
     scene::Camera camera_;

@@ -15,6 +15,7 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::Reconstruction, "reconstruction", "the reconstruction filter alone everywhere"},
     {Method::LowPass, "low_pass", "the low-pass filter alone everywhere"},
     {Method::Sprites, "sprites", "opaque squares, as QSplat"},
+    {Method::Compute, "compute", "one pixel a point, by compute shaders"},
 };
 constexpr config::Choice<PointStorage> kStorages[] = {
     {PointStorage::Compressed, "compressed", "8 bytes a point (table 3.1)"},
@@ -44,6 +45,7 @@ SplatMethod splatMethod(Method method) {
         case Method::LowPass:
             return SplatMethod::LowPass;
         case Method::Sprites:
+        case Method::Compute:
             return SplatMethod::Sprites;
     }
     return SplatMethod::Adaptive;
@@ -149,6 +151,13 @@ PointSplattingParams::PointSplattingParams(config::Params& params)
             if (!params.isGiven(name)) continue;
             throw Error(params.locationOf(name),
                         fmt::format("'{}' needs 'method: adaptive'", name));
+        }
+    }
+    if (method == Method::Compute) {
+        for (const char* name : {"low_pass_radius_px", "cutoff", "visibility_offset"}) {
+            if (!params.isGiven(name)) continue;
+            throw Error(params.locationOf(name),
+                        fmt::format("'{}' needs a method of splats", name));
         }
     }
     if (!selection.choosesLevels) {

@@ -63,7 +63,7 @@ void PointSplatting::record(technique::Recorder& recorder) {
     if (params_.measuresCompression) recordCompression(recorder);
     if (params_.measuresSpeed) recordSpeed(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
-    const image::ImageF picture = renderer_->output().readImage(3);
+    const image::ImageF picture = output().readImage(3);
     if (params_.showsPictures) recorder.image("image", picture);
     if (params_.measuresErrors) recordErrors(recorder, picture);
 }
@@ -79,11 +79,10 @@ void PointSplatting::recordModel(technique::Recorder& recorder) const {
     count("radii_estimated", repairs_.radii, "point");
     count("points_dropped", repairs_.dropped + repairs_.duplicates, "point");
     recorder.metric("preprocess_ms", preprocessMs_, "ms", model_->wasBuilt() ? "built" : "mapped");
-    count("point_bytes", renderer_->pointBytes(), "byte");
-    count("target_bytes", renderer_->targetBytes(), "byte");
+    count("point_bytes", pointBytes(), "byte");
+    count("target_bytes", targetBytes(), "byte");
     recorder.metric("bytes_per_point",
-                    static_cast<double>(renderer_->pointBytes()) / static_cast<double>(points),
-                    "byte");
+                    static_cast<double>(pointBytes()) / static_cast<double>(points), "byte");
     if (params_.selection.prefixShare >= 1.0F) return;
     std::size_t arrived = 0;
     for (const Patch& patch : model_->patches()) {
@@ -141,6 +140,11 @@ void PointSplatting::recordCompression(technique::Recorder& recorder) const {
     GFXREPRO_ASSERT_EQ(total.before, static_cast<int>(8 * sizeof(FullPoint)));
     GFXREPRO_ASSERT_EQ(total.stored, static_cast<int>(8 * sizeof(CompressedPoint)));
     bits(total);
+    // What the device holds, with the radius table and colours where there are any.
+    recorder.metric("bits_stored",
+                    8.0 * static_cast<double>(pointBytes()) /
+                        static_cast<double>(model_->positions().size()),
+                    "bit", "device");
 
     const CompressionErrors errors = compressionErrors(*model_);
     const auto record = [&](const char* name, const ErrorStatistics& error, const char* unit) {
@@ -202,7 +206,7 @@ void PointSplatting::recordErrors(technique::Recorder& recorder,
         compare(drawnWith(params_.splats, fullEwa, 1), "full_ewa");
     }
     // The same levels and filters of 60 bytes a point.
-    if (params_.splats.storage == PointStorage::Compressed) {
+    if (params_.splats.storage == PointStorage::Compressed && params_.method != Method::Compute) {
         compare(drawnWith(splats, params_.selection, 1), "uncompressed");
     }
 }
