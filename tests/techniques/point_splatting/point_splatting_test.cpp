@@ -1,0 +1,291 @@
+// The technique as a whole: parameters, metrics, images that culling, storage and modes may not
+// change, and clouds that are wrong.
+#include "techniques/point_splatting/point_splatting.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "runner/core/files.h"
+#include "runner/scene/mesh_builder.h"
+#include "techniques/point_splatting/compression_errors.h"
+#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/technique_recorder.h"
+
+namespace gfxrepro::point_splatting {
+namespace {
+
+using test::errorText;
+
+config::Params paramsOf(const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'point_splatting'");
+}
+
+/// A sphere with bumps: patches of every orientation, some curved.
+scene::Scene bumpySphere(int count) {
+    scene::Scene scene;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1.0 - 2.0 * (i + 0.5) / count, angle = 2.399963229728653 * i;
+        const double r = std::sqrt(1.0 - z * z);
+        const glm::dvec3 direction(r * std::cos(angle), r * std::sin(angle), z);
+        const double bump = 1.0 + 0.04 * std::sin(9.0 * direction.x) * std::sin(7.0 * direction.y);
+        scene.points.positions.emplace_back(bump * direction);
+        scene.points.normals.emplace_back(direction);
+        scene.points.radii.push_back(static_cast<float>(1.5 * std::sqrt(4.0 / count)));
+    }
+    return scene;
+}
+
+class PointSplattingTest : public test::GlTest {
+  protected:
+    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
+                                  int frameCount = 1) {
+        config::Params params = paramsOf(yaml);
+        const auto technique = kPointSplatting.create(params);
+        test::NoScenes scenes;
+        technique::SetupContext context{device, shaders_, scenes, scene, {96, 96}, 1, profiler_};
+        technique->setup(context);
+        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
+        technique::FrameContext frameContext{frame, frameCount, profiler_};
+        technique->render(frameContext);
+        profiler_.collect();
+        technique->render(frameContext);  // a repetition overwrites what the first has left
+        passes_.clear();
+        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+        test::MetricRecorder recorder;
+        technique->record(recorder);
+        EXPECT_TRUE(profiler_.collect().empty()) << "what is recorded is not timed by pass";
+        return recorder;
+    }
+
+    gl::ShaderLibrary shaders_{dataFolder("shaders")};
+    gl::Profiler profiler_{true};
+    std::vector<std::string> passes_;
+};
+
+/// Pixels of different colour, and the largest difference.
+std::pair<int, float> difference(const image::ImageF& a, const image::ImageF& b) {
+    int pixels = 0;
+    float most = 0.0F;
+    for (int y = 0; y < a.height(); ++y) {
+        for (int x = 0; x < a.width(); ++x) {
+            bool differs = false;
+            for (int c = 0; c < a.channels(); ++c) {
+                const float d = std::abs(a.at(x, y, c) - b.at(x, y, c));
+                differs = differs || d > 0.0F;
+                most = std::max(most, d);
+            }
+            pixels += differs ? 1 : 0;
+        }
+    }
+    return {pixels, most};
+}
+
+int coveredPixels(const image::ImageF& image) {
+    return difference(image, image::ImageF(image.width(), image.height(), image.channels())).first;
+}
+
+TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = paramsOf(yaml);
+            PointSplatting technique(params);
+        });
+    };
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("{method: full_ewa, c_min: 0.1}"),
+              "case.yaml:1:27: 'c_min' needs 'method: adaptive'");
+    EXPECT_EQ(message("{level: all, target_radius_px: 3}"),
+              "case.yaml:1:32: 'target_radius_px' needs 'level: by_size'");
+    EXPECT_EQ(message("{method: compute, cutoff: 3}"),
+              "case.yaml:1:27: 'cutoff' needs a method of splats");
+    EXPECT_EQ(message("{c_min: 4}"), "case.yaml:1:9: c_min 4 is above c_max 3");
+    EXPECT_EQ(message("{patch_points_max: 10}"),
+              "case.yaml:1:1: patch_points_min 256 is above patch_points_max 10");
+    EXPECT_EQ(message("{distance: 0}"),
+              "case.yaml:1:12: technique 'point_splatting': distance is 0; allowed: 0.01 … 1000 "
+              "of the framing distance");
+    EXPECT_EQ(message("{method: splats}"),
+              "case.yaml:1:10: technique 'point_splatting': method is 'splats'; allowed: adaptive "
+              "| full_ewa | reconstruction | low_pass | sprites | compute");
+    EXPECT_EQ(message("{storge: compressed}"),
+              "case.yaml:1:2: technique 'point_splatting': unknown parameter 'storge'; did you "
+              "mean 'storage'?");
+}
+
+TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {
+    const scene::Scene scene = bumpySphere(20000);
+    for (const char* method :
+         {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites", "compute"}) {
+        SCOPED_TRACE(method);
+        const test::MetricRecorder recorder =
+            recorded(fmt::format("{{method: {}, cache: false, errors: true, pictures: true, "
+                                 "compression_errors: true, points_per_second: true}}",
+                                 method),
+                     &scene);
+        const auto& metrics = recorder.metrics;
+        EXPECT_EQ(metrics.at("points"), 20000.0);
+        EXPECT_GT(metrics.at("drawn_points"), 1000.0);
+        EXPECT_NEAR(metrics.at("drawn_pct"), metrics.at("drawn_points") / 200.0, 1e-9);
+        EXPECT_NEAR(metrics.at("mode_pct/full_ewa") + metrics.at("mode_pct/reconstruction") +
+                        metrics.at("mode_pct/low_pass") + metrics.at("mode_pct/sprite"),
+                    100.0, 1e-9);
+        EXPECT_LT(metrics.at("bytes_per_point"), 8.1);
+        EXPECT_GT(metrics.at("psnr_db/supersampled"), 15.0);
+        EXPECT_EQ(metrics.count("preprocess_ms/built"), 1U);
+        EXPECT_GT(metrics.at("drawn_points_per_second"), 0.0);
+        EXPECT_GT(coveredPixels(recorder.images.at("image")), 1000);
+        const bool isSplat = std::string(method) != "sprites";
+        const std::vector<std::string> expected =
+            isSplat ? std::vector<std::string>{"selection", "visibility", "splats", "normalization"}
+                    : std::vector<std::string>{"selection", "sprites"};
+        EXPECT_EQ(passes_, expected);
+    }
+}
+
+TEST_F(PointSplattingTest, CullingDropsNothingThatIsVisible) {
+    const scene::Scene scene = bumpySphere(20000);
+    double culled = 0.0;
+    for (const float distance : {0.5F, 1.0F, 3.0F}) {
+        for (int frame = 0; frame < 4; ++frame) {
+            SCOPED_TRACE(fmt::format("distance {}, frame {}", distance, frame));
+            const std::string yaml =
+                fmt::format("cache: false, pictures: true, distance: {}", distance);
+            const test::MetricRecorder with =
+                recorded(fmt::format("{{{}}}", yaml), &scene, frame, 4);
+            const test::MetricRecorder without =
+                recorded(fmt::format("{{{}, cull_frustum: false, cull_cones: false}}", yaml),
+                         &scene, frame, 4);
+            EXPECT_EQ(difference(with.images.at("image"), without.images.at("image")),
+                      std::pair(0, 0.0F));
+            EXPECT_EQ(without.metrics.at("patches_drawn"), without.metrics.at("patches"));
+            culled += with.metrics.at("patches_outside") + with.metrics.at("patches_turned_away");
+        }
+    }
+    EXPECT_GT(culled, 100.0);
+}
+
+TEST_F(PointSplattingTest, CompressionAndModesHardlyShow) {
+    const scene::Scene scene = bumpySphere(40000);
+    const test::MetricRecorder recorder =
+        recorded("{cache: false, errors: true, compression_errors: true}", &scene);
+    // A position is off by at most 1/4096 of a patch and a normal by 0.8°, which shading shows as
+    // half a level of 255 on the average; 35 dB would be five levels.
+    EXPECT_GT(recorder.metrics.at("psnr_db/uncompressed"), 40.0);
+    EXPECT_GE(recorder.metrics.at("psnr_db/full_ewa"), 40.0);
+    EXPECT_LT(recorder.metrics.at("compression_error_of_bound/position"), 1.1);
+    EXPECT_LT(recorder.metrics.at("compression_error_of_bound/normal"), 1.01);
+    EXPECT_GT(recorder.metrics.at("compression_error_of_bound/position"), 0.9);
+}
+
+TEST_F(PointSplattingTest, MorePointsArriveAndShowMore) {
+    const scene::Scene scene = bumpySphere(20000);
+    double formerBytes = 0.0, formerPsnr = 0.0;
+    for (const float share : {0.01F, 0.1F, 0.9F}) {
+        const test::MetricRecorder recorder = recorded(
+            fmt::format("{{cache: false, errors: true, progressive_share: {}}}", share), &scene);
+        EXPECT_GT(recorder.metrics.at("arrived_bytes"), formerBytes);
+        EXPECT_LE(recorder.metrics.at("arrived_bytes"),
+                  static_cast<double>(share) * 160000.0 + 8.0 * recorder.metrics.at("patches"));
+        EXPECT_GE(recorder.metrics.at("psnr_db/supersampled"), formerPsnr);
+        formerBytes = recorder.metrics.at("arrived_bytes");
+        formerPsnr = recorder.metrics.at("psnr_db/supersampled");
+    }
+}
+
+TEST_F(PointSplattingTest, SurfacesAreSampled) {
+    scene::MeshBuilder builder;
+    builder.addBox({0, 0, 0}, {1, 1, 1});
+    const scene::Scene scene = scene::sceneOf(builder.take("box", -1));
+    EXPECT_EQ(recorded("{cache: false, points: 3000}", &scene).metrics.at("points"), 3000.0);
+    const scene::Scene cloud = bumpySphere(100);
+    EXPECT_EQ(errorText([&] { recorded("{cache: false, points: 3000}", &cloud); }),
+              "case.yaml:1:24: 'points' needs a scene without points of its own");
+}
+
+TEST_F(PointSplattingTest, CacheIsTakenAndGivesTheSameImage) {
+    ASSERT_EQ(setenv("XDG_CACHE_HOME", folder.path().c_str(), 1), 0);
+    const scene::Scene scene = bumpySphere(5000);
+    const test::MetricRecorder first = recorded("{pictures: true}", &scene);
+    const test::MetricRecorder second = recorded("{pictures: true}", &scene);
+    EXPECT_EQ(first.metrics.count("preprocess_ms/built"), 1U);
+    EXPECT_EQ(second.metrics.count("preprocess_ms/mapped"), 1U);
+    EXPECT_EQ(difference(first.images.at("image"), second.images.at("image")), std::pair(0, 0.0F));
+    EXPECT_FALSE(std::filesystem::is_empty(folder.path() / "gfxrepro" / "points"));
+}
+
+TEST_F(PointSplattingTest, RepairsBadPointsAndSaysSo) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    scene::Scene scene = bumpySphere(3000);
+    scene.points.normals[3] = glm::vec3(nan);
+    scene.points.normals[4] = glm::vec3(0.0F);
+    scene.points.radii[5] = 0.0F;
+    scene.points.positions[6].y = nan;
+    scene.points.positions[7] = scene.points.positions[8];
+    const auto metrics = recorded("{cache: false}", &scene).metrics;
+    EXPECT_EQ(metrics.at("normals_estimated"), 2.0);
+    EXPECT_EQ(metrics.at("radii_estimated"), 1.0);
+    EXPECT_EQ(metrics.at("points_dropped"), 2.0);
+    EXPECT_EQ(metrics.at("points"), 2998.0);
+}
+
+TEST_F(PointSplattingTest, DrawsOnePointAndManyAtOnePlace) {
+    scene::Scene one;
+    one.points.positions = {{1, 2, 3}};
+    scene::Scene equal;
+    equal.points.positions.assign(500, {1, 2, 3});
+    for (const char* method :
+         {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites", "compute"}) {
+        SCOPED_TRACE(method);
+        const std::string yaml = fmt::format(
+            "{{method: {}, cache: false, pictures: true, errors: true, "
+            "compression_errors: true}}",
+            method);
+        const test::MetricRecorder single = recorded(yaml, &one);
+        EXPECT_EQ(single.metrics.at("points"), 1.0);
+        EXPECT_GT(coveredPixels(single.images.at("image")), 0);
+        const test::MetricRecorder many = recorded(yaml, &equal);
+        EXPECT_EQ(many.metrics.at("points_dropped"), 499.0);
+        EXPECT_EQ(difference(single.images.at("image"), many.images.at("image")),
+                  std::pair(0, 0.0F));
+    }
+}
+
+TEST_F(PointSplattingTest, RefusesScenesWithoutPoints) {
+    const auto message = [&](const scene::Scene* scene) {
+        return errorText([&] { recorded("{cache: false}", scene); });
+    };
+    EXPECT_EQ(message(nullptr), "technique 'point_splatting' needs a scene");
+    scene::Scene empty;
+    EXPECT_EQ(message(&empty),
+              "technique 'point_splatting' needs a scene with points or triangles");
+    empty.points.positions.assign(4, glm::vec3(std::numeric_limits<float>::infinity()));
+    EXPECT_EQ(message(&empty), "no point with a finite position");
+}
+
+TEST(TurntableCamera, HoldsTheBoxFromEverySide) {
+    const scene::Box box{{-1, 0, 2}, {3, 1, 4}};
+    for (const float rotation : {0.0F, 1.0F, 3.0F, 5.0F}) {
+        const scene::Camera camera = turntableCamera(box, 1.0F, {1.0F, rotation, glm::vec3(0.5F)});
+        EXPECT_EQ(camera.target, box.centre());
+        const float distance = glm::length(camera.position - camera.target);
+        EXPECT_NEAR(distance, glm::length(scene::framingCamera(box, 1.0F).position - box.centre()),
+                    1e-4F * distance);
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::vec3 at((corner & 1) != 0 ? box.min.x : box.max.x,
+                               (corner & 2) != 0 ? box.min.y : box.max.y,
+                               (corner & 4) != 0 ? box.min.z : box.max.z);
+            const float depth =
+                glm::dot(at - camera.position, glm::normalize(camera.target - camera.position));
+            EXPECT_GT(depth, camera.nearM);
+            EXPECT_LT(depth, camera.farM);
+        }
+    }
+    const scene::Camera moved = turntableCamera(box, 1.0F, {0.1F, 0.0F, {0, 0, 1}});
+    EXPECT_EQ(moved.target, glm::vec3(-1, 0, 4));
+    EXPECT_GT(moved.nearM, 0.0F);
+}
+
+}  // namespace
+}  // namespace gfxrepro::point_splatting
