@@ -257,6 +257,19 @@ TEST_F(SplatTest, NothingDegenerateBreaksASum) {
     }
 }
 
+TEST_F(SplatTest, SplatsTurnedAwayAreNotDrawn) {
+    const PatchView view = viewFrom(3.0F, kSize);
+    for (const SplatMode mode :
+         {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass, SplatMode::Sprite}) {
+        const auto coveredAt = [&](float turnRad) {
+            return coveredPixels(renderModel(modelOf(sheet(40, 0.5F, 0.0F, turnRad)), mode, view));
+        };
+        EXPECT_GT(coveredAt(1.4F), 0);
+        EXPECT_EQ(coveredAt(2.0F), 0);
+        EXPECT_EQ(coveredAt(3.1F), 0);
+    }
+}
+
 TEST_F(SplatTest, NothingDrawnIsAnEmptyPicture) {
     const ModelFile model = modelOf(sphere(500));
     const PatchView view = viewFrom(4.0F, kSize);
