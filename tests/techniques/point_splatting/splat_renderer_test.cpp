@@ -200,7 +200,7 @@ TEST_F(SplatTest, EdgeOnSplatsStayAPixelWide) {
     const PatchView view = viewFrom(3.0F, kSize);
     const float radius = 10.0F * 3.0F / view.focalPx;
     const ModelFile model =
-        modelOf(onePoint({0.5F * 3.0F / view.focalPx, 0.0F, 0.0F}, {1, 0, 0}, radius));
+        modelOf(onePoint({0.8F * 3.0F / view.focalPx, 0.0F, 0.0F}, {1, 0, 0}, radius));
     const Picture picture = renderModel(model, SplatMode::Reconstruction, view,
                                         {.storage = PointStorage::Uncompressed});
     int rows = 0;
@@ -209,7 +209,8 @@ TEST_F(SplatTest, EdgeOnSplatsStayAPixelWide) {
         for (int x = 0; x < kSize.x; ++x) isCovered = isCovered || picture.at(x, y).a > 0;
         rows += isCovered ? 1 : 0;
     }
-    EXPECT_GE(rows, 38);  // of 40
+    // 0.3 pixels from their centres: reached by 32 of the ellipse's 40 rows.
+    EXPECT_NEAR(rows, 32, 2);
 }
 
 TEST_F(SplatTest, NothingDegenerateBreaksASum) {
