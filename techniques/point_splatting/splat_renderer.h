@@ -18,6 +18,7 @@ struct SplatSettings {
 };
 
 /// A model on the device. Each mode has programs of its own, so that it does its own work only.
+/// Splats turned away from the eye are not drawn.
 class SplatRenderer {
   public:
     SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& model,

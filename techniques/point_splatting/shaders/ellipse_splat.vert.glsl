@@ -1,8 +1,8 @@
 #version 450 core
 // A corner of the parallelogram around a splat's ellipse on the screen: full EWA (Eq. 3), or with
 // RECONSTRUCTION the reconstruction filter alone. Four vertices a point; the corner is the vertex's
-// number. With VISIBILITY the parallelogram of the disc of radius r_k (not of the cutoff), which
-// overlapping discs close the surface with, at its depth plus ε, and no fragment shader.
+// number. With VISIBILITY the parallelogram within the ellipse, at the splat's depth plus ε and
+// without a fragment shader: where it hides what lies behind, the splat itself has weight.
 #include "point_splatting/decode_point.glsl"
 #include "point_splatting/splat_shape.glsl"
 #include "point_splatting/splat_view.glsl"
@@ -39,7 +39,7 @@ void main() {
     EyeSplat splat = EyeSplat((eyeFromModel * vec4(point.position, 1.0)).xyz, turn * point.tangent,
                               turn * point.bitangent, turn * point.normal,
                               point.radius * boxMinScale.w);
-    if (!(splat.centre.z > nearM)) {
+    if (!(splat.centre.z > nearM) || isTurnedAway(splat.normal, splat.centre)) {
         gl_Position = kNowhere;
         return;
     }
@@ -51,7 +51,7 @@ void main() {
     float footprint = lowPassRadiusPx * splat.centre.z / focalPx;
 #endif
 #ifdef VISIBILITY
-    vec2 offsetPx = shape.axes * corner;
+    vec2 offsetPx = shape.axes * (cutoff * kInscribed * corner);
 #else
     vec2 offsetPx = shape.axes * (cutoff * corner);
 #endif
@@ -63,7 +63,7 @@ void main() {
 #else
     gl_Position = vec4(ndc, depthNdc(inverseZ), 1.0);
     positionInSplat = cutoff * corner;
-    normalViewWeight = vec4(shadedNormal(splat.normal, splat.centre), shape.weight);
+    normalViewWeight = vec4(viewOf(splat.normal), shape.weight);
 #ifdef COLORS
     color = colorAt(index);
 #endif

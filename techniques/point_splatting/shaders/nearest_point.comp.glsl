@@ -10,7 +10,8 @@ void main() {
     for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += uint(GROUP_SIZE)) {
         SplatPoint point = pointAt(chunk.first + i, chunk.boxMin.xyz, chunk.boxSize.xyz);
         vec3 centre = (eyeFromModel * vec4(point.position, 1.0)).xyz;
-        int pixel = pixelOf(centre);
+        vec3 normal = mat3(eyeFromModel) * point.normal;
+        int pixel = pixelOf(centre, normal);
         if (pixel == kOutside) continue;
         atomicMin(pixels[pixel * PIXEL_WORDS], floatBitsToUint(centre.z));
     }

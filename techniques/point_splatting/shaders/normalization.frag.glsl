@@ -12,9 +12,7 @@ layout(location = 0) out vec4 color;
 uniform vec2 slopePerPx;  // the view ray of gl_FragCoord: (slopePerPx · xy + slopeAtZero, −1)
 uniform vec2 slopeAtZero;
 
-// Discs that overlap leave every place of the surface within one of them, whose weight there is at
-// least e^−½: below that is the antialiased edge, or a lone small point.
-const float kCovered = 0.60653066;
+uniform float cutoff;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -29,6 +27,8 @@ void main() {
     vec3 surface = kGrey;
 #endif
     vec3 toEye = normalize(vec3(-(slopePerPx * gl_FragCoord.xy + slopeAtZero), 1.0));
-    float coverage = min(sum.a / kCovered, 1.0);
+    // The least weight within a cutoff counts as covered: what the visibility pass hides behind a
+    // splat must not show as the background's black, and below it lies the antialiased outline.
+    float coverage = min(sum.a / exp(-0.5 * cutoff * cutoff), 1.0);
     color = vec4(clamp(shaded(surface, normal, toEye), 0.0, 1.0) * coverage, coverage);
 }

@@ -16,9 +16,9 @@ uniform vec2 sizePx;
 
 const int kOutside = -1;
 
-/// The number of the pixel, rows from the bottom; kOutside for points beyond the view.
-int pixelOf(vec3 centre) {
-    if (!(centre.z > nearM)) return kOutside;
+/// The number of the pixel, rows from the bottom; kOutside for points beyond the view or turned away.
+int pixelOf(vec3 centre, vec3 normal) {
+    if (!(centre.z > nearM) || isTurnedAway(normal, centre)) return kOutside;
     vec2 position = (0.5 * ndcOf(centre) + 0.5) * sizePx;
     if (any(lessThan(position, vec2(0.0))) || any(greaterThanEqual(position, sizePx))) {
         return kOutside;

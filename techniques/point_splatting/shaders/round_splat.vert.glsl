@@ -1,7 +1,7 @@
 #version 450 core
 // The low-pass filter alone, H = V^h: every splat is the same circle on the screen, and a GL point.
-// One vertex a point, no axes. With VISIBILITY the square of r_h at the centre's depth plus ε, for
-// which no normal is decoded.
+// One vertex a point, no axes. With VISIBILITY the square within the circle, at the centre's depth
+// plus ε.
 #include "point_splatting/decode_point.glsl"
 #include "point_splatting/splat_shape.glsl"
 #include "point_splatting/splat_view.glsl"
@@ -9,8 +9,8 @@
 layout(location = BOX_MIN_LOCATION) in vec4 boxMinScale;  // of the drawn patch; w: radiusScale
 layout(location = BOX_SIZE_LOCATION) in vec3 boxSize;
 
-#ifndef VISIBILITY
 uniform float cutoff;
+#ifndef VISIBILITY
 uniform vec2 sizePx;
 
 flat out vec2 centrePx;
@@ -29,19 +29,24 @@ void main() {
         gl_Position = kNowhere;
         return;
     }
+    vec3 normal = mat3(eyeFromModel) * point.normal;
+    if (isTurnedAway(normal, centre)) {
+        gl_Position = kNowhere;
+        return;
+    }
     vec2 ndc = ndcOf(centre);
     float radius = point.radius * boxMinScale.w;
 #ifdef VISIBILITY
     float footprint = lowPassRadiusPx * centre.z / focalPx;
     gl_Position = vec4(ndc, visibilityDepth(1.0 / centre.z, centre, radius, footprint), 1.0);
-    gl_PointSize = max(2.0 * lowPassRadiusPx, 1.0);  // at least one pixel's centre
+    // At least one pixel's centre.
+    gl_PointSize = max(2.0 * kInscribed * cutoff * lowPassRadiusPx, 1.0);
 #else
     gl_Position = vec4(ndc, depthNdc(1.0 / centre.z), 1.0);
     gl_PointSize = 2.0 * cutoff * lowPassRadiusPx;
     centrePx = (0.5 * ndc + 0.5) * sizePx;
-    vec3 normal = mat3(eyeFromModel) * point.normal;
     EyeSplat splat = EyeSplat(centre, vec3(0.0), vec3(0.0), normal, radius);
-    normalViewWeight = vec4(shadedNormal(normal, centre), lowPassWeight(splat));
+    normalViewWeight = vec4(viewOf(normal), lowPassWeight(splat));
 #ifdef COLORS
     color = colorAt(index);
 #endif

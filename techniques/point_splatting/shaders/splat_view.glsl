@@ -13,15 +13,17 @@ vec2 ndcOf(vec3 centre) { return centre.xy / centre.z * ndcPerSlope + ndcOffset;
 
 float depthNdc(float inverseZ) { return depthFromInverseZ.x * inverseZ + depthFromInverseZ.y; }
 
-/// A normal in view space, where z points to the eye. Surfaces seen from behind are shaded like
-/// those seen from before, but splats that only reach around a silhouette keep their side: turned
-/// over, they would be lit from the wrong one. 0.3: the slant that they may have.
-vec3 shadedNormal(vec3 normal, vec3 centre) {
-    bool isBehind = dot(normal, centre) > 0.3 * length(centre);
-    return (isBehind ? -normal : normal) * vec3(1.0, 1.0, -1.0);
-}
+// Splats turned away are not drawn, as patches are not that the selection culls: beyond an outline
+// their far ends would show, lit from the wrong side. 0.1: those that reach around it stay.
+bool isTurnedAway(vec3 normal, vec3 centre) { return dot(normal, centre) > 0.1 * length(centre); }
+
+/// Of an eye-space direction: in view space z points to the eye.
+vec3 viewOf(vec3 direction) { return direction * vec3(1.0, 1.0, -1.0); }
 
 #ifdef VISIBILITY
+// Half the side of the square within the unit circle.
+const float kInscribed = 0.70710678;
+
 uniform float visibilityOffset;  // in radii
 
 // A splat's own fragments must pass the test against the depth that it left itself: the two passes

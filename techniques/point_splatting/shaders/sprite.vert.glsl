@@ -20,15 +20,19 @@ void main() {
         gl_Position = kNowhere;
         return;
     }
+    vec3 normal = mat3(eyeFromModel) * point.normal;
+    if (isTurnedAway(normal, centre)) {
+        gl_Position = kNowhere;
+        return;
+    }
     gl_Position = vec4(ndcOf(centre), depthNdc(1.0 / centre.z), 1.0);
     // A square of less than a pixel would cover no centre of one.
     gl_PointSize = max(2.0 * focalPx * point.radius * boxMinScale.w / centre.z, 1.0);
-    vec3 normal = shadedNormal(mat3(eyeFromModel) * point.normal, centre);
 #ifdef COLORS
     vec3 surface = colorAt(index);
 #else
     vec3 surface = kGrey;
 #endif
     vec3 toEye = normalize(vec3(-centre.xy, centre.z));
-    color = shaded(surface, normal, toEye);
+    color = shaded(surface, viewOf(normal), toEye);
 }

@@ -18,12 +18,13 @@ void main() {
         uint index = chunk.first + i;
         SplatPoint point = pointAt(index, chunk.boxMin.xyz, chunk.boxSize.xyz);
         vec3 centre = (eyeFromModel * vec4(point.position, 1.0)).xyz;
-        int pixel = pixelOf(centre);
+        vec3 normal = mat3(eyeFromModel) * point.normal;
+        int pixel = pixelOf(centre, normal);
         if (pixel == kOutside) continue;
         int at = pixel * PIXEL_WORDS;
         if (centre.z > intBitsToFloat(pixels[at]) * (1.0 + depthTolerance)) continue;
         atomicAdd(pixels[at + 1], 1);
-        add(at + 2, shadedNormal(mat3(eyeFromModel) * point.normal, centre));
+        add(at + 2, viewOf(normal));
 #ifdef COLORS
         add(at + 5, colorAt(index));
 #endif

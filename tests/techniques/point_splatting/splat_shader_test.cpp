@@ -1,0 +1,169 @@
+// Decoding and screen covariance on the device against the host.
+#include <filesystem>
+
+#include "runner/core/random.h"
+#include "techniques/point_splatting/splat_math.h"
+#include "tests/techniques/point_splatting/splat_fixture.h"
+
+namespace gfxrepro::point_splatting {
+namespace {
+
+constexpr unsigned kOutBinding = 5, kInBinding = 6;
+
+class SplatShaderTest : public SplatTest {
+  protected:
+    SplatShaderTest() {
+        std::filesystem::copy(dataFolder("shaders") / "point_splatting",
+                              folder.path() / "point_splatting");
+    }
+};
+
+glm::vec3 randomDirection(Random& random) {
+    for (;;) {
+        const glm::vec3 v(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
+                          random.uniform(-1.0F, 1.0F));
+        if (glm::length(v) > 0.1F && glm::length(v) < 1.0F) return glm::normalize(v);
+    }
+}
+
+TEST_F(SplatShaderTest, DecodesAsTheHostDoes) {
+    constexpr int kCount = 4096;
+    Random random(3);
+    scene::Box box;
+    box.min = {-1.0F, 2.0F, -7.0F};
+    box.max = {3.0F, 2.5F, 5.0F};
+    std::vector<float> table;
+    for (int i = 0; i < 256; ++i) table.push_back(0.01F * static_cast<float>(i + 1));
+    std::vector<CompressedPoint> points;
+    for (int i = 0; i < kCount; ++i) {
+        const glm::vec3 share(random.uniform(), random.uniform(), random.uniform());
+        points.push_back(compressed(glm::mix(box.min, box.max, share), randomDirection(random),
+                                    random.uniform(0.01F, 2.56F), box, table));
+    }
+    const gl::Program decode =
+        program({{"decode.comp.glsl", R"(#version 450 core
+#include "point_splatting/decode_point.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = OUT_BINDING) writeonly buffer Out { vec4 result[]; };
+uniform vec3 boxMin;
+uniform vec3 boxSize;
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    SplatPoint p = pointAt(i, boxMin, boxSize);
+    result[4u * i] = vec4(p.position, p.radius);
+    result[4u * i + 1u] = vec4(p.normal, 0.0);
+    result[4u * i + 2u] = vec4(p.tangent, 0.0);
+    result[4u * i + 3u] = vec4(p.bitangent, 0.0);
+}
+)"}},
+                {{"POINT_BINDING", 0}, {"RADIUS_BINDING", 1}, {"OUT_BINDING", 5}});
+    const gl::Buffer pointBuffer = gl::Buffer::of(points), radii = gl::Buffer::of(table);
+    const gl::Buffer out(kCount * 4 * sizeof(glm::vec4));
+    pointBuffer.bindStorage(0);
+    radii.bindStorage(1);
+    out.bindStorage(kOutBinding);
+    decode.use();
+    decode.set("boxMin", box.min);
+    decode.set("boxSize", box.size());
+    glDispatchCompute(kCount / 64, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    const auto found = out.read<glm::vec4>(kCount * 4);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const DecodedPoint expected = decoded(points[i], box, table);
+        // 2e-6: a few roundings of coordinates up to 12.
+        ASSERT_LT(glm::distance(glm::vec3(found[4 * i]), expected.position), 2e-6F);
+        ASSERT_EQ(found[4 * i].w, expected.radius);
+        // 2e-5: sines and cosines of llvmpipe err by up to 1e-6; GLSL asks for 2⁻¹¹ only. The
+        // tangent divides them by at least √⅔.
+        ASSERT_LT(glm::distance(glm::vec3(found[4 * i + 1]), expected.normal), 2e-5F);
+        ASSERT_LT(glm::distance(glm::vec3(found[4 * i + 2]), expected.tangent), 2e-5F);
+        ASSERT_LT(glm::distance(glm::vec3(found[4 * i + 3]), expected.bitangent), 2e-5F);
+    }
+}
+
+struct Splat {  // as the shader below reads it
+    glm::vec4 centreRadius, tangent, bitangent, normal;
+};
+
+TEST_F(SplatShaderTest, ScreenCovarianceIsThatOfTheHost) {
+    constexpr int kCount = 4096;
+    constexpr float kFocalPx = 700.0F, kLowPassPx = 0.7F;
+    Random random(11);
+    std::vector<Splat> splats;
+    for (int i = 0; i < kCount; ++i) {
+        const glm::vec3 normal = randomDirection(random);
+        const glm::vec3 tangent = tangentOf(normal, tangentChoice(normal));
+        const float z = random.uniform(0.5F, 20.0F);
+        const float radius = std::exp(random.uniform(-8.0F, 0.0F));
+        splats.push_back(
+            {{random.uniform(-0.6F, 0.6F) * z, random.uniform(-0.6F, 0.6F) * z, z, radius},
+             glm::vec4(tangent, 0.0F),
+             glm::vec4(glm::cross(normal, tangent), 0.0F),
+             glm::vec4(normal, 0.0F)});
+    }
+    const gl::Program shapes = program({{"shapes.comp.glsl", R"(#version 450 core
+#include "point_splatting/splat_shape.glsl"
+layout(local_size_x = 64) in;
+struct Splat { vec4 centreRadius, tangent, bitangent, normal; };
+layout(std430, binding = IN_BINDING) readonly buffer In { Splat splats[]; };
+layout(std430, binding = OUT_BINDING) writeonly buffer Out { vec4 result[]; };
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    Splat s = splats[i];
+    EyeSplat splat = EyeSplat(s.centreRadius.xyz, s.tangent.xyz, s.bitangent.xyz, s.normal.xyz,
+                              s.centreRadius.w);
+    SplatShape full = fullEwaShape(splat);
+    SplatShape reconstruction = reconstructionShape(splat);
+    mat2 h = full.axes * transpose(full.axes);
+    mat2 r = reconstruction.axes * transpose(reconstruction.axes);
+    result[2u * i] = vec4(h[0][0], h[0][1], h[1][1], full.weight);
+    result[2u * i + 1u] = vec4(r[0][0], r[0][1], r[1][1], lowPassWeight(splat));
+}
+)"}},
+                                       {{"IN_BINDING", 6}, {"OUT_BINDING", 5}});
+    const gl::Buffer in = gl::Buffer::of(splats);
+    const gl::Buffer out(kCount * 2 * sizeof(glm::vec4));
+    in.bindStorage(kInBinding);
+    out.bindStorage(kOutBinding);
+    shapes.use();
+    shapes.set("focalPx", kFocalPx);
+    shapes.set("lowPassRadiusPx", kLowPassPx);
+    shapes.set("slopeLimit", glm::vec2(10.0F));
+    glDispatchCompute(kCount / 64, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    const auto found = out.read<glm::vec4>(kCount * 2);
+    int thick = 0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const EyeSplat splat{glm::dvec3(splats[i].centreRadius), glm::dvec3(splats[i].tangent),
+                             glm::dvec3(splats[i].bitangent),
+                             static_cast<double>(splats[i].centreRadius.w)};
+        const auto expectMatrix = [&](const glm::vec4& is, const glm::dmat2& should) {
+            // 1e-5 of the trace: some dozen roundings of 6e-8, slopes up to 0.85.
+            const double tolerance = 1e-5 * (should[0][0] + should[1][1]);
+            ASSERT_NEAR(static_cast<double>(is.x), should[0][0], tolerance);
+            ASSERT_NEAR(static_cast<double>(is.y), should[0][1], tolerance);
+            ASSERT_NEAR(static_cast<double>(is.z), should[1][1], tolerance);
+        };
+        const double focal = static_cast<double>(kFocalPx);
+        const double low = static_cast<double>(kLowPassPx);
+        const glm::dmat2 full = ewaCovariance(splat, focal, low);
+        const glm::dmat2 reconstruction = ewaCovariance(splat, focal, 0.0);
+        expectMatrix(found[2 * i], full);
+        const double radiusPx = focal * splat.radius;
+        const double determinant = radiusPx * radiusPx * jacobianDeterminant(splat);
+        const double weight = determinant / std::sqrt(glm::determinant(full));
+        ASSERT_NEAR(static_cast<double>(found[2 * i].w), weight, 1e-4);
+        ASSERT_NEAR(static_cast<double>(found[2 * i + 1].w),
+                    std::min(determinant / (low * low), 1.0), 1e-4);
+        // Where the thickness is not made up: determinant over the longer column.
+        const glm::dmat2 axes = radiusPx * screenJacobian(splat);
+        if (determinant / std::max(glm::length(axes[0]), glm::length(axes[1])) > 0.26) {
+            expectMatrix(found[2 * i + 1], reconstruction);
+            ++thick;
+        }
+    }
+    EXPECT_GT(thick, kCount / 3);
+}
+
+}  // namespace
+}  // namespace gfxrepro::point_splatting
