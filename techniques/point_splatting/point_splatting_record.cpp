@@ -168,9 +168,7 @@ void PointSplatting::recordSpeed(technique::Recorder& recorder) {
         gl::Profiler unread(false);
         glFinish();
         const auto begin = std::chrono::steady_clock::now();
-        counts_ =
-            selectPatches(model_->patches(), model_->levels(), view_, params_.selection, drawn_);
-        renderer_->render(drawn_, view_, unread);
+        draw(unread);
         glFinish();
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
         seconds.push_back(elapsed.count());
