@@ -141,10 +141,10 @@ void PointSplatting::recordCompression(technique::Recorder& recorder) const {
     GFXREPRO_ASSERT_EQ(total.stored, static_cast<int>(8 * sizeof(CompressedPoint)));
     bits(total);
     // What the device holds, with the radius table and colours where there are any.
-    recorder.metric("bits_stored",
-                    8.0 * static_cast<double>(pointBytes()) /
-                        static_cast<double>(model_->positions().size()),
-                    "bit", "device");
+    recorder.metric(
+        "bits_stored",
+        8.0 * static_cast<double>(pointBytes()) / static_cast<double>(model_->positions().size()),
+        "bit", "device");
 
     const CompressionErrors errors = compressionErrors(*model_);
     const auto record = [&](const char* name, const ErrorStatistics& error, const char* unit) {
