@@ -67,6 +67,7 @@ layout(std430, binding = COLOR_BINDING) restrict readonly buffer Colors { uint c
 /// Linear.
 vec3 colorAt(uint index) {
     vec3 srgb = unpackUnorm4x8(colors[index]).rgb;
-    return mix(srgb / 12.92, pow((srgb + 0.055) / 1.055, vec3(2.4)), greaterThan(srgb, vec3(0.04045)));
+    return mix(srgb / 12.92, pow((srgb + 0.055) / 1.055, vec3(2.4)),
+               greaterThan(srgb, vec3(0.04045)));
 }
 #endif
