@@ -204,8 +204,14 @@ PointRepairs completePoints(PointCloud& points) {
     if (repairs.normals == 0 && repairs.radii == 0) return repairs;
 
     const Neighbours neighbours = neighboursOf(points.positions);
+    // Points far from all others, as scanners leave them, must not become discs as large as that.
+    constexpr float kMostOfMedian = 4.0F;
+    std::vector<float> sorted(neighbours.meanDistance);
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
     for (std::size_t i = 0; i < count; ++i) {
-        if (points.radii[i] == 0.0F) points.radii[i] = neighbours.meanDistance[i];
+        if (points.radii[i] != 0.0F) continue;
+        points.radii[i] = std::min(neighbours.meanDistance[i], kMostOfMedian * *middle);
     }
     if (repairs.normals > 0) completeNormals(points, neighbours, std::move(isGiven));
     return repairs;

@@ -29,8 +29,8 @@ struct PointRepairs {
 /// Makes every attribute but the colour complete. Normals are the least principal axis of the 16
 /// nearest neighbours, turned the way of neighbours that have one, else upwards at the topmost
 /// point of each connected part (Hoppe et al. 1992); radii are the mean distance to the 6 nearest
-/// neighbours. A point without neighbours gets the normal +y and the radius 1. Throws Error when no
-/// point is left.
+/// neighbours, at most 4 times that distance's median. A point without neighbours gets the normal
+/// +y and the radius 1. Throws Error when no point is left.
 PointRepairs completePoints(PointCloud& points);
 
 }  // namespace gfxrepro::scene
