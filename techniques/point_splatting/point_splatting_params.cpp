@@ -55,11 +55,13 @@ SplatSettings readSplats(config::Params& params) {
     SplatSettings settings;
     settings.storage = params.getEnum("storage", PointStorage::Compressed, kStorages,
                                       {"how points lie on the device"});
+    // Together 0.75 pixels, the least round splat that holds a pixel's centre wherever it lies
+    // (√½) and thickens outlines no more than that takes.
     settings.lowPassRadiusPx =
-        number(params, "low_pass_radius_px", settings.lowPassRadiusPx,
+        number(params, "low_pass_radius_px", 0.5F,
                {"r_h: the low-pass filter's standard deviation", "pixels", 0.1, 8.0});
-    settings.cutoff = number(params, "cutoff", settings.cutoff,
-                             {"where a splat ends", "standard deviations", 0.5, 4.0});
+    settings.cutoff =
+        number(params, "cutoff", 1.5F, {"where a splat ends", "standard deviations", 0.5, 4.0});
     settings.visibilityOffset =
         number(params, "visibility_offset", settings.visibilityOffset,
                {"ε: how far splats behind the front one are blended in", "radii", 0.0, 16.0});

@@ -11,8 +11,8 @@ namespace gfxrepro::point_splatting {
 
 struct SplatSettings {
     PointStorage storage = PointStorage::Compressed;
-    float lowPassRadiusPx = 0.7F;  // r_h: the pixel spacing's filter
-    float cutoff = 1.0F;  // a splat ends where its exponent is −½·cutoff²: r_k and r_h
+    float lowPassRadiusPx = 0.7F;   // r_h: the pixel spacing's filter
+    float cutoff = 2.0F;            // a splat ends where its exponent is −½·cutoff²
     float visibilityOffset = 1.0F;  // ε, in radii of the splat, along the view ray
     glm::vec3 lightDirectionView{0.3F, 0.5F, 0.8F};
 };
