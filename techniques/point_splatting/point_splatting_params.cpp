@@ -55,8 +55,8 @@ SplatSettings readSplats(config::Params& params) {
     SplatSettings settings;
     settings.storage = params.getEnum("storage", PointStorage::Compressed, kStorages,
                                       {"how points lie on the device"});
-    // Together 0.75 pixels, the least round splat that holds a pixel's centre wherever it lies
-    // (√½) and thickens outlines no more than that takes.
+    // Together 0.75 pixels: little more than √½, where a round splat holds a pixel's centre
+    // wherever it lies. README.md has what other pairs do.
     settings.lowPassRadiusPx =
         number(params, "low_pass_radius_px", 0.5F,
                {"r_h: the low-pass filter's standard deviation", "pixels", 0.1, 8.0});

@@ -164,5 +164,19 @@ TEST(Covariance, OfPointsFarFromTheOrigin) {
     EXPECT_EQ(covariance.matrix()[2][2], 0.0);
 }
 
+TEST(CompletePoints, StrayPointsGetNoHugeDiscs) {
+    PointCloud points;
+    for (int i = 0; i < 400; ++i) {
+        points.positions.emplace_back(0.1F * static_cast<float>(i % 20),
+                                      0.1F * static_cast<float>(i / 20), 0.0F);
+    }
+    points.positions.emplace_back(50, 50, 50);
+    EXPECT_EQ(completePoints(points).radii, 401U);
+    // Four neighbours of the grid at 0.1, two at 0.1·√2: the median.
+    const float median = 0.1F * (4.0F + 2.0F * std::sqrt(2.0F)) / 6.0F;
+    EXPECT_NEAR(points.radii[10 * 20 + 10], median, 1e-4F);
+    EXPECT_NEAR(points.radii[400], 4.0F * median, 1e-3F);
+}
+
 }  // namespace
 }  // namespace gfxrepro::scene
