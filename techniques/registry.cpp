@@ -1,7 +1,9 @@
 // Every technique, one line each. A table, not self-registration: a static library's unreferenced
 // objects are dropped by the linker.
 #include "runner/technique/technique.h"
+#include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
+#include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
@@ -9,12 +11,17 @@
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
+    // One line each:
+    // clang-format off
     static const TechniqueInfo kTechniques[] = {
+        clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
+        ray_tracing::kRayTracing,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,
     };
+    // clang-format on
     return kTechniques;
 }
 

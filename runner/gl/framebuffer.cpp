@@ -40,6 +40,13 @@ GLuint createFramebuffer() {
     return id;
 }
 
+void attachDepth(GLuint framebuffer, const Texture& depth) {
+    const bool hasStencil =
+        depth.format() == GL_DEPTH24_STENCIL8 || depth.format() == GL_DEPTH32F_STENCIL8;
+    glNamedFramebufferTexture(
+        framebuffer, hasStencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth.id(), 0);
+}
+
 GLuint createVertexArray() {
     GLuint id = 0;
     glCreateVertexArrays(1, &id);
@@ -59,14 +66,19 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
     }
     glNamedFramebufferDrawBuffers(id(), static_cast<GLsizei>(drawBuffers.size()),
                                   drawBuffers.data());
-    if (depth != nullptr) {
-        const bool hasStencil =
-            depth->format() == GL_DEPTH24_STENCIL8 || depth->format() == GL_DEPTH32F_STENCIL8;
-        glNamedFramebufferTexture(
-            id(), hasStencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth->id(), 0);
-    }
+    if (depth != nullptr) attachDepth(id(), *depth);
     size_ = (colours.empty() ? depth : colours.front())->size();
     checkComplete(id());
+}
+
+Framebuffer Framebuffer::ofLayer(const Texture& colour, int layer, const Texture* depth) {
+    Framebuffer framebuffer;
+    framebuffer.name_ = detail::Name<detail::deleteFramebuffer>(createFramebuffer());
+    framebuffer.size_ = colour.size();
+    glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT0, colour.id(), 0, layer);
+    if (depth != nullptr) attachDepth(framebuffer.id(), *depth);
+    checkComplete(framebuffer.id());
+    return framebuffer;
 }
 
 Framebuffer Framebuffer::withoutAttachments(glm::ivec2 size, int samples) {
@@ -110,6 +122,14 @@ void VertexArray::setAttribute(GLuint location, const Buffer& buffer, int compon
     glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, strideBytes);
     glVertexArrayAttribFormat(id(), location, components, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(id(), location, location);
+    glEnableVertexArrayAttrib(id(), location);
+}
+
+void VertexArray::setInstanceIndex(GLuint location, const Buffer& buffer) {
+    glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, sizeof(GLuint));
+    glVertexArrayAttribIFormat(id(), location, 1, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(id(), location, location);
+    glVertexArrayBindingDivisor(id(), location, 1);
     glEnableVertexArrayAttrib(id(), location);
 }
 

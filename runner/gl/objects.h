@@ -151,6 +151,9 @@ class Framebuffer {
     Framebuffer() = default;
     /// Colour attachments in order; `depth` may be null. Throws Error when it is not complete.
     explicit Framebuffer(std::span<const Texture* const> colours, const Texture* depth = nullptr);
+    /// One layer of an array or one face of a cube map (+x, −x, +y, …) as the colour attachment;
+    /// `depth`, which may be null, is a 2D texture. Throws Error when it is not complete.
+    static Framebuffer ofLayer(const Texture& colour, int layer, const Texture* depth = nullptr);
     /// No attachments: for draws that write images only. Throws UnsupportedError beyond the
     /// device's limits.
     static Framebuffer withoutAttachments(glm::ivec2 size, int samples = 0);
@@ -188,6 +191,8 @@ class VertexArray {
     GLuint id() const { return name_.get(); }
     /// Float attribute `location` of `components` values a vertex, tightly packed in `buffer`.
     void setAttribute(GLuint location, const Buffer& buffer, int components);
+    /// One 32-bit unsigned integer an instance.
+    void setInstanceIndex(GLuint location, const Buffer& buffer);
     /// 32-bit indices.
     void setIndices(const Buffer& indices);
     void bind() const;

@@ -9,9 +9,10 @@ namespace gfxrepro::metrics {
 /// published reference implementation has it.
 constexpr double kFlipPixelsPerDegree = 67.0206;
 
-/// LDR-FLIP (Andersson et al. 2020) a pixel, in [0, 1]. `reference` and `test` have 3 channels in
-/// [0, 1], linear; they are encoded to sRGB as the method wants. Throws Error when sizes or
-/// channels differ or a value is not finite.
+/// LDR-FLIP (Andersson et al. 2020) a pixel, in [0, 1]. `reference` and `test` have 3 channels,
+/// linear, Rec. 709; what a display cannot show is clamped to [0, 1]. (The method takes sRGB and
+/// begins with decoding it: linear images enter there.) Throws Error when sizes differ, channels
+/// are not 3, a value is not finite, or pixelsPerDegree is outside of [1, 1000].
 image::ImageF flipMap(const image::ImageF& reference, const image::ImageF& test,
                       double pixelsPerDegree = kFlipPixelsPerDegree);
 /// Mean of the map.

@@ -29,15 +29,6 @@ void checkFinite(const ImageF& image, const char* which) {
     }
 }
 
-void checkComparable(const ImageF& a, const ImageF& b) {
-    if (a.width() != b.width() || a.height() != b.height() || a.channels() != b.channels()) {
-        throw Error("the images differ in shape: " + shape(a) + " and " + shape(b));
-    }
-    if (a.empty()) throw Error("the images are empty");
-    checkFinite(a, "first");
-    checkFinite(b, "second");
-}
-
 /// One channel: itself; three or four: luminance of linear Rec. 709 colour; two: the first.
 std::vector<double> luminance(const ImageF& image) {
     const auto channels = static_cast<std::size_t>(image.channels());
@@ -103,8 +94,17 @@ std::vector<double> product(const std::vector<double>& a, const std::vector<doub
 
 }  // namespace
 
+void requireComparable(const ImageF& a, const ImageF& b) {
+    if (a.width() != b.width() || a.height() != b.height() || a.channels() != b.channels()) {
+        throw Error("the images differ in shape: " + shape(a) + " and " + shape(b));
+    }
+    if (a.empty()) throw Error("the images are empty");
+    checkFinite(a, "first");
+    checkFinite(b, "second");
+}
+
 double meanSquaredError(const ImageF& a, const ImageF& b) {
-    checkComparable(a, b);
+    requireComparable(a, b);
     double sum = 0.0;
     for (std::size_t i = 0; i < a.values().size(); ++i) {
         const double difference = double{a.values()[i]} - double{b.values()[i]};
@@ -118,7 +118,7 @@ double peakSignalToNoiseDb(const ImageF& a, const ImageF& b) {
 }
 
 double maxAbsoluteError(const ImageF& a, const ImageF& b) {
-    checkComparable(a, b);
+    requireComparable(a, b);
     double largest = 0.0;
     for (std::size_t i = 0; i < a.values().size(); ++i) {
         largest = std::max(largest, std::abs(double{a.values()[i]} - double{b.values()[i]}));
@@ -127,7 +127,7 @@ double maxAbsoluteError(const ImageF& a, const ImageF& b) {
 }
 
 double structuralSimilarity(const ImageF& a, const ImageF& b) {
-    checkComparable(a, b);
+    requireComparable(a, b);
     if (a.width() < kWindow || a.height() < kWindow) {
         throw Error("structural similarity needs images of at least 11x11 pixels, found " +
                     shape(a));
@@ -157,7 +157,7 @@ double structuralSimilarity(const ImageF& a, const ImageF& b) {
 }
 
 ImageF absoluteDifference(const ImageF& a, const ImageF& b, float gain) {
-    checkComparable(a, b);
+    requireComparable(a, b);
     ImageF result(a.width(), a.height(), a.channels());
     for (std::size_t i = 0; i < a.values().size(); ++i) {
         result.values()[i] = std::abs(a.values()[i] - b.values()[i]) * gain;

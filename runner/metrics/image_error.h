@@ -5,6 +5,10 @@
 
 namespace gfxrepro::metrics {
 
+/// Throws Error when the images differ in size or channels, are empty, or hold a value that is not
+/// finite.
+void requireComparable(const image::ImageF& a, const image::ImageF& b);
+
 /// Over all values of two images of equal size and channels; throws Error when they differ in
 /// either, or when one holds a value that is not finite.
 double meanSquaredError(const image::ImageF& a, const image::ImageF& b);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "runner/image/srgb.h"
 #include "runner/raycast/ray_tracer.h"
 
 namespace gfxrepro::raycast {
@@ -13,17 +14,6 @@ namespace {
 
 constexpr glm::vec3 kBackground(0.18F, 0.20F, 0.24F);
 constexpr int kMaxLayers = 64;  // of cut-out surfaces behind each other
-
-/// sRGB to linear (IEC 61966-2-1) for every 8-bit value.
-std::array<float, 256> srgbDecoding() {
-    std::array<float, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        const double value = static_cast<double>(i) / 255.0;
-        table[i] = static_cast<float>(value <= 0.04045 ? value / 12.92
-                                                       : std::pow((value + 0.055) / 1.055, 2.4));
-    }
-    return table;
-}
 
 int wrapped(int i, int size) {
     const int rest = i % size;
@@ -137,7 +127,7 @@ class Previewer {
     image::ImageF image_;
     glm::vec3 forward_, right_, up_;  // right_ and up_ reach the image's border at distance 1
     std::vector<glm::mat3> normalMatrices_;
-    std::array<float, 256> decoding_ = srgbDecoding();
+    std::array<float, 256> decoding_ = image::srgbDecoding();
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "runner/core/random.h"
 #include "runner/core/text.h"
+#include "runner/scene/generators_indoor.h"
 #include "runner/scene/generators_outdoor.h"
 #include "runner/scene/generators_shapes.h"
 #include "runner/scene/refine.h"
@@ -179,10 +180,12 @@ Scene sdfModel(config::Params& params, std::uint64_t seed) {
 }
 
 constexpr GeneratorInfo kGenerators[] = {
+    {"bathroom", "a bathroom with 15 reflectors: tub, basin, toilet, taps, mirrors", &bathroom},
     {"bird_nest", "twigs woven into a bowl, with eggs, on a branch", &birdNest},
     {"city", "a downtown seen from above: streets, towers, houses, trees and cars", &city},
     {"four_objects", "four boxes, one of which two views do not see", &fourObjects},
     {"grass", "bent blades on uneven ground", &grass},
+    {"living_room", "a furnished room with 25 reflective objects", &livingRoom},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
     {"tree", "a deciduous tree with a dense crown of leaves", &tree},
 };

@@ -12,13 +12,20 @@ namespace gfxrepro::scene {
 
 void MeshBuilder::addIndexed(std::span<const glm::vec3> positions,
                              std::span<const glm::vec3> normals,
-                             std::span<const glm::uvec3> triangles) {
+                             std::span<const glm::uvec3> triangles,
+                             std::span<const glm::vec2> texcoords) {
     GFXREPRO_ASSERT_EQ(positions.size(), normals.size());
+    GFXREPRO_ASSERT(texcoords.empty() || texcoords.size() == positions.size());
     const auto first = static_cast<unsigned>(mesh_.positions.size());
     mesh_.positions.insert(mesh_.positions.end(), positions.begin(), positions.end());
     mesh_.normals.insert(mesh_.normals.end(), normals.begin(), normals.end());
     mesh_.colors.insert(mesh_.colors.end(), positions.size(), color_);
     for (const glm::uvec3& t : triangles) mesh_.triangles.push_back(t + first);
+    if (!texcoords.empty() || !mesh_.texcoords.empty()) {
+        mesh_.texcoords.resize(first, glm::vec2(0.0F));
+        mesh_.texcoords.insert(mesh_.texcoords.end(), texcoords.begin(), texcoords.end());
+        mesh_.texcoords.resize(mesh_.positions.size(), glm::vec2(0.0F));
+    }
 }
 
 void MeshBuilder::addTriangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {

@@ -31,9 +31,11 @@ class MeshBuilder {
     /// minimally twisting frame; flat caps when `isCapped`. 2 · sides · (stations − 1) triangles,
     /// with caps 2 · (sides − 2) more.
     void addTube(std::span<const Station> stations, int sides, bool isCapped);
-    /// Any triangles with given vertex normals; colours from setColor().
+    /// Any triangles with given vertex normals; colours from setColor(). Texture coordinates: one a
+    /// vertex or none at all; a mesh with some has (0, 0) where a part brought none.
     void addIndexed(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                    std::span<const glm::uvec3> triangles);
+                    std::span<const glm::uvec3> triangles,
+                    std::span<const glm::vec2> texcoords = {});
 
     std::size_t triangleCount() const { return mesh_.triangles.size(); }
     /// The mesh so far; the builder is empty afterwards.

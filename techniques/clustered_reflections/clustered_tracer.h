@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/clustered_reflections/clustering.h"
 #include "techniques/clustered_reflections/depth_image_marcher.h"
 #include "techniques/shared/reflections/environment_map.h"
@@ -28,6 +29,10 @@ struct ClusteredSettings {
     bool seesConcaveSelf = false;
 };
 
+/// The texture of the images: 34 MB, so that a frame of 1024² samples holds less than the 87 MB of
+/// [xie2017] Sec. 4.7.2, G-buffer and target included.
+constexpr glm::ivec2 kImagesSizePx(2048);
+
 /// Passes, named as Table 14: `first_pass_and_clustering` (the caller draws the G-buffer under the
 /// same name), `cluster_cameras`, `depth_images`, `intersection`.
 class ClusteredTracer final : public reflections::ReflectionTracer {
@@ -46,8 +51,12 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     int clusterCount() const;
     std::vector<ClusterCamera> cameras() const;
     const Clusters& clusters() const;
-    /// Samples that took the environment map ([xie2017] Fig. 28), a byte a sample, rows from the
-    /// bottom.
+    /// The images' texture: of the last cluster, or of all in the atlas.
+    const ClusterImages& images() const;
+    /// By which the atlas scaled all images to fit them in; 1 one by one.
+    float imageScale() const;
+    /// Samples whose mirror ray took the environment map ([xie2017] Fig. 28), a byte a sample, rows
+    /// from the bottom. Glossy samples never do: what is missing shows their diffuse colour.
     std::vector<std::uint8_t> environmentSamples() const;
 
   private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "runner/gl/objects.h"
@@ -11,27 +12,30 @@
 
 namespace gfxrepro::clustered_reflections {
 
-/// Bins of the normal's spherical coordinates, theta ∈ [0°, 360°) around y and phi ∈ [0°, 180°)
-/// from y. A reflector has at most maxThetaBins × maxPhiBins; its share a_R of the reflective
-/// samples and the number n_v of visible reflectors scale both down:
+/// Bins of the normal's spherical coordinates, theta ∈ [0°, 360°) around +y, from +x towards +z,
+/// and phi ∈ [0°, 180°] from +y (normals are those turned to the eye, in the world). A reflector
+/// has at most maxThetaBins × maxPhiBins; its share a_R of the reflective samples and the number
+/// n_v of visible reflectors scale both down:
 ///
 ///     bins = clamp(round(maxBins · (a_R / n_v · bin_gain)^exponent), 1, maxBins)
 ///
-/// (the printed line is scrambled; see the README). A planar reflector is one cluster.
+/// (the printed line is scrambled; see the README). A planar reflector is one cluster. The
+/// defaults, 2 · (a_R / n_v)^¼, are calibrated on the counts of Table 19.
 struct BinSettings {
     int maxThetaBins = 13;
     int maxPhiBins = 8;
     float exponent = 0.25F;
-    float gain = 1.0F;
+    float gain = 16.0F;
 };
 
 /// How samples are put into clusters.
 enum class Clustering {
-    NormalBins,  // Sec. 4.3
-    KdTree,      // the outlook of Sec. 4.7.4: splits by position and normal, largest first
+    NormalBins,  // Sec. 4.3; on the device, nothing read back
+    KdTree,      // the outlook of Sec. 4.7.4: splits by position and normal, largest first; on the
+                 // host, with a read-back of the G-buffer (see kd_clustering.h)
 };
 
-/// At most so many: 16-bit ids; 25 reflectors × 13 × 8 = 2600 in the thesis.
+/// At most so many; 25 reflectors × 13 × 8 = 2600 in the thesis.
 constexpr int kMaxClusters = 4096;
 
 /// On the device after ClusterBuilder::build(); nothing of it is read back in the frame.
@@ -47,27 +51,37 @@ struct Clusters {
 
 class ClusterBuilder {
   public:
+    /// Throws UnsupportedError when the reflectors may fill more than kMaxClusters bins.
     ClusterBuilder(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                    Clustering clustering, const BinSettings& bins, glm::ivec2 sizePx);
-    /// Clusters of at most kMaxClusters reflectors' bins; samples with `wanted` 0 are left out.
-    /// Cluster numbers are dense and ordered by reflector, phi bin, theta bin.
+    ~ClusterBuilder();
+    /// Samples with `wanted` 0 are left out, of the areas too. Cluster numbers are dense and
+    /// ordered by reflector, phi bin, theta bin.
     void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted);
     const Clusters& clusters() const { return clusters_; }
     std::size_t sizeBytes() const;
 
   private:
+    struct NormalBinPasses;
     Clustering clustering_;
     BinSettings bins_;
     Clusters clusters_;
+    std::vector<std::uint8_t> isPlanar_;  // by reflector
+    std::unique_ptr<NormalBinPasses> passes_;
 };
 
-/// The same on the host: what the device must give.
+/// By reflector id (0 is none): 1 where its object is planar.
+std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& scene);
+
+/// The same on the host, to the bit: what the device must give (NormalBins). Reads
+/// HostGBuffer::normalOctahedral and surface.
 struct HostClusters {
     int clusterCount = 0, visibleReflectors = 0;
     std::vector<std::uint16_t> clusterOfSample;  // 1 + cluster; 0: not reflective
     std::vector<int> reflectorOfCluster;
 };
 HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
-                           const reflections::ReflectiveScene& scene, const BinSettings& bins);
+                           const reflections::ReflectiveScene& scene, const BinSettings& bins,
+                           const std::vector<std::uint8_t>* wanted = nullptr);
 
 }  // namespace gfxrepro::clustered_reflections

@@ -25,8 +25,9 @@ struct ReflectionParams {
     std::optional<float> glossiness;  // overrides the materials'
     reflections::LobeSettings lobe;
     reflections::ReflectorRule reflectors;
-    ClusteredSettings clustered;
-    bool measuresErrors = true;  // against Embree
+    ClusteredSettings clustered;  // camera.diagonalM and camera.lobe are set up with the scene
+    float thickness = 0.02F;      // screen space: of what the eye sees, in diagonals of the box
+    bool measuresErrors = true;   // against Embree
     bool showsPictures = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.

@@ -143,6 +143,58 @@ void main() {
     EXPECT_NEAR(texels[1].g, 0.5029F, 1e-3F);  // ((188/255 + 0.055) / 1.055)^2.4
 }
 
+TEST_F(GlTest, FramebufferOfOneLayerLeavesTheOthers) {
+    for (const bool isCube : {false, true}) {
+        Texture texture =
+            isCube ? Texture::makeCube(GL_R32F, 2) : Texture::make2DArray(GL_R32F, {2, 2}, 6);
+        const std::vector<float> zeros(24, 0.0F);
+        texture.upload(GL_RED, GL_FLOAT, zeros.data());
+        const Texture depth = Texture::make2D(GL_DEPTH24_STENCIL8, {2, 2});
+        for (const int layer : {1, 4}) {
+            const Framebuffer framebuffer = Framebuffer::ofLayer(texture, layer, &depth);
+            framebuffer.clearColour(0, glm::vec4(static_cast<float>(layer)));
+        }
+        std::vector<float> expected = zeros;
+        std::fill_n(expected.begin() + 4, 4, 1.0F);
+        std::fill_n(expected.begin() + 16, 4, 4.0F);
+        EXPECT_EQ(texture.read<float>(GL_RED, GL_FLOAT, 1), expected) << isCube;
+    }
+}
+
+TEST_F(GlTest, InstancesTakeTheirIndexFromTheirBase) {
+    const gl::Program fill = program({{"t.vert.glsl", R"(#version 450 core
+layout(location = 0) in vec2 position;
+layout(location = 1) in uint index;
+flat out uint indexOfInstance;
+void main() {
+    indexOfInstance = index;
+    gl_Position = vec4(position, 0.0, 1.0);
+}
+)"},
+                                      {"t.frag.glsl", R"(#version 450 core
+flat in uint indexOfInstance;
+layout(location = 0) out uint colour;
+void main() { colour = indexOfInstance; }
+)"}});
+    const Buffer positions = Buffer::of(std::vector<glm::vec2>{{-1, -1}, {3, -1}, {-1, 3}});
+    const Buffer elements = Buffer::of(std::vector<unsigned>{0, 1, 2});
+    const Buffer indices = Buffer::of(std::vector<unsigned>{7, 4000000000U, 9});
+    gl::VertexArray vertexArray;
+    vertexArray.setAttribute(0, positions, 2);
+    vertexArray.setInstanceIndex(1, indices);
+    vertexArray.setIndices(elements);
+    const Texture colour = Texture::make2D(GL_R32UI, {2, 2});
+    const Framebuffer framebuffer(std::array{&colour});
+    framebuffer.bind();
+    fill.use();
+    vertexArray.bind();
+    for (const unsigned base : {1U, 2U, 0U}) {
+        glDrawElementsInstancedBaseInstance(GL_TRIANGLES, 3, GL_UNSIGNED_INT, nullptr, 1, base);
+        EXPECT_EQ(colour.read<unsigned>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1),
+                  std::vector<unsigned>(4, indices.read<unsigned>(3)[base]));
+    }
+}
+
 TEST_F(GlTest, DrawsATriangleWithKnownPixels) {
     const gl::Program fill = program({{"t.vert.glsl", R"(#version 450 core
 layout(location = 0) in vec2 position;

@@ -5,6 +5,7 @@
 #include "runner/gl/program.h"
 #include "runner/image/image.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
@@ -26,6 +27,7 @@ class Composite {
     gl::Program program_;
     gl::Texture output_;
     gl::Framebuffer framebuffer_;
+    WholeImage wholeImage_;
     int supersampling_;
 };
 

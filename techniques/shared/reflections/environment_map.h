@@ -1,20 +1,25 @@
 // Radiance around one point: the fallback of rays that meet nothing, and the comparator.
 #pragma once
 
+#include <cstdint>
+
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
-/// A cube map of the scene's diffuse colours from the middle of its box (or where told), its
-/// background (0.18, 0.20, 0.24) where nothing is seen. Made once; render() again for moved
-/// objects. Shaders: shaders/environment.glsl, `radianceFrom(direction)`.
+/// A cube map of the scene's diffuse colours from the middle of its box (or where told),
+/// kBackground where nothing is seen. Made once; render() again for moved objects. Shaders:
+/// shaders/environment.glsl, `radianceFrom(direction)`.
 class EnvironmentMap {
   public:
     static constexpr int kFaceSizePx = 512;
     EnvironmentMap(const gl::ShaderLibrary& shaders, const glm::vec3& centreWorld);
     void render(const GpuObjects& objects);
+    /// How often it was drawn: what was read of it is stale when this has grown.
+    std::uint64_t version() const { return version_; }
     void bind(unsigned unit) const { cube_.bind(unit); }
     const gl::Texture& cube() const { return cube_; }
     const glm::vec3& centreWorld() const { return centreWorld_; }
@@ -31,17 +36,20 @@ class EnvironmentMap {
     Host read() const;
 
   private:
+    std::uint64_t version_ = 0;
     glm::vec3 centreWorld_;
     gl::Texture cube_, depth_;
     gl::Program program_;
 };
 
-/// Environment mapping: every ray takes the map in its direction, wherever it starts.
+/// Environment mapping: every ray takes the map in its direction, wherever it starts. All rays
+/// weigh the same, glossy ones too: the map knows no distances to fade by. Passes:
+/// `environment_map` when it is drawn again, `intersection`.
 class EnvironmentTracer final : public ReflectionTracer {
   public:
     EnvironmentTracer(const gl::ShaderLibrary& shaders, EnvironmentMap& map,
                       const LobeSettings& lobe, float diagonalM);
-    /// Draws the map again when an object has moved.
+    /// Draws the map, again when an object has moved.
     void update(const GpuObjects& objects, gl::Profiler& profiler) override;
     void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
                gl::Profiler& profiler) override;
@@ -52,7 +60,8 @@ class EnvironmentTracer final : public ReflectionTracer {
     LobeSettings lobe_;
     float diagonalM_;
     gl::Program program_;
-    std::vector<glm::mat4> poses_;
+    WholeImage wholeImage_;
+    std::vector<glm::mat4> poses_;  // in which the map was drawn
 };
 
 }  // namespace gfxrepro::reflections

@@ -45,6 +45,7 @@ struct HostGBuffer {
     glm::mat4 worldFromPixels{1.0F};
     std::vector<glm::vec3> diffuse;
     std::vector<glm::vec3> normalWorld;
+    std::vector<glm::vec2> normalOctahedral;  // as stored: for replays that must be exact
     std::vector<float> depthM;
     std::vector<std::uint32_t> surface;
 
@@ -60,6 +61,9 @@ struct HostGBuffer {
     /// The mirror direction at a sample: unit.
     glm::vec3 mirrorDirection(glm::ivec2 pixel) const;
 };
+/// As shaders/octahedral.glsl has it: not of unit length, but the same as on the device.
+glm::vec3 directionFromOctahedral(const glm::vec2& e);
+
 /// Reads back; waits for the device.
 HostGBuffer readGBuffer(const GBuffer& gbuffer);
 

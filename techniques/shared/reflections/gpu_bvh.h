@@ -5,6 +5,7 @@
 #include "runner/gl/profiler.h"
 #include "runner/gl/program.h"
 #include "techniques/shared/reflections/gpu_objects.h"
+#include "techniques/shared/reflections/radix_sort.h"
 
 namespace gfxrepro::reflections {
 
@@ -15,19 +16,56 @@ namespace gfxrepro::reflections {
 /// `RayHit { float t; vec2 barycentric; uint triangle; }`.
 class GpuBvh {
   public:
+    /// Storage bindings that bind() fills.
+    static constexpr unsigned kNodesBinding = 1, kTrianglesBinding = 2;
+    /// As bvh_layout.glsl has them (std430).
+    struct Node {
+        glm::vec3 leftMin;
+        std::uint32_t left;
+        glm::vec3 leftMax;
+        std::uint32_t right;
+        glm::vec3 rightMin;
+        std::uint32_t parent;
+        glm::vec3 rightMax;
+        std::uint32_t visits;
+    };
+    struct Triangle {
+        glm::vec3 a;
+        std::uint32_t triangle;
+        glm::vec3 b;
+        std::uint32_t leafParent;
+        glm::vec3 c;
+        std::uint32_t unused;
+    };
+    static_assert(sizeof(Node) == 64 && sizeof(Triangle) == 48);
+    static constexpr std::uint32_t kLeaf = 0x80000000U;
+
+    /// `objects` outlives this.
     GpuBvh(const gl::ShaderLibrary& shaders, const GpuObjects& objects);
     /// Scopes: `bvh_build` with its parts `bvh_codes`, `bvh_sort`, `bvh_hierarchy`, `bvh_boxes`.
     void build(gl::Profiler& profiler);
-    /// For shaders that include bvh.glsl: storage bindings 1 … 7.
+    /// For shaders that include bvh.glsl and have defines().
     void bind() const;
+    static gl::Defines defines();
     std::size_t sizeBytes() const;
-    /// Limits for messages and tests.
+
     std::uint32_t triangleCount() const { return objects_.triangleCount(); }
+    /// One less than there are triangles, but at least the root.
+    std::uint32_t nodeCount() const;
+    /// Node nodes[nodeCount()] and Triangle triangles[triangleCount()], a leaf each.
+    const gl::Buffer& nodes() const { return nodes_; }
+    const gl::Buffer& triangles() const { return triangles_; }
 
   private:
+    void bindForBuilding() const;
+    void writeCodes();
+    void linkNodes();
+    void growBoxes();
+
     const GpuObjects& objects_;
-    gl::Program codes_, sortCount_, sortScan_, sortScatter_, hierarchy_, boxes_;
-    gl::Buffer triangles_, nodes_, keys_, values_, otherKeys_, otherValues_, counts_, visits_;
+    gl::Program codes_, hierarchy_, boxes_;
+    RadixSort sort_;
+    gl::Buffer pairs_, nodes_, triangles_;
 };
 
 }  // namespace gfxrepro::reflections

@@ -1,6 +1,7 @@
 #include "techniques/shared/reflections/reflection_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gfxrepro::reflections {
@@ -56,7 +57,8 @@ void setLobe(const gl::Program& program, const LobeSettings& lobe, float diagona
 
 ReflectionTarget::ReflectionTarget(glm::ivec2 sizePx)
     : radiance(gl::Texture::make2D(GL_RGBA16F, sizePx)),
-      distance(gl::Texture::make2D(GL_R32F, sizePx)) {}
+      distance(gl::Texture::make2D(GL_R32F, sizePx)),
+      framebuffer(std::array<const gl::Texture*, 2>{&radiance, &distance}) {}
 
 std::size_t ReflectionTarget::sizeBytes() const {
     return radiance.sizeBytes() + distance.sizeBytes();

@@ -39,6 +39,7 @@ struct ReflectionTarget {
                            // the diffuse colour standing in for the rays' missing weight; a = 1
     gl::Texture distance;  // R32F, metres along the mirror ray; 0: it left the scene (or the method
                            // does not know)
+    gl::Framebuffer framebuffer;  // attachments 0 and 1
 
     explicit ReflectionTarget(glm::ivec2 sizePx);
     std::size_t sizeBytes() const;

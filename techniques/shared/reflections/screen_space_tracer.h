@@ -3,13 +3,14 @@
 
 #include "techniques/shared/reflections/environment_map.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
 /// McGuire and Mara 2014, "Efficient GPU Screen-Space Ray Tracing": each ray is marched texel by
 /// texel through the G-buffer's depth, perspective-correct; a hit is a texel whose depth the ray
-/// passes within `thicknessM`. What the eye does not see takes the environment map. Pass:
-/// `intersection`.
+/// passes within `thicknessM` and that shows the side which the ray meets. What the eye does not
+/// see takes the environment map. Pass: `intersection`.
 class ScreenSpaceTracer final : public ReflectionTracer {
   public:
     ScreenSpaceTracer(const gl::ShaderLibrary& shaders, const EnvironmentMap& map,
@@ -24,6 +25,7 @@ class ScreenSpaceTracer final : public ReflectionTracer {
     LobeSettings lobe_;
     float diagonalM_, thicknessM_;
     gl::Program program_;
+    WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflections

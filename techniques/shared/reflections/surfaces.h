@@ -2,6 +2,7 @@
 // method, on the device (shaders/shading.glsl) and here.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -14,7 +15,8 @@ namespace gfxrepro::reflections {
 
 /// Which materials reflect, and how. A material reflects when its roughness is at most
 /// `maxRoughness`; its reflectivity s is then its metalness, but at least what its index of
-/// refraction reflects head-on; its glossiness g is its roughness, 0 a mirror.
+/// refraction reflects head-on; its glossiness g is its roughness, 0 a mirror. Both count as the
+/// G-buffer keeps them, in 255ths; s of 0 does not reflect.
 struct ReflectorRule {
     float maxRoughness = 0.4F;
 };
@@ -22,6 +24,9 @@ struct ReflectorRule {
 /// At most so many lights of a scene are taken; where it has none, one hangs under the top of its
 /// box.
 constexpr int kMaxLights = 4;
+
+/// What is seen where nothing is.
+constexpr glm::vec3 kBackground(0.18F, 0.20F, 0.24F);
 
 /// One instance of the scene. Its triangles are firstTriangle … + triangleCount − 1 of
 /// scene::flattened(scene).
@@ -35,12 +40,14 @@ struct Object {
     int reflector = 0;          // 1 … reflectorCount(); 0: diffuse
     float reflectivity = 0.0F;  // s of [xie2017] Algorithm 6
     float glossiness = 0.0F;    // g of [xie2017] Algorithm 6
-    bool isPlanar = false;      // reflectors: all normals the same, to 1e-3
+    bool isPlanar = false;      // reflectors: all normals the same, to 1e-3, and all vertices in
+                                // one plane, to 1e-3 of the diagonal of boundsMesh
 };
 
 /// Vertices and triangles of all objects, in mesh space, in the order of scene::flattened(). Every
 /// array is full: white where a mesh has no colours, (0, 0) where it has no texture coordinates,
-/// area-weighted normals where it has none or where they are not finite or zero.
+/// area-weighted normals where it has none or where they are not finite or zero. Triangles wind as
+/// in their mesh, also those of mirrored instances.
 struct ObjectGeometry {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
@@ -57,7 +64,8 @@ class ReflectiveScene {
     /// Texture layers are squares of this size; images are resampled to it (box filter).
     static constexpr int kLayerSizePx = 512;
 
-    /// Throws Error for a scene without triangles.
+    /// Throws Error for a scene without triangles, UnsupportedError for more reflectors than the
+    /// G-buffer numbers (65535).
     explicit ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule = {});
 
     /// Without what was left out; its instances are the objects, in order.
@@ -69,12 +77,13 @@ class ReflectiveScene {
     }  // RGBA, sRGB
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
-    int transmissiveCount() const { return transmissiveCount_; }      // objects left out
-    int repairedNormalCount() const { return repairedNormalCount_; }  // vertices of reflectors
-    const scene::Box& boundsWorld() const { return boundsWorld_; }    // rest pose
+    int transmissiveCount() const { return transmissiveCount_; }  // objects left out
+    /// Vertices of reflectors whose normals were missing, not finite or zero.
+    int repairedNormalCount() const { return repairedNormalCount_; }
+    const scene::Box& boundsWorld() const { return boundsWorld_; }  // rest pose
     float diagonalM() const;
 
-    /// Overrides every reflector's glossiness.
+    /// Overrides every reflector's glossiness, 0 to 1; before GpuObjects are made of the scene.
     void setGlossiness(float glossiness);
 
     /// Albedo at a point of a triangle: base colour · texture (bilinear, level 0) · vertex colour.
@@ -84,10 +93,16 @@ class ReflectiveScene {
     glm::vec3 normalMeshAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
 
   private:
+    void addObject(const scene::Instance& instance, const ReflectorRule& rule,
+                   std::vector<int>& layerOfTexture);
+    void addGeometry(const scene::Mesh& mesh, Object& object);
+    glm::vec3 texelsAt(int layer, const glm::vec2& texcoord) const;
+
     scene::Scene scene_;
     std::vector<Object> objects_;
     ObjectGeometry geometry_;
     std::vector<image::Image8> textureLayers_;
+    std::array<float, 256> srgbDecoding_;
     std::vector<scene::PointLight> lights_;
     scene::Box boundsWorld_;
     int reflectorCount_ = 0, transmissiveCount_ = 0, repairedNormalCount_ = 0;

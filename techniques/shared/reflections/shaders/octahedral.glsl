@@ -10,8 +10,13 @@ vec2 octahedralFromUnit(vec3 v) {
     return v.z >= 0.0 ? p : (1.0 - abs(p.yx)) * signNotZero(p);
 }
 
-vec3 unitFromOctahedral(vec2 e) {
+// Not of unit length, but the same on every device: no square root.
+vec3 directionFromOctahedral(vec2 e) {
     vec3 v = vec3(e, 1.0 - abs(e.x) - abs(e.y));
     if (v.z < 0.0) v.xy = (1.0 - abs(v.yx)) * signNotZero(v.xy);
-    return normalize(v);
+    return v;
+}
+
+vec3 unitFromOctahedral(vec2 e) {
+    return normalize(directionFromOctahedral(e));
 }

@@ -1,0 +1,86 @@
+#include "techniques/clustered_reflections/bin_tables.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+/// Borders between n bins begin here.
+std::size_t firstBorder(int bins) {
+    return static_cast<std::size_t>((bins - 1) * (bins - 2) / 2);
+}
+
+bool isInSecondHalf(const glm::vec2& v) {
+    return !(v.y > 0.0F || (v.y == 0.0F && v.x > 0.0F));
+}
+
+/// Is the angle of a at least that of b, both in [0°, 360°) from +x? As in assign_bins.frag.
+bool isAtLeast(const glm::vec2& a, const glm::vec2& b) {
+    if (isInSecondHalf(a) != isInSecondHalf(b)) return isInSecondHalf(a);
+    return b.x * a.y >= b.y * a.x;
+}
+
+}  // namespace
+
+BinTables::BinTables(const BinSettings& settings)
+    : maxBins(settings.maxThetaBins, settings.maxPhiBins) {
+    GFXREPRO_ASSERT(maxBins.x >= 1 && maxBins.y >= 1);
+    GFXREPRO_ASSERT(settings.exponent >= 0.0F && settings.gain > 0.0F);
+    for (const int most : {maxBins.x, maxBins.y}) {
+        for (int bins = 2; bins <= most; ++bins) {
+            // round(most · (scale · gain)^exponent) ≥ bins, solved for the scale; with exponent 0
+            // the power is 1 and every scale will do.
+            const double share = (bins - 0.5) / most;
+            const double exponent = settings.exponent;
+            const double least =
+                exponent > 0.0 ? std::pow(share, 1.0 / exponent) / double{settings.gain} : 0.0;
+            leastScale.push_back(static_cast<float>(least));
+        }
+    }
+    for (int bins = 2; bins <= maxBins.x; ++bins) {
+        for (int k = 1; k < bins; ++k) {
+            const double theta = 2.0 * std::numbers::pi * k / bins;
+            thetaBorders.emplace_back(std::cos(theta), std::sin(theta));
+        }
+    }
+    for (int bins = 2; bins <= maxBins.y; ++bins) {
+        for (int k = 1; k < bins; ++k) {
+            const double cosine = std::cos(std::numbers::pi * k / bins);
+            phiBorders.push_back(static_cast<float>(cosine * std::abs(cosine)));
+        }
+    }
+}
+
+glm::ivec2 BinTables::binsOf(std::uint32_t area, std::uint32_t total, std::uint32_t visible) const {
+    const float totalTimesVisible = static_cast<float>(total) * static_cast<float>(visible);
+    glm::ivec2 bins(1);
+    std::size_t at = 0;
+    for (int axis = 0; axis < 2; ++axis) {
+        for (int k = 2; k <= maxBins[axis]; ++k) {
+            if (static_cast<float>(area) >= leastScale[at++] * totalTimesVisible) ++bins[axis];
+        }
+    }
+    return bins;
+}
+
+glm::ivec2 BinTables::binOf(const glm::vec2& normalOctahedral, const glm::ivec2& bins) const {
+    const glm::vec3 n = reflections::directionFromOctahedral(normalOctahedral);
+    glm::ivec2 bin(0);
+    if (n.x != 0.0F || n.z != 0.0F) {
+        for (int k = 1; k < bins.x; ++k) {
+            const auto border = firstBorder(bins.x) + static_cast<std::size_t>(k - 1);
+            if (isAtLeast({n.x, n.z}, thetaBorders[border])) bin.x = k;
+        }
+    }
+    const float lengthSquare = n.x * n.x + n.y * n.y + n.z * n.z;
+    for (int k = 1; k < bins.y; ++k) {
+        const auto border = firstBorder(bins.y) + static_cast<std::size_t>(k - 1);
+        if (n.y * std::abs(n.y) <= phiBorders[border] * lengthSquare) bin.y = k;
+    }
+    return bin;
+}
+
+}  // namespace gfxrepro::clustered_reflections

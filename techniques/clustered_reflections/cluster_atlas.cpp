@@ -1,0 +1,119 @@
+#include "techniques/clustered_reflections/cluster_atlas.h"
+
+#include <algorithm>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+/// A larger object is drawn by several commands: llvmpipe keeps the vertices of a draw.
+constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
+
+/// Images begin at multiples of this, so that small tiles of the pyramid hold one image alone.
+constexpr int kPlaceStepPx = 8;
+
+/// Pairs of an object and a cluster that sees it; 8 MiB. All pairs of 512 objects and as many
+/// clusters as there may be; more of both is counted in State::leftOut.
+constexpr std::size_t kMostInstances = std::size_t{1} << 21;
+
+/// An instance is cluster << 20 | object.
+constexpr std::uint32_t kMostObjects = 1U << 20;
+static_assert(kMaxClusters <= 1 << 12);
+
+/// As glMultiDrawElementsIndirect reads it.
+struct DrawCommand {
+    std::uint32_t count = 0, instanceCount = 0, firstIndex = 0, baseVertex = 0, baseInstance = 0;
+};
+
+/// Of shaders/atlas.glsl, in front of the order in which images are placed.
+struct AtlasHeader {
+    float scale = 1.0F;
+    std::uint32_t instances = 0, leftOut = 0, padding = 0;
+};
+
+}  // namespace
+
+AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
+                           const reflections::ReflectiveScene& scene,
+                           const reflections::GpuObjects& objects, const CameraSettings& settings)
+    : settings_(settings),
+      places_(kMaxClusters * sizeof(glm::ivec4)),
+      order_(sizeof(AtlasHeader) + kMaxClusters * sizeof(std::uint32_t)) {
+    GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
+    gl::Defines defines = imageDefines();
+    defines["ATLAS"] = 1;
+    defines["PLACE_STEP_PX"] = kPlaceStepPx;
+    place_ = gl::Program(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
+    cull_ = gl::Program(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
+    draw_ = gl::Program(shaders,
+                        {"clustered_reflections/cluster_image.vert.glsl",
+                         "clustered_reflections/cluster_image.frag.glsl"},
+                        defines);
+
+    std::vector<DrawCommand> commands;
+    std::vector<glm::uvec2> pieces;  // an object's first command and how many
+    for (const reflections::Object& object : scene.objects()) {
+        const auto first = static_cast<std::uint32_t>(commands.size());
+        for (std::uint32_t done = 0; done < object.triangleCount; done += kTrianglesPerDraw) {
+            const std::uint32_t count = std::min(object.triangleCount - done, kTrianglesPerDraw);
+            commands.push_back({3 * count, 0, 3 * (object.firstTriangle + done), 0, 0});
+        }
+        pieces.emplace_back(first, static_cast<std::uint32_t>(commands.size()) - first);
+    }
+    commandCount_ = static_cast<int>(commands.size());
+    commands_ = gl::Buffer::of(commands);
+    pieces_ = gl::Buffer::of(pieces);
+    const std::size_t pairs = std::size_t{objects.objectCount()} * kMaxClusters;
+    instances_ = gl::Buffer(std::min(pairs, kMostInstances) * sizeof(std::uint32_t));
+    vertexArray_ = objects.makeVertexArray(instances_);
+}
+
+void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
+                        const gl::Buffer& counts, ClusterImages& target) {
+    cameras.bindStorage(kCamerasBinding);
+    counts.bindStorage(kImageCountsBinding);
+    places_.bindStorage(kPlacesBinding);
+    order_.bindStorage(kOrderBinding);
+    commands_.bindStorage(kCommandsBinding);
+    pieces_.bindStorage(kPiecesBinding);
+    instances_.bindStorage(kInstancesBinding);
+    objects.bind();
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+
+    place_.use();
+    place_.set("atlasSizePx", target.sizePx());
+    place_.set("depthImageScale", settings_.depthImageScale);
+    place_.set("maxSizePx", std::min(settings_.maxSizePx, target.sizePx().x));
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+
+    cull_.use();
+    glDispatchCompute(objects.objectCount(), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                    GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+
+    target.beginDrawing(target.sizePx());
+    draw_.use();
+    draw_.set("atlasSizePx", glm::vec2(target.sizePx()));
+    vertexArray_.bind();
+    for (int plane = 0; plane < 4; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
+                                sizeof(DrawCommand));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    for (int plane = 0; plane < 4; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    target.endDrawing(target.sizePx());
+}
+
+AtlasPainter::State AtlasPainter::state() const {
+    const AtlasHeader header = order_.read<AtlasHeader>(1).front();
+    return {header.scale, header.instances, header.leftOut};
+}
+
+std::size_t AtlasPainter::sizeBytes() const {
+    return places_.sizeBytes() + order_.sizeBytes() + commands_.sizeBytes() +
+           instances_.sizeBytes() + pieces_.sizeBytes();
+}
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,22 @@
+// Which clusters are concave: [xie2017] Sec. 4.7.4, second way.
+#pragma once
+
+#include "techniques/clustered_reflections/cluster_images.h"
+#include "techniques/shared/reflections/gbuffer.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// The thesis looks whether samples lie before the near plane. Here the normals decide: the sum of
+/// (P_i − P_c) · n_i over a cluster's samples is negative where they point together.
+class ConcavityPass {
+  public:
+    explicit ConcavityPass(const gl::ShaderLibrary& shaders);
+    /// Sets kConcaveCluster in the flags of cameras.
+    void mark(const reflections::GBuffer& gbuffer, const Clusters& clusters,
+              const gl::Buffer& cameras) const;
+
+  private:
+    gl::Program program_;
+};
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,174 @@
+#include "techniques/clustered_reflections/cluster_images.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::clustered_reflections {
+
+gl::Defines imageDefines() {
+    gl::Defines defines = reflections::objectDefines();
+    const auto define = [&](const char* name, unsigned value) {
+        defines[name] = static_cast<int>(value);
+    };
+    define("kCamerasBinding", kCamerasBinding);
+    define("kPlacesBinding", kPlacesBinding);
+    define("kImageCountsBinding", kImageCountsBinding);
+    define("kCommandsBinding", kCommandsBinding);
+    define("kInstancesBinding", kInstancesBinding);
+    define("kPiecesBinding", kPiecesBinding);
+    define("kOrderBinding", kOrderBinding);
+    define("kSamplesBinding", kSamplesBinding);
+    define("kRangesBinding", kRangesBinding);
+    define("GBUFFER_UNIT", kGBufferUnit);
+    define("ENVIRONMENT_UNIT", kEnvironmentUnit);
+    define("kImageColourUnit", kImageColourUnit);
+    define("kImageDepthUnit", kImageDepthUnit);
+    define("kImageNearestUnit", kImageNearestUnit);
+    define("kClusterOfSampleUnit", kClusterOfSampleUnit);
+    define("kMaxClusters", kMaxClusters);
+    define("kConcaveCluster", kConcaveCluster);
+    define("MARCH_LEVELS", kPyramidLevels);
+    return defines;
+}
+
+// ---- ClusterImages ----
+
+ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid)
+    : hasPyramid_(hasPyramid),
+      colour_(gl::Texture::make2D(GL_RGB10_A2, sizePx)),
+      depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
+      nearest_(gl::Texture::make2D(GL_R32F, hasPyramid ? sizePx / 4 : glm::ivec2(1),
+                                   hasPyramid ? kPyramidLevels : 1)),
+      framebuffer_(std::array<const gl::Texture*, 1>{&colour_}, &depth_),
+      nearestFramebuffer_(std::array<const gl::Texture*, 1>{&nearest_}) {
+    GFXREPRO_ASSERT(!hasPyramid || sizePx % kLargestTilePx == glm::ivec2(0));
+    colour_.setFilter(GL_LINEAR, GL_LINEAR);
+    nearest_.setFilter(GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST);
+    if (hasPyramid) {
+        pyramid_ = gl::Program(
+            shaders,
+            {"reflections/whole_image.vert.glsl", "clustered_reflections/nearest_depths.frag.glsl"},
+            imageDefines());
+    }
+}
+
+void ClusterImages::beginDrawing(glm::ivec2 sizePx) const {
+    framebuffer_.bind();
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, sizePx.x, sizePx.y);
+    framebuffer_.clearColour(0, glm::vec4(0.0F));
+    framebuffer_.clearDepth(0.0F);
+    glDisable(GL_SCISSOR_TEST);
+    // Window z is near distance / z: 1 at the near plane, 0 at infinity.
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+}
+
+void ClusterImages::endDrawing(glm::ivec2 sizePx) {
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_DEPTH_TEST);
+    if (!hasPyramid_) return;
+    pyramid_.use();
+    none_.bind();
+    for (int level = 0; level < kPyramidLevels; ++level) {
+        nearestFramebuffer_.bind();
+        // A level is read while the next one is drawn: sampling is kept to what is not attached.
+        glNamedFramebufferTexture(nearestFramebuffer_.id(), GL_COLOR_ATTACHMENT0, nearest_.id(),
+                                  level);
+        if (level == 0) {
+            depth_.bind(kImageDepthUnit);
+        } else {
+            glTextureParameteri(nearest_.id(), GL_TEXTURE_BASE_LEVEL, level - 1);
+            glTextureParameteri(nearest_.id(), GL_TEXTURE_MAX_LEVEL, level - 1);
+            nearest_.bind(kImageDepthUnit);
+        }
+        const int tilePx = 4 << level;
+        pyramid_.set("factor", level == 0 ? 4 : 2);
+        glViewport(0, 0, (sizePx.x + tilePx - 1) / tilePx, (sizePx.y + tilePx - 1) / tilePx);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    glTextureParameteri(nearest_.id(), GL_TEXTURE_BASE_LEVEL, 0);
+    glTextureParameteri(nearest_.id(), GL_TEXTURE_MAX_LEVEL, kPyramidLevels - 1);
+}
+
+void ClusterImages::bind() const {
+    colour_.bind(kImageColourUnit);
+    depth_.bind(kImageDepthUnit);
+    nearest_.bind(kImageNearestUnit);
+}
+
+std::size_t ClusterImages::sizeBytes() const {
+    return colour_.sizeBytes() + depth_.sizeBytes() + nearest_.sizeBytes();
+}
+
+glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings) {
+    if ((camera.flags & kNoRoom) != 0 || camera.sizePx.x <= 0 || camera.sizePx.y <= 0)
+        return {0, 0};
+    const float largest = static_cast<float>(std::max(camera.sizePx.x, camera.sizePx.y));
+    const float scale =
+        std::min(settings.depthImageScale, static_cast<float>(settings.maxSizePx) / largest);
+    const glm::ivec2 sizePx(glm::ceil(glm::vec2(camera.sizePx) * scale));
+    return glm::clamp(sizePx, glm::ivec2(1), glm::ivec2(settings.maxSizePx));
+}
+
+// ---- OneByOnePainter ----
+
+OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
+                                 const reflections::ReflectiveScene& scene) {
+    for (const reflections::Object& object : scene.objects()) {
+        reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
+    }
+    gl::Defines defines = imageDefines();
+    defines["ATLAS"] = 0;
+    program_ = gl::Program(shaders,
+                           {"clustered_reflections/cluster_image.vert.glsl",
+                            "clustered_reflections/cluster_image.frag.glsl"},
+                           defines);
+}
+
+std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuObjects& objects,
+                                                        const ClusterCamera& camera) const {
+    const glm::mat4 rows = glm::transpose(camera.clipFromWorld);
+    const std::array<glm::vec4, 6> planes = {rows[3] + rows[0], rows[3] - rows[0],
+                                             rows[3] + rows[1], rows[3] - rows[1],
+                                             rows[3] + rows[2], rows[3] - rows[2]};
+    const bool seesSelf = (camera.flags & kConcaveCluster) != 0;
+    std::vector<std::uint32_t> seen;
+    for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
+        if (reflectorOfObject_[i] == camera.reflector && !seesSelf) continue;
+        const scene::Box& box = objects.boundsWorld()[i];
+        if (box.isEmpty()) continue;
+        const bool isInside =
+            std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+                const glm::vec3 normal(plane);
+                return glm::dot(normal, box.centre()) + plane.w +
+                           glm::dot(glm::abs(normal), 0.5F * box.size()) >=
+                       0.0F;
+            });
+        if (isInside) seen.push_back(i);
+    }
+    return seen;
+}
+
+void OneByOnePainter::draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
+                           const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target) {
+    const std::vector<std::uint32_t> seen = objectsSeen(objects, camera);
+    target.beginDrawing(sizePx);
+    glViewport(0, 0, sizePx.x, sizePx.y);
+    program_.use();
+    program_.set("cluster", cluster);
+    objects.bind();
+    objects.draw(seen);
+    target.endDrawing(sizePx);
+}
+
+}  // namespace gfxrepro::clustered_reflections

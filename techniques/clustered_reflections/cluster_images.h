@@ -1,0 +1,93 @@
+// Step 3.b of [xie2017] Algorithm 6: the scene drawn from cluster cameras.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/program.h"
+#include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/shared/reflections/gpu_objects.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// Where the passes of step 3 find what they share; injected by imageDefines().
+enum ImageBinding : unsigned {
+    kCamerasBinding = reflections::kFirstFreeStorage,  // ClusterCamera cameras[]
+    kPlacesBinding,                                    // ivec4 places[]: x, y, width, height
+    kImageCountsBinding,                               // Clusters::counts
+    kCommandsBinding,
+    kInstancesBinding,
+    kPiecesBinding,
+    kOrderBinding,
+    kSamplesBinding,
+    kRangesBinding
+};
+enum ImageUnit : unsigned {
+    kGBufferUnit = reflections::kFirstFreeUnit,  // four
+    kEnvironmentUnit = kGBufferUnit + 4,
+    kImageColourUnit,
+    kImageDepthUnit,
+    kImageNearestUnit,
+    kClusterOfSampleUnit
+};
+gl::Defines imageDefines();
+
+/// Levels above the depth image: tiles of 4, 8, 16 and 32 texels a side. (Tiles of 2 would cost
+/// more memory than all others and skip next to nothing.)
+constexpr int kPyramidLevels = 4;
+constexpr int kLargestTilePx = 2 << kPyramidLevels;
+
+/// The texture that holds one cluster's image, or those of all. 8 bytes a texel, 1/3 more with the
+/// pyramid. The depth buffer holds near distance / z: the hardware's own depth, reversed and with
+/// the far plane at infinity, so that no second target keeps what the march compares.
+class ClusterImages {
+  public:
+    ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid);
+
+    /// Clears texels [0, sizePx) and makes ready for drawing into them.
+    void beginDrawing(glm::ivec2 sizePx) const;
+    /// Back to the defaults that other passes take for granted; makes the pyramid of [0, sizePx).
+    void endDrawing(glm::ivec2 sizePx);
+    /// For shaders that include cluster_image.glsl.
+    void bind() const;
+
+    glm::ivec2 sizePx() const { return glm::ivec2(colour_.size()); }
+    const gl::Texture& colour() const { return colour_; }  // RGB10_A2, a: own reflector
+    const gl::Texture& depth() const { return depth_; }    // near distance / z; 0: nothing there
+    std::size_t sizeBytes() const;
+
+  private:
+    bool hasPyramid_;
+    gl::Texture colour_, depth_, nearest_;
+    gl::Framebuffer framebuffer_, nearestFramebuffer_;
+    gl::Program pyramid_;
+    gl::VertexArray none_;
+};
+
+/// w × h of a cluster's image as it is drawn: scaled (Table 17), no larger than the limit, at least
+/// a texel. (0, 0): no image. shaders/place_images.comp.glsl has the same.
+glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings);
+
+/// Another bit of ClusterCamera::flags: the cluster is concave (ConcavityPass). Its images show its
+/// own reflector: [xie2017] Sec. 4.7.4, second way.
+constexpr std::uint32_t kConcaveCluster = 1U << 16;
+static_assert(((kPlanarCluster | kNoRoom | kEyeBehind | kRaysTurned) & kConcaveCluster) == 0);
+
+/// The thesis's way: a cluster's image at the texture's origin, objects culled on the CPU.
+class OneByOnePainter {
+  public:
+    OneByOnePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene);
+    /// The cameras are bound to kCamerasBinding; `camera` is the cluster's.
+    void draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
+              const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target);
+    /// Objects in the frustum, without the own reflector unless the cluster is marked concave.
+    std::vector<std::uint32_t> objectsSeen(const reflections::GpuObjects& objects,
+                                           const ClusterCamera& camera) const;
+
+  private:
+    std::vector<std::uint32_t> reflectorOfObject_;
+    gl::Program program_;
+};
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,67 @@
+#include "techniques/clustered_reflections/cluster_intersection.h"
+
+#include <array>
+
+namespace gfxrepro::clustered_reflections {
+
+ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
+                                         const CameraSettings& settings, March march,
+                                         bool seesConcaveSelf, glm::ivec2 sizePx)
+    : settings_(settings), environmentSamples_(gl::Texture::make2D(GL_R8UI, sizePx)) {
+    gl::Defines defines = imageDefines();
+    defines["MARCH"] = march == March::Hierarchical ? 1 : 0;
+    defines["SEES_OWN"] = seesConcaveSelf ? 1 : 0;
+    all_ = gl::Program(
+        shaders, {"reflections/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
+        defines);
+    one_ = gl::Program(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
+}
+
+void ClusterIntersection::prepare(const gl::Program& program, const reflections::GBuffer& gbuffer,
+                                  const ClusterImages& images,
+                                  const reflections::EnvironmentMap& map) const {
+    program.use();
+    gbuffer.bind(program, kGBufferUnit);
+    images.bind();
+    map.bind(kEnvironmentUnit);
+    reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
+}
+
+void ClusterIntersection::clearEnvironmentSamples() {
+    environmentSamples_.clearToZero();
+}
+
+void ClusterIntersection::intersectAll(const reflections::GBuffer& gbuffer,
+                                       const Clusters& clusters, const ClusterImages& images,
+                                       const reflections::EnvironmentMap& map,
+                                       reflections::ReflectionTarget& target) {
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
+        &target.radiance, &target.distance, &environmentSamples_});
+    framebuffer.bind();
+    prepare(all_, gbuffer, images, map);
+    clusters.clusterOfSample.bind(kClusterOfSampleUnit);
+    wholeImage_.draw();
+}
+
+void ClusterIntersection::intersectCluster(const reflections::GBuffer& gbuffer,
+                                           const Clusters& clusters, std::uint32_t cluster,
+                                           const glm::uvec4& range, const ClusterImages& images,
+                                           const reflections::EnvironmentMap& map,
+                                           reflections::ReflectionTarget& target) {
+    constexpr std::uint32_t kGroupSize = 64;  // of the shader
+    const std::uint32_t sampleCount = range.y;
+    if (sampleCount == 0) return;
+    prepare(one_, gbuffer, images, map);
+    clusters.samples.bindStorage(kSamplesBinding);
+    one_.set("cluster", cluster);
+    one_.set("firstSample", range.x);
+    one_.set("sampleCount", sampleCount);
+    target.radiance.bindImage(0, GL_WRITE_ONLY);
+    target.distance.bindImage(1, GL_WRITE_ONLY);
+    environmentSamples_.bindImage(2, GL_WRITE_ONLY);
+    glDispatchCompute((sampleCount + kGroupSize - 1) / kGroupSize, 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+}  // namespace gfxrepro::clustered_reflections

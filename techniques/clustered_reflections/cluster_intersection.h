@@ -1,0 +1,42 @@
+// Step 3.c of [xie2017] Algorithm 6: reflection rays against the clusters' depth images.
+#pragma once
+
+#include "techniques/clustered_reflections/cluster_images.h"
+#include "techniques/clustered_reflections/depth_image_marcher.h"
+#include "techniques/shared/reflections/environment_map.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// Cameras and places must be bound to kCamerasBinding and kPlacesBinding.
+class ClusterIntersection {
+  public:
+    ClusterIntersection(const gl::ShaderLibrary& shaders, const CameraSettings& settings,
+                        March march, bool seesConcaveSelf, glm::ivec2 sizePx);
+
+    /// Of all samples in a pass over the G-buffer: images in an atlas.
+    void intersectAll(const reflections::GBuffer& gbuffer, const Clusters& clusters,
+                      const ClusterImages& images, const reflections::EnvironmentMap& map,
+                      reflections::ReflectionTarget& target);
+
+    /// Of one cluster's samples: `range` is its entry of Clusters::ranges.
+    void intersectCluster(const reflections::GBuffer& gbuffer, const Clusters& clusters,
+                          std::uint32_t cluster, const glm::uvec4& range,
+                          const ClusterImages& images, const reflections::EnvironmentMap& map,
+                          reflections::ReflectionTarget& target);
+
+    /// Once a frame, before either.
+    void clearEnvironmentSamples();
+    const gl::Texture& environmentSamples() const { return environmentSamples_; }
+    std::size_t sizeBytes() const { return environmentSamples_.sizeBytes(); }
+
+  private:
+    void prepare(const gl::Program& program, const reflections::GBuffer& gbuffer,
+                 const ClusterImages& images, const reflections::EnvironmentMap& map) const;
+
+    CameraSettings settings_;
+    gl::Program all_, one_;
+    gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
+    reflections::WholeImage wholeImage_;
+};
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,65 @@
+// The technique `clustered_reflections`: chapter 4 of xie2017. See README.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "runner/technique/technique.h"
+#include "techniques/clustered_reflections/reflection_params.h"
+#include "techniques/shared/reflections/composite.h"
+#include "techniques/shared/reflections/embree_tracer.h"
+
+namespace gfxrepro::clustered_reflections {
+
+class ClusteredReflections final : public technique::Technique {
+  public:
+    explicit ClusteredReflections(config::Params& params);
+
+    void setup(technique::SetupContext& context) override;
+    void render(technique::FrameContext& context) override;
+    void record(technique::Recorder& recorder) override;
+
+  private:
+    /// What Embree says of the last frame; with the picture that it makes of it.
+    struct Truth {
+        depth_images::View view;
+        std::vector<glm::mat4> poses;
+        std::vector<reflections::TracedSample> samples;
+        image::ImageF picture;
+    };
+
+    std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders);
+    /// Traced once for frames that are the same.
+    const Truth& truthOf(const reflections::HostGBuffer& gbuffer);
+
+    void recordShares(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer) const;
+    void recordMemory(technique::Recorder& recorder) const;
+    void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                      const image::ImageF& picture);
+    void recordClusters(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                        const image::ImageF& picture);
+    void recordOcclusion(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                         const image::ImageF& picture,
+                         const std::vector<std::uint16_t>& clusterOfSample);
+
+    ReflectionParams params_;
+    std::optional<reflections::ReflectiveScene> scene_;
+    glm::ivec2 outputSizePx_{0};
+    std::optional<reflections::GpuObjects> objects_;
+    std::optional<reflections::EnvironmentMap> map_;
+    std::optional<reflections::GBufferRenderer> gbufferRenderer_;
+    std::optional<reflections::GBuffer> gbuffer_;
+    std::optional<reflections::ReflectionTarget> target_;
+    std::unique_ptr<reflections::ReflectionTracer> tracer_;
+    ClusteredTracer* clusteredTracer_ = nullptr;  // the same, of `method: clustered`
+    std::optional<reflections::Composite> composite_;
+
+    std::unique_ptr<gl::Profiler> untimed_;  // of the truth
+    std::optional<reflections::EmbreeTracer> truthTracer_;
+    std::optional<Truth> truth_;
+};
+
+extern const technique::TechniqueInfo kClusteredReflections;
+
+}  // namespace gfxrepro::clustered_reflections

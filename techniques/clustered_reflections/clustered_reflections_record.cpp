@@ -1,0 +1,160 @@
+// What is recorded of a frame: shares, memory, errors, pictures.
+
+#include <algorithm>
+
+#include "runner/metrics/flip.h"
+#include "techniques/clustered_reflections/clustered_reflections.h"
+#include "techniques/clustered_reflections/reflection_errors.h"
+#include "techniques/clustered_reflections/reflection_pictures.h"
+
+namespace gfxrepro::clustered_reflections {
+
+using reflections::HostGBuffer;
+
+namespace {
+
+double percent(std::size_t part, std::size_t whole) {
+    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+double meanOf(const glm::dvec3& channels) {
+    return (channels.x + channels.y + channels.z) / 3.0;
+}
+
+bool isSameView(const depth_images::View& a, const depth_images::View& b) {
+    return a.eyeWorld == b.eyeWorld && a.viewFromWorld == b.viewFromWorld &&
+           a.clipFromView == b.clipFromView && a.sizePx == b.sizePx;
+}
+
+}  // namespace
+
+void ClusteredReflections::record(technique::Recorder& recorder) {
+    const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
+    recordShares(recorder, gbuffer);
+    recordMemory(recorder);
+    if (!params_.measuresErrors && !params_.showsPictures && !clusteredTracer_) return;
+
+    const image::ImageF picture = composite_->read();
+    if (params_.showsPictures) {
+        recorder.image("result", picture);
+        recorder.image("reflectors",
+                       numbersPicture(gbuffer, reflectorNumbers(gbuffer), params_.supersampling));
+        composite_->render(*gbuffer_, *target_, true);
+        recorder.image("reflection", composite_->read());
+    }
+    if (params_.measuresErrors) recordErrors(recorder, gbuffer, picture);
+    if (clusteredTracer_) recordClusters(recorder, gbuffer, picture);
+}
+
+void ClusteredReflections::recordShares(technique::Recorder& recorder,
+                                        const HostGBuffer& gbuffer) const {
+    std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::uint64_t diffuseTriangles = 0, reflectiveTriangles = 0;
+    for (const reflections::Object& object : scene_->objects()) {
+        isPlanar[static_cast<std::size_t>(object.reflector)] = object.isPlanar ? 1 : 0;
+        (object.reflector == 0 ? diffuseTriangles : reflectiveTriangles) += object.triangleCount;
+    }
+    std::vector<std::size_t> samples(isPlanar.size());
+    for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
+        ++samples[static_cast<std::size_t>(gbuffer.reflector(i))];
+    }
+    std::size_t reflective = 0, planar = 0, visible = 0;
+    for (std::size_t reflector = 1; reflector < samples.size(); ++reflector) {
+        reflective += samples[reflector];
+        planar += isPlanar[reflector] != 0 ? samples[reflector] : 0;
+        visible += samples[reflector] > 0 ? 1 : 0;
+    }
+    recorder.metric("reflective_pct", percent(reflective, gbuffer.surface.size()), "%");
+    recorder.metric("planar_pct", percent(planar, reflective), "%");
+    recorder.metric("visible_reflectors", static_cast<double>(visible), "reflector");
+    recorder.metric("reflectors", scene_->reflectorCount(), "reflector");
+    recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");
+    recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles), "triangle");
+}
+
+// Sec. 4.7.1 counts what holds colours and depths of the screen and of a cluster as frame buffers.
+void ClusteredReflections::recordMemory(technique::Recorder& recorder) const {
+    const std::size_t frameBuffers =
+        gbuffer_->sizeBytes() + target_->sizeBytes() + composite_->sizeBytes();
+    recorder.metric("memory_bytes", static_cast<double>(frameBuffers + tracer_->sizeBytes()),
+                    "byte");
+    recorder.metric("frame_buffer_bytes", static_cast<double>(frameBuffers), "byte");
+}
+
+const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuffer& gbuffer) {
+    const auto poses = objects_->poses();
+    if (truth_ && isSameView(truth_->view, gbuffer.view) &&
+        std::ranges::equal(truth_->poses, poses)) {
+        return *truth_;
+    }
+    truth_.emplace();
+    truth_->view = gbuffer.view;
+    truth_->poses.assign(poses.begin(), poses.end());
+    truthTracer_->update(*objects_, *untimed_);
+    truth_->samples = truthTracer_->trace(gbuffer);
+    // The same composite makes a picture of it, so that nothing but the reflections differs.
+    std::vector<glm::vec4> radiance;
+    radiance.reserve(truth_->samples.size());
+    for (const reflections::TracedSample& sample : truth_->samples) {
+        radiance.emplace_back(sample.radiance, 1.0F);
+    }
+    reflections::ReflectionTarget target(gbuffer.view.sizePx);
+    target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
+    composite_->render(*gbuffer_, target);
+    truth_->picture = composite_->read();
+    return *truth_;
+}
+
+void ClusteredReflections::recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
+                                        const image::ImageF& picture) {
+    const image::ImageF& truth = truthOf(gbuffer).picture;
+    const std::vector<std::uint8_t> reflective = reflectivePixels(gbuffer, params_.supersampling);
+    const glm::dvec3 errors = channelErrors(picture, truth, &reflective);
+    recorder.metric("channel_error", meanOf(errors), "level");
+    recorder.metric("channel_error_r", errors.r, "level");
+    recorder.metric("channel_error_g", errors.g, "level");
+    recorder.metric("channel_error_b", errors.b, "level");
+    recorder.metric("channel_error_image", meanOf(channelErrors(picture, truth, nullptr)), "level");
+    recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
+    recorder.metric("psnr_db", shownPsnrDb(picture, truth), "dB");
+    if (!params_.showsPictures) return;
+    recorder.image("truth", truth);
+    recorder.image("error", errorPicture(picture, truth, 1));
+    recorder.image("error_50", errorPicture(picture, truth, 50));
+}
+
+void ClusteredReflections::recordClusters(technique::Recorder& recorder, const HostGBuffer& gbuffer,
+                                          const image::ImageF& picture) {
+    const auto clusterOfSample = clusteredTracer_->clusters().clusterOfSample.read<std::uint16_t>(
+        GL_RED_INTEGER, GL_UNSIGNED_SHORT, 1);
+    const auto clustered = static_cast<std::size_t>(
+        std::ranges::count_if(clusterOfSample, [](std::uint16_t c) { return c != 0; }));
+    const std::vector<std::uint8_t> environment = clusteredTracer_->environmentSamples();
+    const auto fallen = static_cast<std::size_t>(
+        std::ranges::count_if(environment, [](std::uint8_t mark) { return mark != 0; }));
+    recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
+    recorder.metric("environment_pct", percent(fallen, clustered), "%");
+    if (params_.showsPictures) {
+        recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling));
+        recorder.image("environment",
+                       markedPicture(picture, environment, gbuffer, params_.supersampling));
+    }
+    if (params_.measuresErrors) recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
+}
+
+void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
+                                           const HostGBuffer& gbuffer, const image::ImageF& picture,
+                                           const std::vector<std::uint16_t>& clusterOfSample) {
+    const OcclusionErrors errors =
+        occlusionErrors({gbuffer, truthOf(gbuffer).samples, clusterOfSample,
+                         clusteredTracer_->cameras(), *scene_, truthTracer_->rays(), params_.lobe});
+    recorder.metric("occlusion_error_pct", percent(errors.missing, errors.reflective), "%");
+    recorder.metric("occlusion_hidden_pct", percent(errors.hidden, errors.reflective), "%");
+    recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
+                    "%");
+    if (!params_.showsPictures) return;
+    recorder.image("occlusion",
+                   markedPicture(picture, errors.isMissing, gbuffer, params_.supersampling));
+}
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,332 @@
+#include "techniques/clustered_reflections/clustering.h"
+
+#include <fmt/format.h>
+
+#include "runner/core/error.h"
+#include "techniques/clustered_reflections/bin_tables.h"
+#include "techniques/clustered_reflections/kd_clustering.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+using reflections::kFirstFreeStorage;
+using reflections::kFirstFreeUnit;
+
+enum TextureUnit : unsigned {
+    kSurfaceUnit = kFirstFreeUnit,
+    kNormalUnit,
+    kWantedUnit,
+    kBinUnit,
+};
+/// Storage. A pass binds what it uses; no more than eight bindings are free, so passes that never
+/// meet share them.
+enum Binding : unsigned {
+    kReflectorsBinding = kFirstFreeStorage,
+    kLayoutBinding,
+    kBinsBinding,
+    kCountsBinding,
+    kAreasBinding,
+    kThresholdsBinding,
+    kThetaBordersBinding = kAreasBinding,
+    kPhiBordersBinding = kThresholdsBinding,
+    kMatrixBinding = kAreasBinding,
+    kPiecesBinding = kThresholdsBinding,
+    kRangesBinding,
+    kSamplesBinding,
+};
+
+constexpr int kGroupSize = 64;
+constexpr int kScanGroupSize = 256;
+/// Samples of a column that one invocation counts; 16 thousand invocations in half a megapixel.
+constexpr int kStripLength = 32;
+/// Of the counting sort's matrix, bins × blocks: 1 MiB. 128 bins leave 2048 blocks, 512 samples
+/// each in a megapixel; 4096 bins leave 64.
+constexpr int kMatrixEntries = 1 << 18;
+constexpr int kMaxBlocks = 4096;
+constexpr int kPieceLength = kMatrixEntries / kScanGroupSize;
+static_assert(kMatrixEntries >= kMaxClusters);
+
+gl::Defines defines(int groupSize) {
+    return {{"SURFACE_UNIT", kSurfaceUnit},
+            {"NORMAL_UNIT", kNormalUnit},
+            {"WANTED_UNIT", kWantedUnit},
+            {"BIN_UNIT", kBinUnit},
+            {"REFLECTORS_BINDING", kReflectorsBinding},
+            {"LAYOUT_BINDING", kLayoutBinding},
+            {"BINS_BINDING", kBinsBinding},
+            {"COUNTS_BINDING", kCountsBinding},
+            {"AREAS_BINDING", kAreasBinding},
+            {"THRESHOLDS_BINDING", kThresholdsBinding},
+            {"THETA_BORDERS_BINDING", kThetaBordersBinding},
+            {"PHI_BORDERS_BINDING", kPhiBordersBinding},
+            {"MATRIX_BINDING", kMatrixBinding},
+            {"PIECES_BINDING", kPiecesBinding},
+            {"RANGES_BINDING", kRangesBinding},
+            {"SAMPLES_BINDING", kSamplesBinding},
+            {"GROUP_SIZE", groupSize},
+            {"STRIP_LENGTH", kStripLength},
+            {"MATRIX_ENTRIES", kMatrixEntries},
+            {"PIECE_LENGTH", kPieceLength},
+            {"MAX_BLOCKS", kMaxBlocks}};
+}
+
+gl::Program compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize) {
+    return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines(groupSize)};
+}
+
+gl::Program wholeImage(const gl::ShaderLibrary& shaders, const char* name) {
+    return {shaders,
+            {"clustered_reflections/whole_image.vert.glsl",
+             fmt::format("clustered_reflections/{}.frag.glsl", name)},
+            defines(kGroupSize)};
+}
+
+GLuint groupsFor(int count, int perGroup) {
+    return static_cast<GLuint>((count + perGroup - 1) / perGroup);
+}
+
+gl::Framebuffer framebufferOf(const gl::Texture& target) {
+    const gl::Texture* const colours[] = {&target};
+    return gl::Framebuffer(colours);
+}
+
+}  // namespace
+
+std::size_t Clusters::sizeBytes() const {
+    return clusterOfSample.sizeBytes() + samples.sizeBytes() + ranges.sizeBytes() +
+           counts.sizeBytes();
+}
+
+std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& scene) {
+    std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
+    for (const reflections::Object& object : scene.objects()) {
+        if (object.reflector > 0 && object.isPlanar) {
+            isPlanar[static_cast<std::size_t>(object.reflector)] = 1;
+        }
+    }
+    return isPlanar;
+}
+
+/// Programs and scratch of the clustering by normals.
+struct ClusterBuilder::NormalBinPasses {
+    NormalBinPasses(const gl::ShaderLibrary& shaders, const BinTables& tables,
+                    const std::vector<std::uint8_t>& isPlanar, const Clusters& clusters);
+    void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
+               const Clusters& clusters);
+    void findBins(const reflections::GBuffer& gbuffer, const Clusters& clusters);
+    void sortSamples(const Clusters& clusters);
+    std::size_t sizeBytes() const;
+
+    glm::ivec2 sizePx, maxBins;
+    int reflectorCount;
+    gl::Program areas, bins, assign, count, scan, number, sort, label;
+    gl::Buffer areaOfReflector, reflectors, layout, binRecords, matrix, pieces;
+    gl::Buffer leastScale, thetaBorders, phiBorders;
+    gl::Texture binOfSample;  // R16UI: 1 + bin; 0: not reflective
+    gl::Framebuffer binTarget, clusterTarget;
+    gl::VertexArray noAttributes;
+};
+
+ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shaders,
+                                                 const BinTables& tables,
+                                                 const std::vector<std::uint8_t>& isPlanar,
+                                                 const Clusters& clusters)
+    : sizePx(clusters.clusterOfSample.size()),
+      maxBins(tables.maxBins),
+      reflectorCount(static_cast<int>(isPlanar.size()) - 1),
+      areas(compute(shaders, "reflector_areas", kGroupSize)),
+      bins(compute(shaders, "reflector_bins", kScanGroupSize)),
+      assign(wholeImage(shaders, "assign_bins")),
+      count(compute(shaders, "count_bins", kGroupSize)),
+      scan(compute(shaders, "scan_bins", kScanGroupSize)),
+      number(compute(shaders, "number_clusters", kScanGroupSize)),
+      sort(compute(shaders, "sort_samples", kGroupSize)),
+      label(wholeImage(shaders, "label_clusters")),
+      areaOfReflector(isPlanar.size() * sizeof(std::uint32_t)),
+      layout(3 * sizeof(std::uint32_t)),
+      binRecords(kMaxClusters * sizeof(std::uint32_t)),
+      matrix(kMatrixEntries * sizeof(std::uint32_t)),
+      pieces(kScanGroupSize * sizeof(std::uint32_t)),
+      leastScale(gl::Buffer::of(tables.leastScale)),
+      thetaBorders(gl::Buffer::of(tables.thetaBorders)),
+      phiBorders(gl::Buffer::of(tables.phiBorders)),
+      binOfSample(gl::Texture::make2D(GL_R16UI, sizePx)),
+      binTarget(framebufferOf(binOfSample)),
+      clusterTarget(framebufferOf(clusters.clusterOfSample)) {
+    std::vector<glm::uvec4> records;
+    for (const std::uint8_t planar : isPlanar) records.emplace_back(0, 0, 0, planar);
+    reflectors = gl::Buffer::of(records);
+}
+
+/// Areas, bins of each reflector, bin of each sample.
+void ClusterBuilder::NormalBinPasses::findBins(const reflections::GBuffer& gbuffer,
+                                               const Clusters& clusters) {
+    areaOfReflector.clear();
+    areaOfReflector.bindStorage(kAreasBinding);
+    areas.use();
+    glDispatchCompute(groupsFor(sizePx.x, kGroupSize), groupsFor(sizePx.y, kStripLength), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+
+    leastScale.bindStorage(kThresholdsBinding);
+    reflectors.bindStorage(kReflectorsBinding);
+    layout.bindStorage(kLayoutBinding);
+    binRecords.bindStorage(kBinsBinding);
+    clusters.counts.bindStorage(kCountsBinding);
+    bins.use();
+    bins.set("reflectorCount", reflectorCount);
+    bins.set("maxThetaBins", maxBins.x);
+    bins.set("maxPhiBins", maxBins.y);
+    bins.set("pixelCount", sizePx.x * sizePx.y);
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+
+    gbuffer.normal.bind(kNormalUnit);
+    thetaBorders.bindStorage(kThetaBordersBinding);
+    phiBorders.bindStorage(kPhiBordersBinding);
+    assign.use();
+    binTarget.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ClusterBuilder::NormalBinPasses::sortSamples(const Clusters& clusters) {
+    binOfSample.bind(kBinUnit);
+    matrix.clear();
+    matrix.bindStorage(kMatrixBinding);
+    pieces.bindStorage(kPiecesBinding);
+    clusters.ranges.bindStorage(kRangesBinding);
+    clusters.samples.bindStorage(kSamplesBinding);
+    count.use();
+    glDispatchCompute(groupsFor(kMaxBlocks, kGroupSize), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    scan.use();
+    glDispatchCompute(groupsFor(kMatrixEntries, kPieceLength), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    number.use();
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    sort.use();
+    glDispatchCompute(groupsFor(kMaxBlocks, kGroupSize), 1, 1);
+
+    label.use();
+    clusterTarget.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void ClusterBuilder::NormalBinPasses::build(const reflections::GBuffer& gbuffer,
+                                            const gl::Texture* wanted, const Clusters& clusters) {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    noAttributes.bind();
+    gbuffer.surface.bind(kSurfaceUnit);
+    // Without a mask the surfaces stand in: they are not 0 where something reflects.
+    (wanted != nullptr ? *wanted : gbuffer.surface).bind(kWantedUnit);
+    findBins(gbuffer, clusters);
+    sortSamples(clusters);
+}
+
+std::size_t ClusterBuilder::NormalBinPasses::sizeBytes() const {
+    return areaOfReflector.sizeBytes() + reflectors.sizeBytes() + layout.sizeBytes() +
+           binRecords.sizeBytes() + matrix.sizeBytes() + pieces.sizeBytes() +
+           leastScale.sizeBytes() + thetaBorders.sizeBytes() + phiBorders.sizeBytes() +
+           binOfSample.sizeBytes();
+}
+
+ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
+                               const reflections::ReflectiveScene& scene, Clustering clustering,
+                               const BinSettings& bins, glm::ivec2 sizePx)
+    : clustering_(clustering), bins_(bins), isPlanar_(planarReflectors(scene)) {
+    GFXREPRO_ASSERT(sizePx.x > 0 && sizePx.y > 0 && sizePx.x < 1 << 16 && sizePx.y < 1 << 16);
+    long long curved = 0;
+    for (std::size_t r = 1; r < isPlanar_.size(); ++r) curved += isPlanar_[r] == 0 ? 1 : 0;
+    const long long planar = scene.reflectorCount() - curved;
+    const long long most = curved * bins.maxThetaBins * bins.maxPhiBins + planar;
+    if (most > kMaxClusters) {
+        throw UnsupportedError(fmt::format(
+            "{} curved reflectors of {} × {} bins and {} planar ones may make {} clusters; at most "
+            "{} are allowed: take fewer bins or a smaller roughness limit of reflectors",
+            curved, bins.maxThetaBins, bins.maxPhiBins, planar, most, kMaxClusters));
+    }
+    const auto pixels = static_cast<std::size_t>(sizePx.x) * static_cast<std::size_t>(sizePx.y);
+    clusters_.clusterOfSample = gl::Texture::make2D(GL_R16UI, sizePx);
+    clusters_.samples = gl::Buffer(pixels * sizeof(std::uint32_t));
+    clusters_.ranges = gl::Buffer(kMaxClusters * sizeof(glm::uvec4));
+    clusters_.counts = gl::Buffer(3 * sizeof(std::uint32_t));
+    if (clustering == Clustering::NormalBins) {
+        passes_ = std::make_unique<NormalBinPasses>(shaders, BinTables(bins), isPlanar_, clusters_);
+    }
+}
+
+ClusterBuilder::~ClusterBuilder() = default;
+
+void ClusterBuilder::build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted) {
+    const glm::ivec2 sizePx = clusters_.clusterOfSample.size();
+    GFXREPRO_ASSERT(gbuffer.view.sizePx == sizePx);
+    GFXREPRO_ASSERT(wanted == nullptr || glm::ivec2(wanted->size()) == sizePx);
+    clusters_.ranges.clear();
+    if (clustering_ == Clustering::NormalBins) {
+        passes_->build(gbuffer, wanted, clusters_);
+    } else {
+        buildKdClusters(gbuffer, wanted, isPlanar_, bins_, clusters_);
+    }
+}
+
+std::size_t ClusterBuilder::sizeBytes() const {
+    return clusters_.sizeBytes() + (passes_ ? passes_->sizeBytes() : 0);
+}
+
+HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
+                           const reflections::ReflectiveScene& scene, const BinSettings& bins,
+                           const std::vector<std::uint8_t>* wanted) {
+    const BinTables tables(bins);
+    const std::vector<std::uint8_t> isPlanar = planarReflectors(scene);
+    const std::size_t pixels = gbuffer.surface.size();
+    const auto reflectorAt = [&](std::size_t i) {
+        const bool isWanted = wanted == nullptr || (*wanted)[i] != 0;
+        return isWanted ? static_cast<std::size_t>(gbuffer.reflector(i)) : 0;
+    };
+    std::vector<std::uint32_t> areas(isPlanar.size(), 0);
+    for (std::size_t i = 0; i < pixels; ++i) ++areas[reflectorAt(i)];
+
+    HostClusters result;
+    std::uint32_t total = 0;
+    for (std::size_t r = 1; r < areas.size(); ++r) {
+        total += areas[r];
+        result.visibleReflectors += areas[r] > 0 ? 1 : 0;
+    }
+    std::vector<glm::ivec2> grids(areas.size(), glm::ivec2(1));
+    std::vector<int> firstBins(areas.size(), 0), reflectorOfBin;
+    for (std::size_t r = 1; r < areas.size(); ++r) {
+        firstBins[r] = static_cast<int>(reflectorOfBin.size());
+        if (areas[r] == 0) continue;
+        const auto visible = static_cast<std::uint32_t>(result.visibleReflectors);
+        if (isPlanar[r] == 0) grids[r] = tables.binsOf(areas[r], total, visible);
+        const auto count = static_cast<std::size_t>(grids[r].x * grids[r].y);
+        reflectorOfBin.insert(reflectorOfBin.end(), count, static_cast<int>(r));
+    }
+
+    std::vector<int> bin(pixels, -1);
+    std::vector<std::uint16_t> clusterOfBin(reflectorOfBin.size(), 0);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const std::size_t r = reflectorAt(i);
+        if (r == 0) continue;
+        const glm::ivec2 ij = tables.binOf(gbuffer.normalOctahedral[i], grids[r]);
+        bin[i] = firstBins[r] + ij.y * grids[r].x + ij.x;
+        clusterOfBin[static_cast<std::size_t>(bin[i])] = 1;
+    }
+    for (std::size_t b = 0; b < clusterOfBin.size(); ++b) {
+        if (clusterOfBin[b] == 0) continue;
+        clusterOfBin[b] = static_cast<std::uint16_t>(++result.clusterCount);
+        result.reflectorOfCluster.push_back(reflectorOfBin[b]);
+    }
+    result.clusterOfSample.assign(pixels, 0);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        if (bin[i] >= 0) result.clusterOfSample[i] = clusterOfBin[static_cast<std::size_t>(bin[i])];
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::clustered_reflections

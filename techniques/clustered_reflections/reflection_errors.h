@@ -1,0 +1,62 @@
+// How far reflections are from the truth ([xie2017] Sec. 4.7.1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runner/image/image.h"
+#include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/shared/reflections/embree_tracer.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// Output pixels of which a sample reflects, rows from the top as images have them.
+std::vector<std::uint8_t> reflectivePixels(const reflections::HostGBuffer& gbuffer,
+                                           int supersampling);
+
+/// Mean absolute difference a channel of two pictures as they are shown: sRGB, 0 … 255. Over the
+/// pixels that `wanted` marks, all where it is null; 0 over none.
+glm::dvec3 channelErrors(const image::ImageF& picture, const image::ImageF& truth,
+                         const std::vector<std::uint8_t>* wanted);
+
+/// Of pictures as they are shown; equal pictures have kEqualPsnrDb.
+constexpr double kEqualPsnrDb = 120.0;  // above what 8 bits of any picture here can give
+double shownPsnrDb(const image::ImageF& picture, const image::ImageF& truth);
+
+/// Samples whose true hit is missing from their cluster's depth image.
+struct OcclusionErrors {
+    std::vector<std::uint8_t> isMissing;  // a sample
+    std::size_t reflective = 0, missing = 0;
+    std::size_t hidden = 0;                     // missing, though in the camera's frustum
+    std::size_t planar = 0, planarMissing = 0;  // of those, samples of planar clusters
+};
+
+/// What the measure needs to know of a frame.
+struct OcclusionInput {
+    const reflections::HostGBuffer& gbuffer;
+    const std::vector<reflections::TracedSample>& truth;
+    const std::vector<std::uint16_t>& clusterOfSample;  // 1 + cluster; 0: not reflective
+    const std::vector<ClusterCamera>& cameras;
+    const reflections::ReflectiveScene& scene;
+    const raycast::RayTracer& rays;  // over the posed scene
+    const reflections::LobeSettings& lobe;
+};
+
+/// A hit Q of a sample's mirror ray counts as seen by its cluster's camera when it lies in the
+/// camera's frustum and nothing lies before it on the line from e_c, but what is before the near
+/// plane and the cluster's own reflector, which the depth image leaves out. Rays, not images,
+/// decide, so that the measure does not depend on the resolution. Samples whose mirror ray leaves
+/// the scene, or ends before Q (glossy samples' far plane), miss nothing.
+///
+/// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays pass
+/// over before their surface. The line from e_c to Q of a planar cluster is the mirror ray itself
+/// up to rounding: without the tolerance, edges that the two pass on different sides would count.
+constexpr float kOcclusionTolerance = 2.0F * reflections::EmbreeTracer::kStart;
+OcclusionErrors occlusionErrors(const OcclusionInput& input);
+
+/// Of a point of the world, as above.
+enum class Sight : std::uint8_t { Seen, Hidden, OutOfFrustum };
+Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld,
+              const OcclusionInput& input);
+
+}  // namespace gfxrepro::clustered_reflections

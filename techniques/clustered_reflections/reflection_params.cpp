@@ -1,0 +1,140 @@
+#include "techniques/clustered_reflections/reflection_params.h"
+
+#include <fmt/format.h>
+
+#include <glm/trigonometric.hpp>
+#include <initializer_list>
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+constexpr config::Choice<Method> kMethods[] = {
+    {Method::Clustered, "clustered", "clustered depth images (algorithm 6)"},
+    {Method::EnvironmentMap, "environment_map", "one environment map of the scene"},
+    {Method::ScreenSpace, "screen_space", "rays marched through what the eye sees"},
+    {Method::RayTraced, "ray_traced",
+     "ray tracing on the same device, its hierarchy rebuilt each frame"},
+    {Method::Embree, "embree", "ray tracing on the CPU, its hierarchy rebuilt each frame"},
+};
+constexpr config::Choice<Clustering> kClusterings[] = {
+    {Clustering::NormalBins, "normal_bins", "bins of the normal's spherical coordinates"},
+    {Clustering::KdTree, "kd_tree", "splits by position and normal, largest first"},
+};
+constexpr config::Choice<ImageDrawing> kDrawings[] = {
+    {ImageDrawing::OneByOne, "one_by_one", "a cluster's image is overwritten by the next one's"},
+    {ImageDrawing::Atlas, "atlas", "all images side by side, by one multi-draw"},
+};
+constexpr config::Choice<March> kMarches[] = {
+    {March::Linear, "linear", "a texel a step (algorithm 7)"},
+    {March::Hierarchical, "hierarchical", "over a pyramid of nearest depths"},
+};
+
+float number(config::Params& params, const char* name, double fallback,
+             const config::ParamSpec& spec) {
+    return static_cast<float>(params.getDouble(name, fallback, spec));
+}
+
+reflections::LobeSettings readLobe(config::Params& params) {
+    reflections::LobeSettings lobe;
+    lobe.rays = params.getInt(
+        "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});
+    lobe.maxHalfAngleRad =
+        glm::radians(number(params, "lobe_half_angle_deg", 34.4,
+                            {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
+    lobe.farExponent =
+        number(params, "far_exponent", static_cast<double>(lobe.farExponent),
+               {"e of the distance where reflections of glossiness g end: diagonal · (1 − g)^e",
+                "1", 0.0, 64.0});
+    return lobe;
+}
+
+BinSettings readBins(config::Params& params) {
+    BinSettings bins;
+    bins.maxThetaBins =
+        params.getInt("theta_bins", bins.maxThetaBins,
+                      {"most bins of a reflector's normals around y", "bins", 1, 64});
+    bins.maxPhiBins = params.getInt("phi_bins", bins.maxPhiBins,
+                                    {"most bins of their angles from y", "bins", 1, 64});
+    bins.exponent = number(params, "bin_exponent", static_cast<double>(bins.exponent),
+                           {"e of the share of the most bins that a reflector gets: (a_R / n_v · "
+                            "bin_gain)^e, at most 1",
+                            "1", 0.0, 8.0});
+    bins.gain = number(params, "bin_gain", static_cast<double>(bins.gain),
+                       {"more: finer clusters", "1", 1e-6, 1e6});
+    return bins;
+}
+
+ClusteredSettings readClustered(config::Params& params) {
+    ClusteredSettings settings;
+    settings.clustering = params.getEnum("clustering", Clustering::NormalBins, kClusterings,
+                                         {"how samples become clusters"});
+    settings.bins = readBins(params);
+    settings.drawing = params.getEnum("depth_images", ImageDrawing::OneByOne, kDrawings,
+                                      {"how the clusters' depth images are drawn"});
+    settings.march = params.getEnum("march", March::Linear, kMarches,
+                                    {"how a ray is followed through a depth image"});
+    settings.camera.depthImageScale =
+        number(params, "depth_image_scale", 1.0,
+               {"factor on the width and height of the depth images", "1", 0.01, 16.0});
+    settings.seesConcaveSelf = params.getBool(
+        "concave_self", false,
+        {"rays of a concave cluster that meet their own reflector show its diffuse colour; else a "
+         "reflector is left out of its own images"});
+    return settings;
+}
+
+/// Parameters that `method` does not read say so instead of being ignored.
+void refuseGiven(const config::Params& params, std::initializer_list<const char*> names,
+                 const char* needs) {
+    for (const char* name : names) {
+        if (params.isGiven(name)) {
+            throw Error(params.locationOf(name), fmt::format("'{}' needs {}", name, needs));
+        }
+    }
+}
+
+}  // namespace
+
+ReflectionParams::ReflectionParams(config::Params& params)
+    : method(
+          params.getEnum("method", Method::Clustered, kMethods, {"where reflections come from"})),
+      view(params.getText("view", "",
+                          {"a path or camera of the scene; none: its first path, else its first "
+                           "camera"})),
+      hasMotion(params.getBool("motion", false, {"objects move as the scene says"})),
+      supersampling(params.getInt("supersampling", 2,
+                                  {"samples along each edge of an output pixel", "samples", 1, 8})),
+      lobe(readLobe(params)),
+      clustered(readClustered(params)) {
+    const float given = number(params, "glossiness", -1.0,
+                               {"of all reflectors, 0 a mirror, 1 the widest lobe; -1: as their "
+                                "materials say",
+                                "1", -1.0, 1.0});
+    if (given >= 0.0F) {
+        glossiness = given;
+    } else if (given != -1.0F) {
+        throw Error(params.locationOf("glossiness"),
+                    fmt::format("technique 'clustered_reflections': glossiness is {}; allowed: -1, "
+                                "0 … 1",
+                                given));
+    }
+    reflectors.maxRoughness = number(params, "reflector_roughness", 0.4,
+                                     {"materials up to this roughness reflect", "1", 0.0, 1.0});
+    thickness =
+        number(params, "thickness", 0.02,
+               {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});
+    measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
+    showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
+    params.finish();
+    if (method != Method::Clustered) {
+        refuseGiven(params,
+                    {"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain",
+                     "depth_images", "march", "depth_image_scale", "concave_self"},
+                    "'method: clustered'");
+    }
+    if (method != Method::ScreenSpace) {
+        refuseGiven(params, {"thickness"}, "'method: screen_space'");
+    }
+}
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,68 @@
+#version 450 core
+// Step 3.b of [xie2017] Algorithm 6, vertices: from mesh space to a cluster's depth image. ATLAS is
+// 1 for all clusters' images side by side, each at its place; else one image fills the viewport.
+#include "reflections/objects.glsl"
+#include "clustered_reflections/cluster_camera.glsl"
+
+layout(location = kPosition) in vec3 position;
+layout(location = kNormal) in vec3 normal;
+layout(location = kTexcoord) in vec2 texcoord;
+layout(location = kColor) in vec3 color;
+layout(location = kObjectIndex) in uint instance;
+
+layout(std430, binding = kCamerasBinding) readonly buffer Cameras {
+    ClusterCamera cameras[];
+};
+
+// As surface.vert.glsl hands it on.
+out SurfacePoint {
+    vec3 positionWorld;
+    vec3 normalWorld;
+    vec2 texcoord;
+    vec3 color;
+    flat uint object;
+} point;
+flat out uint clusterOfPoint;
+
+#if ATLAS
+layout(std430, binding = kPlacesBinding) readonly buffer Places {
+    ivec4 places[];
+};
+uniform vec2 atlasSizePx;
+out gl_PerVertex {
+    vec4 gl_Position;
+    float gl_ClipDistance[4];
+};
+#else
+uniform uint cluster;
+#endif
+
+void main() {
+#if ATLAS
+    uint object = instance & 0xFFFFFu;
+    uint cluster = instance >> 20;
+#else
+    uint object = instance;
+#endif
+    vec4 positionWorld = objects[object].worldFromMesh * vec4(position, 1.0);
+    point.positionWorld = positionWorld.xyz;
+    point.normalWorld = mat3(objects[object].normalFromMesh) * normal;
+    point.texcoord = texcoord;
+    point.color = color;
+    point.object = object;
+    clusterOfPoint = cluster;
+
+    vec4 clip = cameras[cluster].clipFromWorld * positionWorld;
+    clip.z = cameras[cluster].eyeWorld.w;  // window z: near distance / z
+#if ATLAS
+    // Nothing may leave the image for its neighbours.
+    gl_ClipDistance[0] = clip.w + clip.x;
+    gl_ClipDistance[1] = clip.w - clip.x;
+    gl_ClipDistance[2] = clip.w + clip.y;
+    gl_ClipDistance[3] = clip.w - clip.y;
+    vec4 place = vec4(places[cluster]);
+    vec2 centre = (2.0 * place.xy + place.zw) / atlasSizePx - 1.0;
+    clip.xy = clip.xy * (place.zw / atlasSizePx) + centre * clip.w;
+#endif
+    gl_Position = clip;
+}

@@ -1,0 +1,11 @@
+// What the passes of ClusterBuilder share: [xie2017] Sec. 4.3. The includer defines the bindings.
+
+// A reflector's bins; x: theta bins, y: phi bins, z: its first bin, w: 1 if planar.
+layout(std430, binding = REFLECTORS_BINDING) restrict buffer Reflectors { uvec4 reflectors[]; };
+
+// How the counting sort is laid out, worked out on the device.
+layout(std430, binding = LAYOUT_BINDING) restrict buffer SortLayout {
+    uint binCount;       // of all visible reflectors
+    uint blockCount;     // runs of samples in row order, an invocation each
+    uint blockLength;    // samples
+};

@@ -1,0 +1,24 @@
+#version 450 core
+// Step 3.c of [xie2017] Algorithm 6 for one cluster: an invocation a sample of its list.
+#include "clustered_reflections/intersect.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = kSamplesBinding) readonly buffer Samples {
+    uint samples[];  // x | y << 16
+};
+uniform uint cluster, firstSample, sampleCount;
+
+layout(binding = 0, rgba16f) uniform writeonly image2D radiance;
+layout(binding = 1, r32f) uniform writeonly image2D distanceM;
+layout(binding = 2, r8ui) uniform writeonly uimage2D tookEnvironment;
+
+void main() {
+    if (gl_GlobalInvocationID.x >= sampleCount) return;
+    uint sampleAt = samples[firstSample + gl_GlobalInvocationID.x];
+    ivec2 pixel = ivec2(sampleAt & 0xFFFFu, sampleAt >> 16);
+    Reflection reflection = reflectionAt(pixel, cluster);
+    imageStore(radiance, pixel, vec4(reflection.radiance, 1.0));
+    imageStore(distanceM, pixel, vec4(reflection.distance));
+    imageStore(tookEnvironment, pixel, uvec4(reflection.tookEnvironment));
+}

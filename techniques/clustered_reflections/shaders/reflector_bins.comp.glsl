@@ -1,0 +1,75 @@
+#version 450 core
+// [xie2017] Sec. 4.3, steps 3 and 4: the number of visible reflectors and the bins of each, from
+// their areas. One workgroup; an invocation takes reflectors that follow each other.
+#include "clustered_reflections/clustering.glsl"
+#include "clustered_reflections/workgroup_scan.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+
+layout(std430, binding = AREAS_BINDING) restrict readonly buffer Areas { uint areas[]; };
+// The least scale for k + 2 bins, over the gain: theta's, then phi's (see BinTables).
+layout(std430, binding = THRESHOLDS_BINDING) restrict readonly buffer Thresholds {
+    float leastScale[];
+};
+layout(std430, binding = BINS_BINDING) restrict writeonly buffer Bins { uint reflectorOfBin[]; };
+layout(std430, binding = COUNTS_BINDING) restrict writeonly buffer Counts {
+    uint clusterCount, sampleCount, visibleCount;
+};
+
+uniform int reflectorCount;
+uniform int maxThetaBins;
+uniform int maxPhiBins;
+uniform int pixelCount;
+
+// clamp(round(maxBins · (area / (total · visible) · gain)^exponent), 1, maxBins), with products in
+// place of the quotient and of the power: correctly rounded on every device.
+uint binsOf(uint area, float totalTimesVisible, int first, int maxBins) {
+    uint bins = 1u;
+    for (int k = first; k < first + maxBins - 1; ++k) {
+        if (float(area) >= leastScale[k] * totalTimesVisible) ++bins;
+    }
+    return bins;
+}
+
+void main() {
+    int self = int(gl_LocalInvocationID.x);
+    int share = (reflectorCount + GROUP_SIZE - 1) / GROUP_SIZE;
+    int first = 1 + self * share, end = min(first + share, reflectorCount + 1);
+
+    uint visible = 0u, area = 0u;
+    for (int r = first; r < end; ++r) {
+        visible += areas[r] > 0u ? 1u : 0u;
+        area += areas[r];
+    }
+    uint allVisible, total;
+    exclusiveScan(visible, allVisible);
+    exclusiveScan(area, total);
+
+    float totalTimesVisible = float(total) * float(allVisible);
+    uint bins = 0u;
+    for (int r = first; r < end; ++r) {
+        uvec2 grid = uvec2(areas[r] > 0u ? 1u : 0u);
+        if (areas[r] > 0u && reflectors[r].w == 0u) {
+            grid.x = binsOf(areas[r], totalTimesVisible, 0, maxThetaBins);
+            grid.y = binsOf(areas[r], totalTimesVisible, maxThetaBins - 1, maxPhiBins);
+        }
+        reflectors[r].xyz = uvec3(grid, bins);
+        bins += grid.x * grid.y;
+    }
+    uint allBins;
+    uint firstBin = exclusiveScan(bins, allBins);
+    for (int r = first; r < end; ++r) {
+        reflectors[r].z += firstBin;
+        uvec4 record = reflectors[r];
+        for (uint b = 0u; b < record.x * record.y; ++b) reflectorOfBin[record.z + b] = uint(r);
+    }
+
+    if (self == 0) {
+        visibleCount = allVisible;
+        sampleCount = total;
+        binCount = allBins;
+        // As many blocks as the matrix of counts has columns for.
+        blockCount = min(uint(MAX_BLOCKS), uint(MATRIX_ENTRIES) / max(allBins, 1u));
+        blockLength = (uint(pixelCount) + blockCount - 1u) / blockCount;
+    }
+}

@@ -1,0 +1,130 @@
+#include "techniques/shared/reflections/gbuffer.h"
+
+#include <array>
+#include <cmath>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::reflections {
+
+namespace {
+
+/// Outputs in the order of the framebuffer's attachments.
+enum Target { kDiffuseTarget = 0, kNormalTarget = 1, kDepthTarget = 2, kSurfaceTarget = 3 };
+
+gl::Defines gbufferDefines() {
+    gl::Defines defines = objectDefines();
+    defines["kDepthTarget"] = kDepthTarget;
+    defines["kDiffuseTarget"] = kDiffuseTarget;
+    defines["kNormalTarget"] = kNormalTarget;
+    defines["kSurfaceTarget"] = kSurfaceTarget;
+    return defines;
+}
+
+void clear(const GBuffer& target) {
+    constexpr GLuint kNoSurface[4] = {};
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    target.framebuffer.clearColour(kDiffuseTarget, glm::vec4(kBackground, 0.0F));
+    target.framebuffer.clearColour(kNormalTarget, glm::vec4(0.0F));
+    target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
+    glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kSurfaceTarget, kNoSurface);
+    target.framebuffer.clearDepth(1.0F);
+}
+
+float signNotZero(float value) {
+    return value >= 0.0F ? 1.0F : -1.0F;
+}
+
+}  // namespace
+
+glm::vec3 directionFromOctahedral(const glm::vec2& e) {
+    glm::vec3 v(e, 1.0F - std::abs(e.x) - std::abs(e.y));
+    if (v.z < 0.0F) {
+        v = glm::vec3((1.0F - std::abs(v.y)) * signNotZero(v.x),
+                      (1.0F - std::abs(v.x)) * signNotZero(v.y), v.z);
+    }
+    return v;
+}
+
+GBuffer::GBuffer(const depth_images::View& ofView)
+    : view(ofView),
+      diffuse(gl::Texture::make2D(GL_RGB10_A2, view.sizePx)),
+      normal(gl::Texture::make2D(GL_RG32F, view.sizePx)),
+      depth(gl::Texture::make2D(GL_R32F, view.sizePx)),
+      surface(gl::Texture::make2D(GL_R32UI, view.sizePx)),
+      depthBuffer(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx)),
+      framebuffer(std::array<const gl::Texture*, 4>{&diffuse, &normal, &depth, &surface},
+                  &depthBuffer) {}
+
+void GBuffer::bind(const gl::Program& program, unsigned firstUnit) const {
+    diffuse.bind(firstUnit);
+    normal.bind(firstUnit + 1);
+    depth.bind(firstUnit + 2);
+    surface.bind(firstUnit + 3);
+    if (program.isActive("gbufferWorldFromPixels")) {
+        program.set("gbufferWorldFromPixels", depth_images::worldFromPixels(view));
+    }
+    if (program.isActive("gbufferEyeWorld")) program.set("gbufferEyeWorld", view.eyeWorld);
+}
+
+std::size_t GBuffer::sizeBytes() const {
+    return diffuse.sizeBytes() + normal.sizeBytes() + depth.sizeBytes() + surface.sizeBytes() +
+           depthBuffer.sizeBytes();
+}
+
+GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders)
+    : program_(shaders, {"reflections/surface.vert.glsl", "reflections/gbuffer.frag.glsl"},
+               gbufferDefines()) {}
+
+void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
+    clear(target);
+    target.framebuffer.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    program_.use();
+    program_.set("clipFromWorld", target.view.clipFromWorld());
+    program_.set("eyeWorld", target.view.eyeWorld);
+    objects.bind();
+    objects.drawAll();
+}
+
+HostGBuffer readGBuffer(const GBuffer& gbuffer) {
+    HostGBuffer host;
+    host.view = gbuffer.view;
+    host.worldFromPixels = depth_images::worldFromPixels(gbuffer.view);
+    const std::vector<float> diffuse = gbuffer.diffuse.read<float>(GL_RGB, GL_FLOAT, 3);
+    const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
+    host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
+    host.surface = gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    for (std::size_t i = 0; i < host.depthM.size(); ++i) {
+        host.diffuse.emplace_back(diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]);
+        host.normalOctahedral.emplace_back(normals[2 * i], normals[2 * i + 1]);
+        host.normalWorld.push_back(
+            glm::normalize(directionFromOctahedral(host.normalOctahedral.back())));
+    }
+    return host;
+}
+
+float HostGBuffer::reflectivity(std::size_t index) const {
+    return static_cast<float>((surface[index] >> 16) & 0xFFU) / 255.0F;
+}
+
+float HostGBuffer::glossiness(std::size_t index) const {
+    return static_cast<float>(surface[index] >> 24) / 255.0F;
+}
+
+glm::vec3 HostGBuffer::positionWorld(glm::ivec2 pixel) const {
+    const float depth = depthM[indexOf(pixel)];
+    return glm::vec3(worldFromPixels * glm::vec4((glm::vec2(pixel) + 0.5F) * depth, depth, 1.0F));
+}
+
+glm::vec3 HostGBuffer::mirrorDirection(glm::ivec2 pixel) const {
+    return glm::normalize(
+        glm::reflect(positionWorld(pixel) - view.eyeWorld, normalWorld[indexOf(pixel)]));
+}
+
+}  // namespace gfxrepro::reflections

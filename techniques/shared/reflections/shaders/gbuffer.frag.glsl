@@ -1,0 +1,20 @@
+#version 450 core
+// Step 1 of [xie2017] Algorithm 6: diffuse colour, normal, distance along the view axis, and what
+// reflects how.
+#include "reflections/octahedral.glsl"
+#include "reflections/surface.glsl"
+
+uniform vec3 eyeWorld;
+
+layout(location = kDiffuseTarget) out vec4 diffuse;
+layout(location = kNormalTarget) out vec2 normal;
+layout(location = kDepthTarget) out float depth;
+layout(location = kSurfaceTarget) out uint surface;
+
+void main() {
+    vec3 normalWorld = unitNormalTowards(eyeWorld);
+    diffuse = vec4(diffuseOf(normalWorld), 1.0);
+    normal = octahedralFromUnit(normalWorld);
+    depth = 1.0 / gl_FragCoord.w;
+    surface = objects[point.object].surface;
+}

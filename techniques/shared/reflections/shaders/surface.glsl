@@ -1,0 +1,27 @@
+// What surface.vert.glsl hands on, for fragments.
+#include "reflections/shading.glsl"
+
+in SurfacePoint {
+    vec3 positionWorld;
+    vec3 normalWorld;  // not of unit length
+    vec2 texcoord;
+    vec3 color;
+    flat uint object;
+} point;
+
+// Unit and turned to the viewer, as meshes need not wind consistently. Where opposite normals cancel
+// out in the middle of a triangle: to the viewer.
+vec3 unitNormalTowards(vec3 viewerWorld) {
+    vec3 toViewer = viewerWorld - point.positionWorld;
+    vec3 normal = point.normalWorld;
+    if (dot(normal, normal) == 0.0) normal = toViewer;
+    normal = normalize(normal);
+    return dot(normal, toViewer) < 0.0 ? -normal : normal;
+}
+
+// What the surface shows: rgb_d of [xie2017] Algorithm 6.
+vec3 diffuseOf(vec3 normalWorld) {
+    Object object = objects[point.object];
+    return shadeDiffuse(point.positionWorld, normalWorld,
+                        albedoOf(object, point.texcoord, point.color), object.emissive.rgb);
+}

@@ -1,0 +1,87 @@
+#version 450 core
+// GpuRayTracer, second pass: the rays of the listed samples through the BVH, shaded where they end
+// ([xie2017] Sec. 4.7.1: the ray tracer that the method is compared with).
+#include "reflections/bvh.glsl"
+#include "reflections/environment.glsl"
+#include "reflections/gbuffer.glsl"
+#include "reflections/lobe.glsl"
+#include "reflections/shading.glsl"
+
+layout(local_size_x = TRACE_GROUP_SIZE) in;
+
+layout(std430, binding = INDICES_BINDING) restrict readonly buffer Indices { uint indices[]; };
+layout(std430, binding = NORMALS_BINDING) restrict readonly buffer Normals { float normals[]; };
+layout(std430, binding = TEXCOORDS_BINDING) restrict readonly buffer Texcoords {
+    float texcoords[];
+};
+layout(std430, binding = COLORS_BINDING) restrict readonly buffer Colors { float colors[]; };
+layout(std430, binding = OBJECT_OF_TRIANGLE_BINDING) restrict readonly buffer ObjectOfTriangle {
+    uint objectOfTriangle[];
+};
+layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples { uint samples[]; };
+layout(std430, binding = ARGUMENTS_BINDING) restrict readonly buffer Arguments {
+    uint groups[3];
+    uint sampleCount;
+    uint rayCount;
+};
+layout(rgba16f, binding = RADIANCE_IMAGE) uniform restrict writeonly image2D radianceImage;
+layout(r32f, binding = DISTANCE_IMAGE) uniform restrict writeonly image2D distanceImage;
+
+uniform float rayStart;  // metres along the ray: less would meet the surface that it leaves
+
+// The diffuse colour at a hit (Sec. 4.7.4: second-order rays only).
+vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction) {
+    vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
+    vec3 normal = vec3(0.0), color = vec3(0.0);
+    vec2 texcoord = vec2(0.0);
+    for (uint i = 0u; i < 3u; ++i) {
+        uint vertex = indices[3u * hit.triangle + i];
+        uint at = 3u * vertex;
+        normal += weights[i] * vec3(normals[at], normals[at + 1u], normals[at + 2u]);
+        color += weights[i] * vec3(colors[at], colors[at + 1u], colors[at + 2u]);
+        texcoord += weights[i] * vec2(texcoords[2u * vertex], texcoords[2u * vertex + 1u]);
+    }
+    Object object = objects[objectOfTriangle[hit.triangle]];
+    normal = mat3(object.normalFromMesh) * normal;
+    // Where opposite normals cancel out in the middle of a triangle, as in surface.glsl.
+    if (dot(normal, normal) == 0.0) normal = -direction;
+    normal = normalize(normal);
+    if (dot(normal, direction) > 0.0) normal = -normal;
+    return shadeDiffuse(origin + hit.t * direction, normal, albedoOf(object, texcoord, color),
+                        object.emissive.rgb);
+}
+
+void traceSample(ivec2 pixel) {
+    float glossiness = glossinessOf(texelFetch(gbufferSurface, pixel, 0).r);
+    vec3 origin = gbufferPosition(pixel);
+    vec3 mirror = gbufferMirrorDirection(origin, gbufferUnitNormal(pixel));
+    int rays = raysOf(glossiness);
+    vec3 sum = vec3(0.0);
+    float weightSum = 0.0;
+    float mirrorDistance = 0.0;
+    // Ray −1 of a glossy sample is the mirror ray, for its distance only.
+    for (int i = glossiness > 0.0 ? -1 : 0; i < rays; ++i) {
+        vec3 direction = i < 0 ? mirror : lobeDirection(mirror, glossiness, i, rays);
+        RayHit hit;
+        bool isHit = closestHit(origin, direction, rayStart, 1e30, hit);
+        if ((i < 0 || glossiness <= 0.0) && isHit) mirrorDistance = hit.t;
+        if (i < 0) continue;
+        float weight = isHit ? fadeOf(glossiness, hit.t) : (glossiness > 0.0 ? 0.0 : 1.0);
+        if (weight == 0.0) continue;
+        weightSum += weight;
+        sum += weight *
+               (isHit ? radianceAt(hit, origin, direction) : radianceFrom(direction));
+    }
+    // The diffuse colour stands in for the weight that is missing.
+    vec3 diffuse = texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 radiance = (sum + (float(rays) - weightSum) * diffuse) / float(rays);
+    imageStore(radianceImage, pixel, vec4(radiance, 1.0));
+    imageStore(distanceImage, pixel, vec4(mirrorDistance));
+}
+
+void main() {
+    uint stride = gl_NumWorkGroups.x * TRACE_GROUP_SIZE;
+    for (uint i = gl_GlobalInvocationID.x; i < sampleCount; i += stride) {
+        traceSample(ivec2(samples[i] & 0xFFFFu, samples[i] >> 16));
+    }
+}

@@ -1,0 +1,145 @@
+// What the tests of clusters share: mirrors of a few shapes, G-buffers of them, clusters read back.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/clustered_reflections/clustering.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// The part of the unit ball's surface with polar angles (from +z) up to `mostPolarRad`, its
+/// normals outwards.
+inline scene::Mesh cap(float mostPolarRad, unsigned segments = 96) {
+    scene::Mesh mesh;
+    for (unsigned i = 0; i <= segments; ++i) {
+        for (unsigned j = 0; j <= segments; ++j) {
+            const float polar = mostPolarRad * static_cast<float>(i) / static_cast<float>(segments);
+            const float azimuth = 2.0F * std::numbers::pi_v<float> * static_cast<float>(j) /
+                                  static_cast<float>(segments);
+            mesh.positions.push_back({std::sin(polar) * std::cos(azimuth),
+                                      std::sin(polar) * std::sin(azimuth), std::cos(polar)});
+        }
+    }
+    mesh.normals = mesh.positions;
+    for (unsigned i = 0; i < segments; ++i) {
+        for (unsigned j = 0; j < segments; ++j) {
+            const unsigned corner = i * (segments + 1) + j, below = corner + segments + 1;
+            mesh.triangles.push_back({corner, below, corner + 1});
+            mesh.triangles.push_back({corner + 1, below, below + 1});
+        }
+    }
+    return mesh;
+}
+inline scene::Mesh ball() {
+    return cap(std::numbers::pi_v<float>);
+}
+
+/// [−1, 1]² in the plane z = 0, facing +z.
+inline scene::Mesh square() {
+    scene::Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// Instances of mirrors; `roughness` is their glossiness.
+class MirrorScene {
+  public:
+    MirrorScene() {
+        scene::Material mirror;
+        mirror.metallic = 1.0F;
+        mirror.roughness = 0.0F;
+        scene_.materials = {mirror, scene::Material{}};
+    }
+    MirrorScene& add(scene::Mesh mesh, const glm::mat4& worldFromMesh, bool isMirror = true) {
+        mesh.material = isMirror ? 0 : 1;
+        scene_.instances.push_back({static_cast<int>(scene_.meshes.size()), worldFromMesh});
+        scene_.meshes.push_back(std::move(mesh));
+        return *this;
+    }
+    reflections::ReflectiveScene get() const { return reflections::ReflectiveScene(scene_); }
+
+  private:
+    scene::Scene scene_;
+};
+
+inline depth_images::View viewFrom(const glm::vec3& eye, const glm::vec3& target, glm::ivec2 sizePx,
+                                   float verticalFovRad = 0.7F) {
+    scene::Camera camera;
+    camera.position = eye;
+    camera.target = target;
+    camera.nearM = 0.01F;
+    camera.farM = 50.0F;
+    camera.verticalFovRad = verticalFovRad;
+    if (std::abs(glm::normalize(target - eye).y) > 0.99F) camera.up = {0.0F, 0.0F, -1.0F};
+    return depth_images::viewOf(camera, sizePx);
+}
+
+class ClusterTest : public test::GlTest {
+  protected:
+    gl::ShaderLibrary shaders{dataFolder("shaders")};
+
+    reflections::GBuffer render(const reflections::ReflectiveScene& scene,
+                                const depth_images::View& view) const {
+        reflections::GpuObjects objects(scene);
+        reflections::GBuffer gbuffer(view);
+        reflections::GBufferRenderer(shaders).render(objects, gbuffer);
+        return gbuffer;
+    }
+
+    static std::vector<std::uint16_t> readClusters(const Clusters& clusters) {
+        return clusters.clusterOfSample.read<std::uint16_t>(GL_RED_INTEGER, GL_UNSIGNED_SHORT, 1);
+    }
+
+    /// Clusters, reflective samples, visible reflectors.
+    static glm::uvec3 countsOf(const Clusters& clusters) {
+        const auto counts = clusters.counts.read<std::uint32_t>(3);
+        return {counts[0], counts[1], counts[2]};
+    }
+
+    /// The samples of each cluster, and what must hold of them: every labelled sample once, cluster
+    /// by cluster, row by row within each; ranges beyond the clusters are zero.
+    static std::vector<std::vector<glm::ivec2>> samplesOf(const Clusters& clusters) {
+        const std::vector<std::uint16_t> labels = readClusters(clusters);
+        const glm::uvec3 counts = countsOf(clusters);
+        const auto sorted = clusters.samples.read<std::uint32_t>(counts[1]);
+        const auto ranges = clusters.ranges.read<glm::uvec4>(kMaxClusters);
+        const auto width = static_cast<std::size_t>(clusters.clusterOfSample.size().x);
+        std::vector<std::vector<glm::ivec2>> result(counts[0]);
+        std::size_t at = 0;
+        for (std::size_t c = 0; c < kMaxClusters; ++c) {
+            if (c >= result.size()) {
+                EXPECT_EQ(ranges[c], glm::uvec4(0));
+                continue;
+            }
+            EXPECT_EQ(ranges[c].x, at);
+            EXPECT_GT(ranges[c].y, 0U);
+            std::size_t last = 0;
+            for (const std::size_t end = at + ranges[c].y; at < end; ++at) {
+                const glm::ivec2 pixel(sorted[at] & 0xFFFFU, sorted[at] >> 16);
+                const std::size_t index =
+                    static_cast<std::size_t>(pixel.y) * width + static_cast<std::size_t>(pixel.x);
+                EXPECT_EQ(labels[index], c + 1);
+                EXPECT_TRUE(result[c].empty() || index > last);
+                last = index;
+                result[c].push_back(pixel);
+            }
+        }
+        EXPECT_EQ(at, sorted.size());
+        const auto labelled = static_cast<std::size_t>(
+            std::count_if(labels.begin(), labels.end(), [](std::uint16_t l) { return l != 0; }));
+        EXPECT_EQ(labelled, sorted.size());
+        return result;
+    }
+};
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,259 @@
+// The technique as a whole: parameters, metrics, methods against each other.
+#include "techniques/clustered_reflections/clustered_reflections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "runner/core/files.h"
+#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/clustered_reflections/room.h"
+#include "tests/techniques/technique_recorder.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+using test::errorText;
+
+config::Params paramsOf(const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"),
+                          "technique 'clustered_reflections'");
+}
+
+class ClusteredReflectionsTest : public test::GlTest {
+  protected:
+    using Metrics = std::map<std::string, double>;
+
+    /// Frame `frame` of `frameCount`, rendered twice.
+    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
+                                  int frameCount = 1) {
+        config::Params params = paramsOf(yaml);
+        const auto technique = kClusteredReflections.create(params);
+        test::NoScenes scenes;
+        technique::SetupContext context{device, shaders_, scenes, scene, {48, 40}, 1, profiler_};
+        technique->setup(context);
+        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
+        technique::FrameContext frameContext{frame, frameCount, profiler_};
+        technique->render(frameContext);
+        profiler_.collect();
+        technique->render(frameContext);  // a repetition overwrites what the first has left
+        passes_.clear();
+        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+        test::MetricRecorder recorder;
+        technique->record(recorder);
+        EXPECT_TRUE(profiler_.collect().empty()) << "recording is not timed by pass";
+        return recorder;
+    }
+    Metrics run(const std::string& yaml, const scene::Scene& scene) {
+        return recorded(yaml, &scene).metrics;
+    }
+
+    gl::ShaderLibrary shaders_{dataFolder("shaders")};
+    gl::Profiler profiler_{true};
+    std::vector<std::string> passes_;
+};
+
+constexpr const char* kMethods[] = {"clustered", "environment_map", "screen_space", "ray_traced",
+                                    "embree"};
+
+TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = paramsOf(yaml);
+            ClusteredReflections technique(params);
+        });
+    };
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("{glossiness: -1}"), "no error");  // as the materials say
+    EXPECT_EQ(message("{glossiness: -0.5}"),
+              "case.yaml:1:14: technique 'clustered_reflections': glossiness is -0.5; allowed: -1, "
+              "0 … 1");
+    EXPECT_EQ(message("{glossiness: 1.5}"),
+              "case.yaml:1:14: technique 'clustered_reflections': glossiness is 1.5; allowed: -1 … "
+              "1 1");
+    EXPECT_EQ(message("{method: embree, bin_gain: 2}"),
+              "case.yaml:1:28: 'bin_gain' needs 'method: clustered'");
+    EXPECT_EQ(message("{method: ray_traced, depth_images: atlas}"),
+              "case.yaml:1:36: 'depth_images' needs 'method: clustered'");
+    EXPECT_EQ(message("{method: clustered, thickness: 0.1}"),
+              "case.yaml:1:32: 'thickness' needs 'method: screen_space'");
+    EXPECT_EQ(message("{method: screen_space, thickness: 0.1}"), "no error");
+    EXPECT_EQ(message("{supersampling: 0}"),
+              "case.yaml:1:17: technique 'clustered_reflections': supersampling is 0; allowed: 1 … "
+              "8 samples");
+    EXPECT_EQ(message("{clusters: 5}").substr(0, 14), "case.yaml:1:2:");
+}
+
+TEST_F(ClusteredReflectionsTest, RefusesScenesWithoutReflectorsAndUnknownViews) {
+    const auto message = [&](const std::string& yaml, const scene::Scene* scene) {
+        return errorText([&] { recorded(yaml, scene); });
+    };
+    EXPECT_EQ(message("{}", nullptr), "technique 'clustered_reflections' needs a scene");
+    scene::Scene dull;
+    addRoom(dull);
+    EXPECT_EQ(message("{}", &dull),
+              "scene 'room' has no reflectors: no material's roughness is at most 0.4 "
+              "('reflector_roughness')");
+    const scene::Scene room = roomWithMirror();
+    EXPECT_EQ(message("{view: path_1}", &room),
+              "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'");
+}
+
+TEST_F(ClusteredReflectionsTest, EveryMethodRecordsSharesMemoryAndErrors) {
+    const scene::Scene scene = roomWithMirrors();
+    for (const char* method : kMethods) {
+        SCOPED_TRACE(method);
+        const Metrics metrics = run(fmt::format("{{method: {}}}", method), scene);
+        EXPECT_GT(metrics.at("reflective_pct"), 20.0);
+        EXPECT_GT(metrics.at("planar_pct"), 10.0);
+        EXPECT_LT(metrics.at("planar_pct"), 100.0);
+        EXPECT_EQ(metrics.at("visible_reflectors"), 2.0);
+        EXPECT_EQ(metrics.at("reflectors"), 2.0);
+        EXPECT_GE(metrics.at("memory_bytes"), metrics.at("frame_buffer_bytes"));
+        // G-buffer and target have 36 bytes a sample, the output 8 a pixel.
+        EXPECT_EQ(metrics.at("frame_buffer_bytes"), 48 * 40 * (4 * (24 + 12) + 8));
+        EXPECT_TRUE(metrics.contains("channel_error"));
+        EXPECT_TRUE(metrics.contains("flip_mean"));
+        EXPECT_TRUE(metrics.contains("psnr_db"));
+        const bool isClustered = std::string(method) == "clustered";
+        EXPECT_EQ(metrics.contains("clusters"), isClustered);
+        EXPECT_EQ(metrics.contains("occlusion_error_pct"), isClustered);
+        EXPECT_EQ(passes_.front(), isClustered ? "first_pass_and_clustering" : "first_pass");
+        EXPECT_EQ(passes_.back(), "composite");
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, EmbreeAgreesWithItself) {
+    const Metrics metrics = run("{method: embree}", roomWithMirrors());
+    EXPECT_EQ(metrics.at("channel_error"), 0.0);
+    EXPECT_EQ(metrics.at("channel_error_image"), 0.0);
+    EXPECT_EQ(metrics.at("flip_mean"), 0.0);
+    EXPECT_EQ(metrics.at("psnr_db"), 120.0);
+}
+
+TEST_F(ClusteredReflectionsTest, RayTracingOnTheDeviceAgreesWithEmbree) {
+    const scene::Scene scene = roomWithMirrors();
+    // Rays along edges may go either way.
+    EXPECT_LT(run("{method: ray_traced}", scene).at("channel_error"), 0.5);
+    EXPECT_LT(run("{method: ray_traced, glossiness: 0.2}", scene).at("channel_error"), 0.5);
+}
+
+TEST_F(ClusteredReflectionsTest, PlanarMirrorsHaveNoOcclusionError) {
+    const scene::Scene scene = roomWithMirror();
+    for (const char* options : {"", "depth_images: atlas", "march: hierarchical",
+                                "depth_images: atlas, march: hierarchical", "supersampling: 3"}) {
+        SCOPED_TRACE(options);
+        const Metrics metrics = run(fmt::format("{{{}}}", options), scene);
+        EXPECT_EQ(metrics.at("planar_pct"), 100.0);
+        EXPECT_EQ(metrics.at("clusters"), 1.0);
+        EXPECT_EQ(metrics.at("occlusion_error_pct"), 0.0);
+        EXPECT_EQ(metrics.at("occlusion_error_planar_pct"), 0.0);
+        // At most a few samples where walls stand on the mirror: no texel lies between.
+        EXPECT_LT(metrics.at("environment_pct"), 0.2);
+        // Resampling of stripes and edges alone.
+        EXPECT_LT(metrics.at("channel_error"), 3.0);
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, ClustersAreNearerToTheTruthThanAnEnvironmentMap) {
+    for (const scene::Scene& scene : {roomWithMirror(), roomWithMirrors()}) {
+        const Metrics clustered = run("{}", scene);
+        const Metrics environment = run("{method: environment_map}", scene);
+        for (const char* error : {"channel_error", "channel_error_image", "flip_mean"}) {
+            EXPECT_LT(2.0 * clustered.at(error), environment.at(error)) << error;
+        }
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
+    // A green column in a room without green; from its silhouette rays leave along its surface.
+    scene::Scene scene = roomWithColumn({.baseColor = {0, 1, 0, 1}, .metallic = 1, .roughness = 0});
+    for (const char* options : {"{pictures: true}", "{pictures: true, depth_images: atlas}"}) {
+        SCOPED_TRACE(options);
+        const image::ImageF reflection = recorded(options, &scene).images.at("reflection");
+        int reflecting = 0, green = 0;
+        for (int y = 0; y < reflection.height(); ++y) {
+            for (int x = 0; x < reflection.width(); ++x) {
+                const glm::vec3 color(reflection.at(x, y, 0), reflection.at(x, y, 1),
+                                      reflection.at(x, y, 2));
+                reflecting += color != glm::vec3(0.0F) ? 1 : 0;
+                green += color.y > 0.05F && color.y > 2.0F * std::max(color.x, color.z) ? 1 : 0;
+            }
+        }
+        EXPECT_GT(reflecting, 50);
+        // The environment map has the column where it is near, for some of the silhouette.
+        EXPECT_LT(green, reflecting / 20);
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, MoreBinsGiveMoreClustersAndSmallerOcclusionErrors) {
+    const scene::Scene scene = roomWithMirrors();
+    const Metrics coarse = run("{theta_bins: 1, phi_bins: 1}", scene);
+    const Metrics fine = run("{bin_exponent: 0}", scene);
+    EXPECT_EQ(coarse.at("clusters"), 2.0);
+    EXPECT_GT(fine.at("clusters"), 6.0);
+    EXPECT_GT(coarse.at("occlusion_error_pct"), 0.0);
+    EXPECT_LT(fine.at("occlusion_error_pct"), 0.5 * coarse.at("occlusion_error_pct"));
+    EXPECT_EQ(coarse.at("occlusion_error_planar_pct"), 0.0);
+}
+
+TEST_F(ClusteredReflectionsTest, ViewsWithoutReflectorsRecordNothingReflected) {
+    const scene::Scene scene = roomWithMirrors();
+    for (const char* method : kMethods) {
+        SCOPED_TRACE(method);
+        const Metrics metrics =
+            run(fmt::format("{{method: {}, view: ceiling, pictures: true}}", method), scene);
+        EXPECT_EQ(metrics.at("reflective_pct"), 0.0);
+        EXPECT_EQ(metrics.at("planar_pct"), 0.0);
+        EXPECT_EQ(metrics.at("visible_reflectors"), 0.0);
+        EXPECT_EQ(metrics.at("channel_error"), 0.0);
+        EXPECT_EQ(metrics.at("channel_error_image"), 0.0);
+        if (std::string(method) != "clustered") continue;
+        EXPECT_EQ(metrics.at("clusters"), 0.0);
+        EXPECT_EQ(metrics.at("occlusion_error_pct"), 0.0);
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, ObjectsMoveWhereAsked) {
+    const scene::Scene scene = roomWithMirrors();
+    const auto picture = [&](const std::string& yaml, int frame) {
+        return recorded(yaml, &scene, frame, 4).images.at("result");
+    };
+    for (const char* method : {"clustered", "ray_traced"}) {
+        SCOPED_TRACE(method);
+        const std::string still = fmt::format("{{method: {}, pictures: true}}", method);
+        const std::string moving =
+            fmt::format("{{method: {}, pictures: true, motion: true}}", method);
+        EXPECT_EQ(picture(still, 0), picture(still, 2));
+        EXPECT_NE(picture(moving, 0), picture(moving, 2));
+        // The truth moves along.
+        const double error = recorded(moving, &scene, 1, 4).metrics.at("channel_error");
+        EXPECT_LT(error, 1.5 * recorded(still, &scene, 1, 4).metrics.at("channel_error") + 0.5);
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, GlossinessOverridesMaterials) {
+    const scene::Scene scene = roomWithMirrors();
+    const auto truth = [&](const std::string& yaml) {
+        return recorded(yaml, &scene).images.at("truth");
+    };
+    EXPECT_EQ(truth("{method: embree, pictures: true}"),
+              truth("{method: embree, pictures: true, glossiness: 0}"));
+    EXPECT_NE(truth("{method: embree, pictures: true}"),
+              truth("{method: embree, pictures: true, glossiness: 0.3}"));
+}
+
+TEST_F(ClusteredReflectionsTest, SameCaseGivesTheSameNumbersAndPictures) {
+    const scene::Scene scene = roomWithMirrors();
+    const test::MetricRecorder a = recorded("{pictures: true}", &scene);
+    const test::MetricRecorder b = recorded("{pictures: true}", &scene);
+    EXPECT_EQ(a.metrics, b.metrics);
+    ASSERT_EQ(a.images.size(), 9U);
+    for (const auto& [name, image] : a.images) {
+        EXPECT_TRUE(std::ranges::equal(image.values(), b.images.at(name).values())) << name;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,294 @@
+// Reflections through clusters against mirrored scenes and rays whose hits are known.
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+#include "tests/techniques/clustered_reflections/tracer_fixture.h"
+#include "tests/techniques/voxelization/shapes.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+using reflections::ReflectiveScene;
+using rooms::Surface;
+namespace shapes = voxelization::shapes;
+
+class ClusteredTracerTest : public TracerTest {
+  protected:
+    /// A room whose wall at −z is a mirror.
+    static scene::Scene mirrorRoom() {
+        scene::Scene scene = rooms::room(false);
+        rooms::addFurniture(scene);
+        rooms::add(scene, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
+        return scene;
+    }
+    static scene::Mesh mirrorWall() {
+        return rooms::rectangle({0.0F, 0.0F, -2.0F}, {2.0F, 0.0F, 0.0F}, {0.0F, 1.5F, 0.0F});
+    }
+    static scene::Scene sphereRoom(float radius = 0.7F) {
+        scene::Scene scene = rooms::room();
+        rooms::add(scene, shapes::sphere(glm::vec3(0.1F, -0.2F, -0.3F), radius, 5), glm::vec3(0.9F),
+                   Surface::Mirror);
+        return scene;
+    }
+    static scene::Camera frontCamera() {
+        return rooms::cameraAt({0.4F, 0.2F, 1.8F}, {0.0F, -0.3F, -1.0F});
+    }
+    /// Several reflectors of all kinds, touching each other.
+    static scene::Scene fullRoom() {
+        scene::Scene scene = mirrorRoom();
+        rooms::add(scene, shapes::sphere({0.3F, -0.6F, -0.9F}, 0.4F, 4), glm::vec3(0.8F),
+                   Surface::Mirror);
+        rooms::add(scene, rooms::bowl({-0.6F, -0.2F, -0.1F}, 0.4F), glm::vec3(0.7F, 0.2F, 0.1F),
+                   Surface::Mirror);
+        rooms::add(scene, shapes::cube({-0.9F, -1.5F, 0.6F}, {-0.6F, -1.1F, 0.9F}), glm::vec3(0.8F),
+                   Surface::Mirror);
+        return scene;
+    }
+    static constexpr ImageDrawing kDrawings[] = {ImageDrawing::OneByOne, ImageDrawing::Atlas};
+};
+
+TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
+    const ReflectiveScene scene(mirrorRoom());
+    // The truth: what lies behind the mirror, drawn as if it were there.
+    scene::Scene behind = rooms::room(false);
+    rooms::addFurniture(behind);
+    const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
+    const reflections::GpuObjects objects(mirrored);
+    reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(128)));
+    reflections::GBufferRenderer(shaders()).render(objects, truth);
+    const reflections::HostGBuffer expected = readGBuffer(truth);
+
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        settings.camera.depthImageScale = 2.0F;
+        const Traced traced = trace(scene, frontCamera(), settings);
+        EXPECT_GT(traced.reflectiveCount(), 3000U);
+        EXPECT_EQ(traced.cameras.size(), 1U);
+        EXPECT_GE(psnrDb(traced, [&](std::size_t i) { return expected.diffuse[i]; }), 40.0);
+        // C8: no occlusion error, nothing takes the environment map.
+        EXPECT_EQ(std::count(traced.environment.begin(), traced.environment.end(), 1), 0);
+        std::size_t silhouettes = 0;
+        for (std::size_t i = 0; i < traced.distanceM.size(); ++i) {
+            if (!traced.gbuffer.isReflective(i)) continue;
+            const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+            const float seen =
+                glm::distance(expected.positionWorld(pixel), expected.view.eyeWorld) -
+                glm::distance(traced.gbuffer.positionWorld(pixel), expected.view.eyeWorld);
+            // Silhouettes in a texel of the depth image may belong to either side.
+            if (std::abs(traced.distanceM[i] - seen) > 0.02F) ++silhouettes;
+        }
+        EXPECT_LT(silhouettes, traced.reflectiveCount() / 50);
+    }
+}
+
+TEST_F(ClusteredTracerTest, ASphereShowsTheRoomThatItsRaysMeet) {
+    constexpr int kSizePx = 256;
+    const ReflectiveScene scene(sphereRoom());
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        const Traced traced = trace(scene, frontCamera(), settings, kSizePx);
+        EXPECT_GT(traced.cameras.size(), 20U);
+        std::size_t wrong = 0, wrongDistance = 0, environment = 0;
+        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
+            if (!traced.gbuffer.isReflective(i)) continue;
+            if (traced.environment[i] != 0) {
+                ++environment;
+                continue;
+            }
+            const glm::ivec2 pixel(static_cast<int>(i % kSizePx), static_cast<int>(i / kSizePx));
+            const glm::vec3 from = traced.gbuffer.positionWorld(pixel);
+            const rooms::WallHit hit = rooms::wallHit(from, traced.gbuffer.mirrorDirection(pixel));
+            const glm::vec3 expected = reflections::shadeDiffuse(
+                scene.lights(), hit.point, hit.normal, hit.colour, glm::vec3(0.0F));
+            const glm::vec3 error = glm::abs(traced.radiance[i] - expected);
+            wrong += std::max({error.x, error.y, error.z}) > 0.02F;
+            const float distanceM = glm::distance(from, hit.point);
+            wrongDistance += std::abs(traced.distanceM[i] - distanceM) > 0.05F * distanceM;
+        }
+        // Edges between walls are as sharp as the clusters' images, some dozen texels wide; rays
+        // that graze the sphere leave their image at its side.
+        EXPECT_LT(wrong, traced.reflectiveCount() * 6 / 100);
+        EXPECT_LT(wrongDistance, traced.reflectiveCount() / 100);
+        EXPECT_LT(environment, traced.reflectiveCount() * 6 / 100);
+    }
+}
+
+TEST_F(ClusteredTracerTest, TheAtlasGivesTheReflectionsOfImagesOneByOne) {
+    const ReflectiveScene scene(fullRoom());
+    ClusteredSettings settings = settingsFor(scene);
+    for (const bool seesSelf : {false, true}) {
+        settings.seesConcaveSelf = seesSelf;
+        settings.drawing = ImageDrawing::OneByOne;
+        const Traced one = trace(scene, frontCamera(), settings, 256);
+        settings.drawing = ImageDrawing::Atlas;
+        const Traced atlas = trace(scene, frontCamera(), settings, 256);
+        ASSERT_EQ(atlas.imageScale, 1.0F);
+        ASSERT_EQ(atlas.cameras.size(), one.cameras.size());
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < one.radiance.size(); ++i) {
+            if (!one.gbuffer.isReflective(i)) continue;
+            const glm::vec3 error = glm::abs(one.radiance[i] - atlas.radiance[i]);
+            different += std::max({error.x, error.y, error.z}) > 1.5F / 1023.0F;
+        }
+        // Rasterizers round positions to 1/256 of a pixel, the same place in the texture or not: an
+        // outline through the middle of a texel may fall to either side.
+        EXPECT_LE(different, one.reflectiveCount() / 500);
+    }
+}
+
+TEST_F(ClusteredTracerTest, TheHierarchicalMarchGivesTheLinearReflections) {
+    const ReflectiveScene scene(fullRoom());
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        const Traced linear = trace(scene, frontCamera(), settings);
+        settings.march = March::Hierarchical;
+        const Traced hierarchical = trace(scene, frontCamera(), settings);
+        for (std::size_t i = 0; i < linear.radiance.size(); ++i) {
+            if (!linear.gbuffer.isReflective(i)) continue;
+            EXPECT_EQ(linear.radiance[i], hierarchical.radiance[i]) << i;
+            EXPECT_EQ(linear.distanceM[i], hierarchical.distanceM[i]) << i;
+        }
+    }
+}
+
+TEST_F(ClusteredTracerTest, ImagesThatDoNotFitInTheAtlasAreScaledDown) {
+    const ReflectiveScene scene(fullRoom());
+    ClusteredSettings settings = settingsFor(scene);
+    settings.drawing = ImageDrawing::Atlas;
+    const Traced plain = trace(scene, frontCamera(), settings);
+    settings.camera.depthImageScale = 16.0F;
+    const Traced scaled = trace(scene, frontCamera(), settings);
+    EXPECT_EQ(plain.imageScale, 1.0F);
+    EXPECT_LT(scaled.imageScale, 1.0F);
+    EXPECT_TRUE(scaled.isFinite());
+    EXPECT_GE(psnrDb(scaled, [&](std::size_t i) { return plain.radiance[i]; }), 20.0);
+}
+
+TEST_F(ClusteredTracerTest, NothingIsReflectedWithoutReflectorsInView) {
+    const ReflectiveScene scene(fullRoom());
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        const Traced traced =
+            trace(scene, rooms::cameraAt({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, 5.0F}), settings);
+        EXPECT_EQ(traced.reflectiveCount(), 0U);
+        EXPECT_TRUE(traced.cameras.empty());
+    }
+}
+
+TEST_F(ClusteredTracerTest, DegenerateClustersAreFinite) {
+    const struct {
+        const char* name;
+        scene::Scene scene;
+        scene::Camera camera;
+        int sizePx;
+    } cases[] = {
+        {"a ball of about a pixel", sphereRoom(0.02F),
+         rooms::cameraAt({0.1F, -0.2F, 1.9F}, {0.1F, -0.2F, -0.3F}), 33},
+        {"a mirror seen edge-on", mirrorRoom(),
+         rooms::cameraAt({0.0F, 0.0F, -1.999F}, {1.9F, 0.1F, -1.9995F}), 64},
+        {"an eye in the mirror", mirrorRoom(),
+         rooms::cameraAt({0.0F, 0.0F, -2.0F}, {1.0F, 0.1F, -1.9F}), 64},
+        {"an eye inside of a ball", sphereRoom(),
+         rooms::cameraAt({0.1F, -0.2F, -0.3F}, {0.0F, 0.0F, -1.0F}), 64},
+        {"one pixel", sphereRoom(), frontCamera(), 1},
+    };
+    for (const auto& one : cases) {
+        const ReflectiveScene scene(one.scene);
+        for (const ImageDrawing drawing : kDrawings) {
+            for (const March march : {March::Linear, March::Hierarchical}) {
+                ClusteredSettings settings = settingsFor(scene);
+                settings.drawing = drawing;
+                settings.march = march;
+                settings.seesConcaveSelf = true;
+                EXPECT_TRUE(trace(scene, one.camera, settings, one.sizePx).isFinite()) << one.name;
+            }
+        }
+    }
+}
+
+TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
+    constexpr glm::vec3 kCentre(0.0F, -0.4F, 0.0F);
+    constexpr float kRadius = 0.8F;
+    scene::Scene bowlRoom = rooms::room();
+    // The bowl's own colour is in nothing else.
+    rooms::add(bowlRoom, rooms::bowl(kCentre, kRadius), {1.0F, 0.0F, 1.0F}, Surface::Mirror);
+    const ReflectiveScene scene(bowlRoom);
+    const scene::Camera camera = rooms::cameraAt({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F});
+    for (const ImageDrawing drawing : kDrawings) {
+        for (const bool seesSelf : {false, true}) {
+            ClusteredSettings settings = settingsFor(scene);
+            settings.drawing = drawing;
+            settings.seesConcaveSelf = seesSelf;
+            const Traced traced = trace(scene, camera, settings);
+            std::size_t marched = 0, own = 0, seen = 0, wrong = 0;
+            for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
+                if (!traced.gbuffer.isReflective(i) || traced.environment[i] != 0) continue;
+                const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+                const glm::vec3 from = traced.gbuffer.positionWorld(pixel) - kCentre;
+                const glm::vec3 direction = traced.gbuffer.mirrorDirection(pixel);
+                // Where the ray meets the sphere again: on the bowl or above its rim.
+                const glm::vec3 again = from - 2.0F * glm::dot(from, direction) * direction;
+                const bool isOwn = again.y < -kRadius * std::cos(0.45F * glm::pi<float>());
+                const glm::vec3& c = traced.radiance[i];
+                const bool isMagenta = c.y < 0.02F && c.x > 0.2F && c.z > 0.2F;
+                ++marched;
+                own += isOwn;
+                seen += isMagenta;
+                wrong += isOwn != isMagenta;
+            }
+            EXPECT_GT(own, marched / 5);
+            EXPECT_LT(own, marched * 4 / 5);
+            if (seesSelf) {
+                EXPECT_LT(wrong, marched / 10);
+            } else {
+                EXPECT_EQ(seen, 0U);
+            }
+        }
+    }
+}
+
+TEST_F(ClusteredTracerTest, GlossyReflectionsFadeToTheDiffuseColour) {
+    ReflectiveScene scene(sphereRoom());
+    scene.setGlossiness(0.9F);  // the far plane is at 1e-4 diagonals: no room
+    ClusteredSettings settings = settingsFor(scene);
+    for (const ImageDrawing drawing : kDrawings) {
+        settings.drawing = drawing;
+        const Traced rough = trace(scene, frontCamera(), settings, 64);
+        for (std::size_t i = 0; i < rough.radiance.size(); ++i) {
+            if (!rough.gbuffer.isReflective(i)) continue;
+            EXPECT_LT(glm::distance(rough.radiance[i], rough.gbuffer.diffuse[i]), 2e-3F) << i;
+        }
+    }
+}
+
+TEST_F(ClusteredTracerTest, PassesAreNamedAsTable14) {
+    const ReflectiveScene scene(sphereRoom());
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        std::vector<std::string> names;
+        for (const gl::PassTime& pass : trace(scene, frontCamera(), settings).passes) {
+            names.push_back(pass.pass);
+        }
+        EXPECT_EQ(names, (std::vector<std::string>{"first_pass_and_clustering", "cluster_cameras",
+                                                   "depth_images", "intersection"}));
+    }
+}
+
+// [xie2017] Sec. 4.7.2: 512² output, 2 × 2 samples a pixel.
+TEST_F(ClusteredTracerTest, AFrameHoldsNoMoreThanPrinted) {
+    const ReflectiveScene scene(fullRoom());
+    for (const March march : {March::Linear, March::Hierarchical}) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = ImageDrawing::Atlas;
+        settings.march = march;
+        EXPECT_LE(trace(scene, frontCamera(), settings, 1024).sizeBytes, 87'000'000U);
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,282 @@
+#include "techniques/clustered_reflections/clustering.h"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "techniques/clustered_reflections/bin_tables.h"
+#include "tests/techniques/clustered_reflections/cluster_fixture.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+const glm::mat4 kIdentity(1.0F);
+
+glm::vec2 octahedral(const glm::vec3& v) {
+    const glm::vec2 p = glm::vec2(v) / (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+    if (v.z >= 0.0F) return p;
+    const glm::vec2 sign(p.x >= 0.0F ? 1.0F : -1.0F, p.y >= 0.0F ? 1.0F : -1.0F);
+    return (1.0F - glm::abs(glm::vec2(p.y, p.x))) * sign;
+}
+
+/// Three curved reflectors and a planar one; their shapes do not matter.
+reflections::ReflectiveScene fourReflectors() {
+    return MirrorScene()
+        .add(ball(), kIdentity)
+        .add(ball(), kIdentity)
+        .add(square(), kIdentity)
+        .add(ball(), kIdentity)
+        .get();
+}
+
+class ClusteringTest : public ClusterTest {
+  protected:
+    void expectAsOnHost(const reflections::ReflectiveScene& scene,
+                        const reflections::GBuffer& gbuffer, const BinSettings& bins,
+                        const std::vector<std::uint8_t>* wanted = nullptr) {
+        const glm::ivec2 sizePx = gbuffer.view.sizePx;
+        ClusterBuilder builder(shaders, scene, Clustering::NormalBins, bins, sizePx);
+        gl::Texture mask;
+        if (wanted != nullptr) {
+            mask = gl::Texture::make2D(GL_R8UI, sizePx);
+            mask.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wanted->data());
+        }
+        // Twice: what a build leaves behind must not matter to the next.
+        for (int i = 0; i < 2; ++i) builder.build(gbuffer, wanted != nullptr ? &mask : nullptr);
+        const HostClusters host = clusterOnHost(readGBuffer(gbuffer), scene, bins, wanted);
+
+        const Clusters& clusters = builder.clusters();
+        EXPECT_EQ(readClusters(clusters), host.clusterOfSample);
+        const auto samples = samplesOf(clusters);
+        EXPECT_EQ(static_cast<int>(samples.size()), host.clusterCount);
+        EXPECT_EQ(static_cast<int>(countsOf(clusters).z), host.visibleReflectors);
+        const auto ranges = clusters.ranges.read<glm::uvec4>(samples.size());
+        const std::vector<std::uint8_t> isPlanar = planarReflectors(scene);
+        for (std::size_t c = 0; c < samples.size(); ++c) {
+            const auto reflector = static_cast<std::size_t>(host.reflectorOfCluster[c]);
+            EXPECT_EQ(ranges[c].z, reflector);
+            EXPECT_EQ(ranges[c].w, isPlanar[reflector]);
+        }
+    }
+
+    /// Reflectors in runs of random length (0: none), normals anywhere, axes and diagonals among
+    /// them.
+    static reflections::GBuffer randomGBuffer(glm::ivec2 sizePx, std::uint64_t seed) {
+        Random random(seed);
+        std::vector<glm::vec2> normals;
+        std::vector<std::uint32_t> surfaces;
+        std::uint32_t surface = 0;
+        for (int i = 0; i < sizePx.x * sizePx.y; ++i) {
+            if (random.uniform(0.0F, 1.0F) < 0.1F) {
+                surface = static_cast<std::uint32_t>(random.uniform(0.0F, 4.999F)) | 0xFF0000U;
+                if ((surface & 0xFFFFU) == 0) surface = 0;
+            }
+            glm::vec3 normal(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
+                             random.uniform(-1.0F, 1.0F));
+            if (i % 5 == 0) normal = glm::round(normal);
+            if (normal == glm::vec3(0.0F)) normal.y = 1.0F;
+            normals.push_back(octahedral(normal));
+            surfaces.push_back(surface);
+        }
+        reflections::GBuffer gbuffer(viewFrom({0, 0, 4}, {0, 0, 0}, sizePx));
+        gbuffer.normal.upload(GL_RG, GL_FLOAT, normals.data());
+        gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surfaces.data());
+        gbuffer.depth.clearToZero();
+        gbuffer.diffuse.clearToZero();
+        return gbuffer;
+    }
+};
+
+TEST_F(ClusteringTest, RandomNormalsAreClusteredAsOnTheHost) {
+    const reflections::ReflectiveScene scene = fourReflectors();
+    for (const glm::ivec2 sizePx : {glm::ivec2(97, 61), glm::ivec2(256, 300), glm::ivec2(1, 1)}) {
+        const reflections::GBuffer gbuffer = randomGBuffer(sizePx, 3);
+        expectAsOnHost(scene, gbuffer, {});
+        expectAsOnHost(scene, gbuffer, {.exponent = 0.0F});
+        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 1});
+        // Many of the normals lie on these borders exactly.
+        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 8, .maxPhiBins = 4, .exponent = 0.0F});
+        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 64, .maxPhiBins = 16, .exponent = 0.01F});
+        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 30, .exponent = 1.0F});
+    }
+}
+
+TEST_F(ClusteringTest, RenderedBallAndPlaneAreClusteredAsOnTheHost) {
+    const glm::mat4 floor =
+        glm::rotate(glm::translate(kIdentity, {0, -1, 0}), -1.5707964F, {1, 0, 0});
+    const reflections::ReflectiveScene scene =
+        MirrorScene()
+            .add(ball(), kIdentity)
+            .add(square(), glm::scale(floor, glm::vec3(3.0F)))
+            .add(square(), glm::translate(kIdentity, {0, 0, -4}), false)
+            .get();
+    const reflections::GBuffer gbuffer =
+        render(scene, viewFrom({2, 1.5F, 4}, {0, 0, 0}, {400, 300}));
+    expectAsOnHost(scene, gbuffer, {});
+    expectAsOnHost(scene, gbuffer, {.exponent = 1.0F, .gain = 3.0F});
+
+    ClusterBuilder builder(shaders, scene, Clustering::NormalBins, {}, {400, 300});
+    builder.build(gbuffer, nullptr);
+    const auto samples = samplesOf(builder.clusters());
+    const auto ranges = builder.clusters().ranges.read<glm::uvec4>(samples.size());
+    EXPECT_GT(samples.size(), 20U);
+    EXPECT_EQ(ranges.back().z, 2U);  // the floor's only cluster is the last
+    EXPECT_EQ(ranges[ranges.size() - 2].z, 1U);
+    EXPECT_GT(ranges.back().y, 20000U);
+}
+
+TEST_F(ClusteringTest, OnlyWantedSamplesAreClustered) {
+    const reflections::ReflectiveScene scene = fourReflectors();
+    const reflections::GBuffer gbuffer = randomGBuffer({120, 90}, 5);
+    Random random(9);
+    std::vector<std::uint8_t> wanted;
+    for (int i = 0; i < 120 * 90; ++i) wanted.push_back(random.uniform(0.0F, 1.0F) < 0.3F ? 7 : 0);
+    expectAsOnHost(scene, gbuffer, {}, &wanted);
+    const HostClusters host = clusterOnHost(readGBuffer(gbuffer), scene, {}, &wanted);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i] == 0) {
+            EXPECT_EQ(host.clusterOfSample[i], 0);
+        }
+    }
+}
+
+TEST_F(ClusteringTest, NothingReflectiveGivesNoClusters) {
+    const reflections::ReflectiveScene scene = fourReflectors();
+    reflections::GBuffer gbuffer = randomGBuffer({64, 48}, 1);
+    gbuffer.surface.clearToZero();
+    expectAsOnHost(scene, gbuffer, {});
+    ClusterBuilder builder(shaders, scene, Clustering::KdTree, {}, {64, 48});
+    builder.build(gbuffer, nullptr);
+    EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(0));
+    const reflections::ReflectiveScene diffuse = MirrorScene().add(ball(), kIdentity, false).get();
+    expectAsOnHost(diffuse, gbuffer, {});
+}
+
+TEST_F(ClusteringTest, LoneBallHasAllBinsThatFaceTheEye) {
+    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
+    const reflections::GBuffer gbuffer =
+        render(scene, viewFrom({0, 0, 8}, {0, 0, 0}, {512, 512}, 0.3F));
+    ClusterBuilder builder(shaders, scene, Clustering::NormalBins, {}, {512, 512});
+    builder.build(gbuffer, nullptr);
+    // Which (theta, phi) cells of 13 × 8 does the cap that faces the eye touch? By its normals.
+    std::vector<bool> isTouched(13 * 8, false);
+    const reflections::HostGBuffer host = readGBuffer(gbuffer);
+    for (std::size_t i = 0; i < host.surface.size(); ++i) {
+        if (!host.isReflective(i)) continue;
+        const glm::dvec3 n(host.normalWorld[i]);
+        double theta = std::atan2(n.z, n.x) / (2.0 * std::numbers::pi);
+        if (theta < 0.0) theta += 1.0;
+        const double phi = std::acos(n.y) / std::numbers::pi;
+        isTouched[static_cast<std::size_t>(phi * 8) * 13 + static_cast<std::size_t>(theta * 13)] =
+            true;
+    }
+    const auto touched = std::count(isTouched.begin(), isTouched.end(), true);
+    EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(touched, countsOf(builder.clusters()).y, 1));
+    RecordProperty("clusters", static_cast<int>(touched));
+}
+
+TEST(BinTables, BinsAreThePrintedFormula) {
+    for (const float exponent : {0.0F, 0.25F, 0.5F, 1.0F, 2.0F}) {
+        for (const float gain : {0.5F, 1.0F, 4.0F}) {
+            const BinSettings settings{.exponent = exponent, .gain = gain};
+            const BinTables tables(settings);
+            for (const std::uint32_t visible : {1U, 2U, 7U, 25U}) {
+                for (std::uint32_t area = 1; area <= 1000; area += 3) {
+                    const double scale =
+                        std::pow(area / 1000.0 / visible * double{gain}, double{exponent});
+                    const glm::dvec2 exact = glm::dvec2(13.0, 8.0) * scale;
+                    const glm::ivec2 bins = tables.binsOf(area, 1000, visible);
+                    for (int axis = 0; axis < 2; ++axis) {
+                        // Ties may fall either way.
+                        if (std::abs(exact[axis] - std::floor(exact[axis]) - 0.5) < 1e-5) continue;
+                        const double most = axis == 0 ? 13.0 : 8.0;
+                        EXPECT_EQ(bins[axis], std::clamp(std::round(exact[axis]), 1.0, most))
+                            << exponent << ' ' << gain << ' ' << visible << ' ' << area;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_EQ(BinTables({}).binsOf(77, 77, 1), glm::ivec2(13, 8));  // alone
+}
+
+TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
+    const BinTables tables({.maxThetaBins = 16, .maxPhiBins = 16});
+    const glm::ivec2 grid(8, 4);
+    EXPECT_EQ(tables.binOf(octahedral({1, 0.1F, 0.1F}), grid), glm::ivec2(0, 1));
+    EXPECT_EQ(tables.binOf(octahedral({0.1F, 0.1F, 1}), grid), glm::ivec2(1, 1));
+    EXPECT_EQ(tables.binOf(octahedral({-0.1F, -0.1F, 1}), grid), glm::ivec2(2, 2));
+    EXPECT_EQ(tables.binOf(octahedral({-1, 0.1F, -0.1F}), grid), glm::ivec2(4, 1));
+    EXPECT_EQ(tables.binOf(octahedral({1, 0.1F, -0.1F}), grid), glm::ivec2(7, 1));
+    EXPECT_EQ(tables.binOf(octahedral({0, 1, 0}), grid), glm::ivec2(0, 0));
+    EXPECT_EQ(tables.binOf(octahedral({0, -1, 0}), grid), glm::ivec2(0, 3));
+    // On borders: the bin that begins there.
+    EXPECT_EQ(tables.binOf(octahedral({1, 0, 1}), grid), glm::ivec2(1, 2));
+    EXPECT_EQ(tables.binOf(octahedral({1, 1, 0}), grid), glm::ivec2(0, 1));
+
+    Random random(4);
+    for (int i = 0; i < 20000; ++i) {
+        const glm::vec3 n(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
+                          random.uniform(-1.0F, 1.0F));
+        const glm::ivec2 bins(1 + i % 16, 1 + i / 16 % 16);
+        const glm::dvec3 d = glm::normalize(glm::dvec3(n));
+        double theta = std::atan2(d.z, d.x) / (2.0 * std::numbers::pi);
+        if (theta < 0.0) theta += 1.0;
+        const glm::dvec2 at =
+            glm::dvec2(theta, std::acos(d.y) / std::numbers::pi) * glm::dvec2(bins);
+        // The stored normal is rounded: 1e-5 bins from a border either side will do.
+        if (glm::any(glm::lessThan(glm::abs(at - glm::round(at)), glm::dvec2(1e-5)))) continue;
+        EXPECT_EQ(tables.binOf(octahedral(n), bins), glm::ivec2(at));
+    }
+}
+
+TEST_F(ClusteringTest, TooManyBinsAreRefused) {
+    const reflections::ReflectiveScene scene = fourReflectors();
+    EXPECT_EQ(test::errorText([&] {
+                  ClusterBuilder builder(shaders, scene, Clustering::NormalBins,
+                                         {.maxThetaBins = 64, .maxPhiBins = 22}, {8, 8});
+              }),
+              "3 curved reflectors of 64 × 22 bins and 1 planar ones may make 4225 clusters; at "
+              "most 4096 are allowed: take fewer bins or a smaller roughness limit of reflectors");
+}
+
+TEST_F(ClusteringTest, KdClustersAreAsManyAndSplitByPlaceToo) {
+    // Two halves of one reflector, apart, with the same normals: bins cannot tell them apart.
+    scene::Mesh pair = cap(0.6F);
+    scene::Mesh other = pair;
+    for (glm::vec3& p : pair.positions) p.x -= 2.0F;
+    for (glm::vec3& p : other.positions) p.x += 2.0F;
+    const auto offset = static_cast<unsigned>(pair.positions.size());
+    pair.positions.insert(pair.positions.end(), other.positions.begin(), other.positions.end());
+    pair.normals.insert(pair.normals.end(), other.normals.begin(), other.normals.end());
+    for (const glm::uvec3& t : other.triangles) pair.triangles.push_back(t + offset);
+    const reflections::ReflectiveScene scene =
+        MirrorScene()
+            .add(pair, kIdentity)
+            .add(square(), glm::translate(kIdentity, {0, 2.5F, 0}))
+            .get();
+    const reflections::GBuffer gbuffer =
+        render(scene, viewFrom({0, 0.5F, 9}, {0, 0.5F, 0}, {300, 300}));
+    const reflections::HostGBuffer host = readGBuffer(gbuffer);
+
+    const BinSettings bins{.maxThetaBins = 4, .maxPhiBins = 4, .exponent = 0.0F};
+    ClusterBuilder builder(shaders, scene, Clustering::KdTree, bins, {300, 300});
+    builder.build(gbuffer, nullptr);
+    const auto samples = samplesOf(builder.clusters());
+    const auto ranges = builder.clusters().ranges.read<glm::uvec4>(samples.size());
+    ASSERT_EQ(samples.size(), 9U);  // half of 4 × 4, and the square
+    EXPECT_EQ(ranges.back(), glm::uvec4(ranges.back().x, ranges.back().y, 2, 1));
+    for (std::size_t c = 0; c + 1 < samples.size(); ++c) {
+        EXPECT_EQ(ranges[c].z, 1U);
+        const bool isLeft = host.positionWorld(samples[c].front()).x < 0.0F;
+        for (const glm::ivec2 pixel : samples[c]) {
+            EXPECT_EQ(host.positionWorld(pixel).x < 0.0F, isLeft);
+        }
+    }
+    std::size_t reflective = 0;
+    for (std::size_t i = 0; i < host.surface.size(); ++i) reflective += host.isReflective(i);
+    EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(9, reflective, 2));
+}
+
+}  // namespace
+}  // namespace gfxrepro::clustered_reflections

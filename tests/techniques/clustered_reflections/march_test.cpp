@@ -1,0 +1,371 @@
+// The marches on the device against the march on the host, and against rays whose hit is known.
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "techniques/clustered_reflections/depth_image_marcher.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+constexpr int kLevels = 4;  // of tiles of 4 texels and more
+constexpr int kTextureSidePx = 256;
+
+/// Where the image lies in its texture: not at a corner of tiles.
+constexpr glm::ivec2 kOriginPx{24, 43};
+
+constexpr const char* kMarchShader = R"(#version 450 core
+#include "clustered_reflections/march.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Rays { vec4 rays[]; };
+layout(std430, binding = 1) writeonly buffer Hits { vec4 hits[]; };  // hit, u, along, steps
+layout(std430, binding = 2) writeonly buffer Places { vec2 places[]; };
+layout(binding = 0) uniform sampler2D stored;
+layout(binding = 1) uniform sampler2D own;
+uniform mat4 clipFromWorld;
+uniform ivec2 originPx, sizePx;
+uniform float nearM;
+float storedAt(ivec2 texel) { return texelFetch(stored, texel, 0).r; }
+bool isOwnAt(ivec2 texel) { return texelFetch(own, texel, 0).r > 0.5; }
+float nearestIn(ivec2 tile, int level) { return texelFetch(stored, tile, level + 1).r; }
+void main() {
+    uint ray = gl_GlobalInvocationID.x;
+    if (ray >= hits.length()) return;
+    MarchHit hit;
+    MarchImage image = MarchImage(clipFromWorld, originPx, sizePx, nearM);
+    bool isHit = march(image, rays[2 * ray].xyz, rays[2 * ray + 1].xyz, hit);
+    if (!isHit) hit = MarchHit(vec2(0.0), vec2(0.0), 0.0, 0.0, 0);
+    hits[ray] = vec4(float(isHit), hit.fraction, hit.along, float(hit.steps));
+    places[ray] = hit.positionPx;
+}
+)";
+
+struct Ray {
+    glm::vec3 begin, end;
+};
+
+struct Image : HostMarchImage {
+    float nearM = 0.0F;
+    glm::mat4 worldFromClip{1.0F};
+    /// A point at a place of the image and a depth.
+    glm::vec3 at(const glm::vec2& positionPx, float depth) const {
+        const glm::vec2 ndc = positionPx / glm::vec2(sizePx) * 2.0F - 1.0F;
+        const glm::vec4 near = worldFromClip * glm::vec4(ndc, -1.0F, 1.0F);
+        const glm::vec4 far = worldFromClip * glm::vec4(ndc, 1.0F, 1.0F);
+        const float kNear = near.w, kFar = far.w;  // 1 / w of clip space: linear in depth's inverse
+        const float k = 1.0F / depth;
+        return glm::vec3(glm::mix(near, far, (k - kNear) / (kFar - kNear))) / k;
+    }
+};
+
+/// An off-centre frustum somewhere, and in it rectangles at random depths before nothing.
+Image randomImage(Random& random, glm::ivec2 sizePx) {
+    Image image;
+    image.sizePx = sizePx;
+    image.nearM = random.uniform(0.2F, 2.0F);
+    const float farM = image.nearM + 10.0F;
+    const glm::mat4 clip = glm::frustum(
+        -image.nearM * random.uniform(0.2F, 1.2F), image.nearM * random.uniform(0.3F, 1.0F),
+        -image.nearM * random.uniform(0.1F, 1.0F), image.nearM * random.uniform(0.2F, 1.1F),
+        image.nearM, farM);
+    const auto number = [&] { return random.uniform(-3.0F, 3.0F); };
+    const glm::vec3 eye(number(), number(), number());
+    image.clipFromWorld = clip * glm::lookAt(eye, glm::vec3(number(), number(), number() + 7.0F),
+                                             glm::vec3(0.0F, 1.0F, 0.0F));
+    image.worldFromClip = glm::mat4(glm::inverse(glm::dmat4(image.clipFromWorld)));
+    const auto width = static_cast<std::size_t>(sizePx.x);
+    image.depthM.assign(width * static_cast<std::size_t>(sizePx.y), 0.0F);
+    image.isOwn.assign(image.depthM.size(), 0);
+    for (int i = 0; i < 30; ++i) {
+        const auto x0 = random.index(static_cast<std::uint32_t>(sizePx.x));
+        const auto y0 = random.index(static_cast<std::uint32_t>(sizePx.y));
+        const auto x1 = std::min(x0 + 1 + random.index(40), static_cast<std::uint32_t>(sizePx.x));
+        const auto y1 = std::min(y0 + 1 + random.index(40), static_cast<std::uint32_t>(sizePx.y));
+        const float depth = random.uniform(image.nearM, farM);
+        const std::uint8_t isOwn = random.index(4) == 0;
+        for (std::size_t y = y0; y < y1; ++y) {
+            for (std::size_t x = x0; x < x1; ++x) {
+                image.depthM[y * width + x] = depth + 0.3F * random.uniform();
+                image.isOwn[y * width + x] = isOwn;
+            }
+        }
+    }
+    return image;
+}
+
+/// Rays of every kind that clusters have, and of those that must do no harm.
+std::vector<Ray> randomRays(const Image& image, Random& random, int count) {
+    const float farM = image.nearM + 10.0F;
+    const glm::vec2 size(image.sizePx);
+    const glm::vec3 eye = glm::vec3(
+        glm::inverse(glm::dmat4(image.clipFromWorld)) * glm::dvec4(0.0, 0.0, -1.0, 0.0) /
+        (glm::inverse(glm::dmat4(image.clipFromWorld)) * glm::dvec4(0.0, 0.0, -1.0, 0.0)).w);
+    const auto place = [&](float margin) {
+        return glm::vec2(random.uniform(-margin, size.x + margin),
+                         random.uniform(-margin, size.y + margin));
+    };
+    const auto depth = [&] { return random.uniform(image.nearM, farM); };
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec2 p = place(0.0F);
+        const glm::vec3 begin = image.at(p, image.nearM * 1.0001F);
+        switch (i % 8) {
+            case 0:
+                rays.push_back({begin, image.at(place(0.0F), farM)});
+                break;
+            case 1:
+                rays.push_back({image.at(place(80.0F), depth()), image.at(place(80.0F), farM)});
+                break;
+            case 2:
+                rays.push_back({image.at(p, farM), eye});
+                break;  // to the eye
+            case 3:
+                rays.push_back({2.0F * eye - image.at(p, depth()), image.at(place(0.0F), farM)});
+                break;
+            case 4: {  // along the axis
+                const glm::vec3 axis =
+                    image.at(size * 0.5F, 2.0F * farM) - image.at(size * 0.5F, farM);
+                rays.push_back({begin, begin + axis});
+                break;
+            }
+            case 5:
+                rays.push_back({begin, image.at(p, farM)});
+                break;  // to a point
+            case 6: {   // at one depth
+                const float z = depth();
+                rays.push_back({image.at(p, z), image.at(place(20.0F), z)});
+                break;
+            }
+            default:
+                rays.push_back({begin, begin});
+                break;
+        }
+    }
+    return rays;
+}
+
+class MarchTest : public test::GlTest {
+  protected:
+    struct DeviceHits {
+        std::vector<glm::vec4> hits;
+        std::vector<glm::vec2> places;
+        bool isHit(std::size_t i) const { return hits[i].x > 0.5F; }
+    };
+
+    MarchTest() {
+        std::filesystem::copy(dataFolder("shaders") / "clustered_reflections",
+                              folder.path() / "clustered_reflections");
+        for (const int march : {0, 1}) {
+            programs.push_back(
+                program({{"march_test.comp.glsl", kMarchShader}},
+                        {{"MARCH", march}, {"MARCH_LEVELS", kLevels}, {"SEES_OWN", 1}}));
+        }
+    }
+
+    /// The image within a texture whose other texels are nearer than all: reading one shows.
+    static void upload(const Image& image, const gl::Texture& stored, gl::Texture& own) {
+        std::vector<float> level(kTextureSidePx * kTextureSidePx, 1e6F), marks = level;
+        for (int y = 0; y < image.sizePx.y; ++y) {
+            for (int x = 0; x < image.sizePx.x; ++x) {
+                const auto from = static_cast<std::size_t>(y * image.sizePx.x + x);
+                const auto to =
+                    static_cast<std::size_t>((y + kOriginPx.y) * kTextureSidePx + x + kOriginPx.x);
+                const float depth = image.depthM[from];
+                level[to] = depth > 0.0F ? image.nearM / depth : 0.0F;
+                marks[to] = image.isOwn[from];
+            }
+        }
+        own.upload(GL_RED, GL_FLOAT, marks.data());
+        for (int i = 0, side = kTextureSidePx; i <= kLevels + 1; ++i, side /= 2) {
+            glTextureSubImage2D(stored.id(), i, 0, 0, side, side, GL_RED, GL_FLOAT, level.data());
+            std::vector<float> next(static_cast<std::size_t>(side * side / 4));
+            for (int y = 0; y < side; ++y) {
+                for (int x = 0; x < side; ++x) {
+                    float& most = next[static_cast<std::size_t>(y / 2 * (side / 2) + x / 2)];
+                    most = std::max(most, level[static_cast<std::size_t>(y * side + x)]);
+                }
+            }
+            level = next;
+        }
+    }
+
+    DeviceHits marched(March march, const Image& image, const std::vector<Ray>& rays) {
+        gl::Texture stored = gl::Texture::make2D(GL_R32F, glm::ivec2(kTextureSidePx), kLevels + 2);
+        gl::Texture own = gl::Texture::make2D(GL_R32F, glm::ivec2(kTextureSidePx));
+        upload(image, stored, own);
+        std::vector<glm::vec4> ends;
+        for (const Ray& ray : rays) {
+            ends.emplace_back(ray.begin, 1.0F);
+            ends.emplace_back(ray.end, 1.0F);
+        }
+        const gl::Buffer rayBuffer = gl::Buffer::of(ends);
+        const gl::Buffer hits(rays.size() * sizeof(glm::vec4)),
+            places(rays.size() * sizeof(glm::vec2));
+        const gl::Program& marcher = programs[march == March::Linear ? 0 : 1];
+        marcher.use();
+        marcher.set("clipFromWorld", image.clipFromWorld);
+        marcher.set("originPx", kOriginPx);
+        marcher.set("sizePx", image.sizePx);
+        marcher.set("nearM", image.nearM);
+        stored.bind(0);
+        own.bind(1);
+        rayBuffer.bindStorage(0);
+        hits.bindStorage(1);
+        places.bindStorage(2);
+        glDispatchCompute(static_cast<GLuint>((rays.size() + 63) / 64), 1, 1);
+        return {hits.read<glm::vec4>(rays.size()), places.read<glm::vec2>(rays.size())};
+    }
+
+    std::vector<gl::Program> programs;
+};
+
+TEST_F(MarchTest, HitsTheTexelsThatTheHostHits) {
+    Random random(1);
+    std::size_t hitCount = 0, rayCount = 0, different = 0;
+    for (const glm::ivec2 size : {glm::ivec2(97, 61), {200, 150}, {1, 1}, {3, 180}}) {
+        const Image image = randomImage(random, size);
+        const std::vector<Ray> rays = randomRays(image, random, 4000);
+        const DeviceHits device = marched(March::Linear, image, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const std::optional<MarchHit> host = marchOnHost(image, rays[i].begin, rays[i].end);
+            hitCount += host.has_value();
+            ++rayCount;
+            const bool isSame =
+                device.isHit(i) == host.has_value() &&
+                (!host || (device.hits[i].w == static_cast<float>(host->steps) &&
+                           glm::distance(device.places[i], host->positionPx) < 1e-2F));
+            different += !isSame;
+        }
+    }
+    EXPECT_GT(hitCount, rayCount / 3);
+    EXPECT_LT(hitCount, rayCount * 4 / 5);
+    // The device compares inverse depths and the host depths: where the ray passes within rounding
+    // of a stored depth or of a texel's edge, either may be right.
+    EXPECT_LE(different, rayCount / 500);
+}
+
+TEST_F(MarchTest, HierarchicalHitsAreTheLinearOnesInFewerSteps) {
+    Random random(2);
+    for (const glm::ivec2 size : {glm::ivec2(97, 61), {200, 150}, {1, 1}, {3, 180}}) {
+        const Image image = randomImage(random, size);
+        const std::vector<Ray> rays = randomRays(image, random, 4000);
+        const DeviceHits linear = marched(March::Linear, image, rays);
+        const DeviceHits hierarchical = marched(March::Hierarchical, image, rays);
+        double linearSteps = 0.0, hierarchicalSteps = 0.0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            // Both look at the same samples by the same operations, so not even rounding differs.
+            EXPECT_EQ(glm::vec3(hierarchical.hits[i]), glm::vec3(linear.hits[i])) << i;
+            EXPECT_EQ(hierarchical.places[i], linear.places[i]) << i;
+            linearSteps += linear.hits[i].w;
+            hierarchicalSteps += hierarchical.hits[i].w;
+        }
+        if (size.x > 100) {
+            EXPECT_LT(hierarchicalSteps, 0.7 * linearSteps);
+        }
+        RecordProperty("steps_linear", std::to_string(linearSteps));
+        RecordProperty("steps_hierarchical", std::to_string(hierarchicalSteps));
+    }
+}
+
+TEST_F(MarchTest, AWallIsMetWhereTheRayCrossesIt) {
+    Random random(3);
+    Image image = randomImage(random, {200, 150});
+    image.depthM.assign(image.depthM.size(), image.nearM + 4.0F);
+    image.isOwn.clear();
+    image.isOwn.assign(image.depthM.size(), 0);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 500; ++i) {
+        const auto place = [&] {
+            return glm::vec2(random.uniform(1.0F, 199.0F), random.uniform(1.0F, 149.0F));
+        };
+        rays.push_back(
+            {image.at(place(), image.nearM * 1.001F), image.at(place(), image.nearM + 9.9F)});
+    }
+    for (const March march : {March::Linear, March::Hierarchical}) {
+        const DeviceHits device = marched(march, image, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_TRUE(device.isHit(i)) << i;
+            const float along = device.hits[i].z;
+            const glm::vec3 met = glm::mix(rays[i].begin, rays[i].end, along);
+            const glm::vec4 clip = image.clipFromWorld * glm::vec4(met, 1.0F);
+            EXPECT_NEAR(clip.w, image.nearM + 4.0F, 2e-4F) << i;
+            // The printed hit is the first sample behind: less than a texel farther.
+            const glm::vec2 metPx =
+                (glm::vec2(clip) / clip.w * 0.5F + 0.5F) * glm::vec2(image.sizePx);
+            const glm::vec2 offset = glm::abs(device.places[i] - metPx);
+            EXPECT_LT(std::max(offset.x, offset.y), 1.01F) << i;
+        }
+    }
+}
+
+TEST_F(MarchTest, RaysOfAPlanarReflectorEndAtOnce) {
+    Random random(4);
+    const Image image = randomImage(random, {200, 150});
+    std::vector<Ray> rays;
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec2 place(random.uniform(0.0F, 200.0F), random.uniform(0.0F, 150.0F));
+        rays.push_back(
+            {image.at(place, image.nearM * 1.0001F), image.at(place, image.nearM + 9.9F)});
+    }
+    for (const March march : {March::Linear, March::Hierarchical}) {
+        const DeviceHits device = marched(march, image, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_LE(device.hits[i].w, 2.0F) << i;
+    }
+}
+
+TEST(MarchOnHost, ARayThatProjectsToAPointTakesTheTexelThatItLiesIn) {
+    Random random(5);
+    const Image image = randomImage(random, {97, 61});
+    int hits = 0;
+    for (int y = 0; y < 61; ++y) {
+        for (int x = 0; x < 97; ++x) {
+            const glm::vec2 place(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+            const auto hit = marchOnHost(image, image.at(place, image.nearM * 1.0001F),
+                                         image.at(place, image.nearM + 9.99F));
+            const float stored = image.depthAt(place);
+            ASSERT_EQ(hit.has_value(), stored > 0.0F && stored < image.nearM + 9.98F)
+                << x << ' ' << y;
+            if (!hit) continue;
+            EXPECT_LT(glm::distance(hit->positionPx, place), 0.01F);
+            ++hits;
+        }
+    }
+    EXPECT_GT(hits, 1000);
+}
+
+TEST(MarchOnHost, TheOwnReflectorCountsOnceTheRayHasLeftIt) {
+    // A wall at depth 2 whose left half is the reflector; near 1, far 11, a square pyramid.
+    Image image;
+    image.sizePx = {100, 1};
+    image.nearM = 1.0F;
+    image.clipFromWorld = glm::frustum(-1.0F, 1.0F, -1.0F, 1.0F, 1.0F, 11.0F);
+    image.worldFromClip = glm::inverse(image.clipFromWorld);
+    image.depthM.assign(100, 2.0F);
+    image.isOwn.assign(100, 1);
+    std::fill(image.depthM.begin() + 50, image.depthM.begin() + 70, 0.0F);
+    // Starts on the wall and goes on behind it, over the gap, and behind it again.
+    const auto hit =
+        marchOnHost(image, image.at({10.5F, 0.5F}, 2.1F), image.at({90.5F, 0.5F}, 2.5F));
+    ASSERT_TRUE(hit.has_value());
+    EXPECT_NEAR(hit->positionPx.x, 70.5F, 0.6F);
+    image.isOwn.assign(100, 0);
+    const auto other =
+        marchOnHost(image, image.at({10.5F, 0.5F}, 2.1F), image.at({90.5F, 0.5F}, 2.5F));
+    ASSERT_TRUE(other.has_value());
+    EXPECT_EQ(other->steps, 1);
+}
+
+TEST(MarchOnHost, NothingIsMetOutsideOfTheFrustumOrWithoutAnImage) {
+    Random random(6);
+    Image image = randomImage(random, {40, 40});
+    image.depthM.assign(image.depthM.size(), image.nearM * 1.01F);
+    EXPECT_FALSE(
+        marchOnHost(image, image.at({-50.0F, 5.0F}, 2.0F), image.at({-2.0F, 30.0F}, 9.0F)));
+    EXPECT_FALSE(marchOnHost(image, glm::vec3(NAN), image.at({2.0F, 30.0F}, 9.0F)));
+    image.sizePx = {0, 0};
+    EXPECT_FALSE(marchOnHost(image, glm::vec3(0.0F), glm::vec3(1.0F)));
+}
+
+}  // namespace
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,41 @@
+// A box of a room with reflectors in it, whose reflections are known.
+#pragma once
+
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::clustered_reflections::rooms {
+
+constexpr glm::vec3 kHalfSize(2.0F, 1.5F, 2.0F);
+/// Of the walls −x, +x, −y, +y, −z, +z.
+constexpr glm::vec3 kWallColours[6] = {{0.9F, 0.2F, 0.2F}, {0.2F, 0.8F, 0.3F}, {0.6F, 0.5F, 0.4F},
+                                       {0.8F, 0.8F, 0.8F}, {0.3F, 0.4F, 0.9F}, {0.9F, 0.8F, 0.3F}};
+
+enum class Surface { Diffuse, Mirror };
+
+/// Adds a mesh with one instance.
+void add(scene::Scene& scene, scene::Mesh mesh, const glm::vec3& colour,
+         Surface surface = Surface::Diffuse);
+
+/// A rectangle of 2 · extents, its normal cross(u, v).
+scene::Mesh rectangle(const glm::vec3& centre, const glm::vec3& u, const glm::vec3& v);
+/// A bowl: the lower part of a sphere, open upwards, with normals inwards.
+scene::Mesh bowl(const glm::vec3& centre, float radius);
+
+/// Walls with two lights.
+scene::Scene room(bool hasWallAtMinusZ = true);
+/// A block, a ball and a pole on the floor.
+void addFurniture(scene::Scene& scene);
+/// The same scene behind a mirror in the plane z = `plane`.
+scene::Scene mirroredInZ(const scene::Scene& scene, float plane);
+
+/// What a ray from inside of the walls meets.
+struct WallHit {
+    glm::vec3 point;
+    glm::vec3 normal;  // inwards
+    glm::vec3 colour;
+};
+WallHit wallHit(const glm::vec3& origin, const glm::vec3& direction);
+
+scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target);
+
+}  // namespace gfxrepro::clustered_reflections::rooms

@@ -1,0 +1,158 @@
+// Occlusion errors by hand-made cameras, channel errors by hand-made pictures.
+#include "techniques/clustered_reflections/reflection_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "techniques/clustered_reflections/reflection_pictures.h"
+#include "tests/techniques/clustered_reflections/room.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+/// A mirror in the plane z = 0, a screen before a wall; the camera stands at z = −1 behind the
+/// mirror and looks through it, 45° to each side.
+class OcclusionTest : public testing::Test {
+  protected:
+    OcclusionTest() : scene_(makeScene()), rays_(scene_.scene()) {
+        const glm::mat4 view = glm::lookAt(glm::vec3(0, 0, -1), glm::vec3(0), glm::vec3(0, 1, 0));
+        camera_.clipFromWorld = glm::frustum(-1.0F, 1.0F, -1.0F, 1.0F, 1.0F, 11.0F) * view;
+        camera_.eyeWorld = glm::vec4(0, 0, -1, 1);
+        camera_.planeNormal = glm::vec4(0, 0, 1, 11);
+        camera_.reflector = 1;
+        camera_.flags = kPlanarCluster;
+    }
+    static reflections::ReflectiveScene makeScene() {
+        scene::Scene scene;
+        scene::MeshBuilder builder;
+        // A mirror with a flap that stands out from it, before everything at x < −0.5.
+        builder.addQuad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+        builder.addQuad({-3, -3, 0.5F}, {-1, -3, 0.5F}, {-1, 3, 0.5F}, {-3, 3, 0.5F});
+        addPart(scene, builder, kMirror);
+        builder.addQuad({-5, -5, 5}, {-5, 5, 5}, {5, 5, 5}, {5, -5, 5});  // wall
+        builder.addQuad({1, -5, 2}, {1, 5, 2}, {5, 5, 2}, {5, -5, 2});    // screen at x > 1
+        addPart(scene, builder, {});
+        return reflections::ReflectiveScene(scene);
+    }
+    bool isSeen(const glm::vec3& point) const {
+        return sightOf(camera_, point, {gbuffer_, {}, {}, {}, scene_, rays_, {}}) == Sight::Seen;
+    }
+
+    reflections::ReflectiveScene scene_;
+    raycast::RayTracer rays_;
+    reflections::HostGBuffer gbuffer_;
+    ClusterCamera camera_;
+};
+
+TEST_F(OcclusionTest, WhatLiesOpenIsSeen) {
+    EXPECT_TRUE(isSeen({0, 0, 5}));
+    EXPECT_TRUE(isSeen({1.9F, 0, 5}));  // passes the screen's edge: 0.95 at z = 2
+    EXPECT_TRUE(isSeen({1.5F, 0, 2}));  // on the screen
+    EXPECT_TRUE(isSeen({-4, 0, 5}));    // through the own reflector's flap
+}
+
+TEST_F(OcclusionTest, WhatIsHiddenIsNotSeen) {
+    EXPECT_FALSE(isSeen({2.2F, 0, 5}));  // behind the screen: 1.1 at z = 2
+    EXPECT_FALSE(isSeen({5.9F, 0, 5}));  // there and nowhere
+}
+
+TEST_F(OcclusionTest, ToleratesEdgesThatAreMissedByLittle) {
+    // Seen at x = 1 ± half of z = 2 … 5 there; the diagonal is √(100 + 100 + 25) = 15.
+    const float toleranceM = kOcclusionTolerance * scene_.diagonalM();
+    EXPECT_NEAR(scene_.diagonalM(), 15.0F, 1e-3F);
+    EXPECT_TRUE(isSeen({2.0F + 0.5F * toleranceM, 0, 5}));
+    EXPECT_FALSE(isSeen({2.0F + 3.0F * toleranceM, 0, 5}));
+}
+
+TEST_F(OcclusionTest, WhatLeavesTheFrustumIsNotSeen) {
+    // The camera's right is −x.
+    camera_.clipFromWorld = glm::frustum(-1.0F, 0.5F, -1.0F, 1.0F, 1.0F, 11.0F) *
+                            glm::lookAt(glm::vec3(0, 0, -1), glm::vec3(0), glm::vec3(0, 1, 0));
+    EXPECT_TRUE(isSeen({-2.9F, 0, 5}));
+    EXPECT_FALSE(isSeen({-3.1F, 0, 5}));
+    EXPECT_FALSE(isSeen({0, 0, -0.1F}));  // before the near plane
+    EXPECT_FALSE(isSeen({0, 0, -5}));     // behind the camera
+    camera_.planeNormal.w = 5.0F;
+    EXPECT_FALSE(isSeen({0, 0, 5}));  // behind the far plane
+}
+
+TEST_F(OcclusionTest, CountsSamplesByTheirClusters) {
+    // Two samples in a view from (0, 0, 4) down to the mirror; its pixels see (∓1, 0, 0).
+    scene::Camera eye{.position = {0, 0, 4}, .target = {0, 0, 0}};
+    eye.verticalFovRad = 2.0F * std::atan(0.25F);
+    gbuffer_.view = depth_images::viewOf(eye, {4, 2});
+    gbuffer_.worldFromPixels = depth_images::worldFromPixels(gbuffer_.view);
+    gbuffer_.depthM.assign(8, 4.0F);
+    gbuffer_.normalWorld.assign(8, {0, 0, 1});
+    gbuffer_.surface.assign(8, 1U | 255U << 16);
+    gbuffer_.diffuse.assign(8, glm::vec3(0.5F));
+    std::vector<reflections::TracedSample> truth(8);
+    std::vector<std::uint16_t> clusters(8, 0);
+    // The mirror ray of pixel (3, 1) runs from (1.5, 0.5, 0) to (3.375, 1.125, 5), which a camera
+    // at (0, 0, −4) sees but for the screen: it is at x = 2.25 there. That of (2, 1) passes it.
+    const float length = std::sqrt(1.875F * 1.875F + 0.625F * 0.625F + 25.0F);
+    const float inner = std::sqrt(0.625F * 0.625F + 0.625F * 0.625F + 25.0F);
+    clusters[7] = clusters[6] = clusters[5] = 1;
+    truth[7].distanceM = length;
+    truth[6].distanceM = inner;
+    truth[5].distanceM = 0.0F;  // left the scene
+    camera_.clipFromWorld = glm::frustum(-4.0F, 4.0F, -4.0F, 4.0F, 4.0F, 14.0F) *
+                            glm::lookAt(glm::vec3(0, 0, -4), glm::vec3(0), glm::vec3(0, 1, 0));
+    camera_.eyeWorld = glm::vec4(0, 0, -4, 4);
+    camera_.planeNormal.w = 14.0F;
+    const std::vector<ClusterCamera> cameras{camera_};
+    OcclusionErrors errors =
+        occlusionErrors({gbuffer_, truth, clusters, cameras, scene_, rays_, {}});
+    EXPECT_EQ(errors.reflective, 3U);
+    EXPECT_EQ(errors.missing, 1U);
+    EXPECT_EQ(errors.hidden, 1U);
+    EXPECT_EQ(errors.planar, 3U);
+    EXPECT_EQ(errors.planarMissing, 1U);
+    EXPECT_EQ(errors.isMissing[7], 1);
+    EXPECT_EQ(errors.isMissing[6], 0);
+    // Glossy samples' rays end before it: 15 · (1 − 0.5)⁴ is less than a metre.
+    gbuffer_.surface.assign(8, 1U | 255U << 16 | 128U << 24);
+    errors = occlusionErrors({gbuffer_, truth, clusters, cameras, scene_, rays_, {}});
+    EXPECT_EQ(errors.missing, 0U);
+}
+
+TEST(ChannelErrorTest, IsTheMeanOfShownDifferences) {
+    image::ImageF a(2, 1, 3, 0.0F);
+    image::ImageF b(2, 1, 3, 0.0F);
+    b.at(0, 0, 0) = 1.0F;       // 255
+    b.at(0, 0, 1) = 0.214041F;  // 127.5 … shown as 128 or 127
+    b.at(1, 0, 2) = 2.0F;       // as bright as shown
+    const std::vector<std::uint8_t> first{1, 0};
+    EXPECT_EQ(channelErrors(a, b, &first).x, 255.0);
+    EXPECT_NEAR(channelErrors(a, b, &first).y, 127.5, 0.5);
+    EXPECT_EQ(channelErrors(a, b, &first).z, 0.0);
+    EXPECT_EQ(channelErrors(a, b, nullptr).x, 127.5);
+    EXPECT_EQ(channelErrors(a, b, nullptr).z, 127.5);
+    const std::vector<std::uint8_t> none{0, 0};
+    EXPECT_EQ(channelErrors(a, b, &none), glm::dvec3(0.0));
+    EXPECT_EQ(shownPsnrDb(a, a), kEqualPsnrDb);
+    EXPECT_NEAR(shownPsnrDb(a, image::ImageF(2, 1, 3, 1.0F)), 0.0, 1e-9);
+}
+
+TEST(ReflectionPicturesTest, AverageSamplesAndTurnRows) {
+    reflections::HostGBuffer gbuffer;
+    gbuffer.view.sizePx = {4, 4};
+    gbuffer.surface.assign(16, 0);
+    gbuffer.diffuse.assign(16, glm::vec3(0.0F));
+    gbuffer.surface[0] = 1;  // the lowest sample on the left
+    EXPECT_EQ(reflectivePixels(gbuffer, 2), (std::vector<std::uint8_t>{0, 0, 1, 0}));
+    std::vector<std::uint8_t> marks(16, 0);
+    marks[0] = marks[1] = 1;
+    const image::ImageF marked = markedPicture(image::ImageF(2, 2, 3, 0.5F), marks, gbuffer, 2);
+    EXPECT_FLOAT_EQ(marked.at(0, 1, 0), 0.5F * 0.3F + 0.5F);  // half of its samples
+    EXPECT_FLOAT_EQ(marked.at(0, 1, 1), 0.5F * 0.3F);
+    EXPECT_FLOAT_EQ(marked.at(1, 1, 0), 0.3F);
+    const image::ImageF error = errorPicture(image::ImageF(1, 1, 3, 0.0F),
+                                             image::ImageF(1, 1, 3, 1.0F / 12.92F / 255.0F), 50);
+    // One level, fifty times: what is shown as 50.
+    EXPECT_EQ(image::toSrgb8(error).at(0, 0), 50);
+}
+
+}  // namespace
+}  // namespace gfxrepro::clustered_reflections

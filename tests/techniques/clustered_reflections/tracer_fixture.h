@@ -1,0 +1,105 @@
+// A device, and whole traces of small scenes read back.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "runner/core/files.h"
+#include "runner/gl/device.h"
+#include "techniques/clustered_reflections/clustered_tracer.h"
+#include "techniques/shared/reflections/gbuffer.h"
+#include "tests/techniques/clustered_reflections/mirror_rooms.h"
+
+namespace gfxrepro::clustered_reflections {
+
+/// One frame, in the host's memory; rows from the bottom.
+struct Traced {
+    reflections::HostGBuffer gbuffer;
+    std::vector<glm::vec3> radiance;
+    std::vector<float> distanceM;
+    std::vector<std::uint8_t> environment;
+    std::vector<ClusterCamera> cameras;
+    float imageScale = 1.0F;
+    std::size_t sizeBytes = 0;
+    std::vector<gl::PassTime> passes;
+
+    std::size_t reflectiveCount() const {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < radiance.size(); ++i) count += gbuffer.isReflective(i);
+        return count;
+    }
+    bool isFinite() const {
+        for (std::size_t i = 0; i < radiance.size(); ++i) {
+            const glm::vec3& c = radiance[i];
+            if (gbuffer.isReflective(i) && !std::isfinite(c.x + c.y + c.z + distanceM[i])) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+
+class TracerTest : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        device_.emplace(gl::Device::open({.name = "auto", .debug = gl::DebugOutput::Fatal}));
+    }
+    static void TearDownTestSuite() { device_.reset(); }
+    void TearDown() override { device_->finish("a test"); }
+
+    static const gl::ShaderLibrary& shaders() {
+        static const gl::ShaderLibrary library(dataFolder("shaders"));
+        return library;
+    }
+
+    static ClusteredSettings settingsFor(const reflections::ReflectiveScene& scene) {
+        ClusteredSettings settings;
+        settings.camera.diagonalM = scene.diagonalM();
+        return settings;
+    }
+
+    static Traced trace(const reflections::ReflectiveScene& scene, const scene::Camera& camera,
+                        const ClusteredSettings& settings, int sizePx = 128) {
+        const reflections::GpuObjects objects(scene);
+        reflections::GBuffer gbuffer(depth_images::viewOf(camera, glm::ivec2(sizePx)));
+        reflections::GBufferRenderer(shaders()).render(objects, gbuffer);
+        reflections::EnvironmentMap map(shaders(), scene.boundsWorld().centre());
+        map.render(objects);
+        reflections::ReflectionTarget target{glm::ivec2(sizePx)};
+        gl::Profiler profiler(true);
+        ClusteredTracer tracer(shaders(), scene, objects, map, settings, glm::ivec2(sizePx));
+        tracer.update(objects, profiler);
+        tracer.trace(gbuffer, nullptr, target, profiler);
+
+        Traced traced;
+        traced.gbuffer = readGBuffer(gbuffer);
+        traced.radiance = target.radiance.read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
+        traced.distanceM = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
+        traced.environment = tracer.environmentSamples();
+        traced.cameras = tracer.cameras();
+        traced.imageScale = tracer.imageScale();
+        traced.sizeBytes = tracer.sizeBytes() + gbuffer.sizeBytes() + target.sizeBytes();
+        traced.passes = profiler.collect();
+        return traced;
+    }
+
+    /// Of the samples that reflect; the maximum is 1.
+    template <class Expected>
+    static double psnrDb(const Traced& traced, const Expected& expected) {
+        double sum = 0.0, count = 0.0;
+        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
+            if (!traced.gbuffer.isReflective(i)) continue;
+            const glm::vec3 error = traced.radiance[i] - expected(i);
+            sum += glm::dot(error, error) / 3.0F;
+            count += 1.0;
+        }
+        return -10.0 * std::log10(sum / count);
+    }
+
+  private:
+    static inline std::optional<gl::Device> device_;
+};
+
+}  // namespace gfxrepro::clustered_reflections

@@ -1,0 +1,86 @@
+// Composite against its formula on the host.
+#include "techniques/shared/reflections/composite.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/techniques/reflections/reflections_fixture.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+constexpr glm::ivec2 kOutputSize{5, 3};
+
+class CompositeTest : public ReflectionsTest {
+  protected:
+    /// G-buffer and reflected colours of random values; every third sample reflects nothing, and
+    /// its reflected colour is not a number.
+    void fill(int supersampling) {
+        const glm::ivec2 size = kOutputSize * supersampling;
+        gbuffer.emplace(depth_images::viewOf({}, size));
+        target.emplace(size);
+        Random random(9);
+        diffuse.clear();
+        reflected.clear();
+        surface.clear();
+        for (int i = 0; i < size.x * size.y; ++i) {
+            const bool reflects = i % 3 != 0;
+            diffuse.emplace_back(randomIn(random, 0, 1), 1);
+            reflected.emplace_back(reflects ? randomIn(random, 0, 2)
+                                            : glm::vec3(std::numeric_limits<float>::quiet_NaN()),
+                                   1);
+            surface.push_back(reflects ? (1 + random.index(5)) | random.index(256) << 16 |
+                                             random.index(256) << 24
+                                       : 0U);
+        }
+        gbuffer->diffuse.upload(GL_RGBA, GL_FLOAT, diffuse.data());
+        gbuffer->surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
+        target->radiance.upload(GL_RGBA, GL_FLOAT, reflected.data());
+    }
+
+    glm::vec3 expected(glm::ivec2 pixel, int supersampling, bool showsReflectionOnly) const {
+        glm::vec3 sum(0.0F);
+        for (int dy = 0; dy < supersampling; ++dy) {
+            for (int dx = 0; dx < supersampling; ++dx) {
+                const glm::ivec2 at = pixel * supersampling + glm::ivec2(dx, dy);
+                const auto i =
+                    static_cast<std::size_t>(at.y * kOutputSize.x * supersampling + at.x);
+                const glm::vec3 own = showsReflectionOnly ? glm::vec3(0) : glm::vec3(diffuse[i]);
+                const float s = showsReflectionOnly
+                                    ? 1.0F
+                                    : static_cast<float>(surface[i] >> 16 & 0xFFU) / 255.0F;
+                sum += surface[i] == 0 ? own : (1.0F - s) * own + s * glm::vec3(reflected[i]);
+            }
+        }
+        return sum / static_cast<float>(supersampling * supersampling);
+    }
+
+    std::optional<GBuffer> gbuffer;
+    std::optional<ReflectionTarget> target;
+    std::vector<glm::vec4> diffuse, reflected;
+    std::vector<std::uint32_t> surface;
+};
+
+TEST_F(CompositeTest, BlendsByReflectivityAndAveragesSamples) {
+    for (const int supersampling : {1, 2, 3}) {
+        fill(supersampling);
+        Composite composite(shaders, kOutputSize, supersampling);
+        for (const bool showsReflectionOnly : {false, true}) {
+            composite.render(*gbuffer, *target, showsReflectionOnly);
+            const image::ImageF image = composite.read();
+            ASSERT_EQ(image.channels(), 3);
+            for (int y = 0; y < kOutputSize.y; ++y) {
+                for (int x = 0; x < kOutputSize.x; ++x) {
+                    const glm::vec3 colour = expected({x, y}, supersampling, showsReflectionOnly);
+                    for (int c = 0; c < 3; ++c) {
+                        // 10 bits of the diffuse colour, 11 of each half-precision number.
+                        EXPECT_NEAR(image.at(x, kOutputSize.y - 1 - y, c), colour[c], 2e-3F)
+                            << supersampling << " " << x << " " << y << " " << c;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,359 @@
+#include "techniques/shared/reflections/embree_tracer.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <string>
+
+#include "tests/techniques/reflections/traced_scenes.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+constexpr glm::ivec2 kSizePx(48, 36);
+
+scene::Box roomBox() {
+    return {glm::vec3(-2.0F, 0.0F, -1.5F), glm::vec3(2.5F, 2.2F, 3.0F)};
+}
+
+std::vector<scene::Material> sixColours() {
+    return {matt({0.9F, 0.1F, 0.1F}), matt({0.1F, 0.8F, 0.1F}), matt({0.2F, 0.2F, 0.9F}),
+            matt({0.8F, 0.8F, 0.1F}), matt({0.7F, 0.1F, 0.8F}), matt({0.1F, 0.7F, 0.8F})};
+}
+
+/// Six coloured walls, a light, and a mirror for a floor.
+scene::Scene mirrorFloorRoom() {
+    scene::Scene scene;
+    scene.name = "mirror floor";
+    std::vector<scene::Material> materials = sixColours();
+    materials[2] = mirror();
+    addRoom(scene, roomBox(), materials);
+    scene.lights = {{glm::vec3(0.5F, 1.5F, 0.2F), glm::vec3(0.8F, 0.7F, 0.6F), 1.5F}};
+    return scene;
+}
+
+scene::Camera aboveFloor() {
+    return camera({0.2F, 1.6F, 2.2F}, {0.1F, 0.0F, 0.4F});
+}
+
+/// A sphere of radius 0.4 with the normals of the true one.
+scene::Mesh sphere(const glm::vec3& centre) {
+    constexpr unsigned kRings = 96, kSectors = 192;
+    scene::Mesh mesh;
+    for (unsigned ring = 0; ring <= kRings; ++ring) {
+        const float polar = std::numbers::pi_v<float> * static_cast<float>(ring) / kRings;
+        for (unsigned sector = 0; sector <= kSectors; ++sector) {
+            const float azimuth = 2.0F * std::numbers::pi_v<float> * static_cast<float>(sector) /
+                                  static_cast<float>(kSectors);
+            const glm::vec3 normal(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                                   std::sin(polar) * std::sin(azimuth));
+            mesh.positions.push_back(centre + 0.4F * normal);
+            mesh.normals.push_back(normal);
+        }
+    }
+    for (unsigned ring = 0; ring < kRings; ++ring) {
+        for (unsigned sector = 0; sector < kSectors; ++sector) {
+            const unsigned a = ring * (kSectors + 1) + sector, b = a + kSectors + 1;
+            mesh.triangles.push_back({a, a + 1, b});
+            mesh.triangles.push_back({a + 1, b + 1, b});
+        }
+    }
+    return mesh;
+}
+
+/// What a wall shows at a hit, worked out from its material.
+glm::vec3 shown(const scene::Scene& scene, const WallHit& hit, const glm::vec3& albedo) {
+    return shadeDiffuse(scene.lights, glm::vec3(hit.position), hit.normal, albedo,
+                        scene.materials[static_cast<std::size_t>(hit.side)].emissive);
+}
+glm::vec3 shown(const scene::Scene& scene, const WallHit& hit) {
+    return shown(scene, hit,
+                 glm::vec3(scene.materials[static_cast<std::size_t>(hit.side)].baseColor));
+}
+
+/// The mirror ray of a pixel that looks onto the floor, without the G-buffer.
+struct FloorRay {
+    glm::dvec3 origin, direction;
+};
+FloorRay floorRay(const depth_images::View& view, glm::ivec2 pixel) {
+    const glm::dvec3 eye(view.eyeWorld);
+    glm::dvec3 direction(depth_images::rayThrough(view, glm::vec2(pixel) + 0.5F));
+    const glm::dvec3 origin = eye + direction * (-eye.y / direction.y);
+    direction.y = -direction.y;
+    return {origin, direction};
+}
+
+using EmbreeTracerTest = TracerTest;
+
+TEST_F(EmbreeTracerTest, MirrorFloorShowsTheRoom) {
+    const scene::Scene source = mirrorFloorRoom();
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    ASSERT_EQ(samples.size(), 48U * 36U);
+
+    int count = 0;
+    bool isSeen[6] = {};
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(gbuffer.view, pixel);
+        const WallHit hit = wallHit(roomBox(), ray.origin, ray.direction);
+        EXPECT_NEAR(samples[index].distanceM, hit.distanceM, 1e-4);
+        if (hit.edgeDistanceM < 1e-4) return;
+        EXPECT_EQ(samples[index].object, 1U + static_cast<unsigned>(hit.side));
+        EXPECT_LT(largestDifference(samples[index].radiance, shown(source, hit)), 1e-4F);
+        isSeen[hit.side] = true;
+        ++count;
+    });
+    EXPECT_GT(count, 800);
+    EXPECT_TRUE(isSeen[0] && isSeen[1] && isSeen[3] && isSeen[4]);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (gbuffer.isReflective(i)) continue;
+        EXPECT_EQ(samples[i].object, 0U);
+    }
+}
+
+TEST_F(EmbreeTracerTest, MirrorSphereShowsTheRoom) {
+    scene::Scene source = mirrorFloorRoom();
+    source.materials[2] = matt({0.2F, 0.2F, 0.9F});
+    const glm::vec3 centre(0.2F, 1.0F, 0.3F);
+    addPart(source, sphere(centre), mirror());
+    Prepared prepared(shaders, source, camera({0.4F, 1.3F, 1.9F}, centre), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+
+    int count = 0;
+    bool isSeen[6] = {};
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        // From where the drawn sphere is, about the normal of the true one.
+        const glm::dvec3 origin(gbuffer.positionWorld(pixel));
+        const glm::dvec3 normal = glm::normalize(origin - glm::dvec3(centre));
+        const glm::dvec3 direction =
+            glm::reflect(glm::normalize(origin - glm::dvec3(gbuffer.view.eyeWorld)), normal);
+        // Rays that graze the true sphere enter the drawn one.
+        if (glm::dot(direction, normal) < 0.1) return;
+        const WallHit hit = wallHit(roomBox(), origin, direction);
+        // The interpolated normal is not quite the true one.
+        if (hit.edgeDistanceM < 0.02) return;
+        EXPECT_EQ(samples[index].object, 1U + static_cast<unsigned>(hit.side));
+        EXPECT_NEAR(samples[index].distanceM, hit.distanceM, 5e-3);
+        EXPECT_LT(largestDifference(samples[index].radiance, shown(source, hit)), 5e-3F);
+        isSeen[hit.side] = true;
+        ++count;
+    });
+    EXPECT_GT(count, 250);
+    for (const bool seen : isSeen) EXPECT_TRUE(seen);
+}
+
+/// Vertex colours that grow along x, on a ceiling that is turned inside out by its instance.
+TEST_F(EmbreeTracerTest, AttributesOfMirroredInstancesStayWithTheirVertices) {
+    scene::Scene source = mirrorFloorRoom();
+    const scene::Box box = roomBox();
+    scene::Mesh& ceiling = source.meshes[3];
+    source.materials[3] = matt(glm::vec3(1.0F));
+    const float middle = box.centre().x;
+    for (glm::vec3& position : ceiling.positions) {
+        ceiling.colors.push_back(glm::vec3((position.x - box.min.x) / box.size().x, 0.5F, 0.25F));
+        position.x -= middle;
+    }
+    source.instances[3].worldFromMesh = glm::scale(
+        glm::translate(glm::mat4(1.0F), glm::vec3(middle, 0.0F, 0.0F)), glm::vec3(-1, 1, 1));
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    int count = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(gbuffer.view, pixel);
+        const WallHit hit = wallHit(box, ray.origin, ray.direction);
+        if (hit.side != 3 || hit.edgeDistanceM < 1e-4) return;
+        const auto x = static_cast<float>(hit.position.x);
+        const glm::vec3 albedo((box.max.x - x) / box.size().x, 0.5F, 0.25F);
+        EXPECT_LT(largestDifference(samples[index].radiance, shown(source, hit, albedo)), 1e-4F);
+        ++count;
+    });
+    EXPECT_GT(count, 200);
+}
+
+TEST_F(EmbreeTracerTest, GlossyMeanOfOneColourIsThatColour) {
+    const glm::vec3 colour(0.3F, 0.4F, 0.5F);
+    scene::Scene source;
+    source.name = "one colour";
+    std::vector<scene::Material> materials(6, glowing(colour));
+    // The floor glows alike: its diffuse colour stands in for what has faded.
+    materials[2] = mirror(0.3F);
+    materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    materials[2].emissive = colour;
+    addRoom(source, roomBox(), materials);
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    int count = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t index) {
+        // The G-buffer keeps ten bits of a colour.
+        EXPECT_LT(largestDifference(samples[index].radiance, colour), 6e-4F);
+        ++count;
+    });
+    EXPECT_GT(count, 800);
+}
+
+/// Black floor, glowing walls: what is left of the glow is the mean weight of the lobe's rays.
+TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
+    const glm::vec3 colour(0.8F, 0.6F, 0.4F);
+    scene::Scene source;
+    source.name = "glow";
+    std::vector<scene::Material> materials(6, glowing(colour));
+    materials[2] = mirror(0.2F);
+    materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    addRoom(source, roomBox(), materials);
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    const LobeSettings lobe{12, 0.5F, 4.0F};
+    EmbreeTracer tracer(prepared.scene, prepared.map, lobe);
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+
+    const float glossiness = 51.0F / 255.0F;
+    const double farPlane = double{glm::length(roomBox().size())} * std::pow(0.8, 4.0);
+    int faded = 0, whole = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(gbuffer.view, pixel);
+        double weights = 0.0;
+        for (int i = 0; i < 12; ++i) {
+            const glm::dvec3 direction(
+                lobeDirection(lobe, glm::vec3(ray.direction), glossiness, i, 12));
+            ASSERT_GT(direction.y, 0.0);
+            const WallHit hit = wallHit(roomBox(), ray.origin, direction);
+            weights += std::clamp(3.0 * (1.0 - hit.distanceM / farPlane), 0.0, 1.0);
+        }
+        const glm::vec3 expected = static_cast<float>(weights / 12.0) * colour;
+        EXPECT_LT(largestDifference(samples[index].radiance, expected), 2e-4F);
+        EXPECT_NEAR(samples[index].distanceM,
+                    wallHit(roomBox(), ray.origin, ray.direction).distanceM, 1e-4);
+        ++(weights < 11.999 ? faded : whole);
+    });
+    EXPECT_GT(faded, 100);
+    EXPECT_GT(whole, 100);
+}
+
+/// The ceiling goes up by a metre; the gap shows the environment.
+TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
+    const scene::Scene source = mirrorFloorRoom();
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const EnvironmentMap::Host environment = prepared.map.read();
+    const std::vector<TracedSample> before = tracer.trace(gbuffer);
+
+    std::vector<glm::mat4> poses(prepared.objects.poses().begin(), prepared.objects.poses().end());
+    poses[3] = glm::translate(poses[3], glm::vec3(0.0F, 1.0F, 0.0F));
+    prepared.objects.setPoses(poses);
+    tracer.update(prepared.objects, profiler);
+    const std::vector<TracedSample> after = tracer.trace(gbuffer);
+
+    scene::Box raised = roomBox();
+    raised.max.y += 1.0F;
+    int onCeiling = 0, throughGap = 0, unchanged = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(gbuffer.view, pixel);
+        const WallHit hit = wallHit(raised, ray.origin, ray.direction);
+        const double rim = double{roomBox().max.y};
+        if (hit.edgeDistanceM < 1e-3 || std::abs(hit.position.y - rim) < 1e-3) return;
+        if (hit.side != 3 && hit.position.y > rim) {
+            EXPECT_EQ(after[index].object, 0U);
+            EXPECT_EQ(after[index].distanceM, 0.0F);
+            EXPECT_EQ(after[index].radiance,
+                      environment.radianceFrom(gbuffer.mirrorDirection(pixel)));
+            ++throughGap;
+            return;
+        }
+        EXPECT_NEAR(after[index].distanceM, hit.distanceM, 1e-4);
+        EXPECT_LT(largestDifference(after[index].radiance, shown(source, hit)), 1e-4F);
+        if (hit.side == 3) {
+            EXPECT_GT(after[index].distanceM, before[index].distanceM + 0.9F);
+            ++onCeiling;
+        } else {
+            EXPECT_EQ(after[index].distanceM, before[index].distanceM);
+            ++unchanged;
+        }
+    });
+    EXPECT_GT(onCeiling, 100);
+    EXPECT_GT(throughGap, 50);
+    EXPECT_GT(unchanged, 100);
+}
+
+/// The environment map drawn again is read again.
+TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
+    scene::Scene source;
+    source.name = "floor and ball";
+    addPart(source, rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}), mirror());
+    addPart(source, block({glm::vec3(-0.2F, 0.1F, -2.9F), glm::vec3(0.2F, 2.0F, -2.5F)}),
+            glowing({1.0F, 0.5F, 0.0F}));
+    Prepared prepared(shaders, source, camera({0, 1.5F, 2.5F}, {0, 0, 0}), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    std::vector<glm::mat4> poses(prepared.objects.poses().begin(), prepared.objects.poses().end());
+    poses[1] = glm::translate(poses[1], glm::vec3(1.0F, 0.0F, 0.0F));
+    prepared.objects.setPoses(poses);
+    prepared.map.render(prepared.objects);
+    tracer.update(prepared.objects, profiler);
+    const EnvironmentMap::Host environment = prepared.map.read();
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    int glowingCount = 0, count = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        if (samples[index].object != 0) return;
+        const glm::vec3 expected = environment.radianceFrom(gbuffer.mirrorDirection(pixel));
+        EXPECT_EQ(samples[index].radiance, expected);
+        glowingCount += expected.x > 0.9F ? 1 : 0;
+        ++count;
+    });
+    EXPECT_GT(count, 300);
+    EXPECT_GT(glowingCount, 5);
+}
+
+TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
+    const scene::Scene source = mirrorFloorRoom();
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> all = tracer.trace(gbuffer);
+    std::vector<std::uint8_t> wantedSamples(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
+    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
+    wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
+    ReflectionTarget target(kSizePx);
+    tracer.trace(prepared.gbuffer, &wanted, target, profiler);
+
+    const std::vector<float> radiance = target.radiance.read<float>(GL_RGBA, GL_FLOAT, 4);
+    const std::vector<float> distances = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
+    const std::vector<TracedSample> some = tracer.trace(gbuffer, &wantedSamples);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (wantedSamples[i] == 0) {
+            EXPECT_EQ(some[i].object, 0U);
+            continue;
+        }
+        EXPECT_EQ(some[i].distanceM, all[i].distanceM);
+        EXPECT_EQ(distances[i], all[i].distanceM);
+        const glm::vec3 written(radiance[4 * i], radiance[4 * i + 1], radiance[4 * i + 2]);
+        EXPECT_LT(largestDifference(written, all[i].radiance), 1.0F / 2048.0F);  // half floats
+        EXPECT_EQ(radiance[4 * i + 3], 1.0F);
+    }
+    std::vector<std::string> passes;
+    for (const gl::PassTime& time : profiler.collect()) {
+        EXPECT_EQ(time.clock, gl::PassTime::Clock::Cpu);
+        passes.push_back(time.pass);
+    }
+    EXPECT_EQ(passes, (std::vector<std::string>{"bvh_build", "transfer", "intersection"}));
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,229 @@
+// The G-buffer against rays of Embree through the pixels' centres.
+#include "techniques/shared/reflections/gbuffer.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "runner/raycast/ray_tracer.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+constexpr glm::ivec2 kSize{96, 64};
+
+/// A ball with smooth normals and colours, radius 1.
+scene::Mesh ballMesh() {
+    constexpr int kRings = 24, kSectors = 32;
+    scene::Mesh mesh;
+    for (int ring = 0; ring <= kRings; ++ring) {
+        for (int sector = 0; sector <= kSectors; ++sector) {
+            const float theta = glm::radians(180.0F) * static_cast<float>(ring) / kRings;
+            const float phi = glm::radians(360.0F) * static_cast<float>(sector) / kSectors;
+            const glm::vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta),
+                              std::sin(theta) * std::sin(phi));
+            mesh.positions.push_back(n);
+            mesh.normals.push_back(n);
+            mesh.colors.push_back(0.5F + 0.5F * n);
+        }
+    }
+    for (unsigned ring = 0; ring < kRings; ++ring) {
+        for (unsigned sector = 0; sector < kSectors; ++sector) {
+            const unsigned a = ring * (kSectors + 1) + sector;
+            const unsigned b = a + kSectors + 1;
+            if (ring > 0) mesh.triangles.emplace_back(a, a + 1, b);
+            if (ring < kRings - 1) mesh.triangles.emplace_back(a + 1, b + 1, b);
+        }
+    }
+    return mesh;
+}
+
+/// A textured floor, seen from the side that its winding calls the back, and two turned, stretched
+/// instances of a reflecting ball, one of them mirrored.
+scene::Scene floorWithBalls() {
+    scene::Scene scene;
+    addPart(scene, squareMesh(), {.baseColorTexture = 0},
+            glm::rotate(glm::mat4(1.0F), glm::radians(90.0F), {1, 0, 0}) *
+                glm::scale(glm::mat4(1.0F), glm::vec3(3)));
+    scene.textures = {randomImage(8, 8, 4)};
+    addPart(scene, ballMesh(),
+            {.baseColor = {1, 0.8F, 0.6F, 1}, .metallic = 0.7F, .roughness = 0.1F});
+    scene.instances.push_back(scene.instances.back());
+    scene.lights = {{{1, 3, 2}, {0.7F, 0.6F, 0.5F}, 2.0F}, {{-2, 2, 0}, {0.2F, 0.4F, 0.5F}, 3.0F}};
+    return scene;
+}
+
+std::vector<glm::mat4> posesOf(const scene::Scene& scene) {
+    const auto ball = [](const glm::vec3& at, float angle, const glm::vec3& size) {
+        return glm::rotate(glm::translate(glm::mat4(1.0F), at), angle,
+                           glm::normalize(glm::vec3(1, 2, 3))) *
+               glm::scale(glm::mat4(1.0F), size);
+    };
+    return {scene.instances[0].worldFromMesh, ball({-1, 0.7F, 0}, 0.8F, {0.9F, 0.5F, 0.6F}),
+            ball({1, 0.6F, 0.4F}, -1.9F, {0.6F, -0.8F, 0.4F})};
+}
+
+depth_images::View viewOfScene() {
+    scene::Camera camera;
+    camera.position = {0.5F, 2.5F, 5.0F};
+    camera.target = {0, 0.5F, 0};
+    camera.nearM = 0.5F;
+    camera.farM = 20.0F;
+    return depth_images::viewOf(camera, kSize);
+}
+
+class GBufferTest : public ReflectionsTest {
+  protected:
+    GBufferTest() {
+        objects.setPoses(posesOf(scene));
+        posed = prepared.scene();
+        for (std::size_t i = 0; i < posed.instances.size(); ++i) {
+            posed.instances[i].worldFromMesh = objects.poses()[i];
+        }
+        GBufferRenderer(shaders).render(objects, gbuffer);
+    }
+
+    scene::Scene scene = floorWithBalls();
+    ReflectiveScene prepared{scene};
+    GpuObjects objects{prepared};
+    scene::Scene posed;
+    GBuffer gbuffer{viewOfScene()};
+};
+
+TEST_F(GBufferTest, SeesWhatRaysMeet) {
+    const HostGBuffer host = readGBuffer(gbuffer);
+    const raycast::RayTracer rays(posed);
+    int seen = 0, background = 0, elsewhere = 0, ofReflector[3] = {};
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const glm::ivec2 pixel(x, y);
+            const std::size_t i = host.indexOf(pixel);
+            const glm::vec3 direction = rayThrough(host.view, glm::vec2(pixel) + 0.5F);
+            const auto hit = rays.closestHit(host.view.eyeWorld, direction);
+            if (!hit || host.depthM[i] == 0.0F) {
+                if (hit.has_value() != (host.depthM[i] != 0.0F)) ++elsewhere;
+                if (hit) continue;
+                ++background;
+                EXPECT_EQ(host.surface[i], 0U);
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(host.diffuse[i][c], kBackground[c], 1e-3F);
+                continue;
+            }
+            if (glm::distance(host.positionWorld(pixel), hit->position) > 1e-3F) {
+                ++elsewhere;  // a pixel whose centre lies on an edge
+                continue;
+            }
+            ++seen;
+            const Object& object = prepared.objects()[hit->instance];
+            ++ofReflector[host.reflector(i)];
+            ASSERT_EQ(host.reflector(i), object.reflector);
+            ASSERT_EQ(host.isReflective(i), object.reflector != 0);
+            ASSERT_EQ(host.reflectivity(i), object.reflectivity);
+            ASSERT_EQ(host.glossiness(i), object.glossiness);
+
+            const glm::mat3 toWorld(glm::transpose(glm::inverse(objects.poses()[hit->instance])));
+            glm::vec3 normal = glm::normalize(
+                toWorld * prepared.normalMeshAt(hit->flattenedTriangle, hit->barycentric));
+            if (glm::dot(normal, direction) > 0.0F) normal = -normal;
+            // A silhouette's normal is across the view: which side is turned to it is rounding.
+            if (std::abs(glm::dot(normal, direction)) > 1e-3F) {
+                ASSERT_LE(glm::distance(host.normalWorld[i], normal), 1e-3F) << x << " " << y;
+            }
+            const glm::vec3 mirror = direction - 2.0F * glm::dot(direction, normal) * normal;
+            ASSERT_LE(glm::distance(host.mirrorDirection(pixel), mirror), 3e-3F);
+
+            const glm::vec3 colour = shadeDiffuse(
+                prepared.lights(), hit->position, normal,
+                prepared.albedoAt(hit->flattenedTriangle, hit->barycentric), object.emissive);
+            for (int c = 0; c < 3; ++c) {
+                // 10 bits and the sampler's 256ths of a texel.
+                ASSERT_NEAR(host.diffuse[i][c], colour[c], 4e-3F) << x << " " << y << " " << c;
+            }
+        }
+    }
+    EXPECT_LE(elsewhere, kSize.x * kSize.y / 500);
+    EXPECT_GT(background, 500);
+    EXPECT_GT(ofReflector[0], 500);
+    EXPECT_GT(ofReflector[1], 300);
+    EXPECT_GT(ofReflector[2], 300);
+    EXPECT_EQ(seen + background + elsewhere, kSize.x * kSize.y);
+}
+
+TEST_F(GBufferTest, IsReadTheSameOnTheDevice) {
+    const gl::Program program = compute(R"(#version 450 core
+#include "reflections/gbuffer.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
+    uint surface = texelFetch(gbufferSurface, pixel, 0).r;
+    vec3 position = gbufferPosition(pixel);
+    vec3 normal = gbufferUnitNormal(pixel);
+    results[4 * i] = vec4(position, reflectorOf(surface));
+    results[4 * i + 1] = vec4(normal, reflectivityOf(surface));
+    results[4 * i + 2] = vec4(gbufferMirrorDirection(position, normal), glossinessOf(surface));
+    results[4 * i + 3] = texelFetch(gbufferDiffuse, pixel, 0);
+}
+)",
+                                        {{"GBUFFER_UNIT", 3}});
+    const HostGBuffer host = readGBuffer(gbuffer);
+    const gl::Buffer buffer(4 * host.depthM.size() * sizeof(glm::vec4));
+    program.use();
+    gbuffer.bind(program, 3);
+    buffer.bindStorage(0);
+    glDispatchCompute(static_cast<GLuint>(kSize.x), static_cast<GLuint>(kSize.y), 1);
+    const auto results = buffer.read<glm::vec4>(4 * host.depthM.size());
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const std::size_t i = host.indexOf({x, y});
+            if (host.depthM[i] == 0.0F) continue;
+            const glm::vec4* found = &results[4 * i];
+            ASSERT_LE(glm::distance(glm::vec3(found[0]), host.positionWorld({x, y})), 1e-5F);
+            ASSERT_EQ(found[0].w, static_cast<float>(host.reflector(i)));
+            ASSERT_LE(glm::distance(glm::vec3(found[1]), host.normalWorld[i]), 1e-6F);
+            ASSERT_NEAR(found[1].w, host.reflectivity(i), 1e-7F);
+            ASSERT_LE(glm::distance(glm::vec3(found[2]), host.mirrorDirection({x, y})), 2e-6F);
+            ASSERT_NEAR(found[2].w, host.glossiness(i), 1e-7F);
+            ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
+        }
+    }
+}
+
+TEST_F(GBufferTest, ClearsWhatWasThere) {
+    std::vector<glm::mat4> away = posesOf(scene);
+    for (glm::mat4& pose : away) pose = glm::translate(glm::mat4(1.0F), {0, 0, 50}) * pose;
+    objects.setPoses(away);
+    GBufferRenderer(shaders).render(objects, gbuffer);
+    const HostGBuffer host = readGBuffer(gbuffer);
+    EXPECT_EQ(host.depthM, std::vector<float>(host.depthM.size(), 0.0F));
+    EXPECT_EQ(host.surface, std::vector<std::uint32_t>(host.surface.size(), 0U));
+}
+
+TEST_F(GBufferTest, DrawsSomeObjectsOnly) {
+    const gl::Program program(
+        shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
+        objectDefines());
+    const gl::SampleQuery query;
+    const auto samplesOf = [&](std::vector<std::uint32_t> drawn) {
+        const gl::Texture colour = gl::Texture::make2D(GL_RGBA8, kSize);
+        const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&colour});
+        framebuffer.bind();
+        glDisable(GL_DEPTH_TEST);
+        program.use();
+        program.set("clipFromWorld", gbuffer.view.clipFromWorld());
+        program.set("eyeWorld", gbuffer.view.eyeWorld);
+        objects.bind();
+        query.begin();
+        objects.draw(drawn);
+        query.end();
+        return query.result();
+    };
+    const std::uint64_t first = samplesOf({1});
+    EXPECT_GT(first, 300U);
+    EXPECT_EQ(samplesOf({1, 2}), first + samplesOf({2}));
+    EXPECT_EQ(samplesOf({}), 0U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

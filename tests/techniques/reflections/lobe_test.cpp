@@ -1,0 +1,160 @@
+// The glossy lobe and octahedral directions: shaders against the host, and what both should be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "techniques/shared/reflections/reflection_tracer.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+constexpr const char* kLobeShader = R"(#version 450 core
+#include "reflections/lobe.glsl"
+layout(local_size_x = 1) in;
+struct Input { vec4 directionAndGlossiness; vec4 indexAndDistance; };
+layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
+layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+void main() {
+    Input ray = inputs[gl_GlobalInvocationID.x];
+    float glossiness = ray.directionAndGlossiness.w;
+    int count = raysOf(glossiness);
+    results[2 * gl_GlobalInvocationID.x] =
+        vec4(lobeDirection(ray.directionAndGlossiness.xyz, glossiness,
+                           int(ray.indexAndDistance.x) % count, count), count);
+    results[2 * gl_GlobalInvocationID.x + 1] =
+        vec4(farPlane(glossiness), fadeOf(glossiness, ray.indexAndDistance.y), 0.0, 0.0);
+}
+)";
+
+struct Input {
+    glm::vec4 directionAndGlossiness, indexAndDistance;
+};
+
+TEST_F(ReflectionsTest, SpreadsRaysAsTheHostDoes) {
+    constexpr float kDiagonalM = 7.0F;
+    Random random(11);
+    std::vector<Input> inputs;
+    for (int i = 0; i < 500; ++i) {
+        glm::vec3 direction = randomUnit(random);
+        if (i % 50 == 1) direction = {0, 0, i % 100 == 1 ? -1 : 1};  // the frame's poles
+        const float glossiness = i % 10 == 0 ? 0.0F : random.uniform(0.01F, 0.99F);
+        inputs.push_back(
+            {{direction, glossiness},
+             {static_cast<float>(random.index(49)), random.uniform(0.0F, 5.0F), 0, 0}});
+    }
+    const gl::Program program = compute(kLobeShader);
+    const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
+    const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
+    inputBuffer.bindStorage(0);
+    resultBuffer.bindStorage(1);
+    for (const LobeSettings& lobe : {LobeSettings{}, LobeSettings{16, 0.3F, 2.0F}}) {
+        program.use();
+        setLobe(program, lobe, kDiagonalM);
+        glDispatchCompute(static_cast<GLuint>(inputs.size()), 1, 1);
+        const auto results = resultBuffer.read<glm::vec4>(2 * inputs.size());
+        int faded = 0;
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+            const float glossiness = inputs[i].directionAndGlossiness.w;
+            const int count = raysOf(lobe, glossiness);
+            const int index = static_cast<int>(inputs[i].indexAndDistance.x) % count;
+            const glm::vec3 direction = lobeDirection(
+                lobe, glm::vec3(inputs[i].directionAndGlossiness), glossiness, index, count);
+            ASSERT_EQ(results[2 * i].w, static_cast<float>(count)) << i;
+            // GLSL asks no accuracy of sines and powers; llvmpipe's are polynomials.
+            ASSERT_LE(glm::distance(glm::vec3(results[2 * i]), direction), 2e-5F) << i;
+            const float farM = farPlaneM(lobe, glossiness, kDiagonalM);
+            ASSERT_NEAR(results[2 * i + 1].x, farM, 1e-4F * kDiagonalM) << i;
+            const float fade = fadeOf(lobe, glossiness, inputs[i].indexAndDistance.y, kDiagonalM);
+            if (farM < 0.01F) continue;  // the power's error is of the size of the far plane
+            ASSERT_NEAR(results[2 * i + 1].y, fade, 5e-3F) << i;
+            faded += fade > 0.0F && fade < 1.0F ? 1 : 0;
+        }
+        EXPECT_GT(faded, 20);  // not all in the clamped ends
+    }
+}
+
+TEST(LobeTest, NumbersItsRays) {
+    EXPECT_EQ(raysOf({}, 0.0F), 1);
+    EXPECT_EQ(raysOf({}, 1e-4F), 8);
+    EXPECT_EQ(raysOf({}, 0.5F), 29);
+    EXPECT_EQ(raysOf({}, 1.0F), 49);
+    EXPECT_EQ(raysOf({.rays = 20}, 0.5F), 20);
+    EXPECT_EQ(raysOf({.rays = 20}, 0.0F), 1);
+}
+
+TEST(LobeTest, FillsItsConeEvenly) {
+    Random random(7);
+    for (int trial = 0; trial < 20; ++trial) {
+        const glm::vec3 mirror = randomUnit(random);
+        const float glossiness = random.uniform(0.1F, 1.0F);
+        const LobeSettings lobe;
+        const float halfAngle = glossiness * lobe.maxHalfAngleRad;
+        const float cone = 1.0F - std::cos(halfAngle);  // solid angle over 2π
+        constexpr int kRays = 48;
+        const glm::vec3 across = glm::normalize(glm::cross(mirror, randomUnit(random)));
+        const glm::vec3 other = glm::cross(mirror, across);
+        int inRing[4] = {}, inQuadrant[4] = {};
+        for (int i = 0; i < kRays; ++i) {
+            const glm::vec3 ray = lobeDirection(lobe, mirror, glossiness, i, kRays);
+            ASSERT_NEAR(glm::length(ray), 1.0F, 1e-6F);
+            const float share = (1.0F - glm::dot(ray, mirror)) / cone;  // of the solid angle
+            ASSERT_GE(share, 0.0F);
+            ASSERT_LE(share, 1.0F);
+            ++inRing[std::min(static_cast<int>(4.0F * share), 3)];
+            ++inQuadrant[(glm::dot(ray, across) > 0.0F ? 1 : 0) +
+                         (glm::dot(ray, other) > 0.0F ? 2 : 0)];
+        }
+        for (const int count : inRing) EXPECT_EQ(count, kRays / 4);
+        for (const int count : inQuadrant) EXPECT_NEAR(count, kRays / 4, 2);
+    }
+    const glm::vec3 mirror = randomUnit(random);
+    EXPECT_EQ(lobeDirection({}, mirror, 0.0F, 0, 1), mirror);
+}
+
+TEST(LobeTest, FadesOverTheLastThirdOfTheWay) {
+    const LobeSettings lobe{.farExponent = 2.0F};
+    const float farM = farPlaneM(lobe, 0.5F, 12.0F);
+    EXPECT_EQ(farM, 3.0F);
+    EXPECT_EQ(fadeOf(lobe, 0.5F, 1.9F, 12.0F), 1.0F);
+    EXPECT_NEAR(fadeOf(lobe, 0.5F, 2.5F, 12.0F), 0.5F, 1e-6F);
+    EXPECT_EQ(fadeOf(lobe, 0.5F, 3.1F, 12.0F), 0.0F);
+    EXPECT_EQ(fadeOf(lobe, 0.0F, 100.0F, 12.0F), 1.0F);  // mirrors do not
+}
+
+TEST_F(ReflectionsTest, KeepsDirectionsInTwoNumbers) {
+    Random random(5);
+    std::vector<glm::vec4> directions;
+    for (int i = 0; i < 400; ++i) directions.emplace_back(randomUnit(random), 0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::vec4 unit(0.0F);
+        for (const float sign : {1.0F, -1.0F}) {
+            unit[axis] = sign;
+            directions.push_back(unit);
+        }
+    }
+    const gl::Program program = compute(R"(#version 450 core
+#include "reflections/octahedral.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };
+layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+void main() {
+    vec2 e = octahedralFromUnit(inputs[gl_GlobalInvocationID.x].xyz);
+    float outside = max(max(abs(e.x), abs(e.y)) - 1.0, 0.0);
+    results[gl_GlobalInvocationID.x] = vec4(unitFromOctahedral(e), outside);
+}
+)");
+    const gl::Buffer inputBuffer = gl::Buffer::of(directions);
+    const gl::Buffer resultBuffer(directions.size() * sizeof(glm::vec4));
+    inputBuffer.bindStorage(0);
+    resultBuffer.bindStorage(1);
+    program.use();
+    glDispatchCompute(static_cast<GLuint>(directions.size()), 1, 1);
+    const auto results = resultBuffer.read<glm::vec4>(directions.size());
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        EXPECT_LE(glm::distance(results[i], directions[i]), 1e-6F) << i;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

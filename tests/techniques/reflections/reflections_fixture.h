@@ -1,0 +1,73 @@
+// What the tests of reflections share: shaders under test inside of compute shaders, small scenes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "runner/scene/mesh_builder.h"
+#include "techniques/shared/reflections/gpu_objects.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::reflections {
+
+inline glm::vec3 randomIn(Random& random, float low, float high) {
+    const float x = random.uniform(low, high);
+    const float y = random.uniform(low, high);
+    return {x, y, random.uniform(low, high)};
+}
+
+inline glm::vec3 randomUnit(Random& random) {
+    for (;;) {
+        const glm::vec3 v = randomIn(random, -1.0F, 1.0F);
+        const float squared = glm::dot(v, v);
+        if (squared > 0.01F && squared < 1.0F) return glm::normalize(v);
+    }
+}
+
+/// A square of side 2 in the plane z = 0, facing +z, with texture coordinates: v = 0 at the top.
+inline scene::Mesh squareMesh() {
+    scene::Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// Adds a mesh with a material of its own and one instance of it.
+inline void addPart(scene::Scene& scene, scene::Mesh mesh, const scene::Material& material,
+                    const glm::mat4& worldFromMesh = glm::mat4(1.0F)) {
+    mesh.material = static_cast<int>(scene.materials.size());
+    scene.materials.push_back(material);
+    scene.instances.push_back({static_cast<int>(scene.meshes.size()), worldFromMesh});
+    scene.meshes.push_back(std::move(mesh));
+}
+
+/// 4 channels, every byte random.
+inline image::Image8 randomImage(int width, int height, std::uint64_t seed) {
+    Random random(seed);
+    image::Image8 image(width, height, 4);
+    for (std::uint8_t& value : image.values()) {
+        value = static_cast<std::uint8_t>(random.index(256));
+    }
+    return image;
+}
+
+class ReflectionsTest : public test::GlTest {
+  protected:
+    /// A compute shader that includes "reflections/…".
+    gl::Program compute(const std::string& text, const gl::Defines& defines = {}) const {
+        // The library takes one folder: the shader goes next to copies of what it includes.
+        for (const auto& entry :
+             std::filesystem::directory_iterator(shaders.folder() / "reflections")) {
+            folder.write("reflections/" + entry.path().filename().string(), readFile(entry.path()));
+        }
+        return program({{"test.comp.glsl", text}}, defines);
+    }
+
+    gl::ShaderLibrary shaders{dataFolder("shaders")};
+};
+
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,234 @@
+#include "techniques/shared/reflections/screen_space_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "tests/techniques/reflections/traced_scenes.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+constexpr glm::ivec2 kSizePx(96, 72);
+constexpr float kThicknessM = 0.3F;
+
+/// Two pillars, a wide one and a thin one, on a mirror; nothing around.
+scene::Scene pillarsOnMirror(float glossiness = 0.0F) {
+    scene::Scene scene;
+    scene.name = "pillars";
+    addPart(scene, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror(glossiness));
+    addPart(scene, block({glm::vec3(-0.8F, 0.0F, -1.2F), glm::vec3(-0.1F, 1.2F, -0.6F)}),
+            matt({0.9F, 0.2F, 0.1F}));
+    addPart(scene, block({glm::vec3(0.5F, 0.0F, -0.4F), glm::vec3(0.7F, 0.8F, -0.2F)}),
+            matt({0.1F, 0.3F, 0.9F}));
+    return scene;
+}
+
+scene::Camera beforePillars() {
+    return camera({0.1F, 1.1F, 2.4F}, {0.0F, 0.4F, 0.0F});
+}
+
+struct Traced {
+    std::vector<glm::vec3> radiance;
+    std::vector<float> distanceM;
+};
+
+class ScreenSpaceTracerTest : public TracerTest {
+  protected:
+    Traced traced(const Prepared& prepared, const LobeSettings& lobe,
+                  const gl::Texture* wanted = nullptr) {
+        ScreenSpaceTracer tracer(shaders, prepared.map, lobe, prepared.scene.diagonalM(),
+                                 kThicknessM);
+        tracer.update(prepared.objects, profiler);
+        ReflectionTarget target(prepared.gbuffer.view.sizePx);
+        target.radiance.clearToZero();
+        target.distance.clearToZero();
+        tracer.trace(prepared.gbuffer, wanted, target, profiler);
+        Traced result;
+        const std::vector<float> values = target.radiance.read<float>(GL_RGB, GL_FLOAT, 3);
+        for (std::size_t i = 0; i < values.size(); i += 3) {
+            result.radiance.emplace_back(values[i], values[i + 1], values[i + 2]);
+        }
+        result.distanceM = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
+        return result;
+    }
+};
+
+/// Whether the eye sees a point, and the side that a ray comes from.
+bool isSeen(const HostGBuffer& gbuffer, const glm::vec3& point, const glm::vec3& direction) {
+    const std::optional<glm::ivec2> pixel = depth_images::pixelOf(gbuffer.view, point);
+    if (!pixel) return false;
+    const std::size_t index = gbuffer.indexOf(*pixel);
+    if (gbuffer.depthM[index] == 0.0F) return false;
+    const float depth = -(gbuffer.view.viewFromWorld * glm::vec4(point, 1.0F)).z;
+    return std::abs(gbuffer.depthM[index] - depth) < 0.02F &&
+           glm::dot(gbuffer.normalWorld[index], direction) < 0.0F;
+}
+
+TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
+    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kSizePx);
+    EmbreeTracer embree(prepared.scene, prepared.map, {});
+    embree.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> truth = embree.trace(gbuffer);
+    const Traced traced = this->traced(prepared, {});
+    const EnvironmentMap::Host environment = prepared.map.read();
+
+    int seenCount = 0, agreeing = 0, missCount = 0, misses = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
+        const TracedSample& sample = truth[index];
+        const bool isEnvironment =
+            traced.distanceM[index] == 0.0F &&
+            largestDifference(traced.radiance[index], environment.radianceFrom(direction)) < 2e-3F;
+        if (sample.object == 0) {
+            ++missCount;
+            misses += isEnvironment ? 1 : 0;
+        } else if (isSeen(gbuffer, gbuffer.positionWorld(pixel) + sample.distanceM * direction,
+                          direction)) {
+            ++seenCount;
+            const bool agrees = std::abs(traced.distanceM[index] - sample.distanceM) < 0.05F &&
+                                largestDifference(traced.radiance[index], sample.radiance) < 0.03F;
+            agreeing += agrees ? 1 : 0;
+        }
+    });
+    EXPECT_GT(seenCount, 200);
+    // The rest, and the rest of the misses, lies at the pillars' edges, where a texel shows one
+    // side of them and the ray meets the other, or passes by.
+    EXPECT_GE(agreeing, 0.95 * seenCount);
+    EXPECT_GT(missCount, 1000);
+    EXPECT_GE(misses, 0.99 * missCount);
+}
+
+/// In the image, a sign near the eye is in front of the wall that the floor shows; the rays pass
+/// far behind it.
+TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
+    scene::Scene source;
+    source.name = "sign";
+    addPart(source, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror());
+    addPart(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
+    addPart(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));
+    const Prepared prepared(shaders, source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kSizePx);
+    EmbreeTracer embree(prepared.scene, prepared.map, {});
+    embree.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> truth = embree.trace(gbuffer);
+    const Traced traced = this->traced(prepared, {});
+    int count = 0, behindCount = 0, agreeing = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
+        const glm::vec3 point = gbuffer.positionWorld(pixel) + truth[index].distanceM * direction;
+        if (truth[index].object != 2 || !isSeen(gbuffer, point, direction)) return;
+        // In this symmetric image rays go straight up.
+        bool isBehind = false;
+        const int wallY = depth_images::pixelOf(gbuffer.view, point)->y;
+        for (int y = pixel.y; y < wallY; ++y) {
+            const float depth = gbuffer.depthM[gbuffer.indexOf({pixel.x, y})];
+            isBehind = isBehind || (depth > 0.0F && depth < 1.2F);
+        }
+        ++count;
+        behindCount += isBehind ? 1 : 0;
+        agreeing +=
+            largestDifference(traced.radiance[index], truth[index].radiance) < 2e-3F ? 1 : 0;
+    });
+    EXPECT_GT(behindCount, 100);
+    EXPECT_GE(agreeing, 0.99 * count);
+}
+
+/// The eye looks at the mirror alone: all that is reflected is above the image.
+TEST_F(ScreenSpaceTracerTest, TakesTheEnvironmentForWhatIsOutsideOfTheImage) {
+    const Prepared prepared(shaders, pillarsOnMirror(),
+                            camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kSizePx);
+    EmbreeTracer embree(prepared.scene, prepared.map, {});
+    embree.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> truth = embree.trace(gbuffer);
+    const Traced traced = this->traced(prepared, {});
+    const EnvironmentMap::Host environment = prepared.map.read();
+    int count = 0, outside = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
+        const glm::vec3 point = gbuffer.positionWorld(pixel) + truth[index].distanceM * direction;
+        const bool isOnPillar = truth[index].object > 1;
+        if (isOnPillar && depth_images::pixelOf(gbuffer.view, point)) return;
+        EXPECT_EQ(traced.distanceM[index], 0.0F);
+        EXPECT_LT(largestDifference(traced.radiance[index], environment.radianceFrom(direction)),
+                  2e-3F);
+        ++count;
+        outside += isOnPillar ? 1 : 0;
+    });
+    EXPECT_GT(count, 1000);
+    EXPECT_GT(outside, 300);
+}
+
+/// All that the eye sees glows alike, so that neither hits nor what stands in for misses differ.
+TEST_F(ScreenSpaceTracerTest, GlossyMeanOfOneColourIsThatColour) {
+    const glm::vec3 colour(0.3F, 0.4F, 0.5F);
+    scene::Scene source = pillarsOnMirror(0.3F);
+    for (scene::Material& material : source.materials) {
+        material.baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+        material.emissive = colour;
+    }
+    const Prepared prepared(shaders, source, beforePillars(), kSizePx);
+    const Traced traced = this->traced(prepared, {});
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    int hits = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t index) {
+        EXPECT_LT(largestDifference(traced.radiance[index], colour), 1e-3F);
+        hits += traced.distanceM[index] > 0.0F ? 1 : 0;
+    });
+    EXPECT_GT(hits, 200);
+}
+
+/// Where whole lobes meet what the eye sees, their means agree with Embree's.
+TEST_F(ScreenSpaceTracerTest, GlossyMeansAgreeWithRays) {
+    const Prepared prepared(shaders, pillarsOnMirror(0.15F), beforePillars(), kSizePx);
+    // Reflections end at 0.8 m.
+    const LobeSettings lobe{16, 0.6F, 12.0F};
+    EmbreeTracer embree(prepared.scene, prepared.map, lobe);
+    embree.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> truth = embree.trace(gbuffer);
+    const Traced traced = this->traced(prepared, lobe);
+    int count = 0, agreeing = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        // The wide pillar's front fills the lobe.
+        const glm::vec3 point =
+            gbuffer.positionWorld(pixel) + truth[index].distanceM * gbuffer.mirrorDirection(pixel);
+        if (truth[index].object != 2 || point.x < -0.65F || point.x > -0.25F) return;
+        if (truth[index].distanceM > 0.8F || !isSeen(gbuffer, point, glm::vec3(0, 0, -1))) return;
+        ++count;
+        agreeing +=
+            largestDifference(traced.radiance[index], truth[index].radiance) < 0.02F ? 1 : 0;
+    });
+    EXPECT_GT(count, 50);
+    EXPECT_GE(agreeing, 0.95 * count);
+}
+
+TEST_F(ScreenSpaceTracerTest, WritesWantedSamplesOnly) {
+    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kSizePx);
+    const Traced all = traced(prepared, {});
+    profiler.collect();
+    std::vector<std::uint8_t> wantedSamples(all.distanceM.size());
+    for (std::size_t i = 0; i < wantedSamples.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
+    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
+    wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
+    const Traced some = traced(prepared, {}, &wanted);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    int written = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t index) {
+        const bool isWanted = wantedSamples[index] != 0;
+        EXPECT_EQ(some.radiance[index], isWanted ? all.radiance[index] : glm::vec3(0.0F));
+        EXPECT_EQ(some.distanceM[index], isWanted ? all.distanceM[index] : 0.0F);
+        written += isWanted ? 1 : 0;
+    });
+    EXPECT_GT(written, 500);
+    const std::vector<gl::PassTime> passes = profiler.collect();
+    ASSERT_EQ(passes.size(), 1U);
+    EXPECT_EQ(passes[0].pass, "intersection");
+    EXPECT_EQ(passes[0].clock, gl::PassTime::Clock::Gpu);
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

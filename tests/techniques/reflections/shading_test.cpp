@@ -1,0 +1,161 @@
+// shaders/shading.glsl and objects.glsl against surfaces.cpp: the same light everywhere.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "tests/techniques/reflections/reflections_fixture.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+constexpr const char* kShader = R"(#version 450 core
+#include "reflections/shading.glsl"
+layout(local_size_x = 1) in;
+struct Input { vec4 position; vec4 normal; vec4 color; vec4 texcoordAndObject; };
+layout(std430, binding = 8) readonly buffer Inputs { Input inputs[]; };
+layout(std430, binding = 9) writeonly buffer Results { vec4 results[]; };
+void main() {
+    Input point = inputs[gl_GlobalInvocationID.x];
+    Object object = objects[int(point.texcoordAndObject.z)];
+    vec3 albedo = albedoOf(object, point.texcoordAndObject.xy, point.color.rgb);
+    results[2 * gl_GlobalInvocationID.x] = vec4(albedo, 0.0);
+    results[2 * gl_GlobalInvocationID.x + 1] = vec4(
+        shadeDiffuse(point.position.xyz, point.normal.xyz, albedo, object.emissive.rgb), 0.0);
+}
+)";
+
+struct Input {
+    glm::vec4 position, normal, color, texcoordAndObject;
+};
+
+/// Two triangles whose corners carry random colours and texture coordinates, twice: with a texture
+/// and without.
+scene::Scene litScene(Random& random) {
+    scene::Scene scene;
+    for (const int texture : {1, -1}) {
+        scene::Mesh mesh = squareMesh();
+        for (glm::vec2& texcoord : mesh.texcoords) texcoord = glm::vec2(randomIn(random, -2, 2));
+        for (int i = 0; i < 4; ++i) mesh.colors.push_back(randomIn(random, 0, 1));
+        addPart(scene, mesh,
+                {.baseColor = {randomIn(random, 0, 1), 1},
+                 .emissive = randomIn(random, 0, 0.2F),
+                 .baseColorTexture = texture});
+    }
+    scene.textures = {randomImage(8, 8, 1), randomImage(64, 32, 2)};
+    for (int i = 0; i < 3; ++i) {
+        scene.lights.push_back(
+            {randomIn(random, -2, 2), randomIn(random, 0, 1), random.uniform(0.2F, 3.0F)});
+    }
+    return scene;
+}
+
+TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
+    Random random(3);
+    const ReflectiveScene scene(litScene(random));
+    const GpuObjects objects(scene);
+    std::vector<Input> inputs;
+    std::vector<glm::vec3> albedos, colours;
+    for (int i = 0; i < 600; ++i) {
+        const std::uint32_t triangle = random.index(4);
+        const float b1 = random.uniform();
+        const glm::vec2 b(b1, random.uniform(0.0F, 1.0F - b1));
+        const glm::vec3 weights(1.0F - b.x - b.y, b);
+        const glm::vec3 position = randomIn(random, -3, 3);
+        const glm::vec3 normal = randomUnit(random);
+        const ObjectGeometry& geometry = scene.geometry();
+        glm::vec2 texcoord(0.0F);
+        glm::vec3 color(0.0F);
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = geometry.triangles[triangle][corner];
+            texcoord += weights[corner] * geometry.texcoords[vertex];
+            color += weights[corner] * geometry.colors[vertex];
+        }
+        const std::uint32_t object = geometry.objectOfTriangle[triangle];
+        inputs.push_back({glm::vec4(position, 1), glm::vec4(normal, 0), glm::vec4(color, 0),
+                          glm::vec4(texcoord, object, 0)});
+        albedos.push_back(scene.albedoAt(triangle, b));
+        colours.push_back(shadeDiffuse(scene.lights(), position, normal, albedos.back(),
+                                       scene.objects()[object].emissive));
+    }
+    const gl::Program shade = compute(kShader, objectDefines());
+    const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
+    const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
+    shade.use();
+    objects.bind();
+    inputBuffer.bindStorage(kFirstFreeStorage);
+    resultBuffer.bindStorage(kFirstFreeStorage + 1);
+    glDispatchCompute(static_cast<GLuint>(inputs.size()), 1, 1);
+    const auto results = resultBuffer.read<glm::vec4>(2 * inputs.size());
+
+    int withinRange = 0;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        // Without a texture nothing but rounding differs. Samplers weigh texels in 256ths: between
+        // black and white, half a 256th in either direction.
+        const bool hasTexture = inputs[i].texcoordAndObject.z == 0.0F;
+        const float tolerance = hasTexture ? 2.0F / 256.0F : 1e-6F;
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_NEAR(results[2 * i][c], albedos[i][c], tolerance) << i << " " << c;
+            // Four lights at most double an albedo's difference.
+            ASSERT_NEAR(results[2 * i + 1][c], colours[i][c], 3.0F * tolerance) << i << " " << c;
+            withinRange += colours[i][c] > 0.0F && colours[i][c] < 1.0F ? 1 : 0;
+        }
+    }
+    EXPECT_GT(withinRange, 1500);  // of 1800: the test is not of clamped values
+}
+
+TEST_F(ReflectionsTest, PutsObjectsWhereTheyAre) {
+    scene::Scene scene;
+    addPart(scene, squareMesh(), {.metallic = 0.5F, .roughness = 0.2F});
+    addPart(scene, squareMesh(), {});
+    addPart(scene, squareMesh(), {.metallic = 1.0F, .roughness = 0.0F});
+    const ReflectiveScene prepared(scene);
+    GpuObjects objects(prepared);
+    const glm::mat4 turned =
+        glm::rotate(glm::translate(glm::mat4(1.0F), {5, 0, 0}), glm::radians(90.0F), {0, 1, 0}) *
+        glm::scale(glm::mat4(1.0F), {2, 3, 4});
+    const glm::mat4 mirrored = glm::scale(glm::mat4(1.0F), {1, 1, -1});
+    objects.setPoses(std::array{turned, glm::mat4(1.0F), mirrored});
+    // The square of ±2 × ±3 now stands across x at 5.
+    const scene::Box box = objects.boundsWorld()[0];
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(box.min[axis], glm::vec3(5, -3, -2)[axis], 1e-5F);
+        EXPECT_NEAR(box.max[axis], glm::vec3(5, 3, 2)[axis], 1e-5F);
+    }
+
+    const gl::Program read = compute(R"(#version 450 core
+#include "reflections/objects.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 8) writeonly buffer Results { vec4 results[]; };
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    results[4 * i] = vec4(normalize(mat3(objects[i].normalFromMesh) * vec3(0, 0, 1)),
+                          objects[i].baseColor.w);
+    results[4 * i + 1] = objects[i].worldFromMesh * vec4(1, 1, 0, 1);
+    results[4 * i + 2] = vec4(objects[i].boundsHalfSize.xyz, float(objects[i].textureLayer));
+    results[4 * i + 3] = vec4(objects[i].firstTriangle, objects[i].triangleCount,
+                              objects[i].surface & 0xFFFFu, objects[i].surface >> 16);
+}
+)",
+                                     objectDefines());
+    const gl::Buffer results(12 * sizeof(glm::vec4));
+    read.use();
+    objects.bind();
+    results.bindStorage(kFirstFreeStorage);
+    glDispatchCompute(3, 1, 1);
+    const auto values = results.read<glm::vec4>(12);
+    const auto expectNear = [&](std::size_t i, const glm::vec4& expected) {
+        for (int c = 0; c < 4; ++c) EXPECT_NEAR(values[i][c], expected[c], 1e-5F) << i << " " << c;
+    };
+    expectNear(0, {1, 0, 0, 1});
+    expectNear(1, {5, 3, -2, 1});
+    expectNear(2, {0, 3, 2, -1});
+    expectNear(3, {0, 2, 1, 128 | 51 << 8});  // s and g in 255ths
+    expectNear(4, {0, 0, 1, 0});
+    expectNear(7, {2, 2, 0, 0});
+    expectNear(8, {0, 0, -1, 1});  // a mirrored outside is still outside
+    expectNear(11, {4, 2, 2, 255});
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

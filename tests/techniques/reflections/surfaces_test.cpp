@@ -1,0 +1,264 @@
+// Scenes prepared for reflections: what reflects, what is repaired and left out, how it is shaded.
+#include "techniques/shared/reflections/surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "runner/image/srgb.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+using test::errorText;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+scene::Scene sceneOf(const scene::Mesh& mesh, const scene::Material& material) {
+    scene::Scene scene;
+    scene.name = "test";
+    addPart(scene, mesh, material);
+    return scene;
+}
+
+TEST(ReflectorRuleTest, TakesSmoothMaterials) {
+    struct Case {
+        float roughness, metallic, indexOfRefraction;
+        bool isReflector;
+        float s, g;  // in 255ths
+    };
+    // (1.5 − 1)² / (1.5 + 1)² = 0.04 is 10.2 of 255; (3 − 1)² / (3 + 1)² = ¼ is 63.75.
+    for (const Case& c :
+         {Case{0.0F, 1.0F, 1.5F, true, 255, 0}, Case{0.4F, 0.5F, 1.5F, true, 128, 102},
+          Case{0.41F, 1.0F, 1.5F, false, 0, 0}, Case{0.2F, 0.0F, 1.5F, true, 10, 51},
+          Case{0.2F, 0.0F, 3.0F, true, 64, 51}, Case{0.0F, 0.0F, 1.0F, false, 0, 0}}) {
+        scene::Material material;
+        material.roughness = c.roughness;
+        material.metallic = c.metallic;
+        material.indexOfRefraction = c.indexOfRefraction;
+        const ReflectiveScene scene(sceneOf(squareMesh(), material));
+        EXPECT_EQ(scene.reflectorCount(), c.isReflector ? 1 : 0) << c.roughness;
+        const Object& object = scene.objects()[0];
+        EXPECT_EQ(object.reflector, c.isReflector ? 1 : 0) << c.roughness;
+        if (!c.isReflector) continue;
+        EXPECT_FLOAT_EQ(object.reflectivity, c.s / 255.0F);
+        EXPECT_FLOAT_EQ(object.glossiness, c.g / 255.0F);
+    }
+    scene::Material rough;
+    rough.roughness = 0.7F;
+    EXPECT_EQ(
+        ReflectiveScene(sceneOf(squareMesh(), rough), {.maxRoughness = 0.7F}).reflectorCount(), 1);
+}
+
+TEST(ReflectiveSceneTest, NumbersReflectorsInOrderOfInstances) {
+    scene::Scene scene;
+    const scene::Material mirror{.roughness = 0.0F};
+    for (int i = 0; i < 4; ++i) {
+        addPart(scene, squareMesh(), i == 1 ? scene::Material{} : mirror);
+    }
+    scene.instances.push_back({0, glm::mat4(1.0F)});  // the first mesh again: another reflector
+    const ReflectiveScene prepared(scene);
+    std::vector<int> numbers;
+    for (const Object& object : prepared.objects()) numbers.push_back(object.reflector);
+    EXPECT_EQ(numbers, (std::vector<int>{1, 0, 2, 3, 4}));
+    EXPECT_EQ(prepared.reflectorCount(), 4);
+}
+
+TEST(ReflectiveSceneTest, OverridesGlossinessOfReflectors) {
+    scene::Scene scene = sceneOf(squareMesh(), {.roughness = 0.0F});
+    addPart(scene, squareMesh(), {});
+    ReflectiveScene prepared(scene);
+    prepared.setGlossiness(0.2F);
+    EXPECT_EQ(prepared.objects()[0].glossiness, 51.0F / 255.0F);
+    EXPECT_EQ(prepared.objects()[1].glossiness, 0.0F);
+}
+
+bool isPlanarReflector(const scene::Mesh& mesh) {
+    return ReflectiveScene(sceneOf(mesh, {.roughness = 0.0F})).objects()[0].isPlanar;
+}
+
+TEST(PlanarTest, IsOnePlaneWithOneNormal) {
+    EXPECT_TRUE(isPlanarReflector(squareMesh()));
+    scene::Mesh withoutNormals = squareMesh();
+    withoutNormals.normals.clear();
+    EXPECT_TRUE(isPlanarReflector(withoutNormals));
+
+    scene::Mesh bent = squareMesh();
+    bent.normals[2] = glm::normalize(glm::vec3(0.002F, 0, 1));
+    EXPECT_FALSE(isPlanarReflector(bent));
+    bent.normals[2] = glm::normalize(glm::vec3(0.0005F, 0, 1));  // within the tolerance
+    EXPECT_TRUE(isPlanarReflector(bent));
+
+    // Two shelves: the same normals in two planes.
+    scene::MeshBuilder shelves;
+    for (const float y : {0.0F, 0.3F}) {
+        shelves.addQuad({0, y, 1}, {1, y, 1}, {1, y, 0}, {0, y, 0});
+    }
+    EXPECT_FALSE(isPlanarReflector(shelves.take("shelves", 0)));
+    scene::MeshBuilder box;
+    box.addBox(glm::vec3(0), glm::vec3(1));
+    EXPECT_FALSE(isPlanarReflector(box.take("box", 0)));
+}
+
+TEST(ReflectiveSceneTest, LeavesOutWhatLetsLightThrough) {
+    scene::Scene scene;
+    addPart(scene, squareMesh(), {.roughness = 0.0F});
+    addPart(scene, squareMesh(), {.transmission = 0.6F});
+    addPart(scene, squareMesh(), {.roughness = 0.0F, .transmission = 0.5F},
+            glm::translate(glm::mat4(1.0F), {0, 0, 2}));
+    scene.motions = {{.instance = 0, .turnRad = 1.0F},
+                     {.instance = 1, .turnRad = 2.0F},
+                     {.instance = 2, .turnRad = 3.0F}};
+    const ReflectiveScene prepared(scene);
+    EXPECT_EQ(prepared.transmissiveCount(), 1);
+    EXPECT_EQ(prepared.reflectorCount(), 2);
+    ASSERT_EQ(prepared.objects().size(), 2U);
+    ASSERT_EQ(prepared.scene().instances.size(), 2U);
+    EXPECT_EQ(prepared.scene().instances[1].mesh, 2);
+    ASSERT_EQ(prepared.scene().motions.size(), 2U);
+    EXPECT_EQ(prepared.scene().motions[1].instance, 1);
+    EXPECT_EQ(prepared.scene().motions[1].turnRad, 3.0F);
+    EXPECT_EQ(prepared.objects()[1].firstTriangle, 2U);
+    EXPECT_EQ(prepared.boundsWorld().max.z, 2.0F);
+    EXPECT_EQ(prepared.diagonalM(), std::sqrt(12.0F));
+}
+
+TEST(ReflectiveSceneTest, NeedsTriangles) {
+    scene::Scene empty;
+    empty.name = "void";
+    EXPECT_EQ(errorText([&] { ReflectiveScene prepared(empty); }),
+              "scene void: reflections need triangles, it has none");
+    EXPECT_EQ(
+        errorText([] { ReflectiveScene prepared(sceneOf(squareMesh(), {.transmission = 1.0F})); }),
+        "scene test: reflections need triangles, it has none (transmissive objects left out: 1)");
+}
+
+TEST(ReflectiveSceneTest, RepairsNormals) {
+    scene::Mesh mesh = squareMesh();
+    mesh.normals = {
+        {kNan, 0, 0}, {0, 0, 0}, {0, 3, 4}, {0, std::numeric_limits<float>::infinity(), 0}};
+    const ReflectiveScene prepared(sceneOf(mesh, {.roughness = 0.0F}));
+    const std::vector<glm::vec3>& normals = prepared.geometry().normals;
+    ASSERT_EQ(normals.size(), 4U);
+    for (const std::size_t i : {0U, 1U, 3U}) EXPECT_EQ(normals[i], glm::vec3(0, 0, 1)) << i;
+    EXPECT_NEAR(glm::distance(normals[2], glm::vec3(0, 0.6F, 0.8F)), 0.0F, 1e-6F);
+    EXPECT_EQ(prepared.repairedNormalCount(), 3);
+    // Of reflectors only: nothing else depends on them that much.
+    EXPECT_EQ(ReflectiveScene(sceneOf(mesh, {})).repairedNormalCount(), 0);
+}
+
+TEST(ReflectiveSceneTest, RepairsNormalsThatCancelOut) {
+    // The same triangle from both sides: the area-weighted sum is zero.
+    scene::Mesh mesh = squareMesh();
+    mesh.normals.clear();
+    mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+    const ReflectiveScene prepared(sceneOf(mesh, {}));
+    for (const glm::vec3& normal : prepared.geometry().normals) {
+        EXPECT_NEAR(glm::length(normal), 1.0F, 1e-6F);
+    }
+    EXPECT_EQ(std::abs(prepared.geometry().normals[0].z), 1.0F);
+}
+
+TEST(ReflectiveSceneTest, KeepsTheOrderOfTheFlattenedScene) {
+    scene::Scene scene;
+    addPart(scene, squareMesh(), {}, glm::translate(glm::mat4(1.0F), {5, 0, 0}));
+    scene::MeshBuilder builder;
+    builder.addBox(glm::vec3(1, 2, 3), glm::vec3(1));
+    addPart(scene, builder.take("box", 0), {},
+            glm::scale(glm::mat4(1.0F), {-1, 2, 1}));  // mirrored
+    scene.instances.push_back({0, glm::rotate(glm::mat4(1.0F), 1.0F, {0, 1, 0})});
+    const ReflectiveScene prepared(scene);
+    const scene::Mesh flat = scene::flattened(scene);
+    const ObjectGeometry& geometry = prepared.geometry();
+    ASSERT_EQ(geometry.triangles.size(), flat.triangles.size());
+    for (std::size_t t = 0; t < flat.triangles.size(); ++t) {
+        const std::uint32_t object = geometry.objectOfTriangle[t];
+        ASSERT_GE(t, prepared.objects()[object].firstTriangle);
+        ASSERT_LT(
+            t, prepared.objects()[object].firstTriangle + prepared.objects()[object].triangleCount);
+        const glm::vec3 corner =
+            glm::vec3(scene.instances[object].worldFromMesh *
+                      glm::vec4(geometry.positions[geometry.triangles[t].x], 1.0F));
+        EXPECT_EQ(corner, flat.positions[flat.triangles[t].x]) << t;
+    }
+    // Arrays are full, also where meshes have nothing.
+    EXPECT_EQ(geometry.texcoords.size(), geometry.positions.size());
+    EXPECT_EQ(geometry.texcoords[4], glm::vec2(0.0F));
+    EXPECT_EQ(geometry.colors[0], glm::vec3(1.0F));
+}
+
+TEST(ReflectiveSceneTest, HangsALightWhereThereIsNone) {
+    scene::Scene scene = sceneOf(squareMesh(), {});
+    const ReflectiveScene without(scene);
+    ASSERT_EQ(without.lights().size(), 1U);
+    EXPECT_EQ(without.lights()[0].position, glm::vec3(0.0F, 0.9F, 0.0F));
+    EXPECT_FLOAT_EQ(without.lights()[0].radiusM, std::sqrt(2.0F));
+    for (int i = 0; i < 6; ++i) scene.lights.push_back({.radiusM = 1.0F + static_cast<float>(i)});
+    const ReflectiveScene with(scene);
+    ASSERT_EQ(with.lights().size(), 4U);
+    EXPECT_EQ(with.lights()[3].radiusM, 4.0F);
+}
+
+TEST(ReflectiveSceneTest, FiltersTexturesInLinearLight) {
+    scene::Scene scene =
+        sceneOf(squareMesh(), {.baseColor = {0.5F, 1.0F, 1.0F, 1.0F}, .baseColorTexture = 1});
+    scene.textures = {randomImage(4, 4, 1),  // nobody's
+                      randomImage(ReflectiveScene::kLayerSizePx, ReflectiveScene::kLayerSizePx, 2)};
+    scene.meshes[0].colors.assign(4, {1.0F, 0.25F, 1.0F});
+    const ReflectiveScene prepared(scene);
+    ASSERT_EQ(prepared.textureLayers().size(), 1U);
+    const std::array<float, 256> decoding = image::srgbDecoding();
+    const auto texel = [&](int x, int y) {
+        glm::vec3 value;
+        for (int c = 0; c < 3; ++c) value[c] = decoding[scene.textures[1].at(x & 511, y & 511, c)];
+        return value * glm::vec3(0.5F, 0.25F, 1.0F);
+    };
+    // In triangle 0 (left below, right below, right above): (u, v) = (b₁ + b₂, 1 − b₂).
+    const auto albedoAt = [&](double xTexels, double yTexels) {
+        const double b2 = 1.0 - yTexels / 512.0;
+        return prepared.albedoAt(
+            0, {static_cast<float>(xTexels / 512.0 - b2), static_cast<float>(b2)});
+    };
+    const auto expectNear = [](const glm::vec3& actual, const glm::vec3& expected) {
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], 1e-4F) << c;
+    };
+    expectNear(albedoAt(300.5, 400.5), texel(300, 400));  // the middle of a texel
+    expectNear(albedoAt(301.0, 400.5), 0.5F * (texel(300, 400) + texel(301, 400)));
+    expectNear(albedoAt(300.75, 401.0), 0.375F * (texel(300, 400) + texel(300, 401)) +
+                                            0.125F * (texel(301, 400) + texel(301, 401)));
+    expectNear(albedoAt(512.0, 400.5), 0.5F * (texel(511, 400) + texel(0, 400)));  // repeats
+    expectNear(albedoAt(1024.5 + 7.0, 400.5), texel(7, 400));
+    expectNear(albedoAt(-512.0, 0.0),
+               0.25F * (texel(511, 511) + texel(0, 511) + texel(511, 0) + texel(0, 0)));
+}
+
+TEST(ShadeDiffuseTest, AddsAmbientLightsAndEmission) {
+    const glm::vec3 up(0, 1, 0);
+    EXPECT_EQ(shadeDiffuse({}, {}, up, glm::vec3(0.5F), {}), glm::vec3(0.2F));
+    EXPECT_NEAR(shadeDiffuse({}, {}, -up, glm::vec3(0.5F), {}).x, 0.1F, 1e-6F);
+    // Straight above at the radius: half the intensity; at 60° half of that.
+    const scene::PointLight light{{0, 2, 0}, {0.4F, 0.8F, 100.0F}, 2.0F};
+    const glm::vec3 lit = shadeDiffuse(std::span(&light, 1), {}, up, glm::vec3(0.5F), {0.1F, 0, 0});
+    EXPECT_NEAR(lit.r, 0.5F * (0.4F + 0.2F) + 0.1F, 1e-6F);
+    EXPECT_NEAR(lit.g, 0.5F * (0.4F + 0.4F), 1e-6F);
+    EXPECT_EQ(lit.b, 1.0F);  // clamped
+    const glm::vec3 tilted(std::sqrt(0.75F), 0.5F, 0);
+    EXPECT_NEAR(shadeDiffuse(std::span(&light, 1), {}, tilted, glm::vec3(0.5F), {}).r,
+                0.5F * (0.35F + 0.1F), 1e-6F);
+    // From behind, and at the light itself: ambient only, and a number.
+    EXPECT_NEAR(shadeDiffuse(std::span(&light, 1), {}, -up, glm::vec3(0.5F), {}).r, 0.1F, 1e-6F);
+    EXPECT_EQ(shadeDiffuse(std::span(&light, 1), {0, 2, 0}, up, glm::vec3(0.5F), {}).r, 0.2F);
+}
+
+TEST(ReflectiveSceneTest, InterpolatesNormals) {
+    scene::Mesh mesh = squareMesh();
+    mesh.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
+    const ReflectiveScene prepared(sceneOf(mesh, {}));
+    EXPECT_EQ(prepared.normalMeshAt(0, {0.25F, 0.5F}), glm::vec3(0.25F, 0.25F, 0.5F));
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,73 @@
+// Resampling of textures: a box filter in linear light.
+#include "techniques/shared/reflections/texture_layer.h"
+
+#include <gtest/gtest.h>
+
+#include "runner/image/srgb.h"
+
+namespace gfxrepro::reflections {
+namespace {
+
+/// Every value different from its neighbours'.
+image::Image8 pattern(int width, int height, int channels) {
+    image::Image8 image(width, height, channels);
+    int next = 0;
+    for (std::uint8_t& value : image.values()) {
+        value = static_cast<std::uint8_t>(next);
+        next = (next + 89) % 256;
+    }
+    return image;
+}
+
+TEST(TextureLayerTest, LeavesTheSameSizeAsItIs) {
+    const image::Image8 image = pattern(16, 16, 4);
+    EXPECT_EQ(textureLayer(image, 16), image);
+}
+
+TEST(TextureLayerTest, AddsAlpha) {
+    const image::Image8 layer = textureLayer(pattern(4, 4, 3), 4);
+    ASSERT_EQ(layer.channels(), 4);
+    EXPECT_EQ(layer.at(2, 3, 3), 255);
+    EXPECT_EQ(layer.at(2, 3, 1), pattern(4, 4, 3).at(2, 3, 1));
+}
+
+TEST(TextureLayerTest, AveragesInLinearLight) {
+    // Black and white columns, three to two: texels cover 1½ of them each.
+    image::Image8 image(3, 1, 3);
+    for (int channel = 0; channel < 3; ++channel) image.at(1, 0, channel) = 255;
+    const image::Image8 layer = textureLayer(image, 2);
+    // Each is 1 part black, ½ part white: a linear third, 156 in sRGB (85 if encoded values were
+    // averaged).
+    for (int y = 0; y < 2; ++y) {
+        for (int x = 0; x < 2; ++x) EXPECT_EQ(layer.at(x, y, 0), 156) << x << " " << y;
+    }
+}
+
+TEST(TextureLayerTest, KeepsTheMeanOfSizesThatDoNotDivide) {
+    const std::array<float, 256> decoding = image::srgbDecoding();
+    const auto meanOf = [&](const image::Image8& image) {
+        double sum = 0.0;
+        for (int y = 0; y < image.height(); ++y) {
+            for (int x = 0; x < image.width(); ++x) sum += decoding[image.at(x, y, 0)];
+        }
+        return sum / (image.width() * image.height());
+    };
+    for (const int size : {3, 7, 33, 64}) {
+        const image::Image8 image = pattern(size, size + 5, 3);
+        // Rounding to 8 bits moves the mean by less than half a step of the brightest.
+        EXPECT_NEAR(meanOf(textureLayer(image, 16)), meanOf(image), 0.002) << size;
+    }
+}
+
+TEST(TextureLayerTest, EnlargesToBlocks) {
+    const image::Image8 image = pattern(2, 2, 3);
+    const image::Image8 layer = textureLayer(image, 8);
+    for (int y = 0; y < 8; ++y) {
+        for (int x = 0; x < 8; ++x) {
+            ASSERT_EQ(layer.at(x, y, 2), image.at(x / 4, y / 4, 2)) << x << " " << y;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,150 @@
+// Scenes whose reflections can be worked out by hand, and what the tests of tracers share.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "techniques/shared/reflections/embree_tracer.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
+
+namespace gfxrepro::reflections {
+
+/// A wall of a room: the rectangle at centre ± u ± v, and its colour.
+struct Wall {
+    glm::vec3 centre, u, v;
+    scene::Material material;
+};
+
+inline scene::Material matt(const glm::vec3& colour) {
+    scene::Material material;
+    material.baseColor = glm::vec4(colour, 1.0F);
+    return material;
+}
+inline scene::Material glowing(const glm::vec3& colour) {
+    scene::Material material = matt(glm::vec3(0.0F));
+    material.emissive = colour;
+    return material;
+}
+inline scene::Material mirror(float glossiness = 0.0F) {
+    scene::Material material = matt(glm::vec3(0.4F, 0.3F, 0.2F));
+    material.metallic = 1.0F;
+    material.roughness = glossiness;
+    return material;
+}
+
+inline scene::Mesh rectangle(const glm::vec3& centre, const glm::vec3& u, const glm::vec3& v) {
+    scene::Mesh mesh;
+    mesh.positions = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// The inside of a box: walls −x, +x, −y (the floor), +y, −z, +z are objects 0 to 5.
+inline void addRoom(scene::Scene& scene, const scene::Box& box,
+                    const std::vector<scene::Material>& materials) {
+    const glm::vec3 half = 0.5F * box.size();
+    for (int side = 0; side < 6; ++side) {
+        const int axis = side / 2;
+        glm::vec3 centre = box.centre(), u(0.0F), v(0.0F);
+        centre[axis] = side % 2 == 0 ? box.min[axis] : box.max[axis];
+        u[(axis + 1) % 3] = half[(axis + 1) % 3];
+        v[(axis + 2) % 3] = half[(axis + 2) % 3];
+        addPart(scene, rectangle(centre, u, v), materials[static_cast<std::size_t>(side)]);
+    }
+}
+
+/// A closed box, one object.
+inline scene::Mesh block(const scene::Box& box) {
+    scene::Scene sides;
+    addRoom(sides, box, std::vector<scene::Material>(6));
+    return scene::flattened(sides);
+}
+
+/// Where a ray from inside meets the walls of a box, in double precision.
+struct WallHit {
+    double distanceM = 0.0;
+    int side = 0;  // as addRoom() counts them
+    glm::dvec3 position{0.0};
+    glm::vec3 normal{0.0F};      // into the room
+    double edgeDistanceM = 0.0;  // to the next wall
+};
+inline WallHit wallHit(const scene::Box& box, const glm::dvec3& origin,
+                       const glm::dvec3& direction) {
+    WallHit hit;
+    hit.distanceM = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0) continue;
+        const bool isUpper = direction[axis] > 0.0;
+        const double wall = double{isUpper ? box.max[axis] : box.min[axis]};
+        const double distance = (wall - origin[axis]) / direction[axis];
+        if (distance >= hit.distanceM) continue;
+        hit.distanceM = distance;
+        hit.side = 2 * axis + (isUpper ? 1 : 0);
+        hit.normal = glm::vec3(0.0F);
+        hit.normal[axis] = isUpper ? -1.0F : 1.0F;
+    }
+    hit.position = origin + hit.distanceM * direction;
+    hit.edgeDistanceM = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis == hit.side / 2) continue;
+        hit.edgeDistanceM = std::min({hit.edgeDistanceM, hit.position[axis] - double{box.min[axis]},
+                                      double{box.max[axis]} - hit.position[axis]});
+    }
+    return hit;
+}
+
+inline scene::Camera camera(const glm::vec3& position, const glm::vec3& target) {
+    scene::Camera result;
+    result.position = position;
+    result.target = target;
+    result.verticalFovRad = 0.9F;
+    result.nearM = 0.05F;
+    result.farM = 50.0F;
+    return result;
+}
+
+/// A scene ready to be traced, drawn from one view.
+struct Prepared {
+    ReflectiveScene scene;
+    GpuObjects objects;
+    EnvironmentMap map;
+    GBufferRenderer renderer;
+    GBuffer gbuffer;
+
+    Prepared(const gl::ShaderLibrary& shaders, const scene::Scene& source,
+             const scene::Camera& from, glm::ivec2 sizePx)
+        : scene(source),
+          objects(scene),
+          map(shaders, scene.boundsWorld().centre()),
+          renderer(shaders),
+          gbuffer(depth_images::viewOf(from, sizePx)) {
+        map.render(objects);
+        renderer.render(objects, gbuffer);
+    }
+};
+
+class TracerTest : public ReflectionsTest {
+  protected:
+    gl::Profiler profiler{true};
+};
+
+/// Calls action(pixel, index) for the reflective samples.
+template <class Action>
+void forEachReflective(const HostGBuffer& gbuffer, Action&& action) {
+    for (int y = 0; y < gbuffer.view.sizePx.y; ++y) {
+        for (int x = 0; x < gbuffer.view.sizePx.x; ++x) {
+            const std::size_t index = gbuffer.indexOf({x, y});
+            if (gbuffer.isReflective(index)) action(glm::ivec2(x, y), index);
+        }
+    }
+}
+
+inline float largestDifference(const glm::vec3& a, const glm::vec3& b) {
+    const glm::vec3 difference = glm::abs(a - b);
+    return std::max({difference.x, difference.y, difference.z});
+}
+
+}  // namespace gfxrepro::reflections
