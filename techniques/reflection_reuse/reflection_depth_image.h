@@ -1,0 +1,22 @@
+// A key frame's reflections ([xie2017] Sec. 5.3): what eye and reflected rays sampled.
+#pragma once
+
+#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/shared/reflections/reflection_tracer.h"
+
+namespace gfxrepro::reflection_reuse {
+
+/// B.1 normal and depth and B.2 mirror factor are the G-buffer's, B.3 radiance L_r and B.4 travel
+/// distance r the tracer's. Where a ray left the scene, its end counts as the scene's diagonal
+/// away.
+struct ReflectionDepthImage {
+    reflections::GBuffer gbuffer;
+    reflections::ReflectionTarget reflection;
+    float diagonalM = 1.0F;
+
+    ReflectionDepthImage(const depth_images::View& view, float diagonalM)
+        : gbuffer(view), reflection(view.sizePx), diagonalM(diagonalM) {}
+    std::size_t sizeBytes() const { return gbuffer.sizeBytes() + reflection.sizeBytes(); }
+};
+
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,64 @@
+// [xie2017] Algorithm 8: key frames traced, frames between them reprojected and mended.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "techniques/reflection_reuse/pixel_matcher.h"
+#include "techniques/reflection_reuse/reprojection.h"
+#include "techniques/shared/reflections/reflection_tracer.h"
+
+namespace gfxrepro::reflection_reuse {
+
+struct ReuseSettings {
+    /// When more than this share of a frame's reflective samples was recomputed, the next frame is
+    /// a key frame (Sec. 5.4.4). 0: every frame that needs any; 1: never again.
+    float keyFrameThreshold = 0.3F;
+    MatchingSettings matching;
+    ReprojectionSettings reprojection;
+    /// The comparator: depth alone, as if reflections were painted on the surface.
+    bool isDirect = false;
+    /// Outlook of Sec. 5.5.4: samples whose reflected segment, then or now, passes the box of an
+    /// object that has moved since the key frame are recomputed.
+    bool recomputesMoved = false;
+    /// Outlook: recomputed samples within this distance of a reused one are mixed with what
+    /// reprojection found there; pixels, 0: none.
+    int seamPx = 0;
+};
+
+/// Of one frame.
+struct ReuseCounts {
+    bool isKeyFrame = false;
+    std::uint32_t reflectiveSamples = 0;
+    std::uint32_t recomputedSamples = 0;  // of a key frame: all
+    double matchingSteps = 0.0;           // mean ring steps a reflective sample of the key frame
+};
+
+/// Passes, named as Table 23: `diffuse`, `pixel_matching`, `reflection_shift`, `reflection_warp`,
+/// `recompute`; `composite` is the caller's.
+class ReuseRenderer {
+  public:
+    ReuseRenderer(const gl::ShaderLibrary& shaders, const reflections::GpuObjects& objects,
+                  reflections::ReflectionTracer& tracer, const ReuseSettings& settings,
+                  glm::ivec2 sizePx, float diagonalM);
+    ~ReuseRenderer();
+
+    /// The objects are posed. The first frame is a key frame.
+    void render(const depth_images::View& view, gl::Profiler& profiler);
+    const reflections::GBuffer& gbuffer() const;
+    const reflections::ReflectionTarget& reflection() const;
+    /// Of the last render(); waits for the device.
+    ReuseCounts counts() const;
+    /// 1 where a sample of the last frame was recomputed ([xie2017] Fig. 40), R8UI.
+    const gl::Texture& recomputed() const;
+    const Offsets& offsets() const;
+    const ReflectionDepthImage& keyFrame() const;
+    std::size_t sizeBytes() const;
+    void forgetKeyFrame();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gfxrepro::reflection_reuse
