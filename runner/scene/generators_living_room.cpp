@@ -244,8 +244,8 @@ float floorLightAt(const glm::vec2& xz) {
 
 void addRug(Builders& b, const image::Image8& pattern, int blades, Random& random) {
     constexpr float kCloth = 0.012F;
-    constexpr int kCellsX = 28;
-    constexpr int kCellsZ = 20;
+    constexpr int kCellsX = 20;
+    constexpr int kCellsZ = 14;
     const auto at = [](float u, float v) {
         return kRug +
                glm::vec3(kHalfRug.x * (2.0F * u - 1.0F), kCloth, kHalfRug.y * (1.0F - 2.0F * v));
@@ -313,7 +313,7 @@ Scene livingRoom(config::Params& params, std::uint64_t seed) {
     const auto wanted = static_cast<std::size_t>(diffuse);
     Builders builders;
     build(builders, fittingDetail(wanted, seed), seed);
-    constexpr std::size_t kClothTriangles = 2 * 28 * 20;
+    constexpr std::size_t kClothTriangles = 2 * 20 * 14;
     GFXREPRO_ASSERT(builders.triangleCount() + kClothTriangles <= wanted);
     Random random(seed, 2);
     addRug(builders, scene.textures[kRugPattern],
