@@ -271,8 +271,8 @@ void addBookcase(Builders& b, const Detail& detail, Random& random) {
                 {0.16F, 0.28F, 0.34F}, {0.55F, 0.34F, 0.18F}, {0.66F, 0.60F, 0.48F}};
             b.plain.setColor(colors[random.index(3)]);
             const Outline jar{{0, 0},         {0.05F, 0},      {0.05F, 0},      {0.085F, 0.08F},
-                              {0.07F, 0.15F}, {0.035F, 0.19F}, {0.045F, 0.21F}, {0.04F, 0.21F},
-                              {0.03F, 0.19F}, {0, 0.17F}};
+                              {0.07F, 0.15F}, {0.035F, 0.19F}, {0.045F, 0.21F}, {0.045F, 0.21F},
+                              {0.04F, 0.21F}, {0.04F, 0.21F},  {0.03F, 0.19F},  {0, 0.17F}};
             addTurned(b.plain, jar, std::max(300, detail.cells(1200)),
                       placed({x0 + 0.17F, y + 0.025F, z + 0.17F}));
         }
@@ -292,9 +292,10 @@ void addPlants(Builders& b, const Detail& detail, Random& random) {
     // A small one on the window sill.
     const glm::vec3 sill(-1.4F, kWindowLow.y, -kHalfRoom.z + 0.03F);
     b.plain.setColor({0.52F, 0.24F, 0.14F});
-    const Outline pot{{0, 0},          {0.045F, 0},     {0.045F, 0},
-                      {0.06F, 0.10F},  {0.068F, 0.10F}, {0.068F, 0.125F},
-                      {0.06F, 0.125F}, {0.055F, 0.10F}, {0, 0.10F}};
+    const Outline pot{{0, 0},           {0.045F, 0},     {0.045F, 0},     {0.06F, 0.10F},
+                      {0.06F, 0.10F},   {0.068F, 0.10F}, {0.068F, 0.10F}, {0.068F, 0.125F},
+                      {0.068F, 0.125F}, {0.06F, 0.125F}, {0.06F, 0.125F}, {0.055F, 0.10F},
+                      {0, 0.10F}};
     addTurned(b.plain, pot, std::max(400, detail.cells(600)), placed(sill));
     addBroadLeaves(b.plants, 0.30F, 40, leafCells, random, placed(sill + glm::vec3(0, 0.10F, 0)));
 }

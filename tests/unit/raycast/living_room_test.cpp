@@ -110,7 +110,7 @@ TEST_F(LivingRoom, PathsAreClearOfGeometry) {
         for (int frame = 0; frame < kFrames; ++frame) {
             const scene::Camera camera =
                 scene::cameraAt(path, static_cast<double>(frame) / (kFrames - 1));
-            EXPECT_GE(camera.nearM, 0.05F);
+            EXPECT_NEAR(camera.nearM, 0.05F, 1e-6F);
             EXPECT_GT(camera.position.y, 1.1F);
             EXPECT_LT(camera.position.y, 1.8F);
             for (int k = 0; k < kDirections; ++k) {

