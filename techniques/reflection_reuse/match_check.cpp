@@ -12,11 +12,10 @@ namespace {
 bool isWrong(const HostReflectionDepthImage& key, glm::ivec2 sample, const glm::vec2& offset,
              const glm::vec3& eyeWorld, const MatchingSettings& settings) {
     // A search from the match ends there, and says its distance.
-    const HostMatch found =
-        matchOnHost(key, sample, eyeWorld, glm::ivec2(glm::round(offset)), settings);
+    const HostMatch found = matchOnHost(key, sample, eyeWorld, offset, settings);
     const HostMatch best = matchExhaustively(key, sample, eyeWorld);
     if (!found.offset || !best.offset) return false;
-    const glm::ivec2 apart = glm::abs(*found.offset - *best.offset);
+    const glm::ivec2 apart = glm::abs(found.end - best.end);
     return std::max(apart.x, apart.y) > 1 && best.distance < found.distance;
 }
 

@@ -79,7 +79,7 @@ void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
 }
 
 void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
-    HostReflectionDepthImage key{reflections::readGBuffer(renderer_->keyFrame().gbuffer), {}};
+    const HostReflectionDepthImage key = readReflectionDepthImage(renderer_->keyFrame());
     const std::vector<glm::vec2> offsets = readOffsets(renderer_->offsets());
     const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted().radiance);
     std::size_t reflective = 0, unmatched = 0, unshifted = 0;
@@ -93,7 +93,6 @@ void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
     recorder.metric("unmatched_pct", percent(unmatched, reflective), "%");
     recorder.metric("unshifted_pct", percent(unshifted, reflective), "%");
     if (params_.exhaustiveSamples == 0) return;
-    key.distanceM = renderer_->keyFrame().reflection.distance.read<float>(GL_RED, GL_FLOAT, 1);
     const MatchCheck check = checkMatches(key, offsets, view_.eyeWorld, params_.reuse.matching,
                                           params_.exhaustiveSamples);
     recorder.metric("wrong_minimum_pct", percent(check.wrong, check.checked), "%");
