@@ -84,6 +84,7 @@ void ReflectionReuse::place(const technique::FrameContext& context) {
 void ReflectionReuse::render(technique::FrameContext& context) {
     gl::Profiler& profiler = context.profiler;
     place(context);
+    tracer_->update(*objects_, profiler);
     if (renderer_) {
         // Warm-ups and repetitions must not move the choice of key frames on.
         if (context.frame == frame_) renderer_->undo();
@@ -104,7 +105,6 @@ void ReflectionReuse::traceFully(gl::Profiler& profiler) {
         const gl::GpuScope scope(profiler, "diffuse");
         full.renderer.render(*objects_, full.gbuffer);
     }
-    tracer_->update(*objects_, profiler);
     const gl::GpuScope scope(profiler, "recompute");
     tracer_->trace(full.gbuffer, nullptr, full.target, profiler);
 }

@@ -39,6 +39,8 @@ class ReflectionReuse final : public technique::Technique {
     image::ImageF truthOf(const reflections::HostGBuffer& gbuffer);
     void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                       const image::ImageF& picture);
+    void recordUndetected(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                          const image::ImageF& picture, const image::ImageF& truth);
     void recordPictures(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                         const image::ImageF& picture);
 
