@@ -56,10 +56,9 @@ CellList::CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
     : sizePx_(sizePx),
       triangleDraws_(drawsFor(2 * product(sizePx - 1))),
       pointDraws_(drawsFor(product(sizePx))),
-      classify_(
-          shaders,
-          {"reflections/whole_image.vert.glsl", "reflection_reuse/classify_cells.frag.glsl"},
-          passDefines()),
+      classify_(shaders,
+                {"reflections/whole_image.vert.glsl", "reflection_reuse/classify_cells.frag.glsl"},
+                passDefines()),
       list_(shaders, {"reflection_reuse/list_cells.comp.glsl"}, passDefines()),
       split_(shaders, {"reflection_reuse/split_draws.comp.glsl"}, passDefines()),
       cells_(gl::Texture::make2D(GL_R8UI, sizePx)),
@@ -127,8 +126,8 @@ CellList::Counts CellList::counts() const {
 }
 
 std::size_t CellList::sizeBytes() const {
-    return cells_.sizeBytes() + triangles_.sizeBytes() + points_.sizeBytes() +
-           counts_.sizeBytes() + commands_.sizeBytes();
+    return cells_.sizeBytes() + triangles_.sizeBytes() + points_.sizeBytes() + counts_.sizeBytes() +
+           commands_.sizeBytes();
 }
 
 }  // namespace gfxrepro::reflection_reuse

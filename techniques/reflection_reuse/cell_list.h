@@ -10,8 +10,8 @@ namespace gfxrepro::reflection_reuse {
 
 /// A cell has four neighbouring pixel centres for corners and is drawn as two triangles, its
 /// vertices numbered y · width + x: programs find all else by gl_VertexID. Samples on the rim, with
-/// an incomplete cell at some side, are listed as points, too: the rule that gives a pixel centre on
-/// an edge to one of two triangles leaves it to none where the other one is missing.
+/// an incomplete cell at some side, are listed as points, too: the rule that gives a pixel centre
+/// on an edge to one of two triangles leaves it to none where the other one is missing.
 class CellList {
   public:
     CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx);

@@ -61,8 +61,7 @@ Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionS
                            glm::ivec2 sizePx)
     : settings_(settings),
       cells_(shaders, sizePx),
-      shift_(shaders,
-             {"reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl"},
+      shift_(shaders, {"reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl"},
              passDefines()),
       warp_(shaders, {"reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl"},
             passDefines()),
@@ -116,8 +115,8 @@ void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radi
     cells_.list(radiance, CellList::Validity::Alpha, settings_.forward == Forward::Splats);
     wantAll(gbuffer, wanted);
     target.distance.clearToZero();
-    const gl::Framebuffer framebuffer(
-        std::array<const gl::Texture*, 2>{&target.radiance, &wanted}, &depthBuffer_);
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted},
+                                      &depthBuffer_);
     framebuffer.clearDepth(1.0F);
     framebuffer.bind();
     warp_.use();
@@ -125,10 +124,10 @@ void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radi
     key.gbuffer.depth.bind(kKeyDepthUnit);
     key.gbuffer.surface.bind(kKeySurfaceUnit);
     gbuffer.bind(warp_, kGBufferUnit);
-    warp_.set("clipFromKeyPixels",
-              glm::mat4(glm::dmat4(gbuffer.view.clipFromView) *
-                        glm::dmat4(gbuffer.view.viewFromWorld) *
-                        glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
+    warp_.set(
+        "clipFromKeyPixels",
+        glm::mat4(glm::dmat4(gbuffer.view.clipFromView) * glm::dmat4(gbuffer.view.viewFromWorld) *
+                  glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
     warp_.set("maxGrowth", settings_.maxGrowth);
     warp_.set("depthTolerance", settings_.depthTolerance);
     // z/w = a + b/w: what is kPointBias farther on the same ray has b / (1 + kPointBias).

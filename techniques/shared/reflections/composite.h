@@ -9,11 +9,19 @@
 
 namespace gfxrepro::reflections {
 
-/// rgb = LERP(diffuse, reflected, s) a sample; an output pixel is the mean of its
-/// `supersampling`² samples.
+/// How much of the reflected colour is mixed in.
+enum class Blend {
+    Lerp,  // s
+    Fresnel,  // more at grazing views: s + (1 − s) · (1 − cos θ)⁵ (Schlick), θ between normal and
+              // view ([xie2017] Sec. 5.4.3, which does not print its formula)
+};
+
+/// rgb = LERP(diffuse, reflected, share) a sample, the share as Blend says; an output pixel is the
+/// mean of its `supersampling`² samples.
 class Composite {
   public:
-    Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling);
+    Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling,
+              Blend blend = Blend::Lerp);
     /// `showsReflectionOnly`: the reflected colour alone, black where nothing reflects ([xie2017]
     /// Fig. 30).
     void render(const GBuffer& gbuffer, const ReflectionTarget& reflection,
@@ -29,6 +37,7 @@ class Composite {
     gl::Framebuffer framebuffer_;
     WholeImage wholeImage_;
     int supersampling_;
+    Blend blend_;
 };
 
 }  // namespace gfxrepro::reflections
