@@ -290,7 +290,7 @@ void addPlants(Builders& b, const Detail& detail, Random& random) {
         if (k == 1) addBroadLeaves(b.plants, 1.55F, 150, leafCells, random, placed(soil));
     }
     // A small one on the window sill.
-    const glm::vec3 sill(-1.4F, kWindowLow.y, -kHalfRoom.z + 0.03F);
+    const glm::vec3 sill(-1.2F, kWindowLow.y, -kHalfRoom.z + 0.03F);
     b.plain.setColor({0.52F, 0.24F, 0.14F});
     const Outline pot{{0, 0},           {0.045F, 0},     {0.045F, 0},     {0.06F, 0.10F},
                       {0.06F, 0.10F},   {0.068F, 0.10F}, {0.068F, 0.10F}, {0.068F, 0.125F},

@@ -83,9 +83,9 @@ struct HostReflectionDepthImage {
 /// Reads back; waits for the device.
 HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& image);
 
-/// d(s_n, R, E): how far the eye is from the half line that begins in M, the mirror image of R in
-/// the plane of candidate n, and passes through W_n (Sec. 5.4.1). An eye behind M is as far as M.
-/// The normal may have any length.
+/// d(s_n, R, E): how far the eye is from the ray from M, the mirror image of R in the plane of
+/// candidate n, through W_n (Sec. 5.4.1). The ray leaves the mirror in W_n: to an eye behind it,
+/// W_n is the nearest. The normal may have any length.
 float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
                        const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
 

@@ -139,6 +139,20 @@ TEST(LivingRoom, RoundReflectorsAreClosedAndFaceOutwards) {
     EXPECT_EQ(found, closed.size());
 }
 
+TEST(LivingRoom, NothingButTheWindowsLeavesTheRoom) {
+    for (const Mesh& mesh : theRoom().meshes) {
+        if (mesh.name == "outdoors" || mesh.name == "paint") continue;
+        SCOPED_TRACE(mesh.name);
+        const Box box = mesh.bounds();
+        EXPECT_GE(box.min.x, -3.6001F);
+        EXPECT_LE(box.max.x, 3.6001F);
+        EXPECT_GE(box.min.y, -1e-3F);
+        EXPECT_LE(box.max.y, 2.8501F);
+        EXPECT_GE(box.min.z, -2.9601F);  // a plant stands in the window
+        EXPECT_LE(box.max.z, 2.9001F);
+    }
+}
+
 TEST(LivingRoom, BallIsASphere) {
     const Scene& scene = theRoom();
     for (const Mesh& mesh : scene.meshes) {
