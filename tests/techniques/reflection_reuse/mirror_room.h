@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "techniques/reflection_reuse/reuse_renderer.h"
 #include "tests/techniques/reflections/traced_scenes.h"
@@ -13,9 +14,32 @@ namespace gfxrepro::reflection_reuse {
 using reflections::HostGBuffer;
 
 /// Of the objects of mirrorRoom().
-enum RoomObject { kMirrorWall = 4, kBlock = 6, kBall = 7 };
+enum RoomObject { kMirrorWall = 4, kPosts = 6, kBlock = 7, kBall = 8 };
 
-/// Four metres wide, with a mirror for the wall at −z; before it a block and a ball that mirrors.
+inline scene::Mesh sphere(const glm::vec3& centre, float radius) {
+    constexpr unsigned kAround = 48, kUp = 24;
+    scene::Mesh mesh;
+    for (unsigned j = 0; j <= kUp; ++j) {
+        for (unsigned i = 0; i <= kAround; ++i) {
+            const float azimuth =
+                2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / kAround;
+            const float polar = std::numbers::pi_v<float> * static_cast<float>(j) / kUp;
+            const glm::vec3 normal(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                                   std::sin(polar) * std::sin(azimuth));
+            mesh.positions.push_back(centre + radius * normal);
+            mesh.normals.push_back(normal);
+            if (j == kUp || i == kAround) continue;
+            const unsigned at = j * (kAround + 1) + i;
+            const unsigned below = at + kAround + 1;
+            mesh.triangles.emplace_back(at, at + 1, below);
+            mesh.triangles.emplace_back(at + 1, below + 1, below);
+        }
+    }
+    return mesh;
+}
+
+/// Four metres wide, with a mirror for the wall at −z; opposite a row of posts, between them a
+/// block and a ball that mirrors.
 inline scene::Scene mirrorRoom() {
     using reflections::matt;
     scene::Scene scene;
@@ -24,11 +48,14 @@ inline scene::Scene mirrorRoom() {
         scene, {{-2, -1.5F, -2}, {2, 1.5F, 2}},
         {matt({0.9F, 0.2F, 0.2F}), matt({0.2F, 0.8F, 0.3F}), matt({0.6F, 0.5F, 0.4F}),
          matt({0.8F, 0.8F, 0.8F}), reflections::mirror(), matt({0.3F, 0.4F, 0.9F})});
+    scene::MeshBuilder posts;
+    for (int i = 0; i < 8; ++i) {
+        posts.addBox({-1.75F + 0.5F * static_cast<float>(i), 0, 1.8F}, {0.12F, 1.5F, 0.1F});
+    }
+    reflections::addPart(scene, posts.take("posts", 0), matt({0.9F, 0.9F, 0.7F}));
     reflections::addPart(scene, reflections::block({{-0.2F, -0.5F, -0.9F}, {0.3F, 0.1F, -0.5F}}),
                          matt({0.9F, 0.8F, 0.1F}));
-    scene::MeshBuilder ball;
-    ball.addSphere({-0.9F, -0.4F, -0.9F}, 0.4F, 24);
-    reflections::addPart(scene, ball.take("ball"), reflections::mirror());
+    reflections::addPart(scene, sphere({-0.9F, -0.4F, -0.9F}, 0.4F), reflections::mirror());
     return scene;
 }
 
@@ -99,7 +126,7 @@ class ReuseTest : public reflections::ReflectionsTest {
     }
 
     static double share(const ReuseCounts& counts) {
-        return double{counts.recomputedSamples} / counts.reflectiveSamples;
+        return static_cast<double>(counts.recomputedSamples) / counts.reflectiveSamples;
     }
 
     /// Before the mirror, looking at it; moved by `x` metres along it.

@@ -30,7 +30,7 @@ TEST_F(MovedObjectsTest, WithoutRecomputingTheyLeaveGhosts) {
     world.move(kBlock, kStep);
     const Frame frame = world.render(front());
     EXPECT_GT(largestError(world, frame), 0.3F);
-    EXPECT_LT(psnrDb(world, frame), 25.0);
+    EXPECT_LT(psnrDb(world, frame), 40.0);
 }
 
 TEST_F(MovedObjectsTest, RecomputedTheyLeaveNone) {

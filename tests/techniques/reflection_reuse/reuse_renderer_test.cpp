@@ -70,13 +70,13 @@ TEST_F(ReuseTest, AMirrorKeepsItsImageWhenTheEyeMoves) {
     World direct(shaders, mirrorRoom(), {.isDirect = true});
     world.render(front());
     direct.render(front());
-    for (const float x : {0.03F, 0.1F}) {
+    for (const float x : {0.1F, 0.2F}) {
         const Frame frame = world.render(front(x));
         ASSERT_FALSE(frame.counts.isKeyFrame);
-        EXPECT_LT(share(frame.counts), 0.2);
+        EXPECT_LT(share(frame.counts), 0.1);
         const double reusedDb = psnrDb(world, frame);
         // Offsets are whole pixels: edges of the room's corners and of the block miss by up to one.
-        EXPECT_GT(reusedDb, 28.0) << x;
+        EXPECT_GT(reusedDb, 23.0) << x;
         EXPECT_GT(reusedDb, psnrDb(direct, direct.render(front(x))) + 3.0) << x;
     }
 }
@@ -157,7 +157,7 @@ TEST_F(ReuseTest, TheThresholdDecidesOnTheNextFrame) {
     EXPECT_EQ(keyFrames(0.0F, 0.05F), "k.k.k.k");
     EXPECT_EQ(keyFrames(0.0F, 0.0F), "k......");  // nothing to recompute
     EXPECT_EQ(keyFrames(1.0F, 0.2F), "k......");
-    const std::string middle = keyFrames(0.15F, 0.05F);
+    const std::string middle = keyFrames(0.055F, 0.1F);
     EXPECT_GT(std::count(middle.begin(), middle.end(), 'k'), 1) << middle;
     EXPECT_LT(std::count(middle.begin(), middle.end(), 'k'), 4) << middle;
 }
@@ -199,7 +199,7 @@ TEST_F(ReuseTest, SearchesBeginWhereTheLastOnesEnded) {
     World world(shaders, mirrorRoom(), {.keyFrameThreshold = 1.0F});
     world.render(front());
     const double first = world.render(front(0.1F)).counts.matchingSteps;
-    EXPECT_GT(first, 1.0);
+    EXPECT_GT(first, 0.5);
     EXPECT_LT(world.render(front(0.1F)).counts.matchingSteps, 0.5 * first);
     // Offsets of another key frame would send the search astray.
     world.renderer.forgetKeyFrame();
