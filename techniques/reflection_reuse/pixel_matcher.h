@@ -84,8 +84,10 @@ struct HostReflectionDepthImage {
 HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& image);
 
 /// d(s_n, R, E): how far the eye is from the ray from M, the mirror image of R in the plane of
-/// candidate n, through W_n (Sec. 5.4.1). The ray leaves the mirror in W_n: to an eye behind it,
-/// W_n is the nearest. The normal may have any length.
+/// candidate n, through W_n (Sec. 5.4.1). The normal may have any length.
+/// Departure [xie2017] Sec. 5.4.1: the ray begins in W_n, where it leaves the mirror; to an eye
+/// behind, W_n is the nearest. Begun in M, it also meets eyes between M and W_n, and candidates
+/// that turn their backs to R match.
 float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
                        const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
 

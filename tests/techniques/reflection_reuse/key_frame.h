@@ -113,8 +113,8 @@ inline scene::Camera beforeBall() {
     return reflections::camera({0.2F, 1.2F, 1.7F}, {0.0F, 0.9F, 0.0F});
 }
 
-/// A concave reflector, seen from above. The eye is nearer than its focus, where a reflection moves
-/// one way with the eye.
+/// A shallow concave reflector, seen from above; eye and room are nearer than its focus. Deeper
+/// ones gather all rays near the eye, and searches end far from the best sample (README).
 inline scene::Scene roomWithBowl() {
     scene::Scene scene = mattRoom();
     addPart(scene, dome({0.0F, 8.2F, 0.0F}, -8.0F, 0.19F), reflections::mirror());
