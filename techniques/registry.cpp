@@ -11,6 +11,8 @@
 namespace gfxrepro::technique {
 
 std::span<const TechniqueInfo> registeredTechniques() {
+    // One line each:
+    // clang-format off
     static const TechniqueInfo kTechniques[] = {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
@@ -19,6 +21,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         template_::kTemplate,
         voxelization::kVoxelization,
     };
+    // clang-format on
     return kTechniques;
 }
 

@@ -156,9 +156,9 @@ void addFurniture(Room& room, Random& random, std::uint64_t seed) {
     addBasket(builder);
     room.addDiffuse(builder, "basket", {0.55F, 0.38F, 0.2F});
     constexpr glm::vec3 kPot(2.08F, 0.0F, 0.16F);
-    constexpr glm::vec2 kPotOutline[] = {{0.0F, 0.0F},    {0.075F, 0.0F},  {0.085F, 0.008F},
-                                         {0.105F, 0.19F}, {0.108F, 0.2F},  {0.108F, 0.21F},
-                                         {0.098F, 0.21F}, {0.094F, 0.18F}, {0.0F, 0.175F}};
+    constexpr glm::vec2 kPotOutline[] = {
+        {0.0F, 0.0F},    {0.078F, 0.0F},  {0.078F, 0.0F},   {0.108F, 0.21F},  {0.108F, 0.21F},
+        {0.098F, 0.21F}, {0.098F, 0.21F}, {0.094F, 0.175F}, {0.094F, 0.175F}, {0.0F, 0.175F}};
     indoor::addLathe(builder, indoor::smoothed(kPotOutline, 14), 26, indoor::placed(kPot));
     room.addDiffuse(builder, "pot", {0.6F, 0.56F, 0.5F});
     indoor::addPalm(builder, 1.15F, 8, 2, random, indoor::placed(kPot + glm::vec3(0, 0.17F, 0)));

@@ -133,12 +133,12 @@ void addToilet(MeshBuilder& builder) {
     addLoft(builder, at, {52, kLast * kSteps, true, glm::vec2(1.0F)});
 
     constexpr float kDepth = 0.17F, kHalf = 0.19F, kLow = 0.40F, kHigh = 0.80F;
-    constexpr glm::vec2 kCistern[] = {{0.085F, kLow},           {0.012F, kLow},
-                                      {0.003F, kLow + 0.012F},  {0.000F, kLow + 0.04F},
-                                      {0.000F, kHigh - 0.045F}, {0.001F, kHigh - 0.036F},
-                                      {0.004F, kHigh - 0.034F}, {-0.004F, kHigh - 0.032F},
-                                      {-0.005F, kHigh - 0.01F}, {0.002F, kHigh},
-                                      {0.085F, kHigh + 0.004F}};
+    // Its lid stands out a little.
+    constexpr glm::vec2 kCistern[] = {{0.085F, kLow},           {0.014F, kLow},
+                                      {0.006F, kLow + 0.012F},  {0.004F, kLow + 0.04F},
+                                      {0.004F, kHigh - 0.060F}, {0.003F, kHigh - 0.045F},
+                                      {0.000F, kHigh - 0.035F}, {0.000F, kHigh - 0.014F},
+                                      {0.006F, kHigh},          {0.085F, kHigh + 0.004F}};
     const indoor::Outline outline = indoor::smoothed(kCistern, 24);
     const glm::vec3 centre(kRoom.x - 0.5F * kDepth - 0.005F, 0.0F, kToiletZ);
     addOvalBody(builder, centre, {0.5F * kDepth, kHalf}, 0.85F, outline, 40);

@@ -26,10 +26,10 @@ void addRod(MeshBuilder& builder, const glm::vec3& from, const glm::vec3& to, fl
 // A tall mixer behind the bowl, its spout reaching over it.
 void addBasinTap(MeshBuilder& builder) {
     const glm::vec3 foot(0.058F, kCounterM, kVanityZ);
-    constexpr glm::vec2 kBody[] = {{0.000F, 0.000F}, {0.029F, 0.000F}, {0.029F, 0.000F},
-                                   {0.029F, 0.008F}, {0.024F, 0.012F}, {0.0215F, 0.02F},
-                                   {0.0215F, 0.22F}, {0.024F, 0.235F}, {0.024F, 0.262F},
-                                   {0.020F, 0.272F}, {0.000F, 0.274F}};
+    constexpr glm::vec2 kBody[] = {{0.000F, 0.000F},  {0.029F, 0.000F}, {0.029F, 0.000F},
+                                   {0.029F, 0.010F},  {0.029F, 0.010F}, {0.0215F, 0.012F},
+                                   {0.0215F, 0.012F}, {0.0215F, 0.22F}, {0.024F, 0.235F},
+                                   {0.024F, 0.262F},  {0.020F, 0.272F}, {0.000F, 0.274F}};
     addTurned(builder, kBody, 30, 28, foot);
     const std::array spout{Station{foot + glm::vec3(0.005F, 0.205F, 0.0F), 0.0145F},
                            Station{foot + glm::vec3(0.05F, 0.232F, 0.0F), 0.0145F},

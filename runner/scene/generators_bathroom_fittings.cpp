@@ -143,7 +143,7 @@ void addWoodwork(MeshBuilder& builder) {
     for (int i = 0; i < 3; ++i) {
         const glm::vec2 out = ovalAt(static_cast<float>(i) / 3.0F + 0.1F, glm::vec2(1.0F), 0.0F);
         const std::array leg{
-            Station{kStool + glm::vec3(0.165F * out.x, 0.0F, 0.165F * out.y), 0.011F},
+            Station{kStool + glm::vec3(0.165F * out.x, 0.003F, 0.165F * out.y), 0.011F},
             Station{kStool + glm::vec3(0.11F * out.x, kStoolM - 0.03F, 0.11F * out.y), 0.016F}};
         builder.addTube(leg, 14, true);
     }

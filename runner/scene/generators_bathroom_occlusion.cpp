@@ -10,7 +10,7 @@ namespace gfxrepro::scene::bathroom_parts {
 
 namespace {
 
-constexpr int kDirections = 96;
+constexpr int kDirections = 64;
 constexpr float kRangeM = 0.9F;     // what is further away takes nothing
 constexpr float kStrength = 0.85F;  // what is shut in on all sides keeps the rest
 constexpr float kLiftM = 0.015F;  // rays start off the surface, whose own solid is only roughly it

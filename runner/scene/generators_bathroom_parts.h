@@ -90,7 +90,7 @@ void addPendant(MeshBuilder& builder);
 /// A window in the wall z = 0.
 constexpr glm::vec2 kWindowMin(0.55F, 1.2F), kWindowMax(1.75F, 2.2F);
 constexpr float kWainscotM = 0.9F;  // height of the polished panel behind the tub
-constexpr float kTilesM = 1.26F;     // height of the tiles on the other walls
+constexpr float kTilesM = 1.26F;    // height of the tiles on the other walls
 void addTiledWalls(MeshBuilder& builder);
 void addPaintedWalls(MeshBuilder& builder);
 void addFloor(MeshBuilder& builder);

@@ -54,9 +54,12 @@ void addLoft(MeshBuilder& builder, const std::function<glm::vec3(float u, float 
     std::vector<glm::uvec3> triangles;
     const auto addTriangle = [&](unsigned a, unsigned b, unsigned c) {
         const glm::vec3 &p = rows.positions[a], &q = rows.positions[b], &r = rows.positions[c];
-        if (p == q || q == r || r == p) return;  // at a pole
-        triangles.emplace_back(a, b, c);
         const glm::vec3 normal = glm::cross(q - p, r - p);
+        const float longest =
+            std::max({glm::length(q - p), glm::length(r - q), glm::length(p - r)});
+        // At poles, and where a row has run together to a line, nothing is left of a triangle.
+        if (glm::length(normal) <= 1e-4F * longest * longest) return;
+        triangles.emplace_back(a, b, c);
         for (const unsigned corner : {a, b, c}) rows.normals[corner] += normal;
     };
     for (int j = 0; j < grid.cellsV; ++j) {

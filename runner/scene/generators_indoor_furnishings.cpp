@@ -233,7 +233,7 @@ void addCurtain(MeshBuilder& builder, float widthM, float heightM, int folds, in
         return onFrame(frame, {widthM * u + 0.25F * amplitude * sdf::sine(2.0F * angleRad),
                                -heightM * down, amplitude * sdf::cosine(angleRad)});
     };
-    addSheet(builder, at, folds * cellsPerFold, cellsDown, {2.0F * widthM, heightM});
+    addSheet(builder, at, folds * cellsPerFold, cellsDown, {4.0F * widthM, 3.0F * heightM});
 }
 
 }  // namespace gfxrepro::scene::indoor

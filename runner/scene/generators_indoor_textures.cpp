@@ -22,19 +22,19 @@ float hashed(int x, int y, std::uint64_t seed) {
 float noise(float u, float v, glm::ivec2 periods, std::uint64_t seed) {
     const float x = u * static_cast<float>(periods.x);
     const float y = v * static_cast<float>(periods.y);
-    const float fx = std::floor(x);
-    const float fy = std::floor(y);
-    const auto wrap = [](float cell, int period) {
-        const int i = static_cast<int>(cell) % period;
-        return i < 0 ? i + period : i;
+    const auto floorOf = [](float value) {
+        const int whole = static_cast<int>(value);
+        return static_cast<float>(whole) > value ? whole - 1 : whole;
     };
-    const auto value = [&](float dx, float dy) {
-        return hashed(wrap(fx + dx, periods.x), wrap(fy + dy, periods.y), seed);
-    };
-    glm::vec2 f(x - fx, y - fy);
+    const glm::ivec2 cell(floorOf(x), floorOf(y));
+    glm::vec2 f(x - static_cast<float>(cell.x), y - static_cast<float>(cell.y));
+    const auto wrap = [](int i, int period) { return (i % period + period) % period; };
+    const glm::ivec2 low(wrap(cell.x, periods.x), wrap(cell.y, periods.y));
+    const glm::ivec2 high(low.x + 1 == periods.x ? 0 : low.x + 1,
+                          low.y + 1 == periods.y ? 0 : low.y + 1);
     f = f * f * (3.0F - 2.0F * f);
-    return glm::mix(glm::mix(value(0, 0), value(1, 0), f.x),
-                    glm::mix(value(0, 1), value(1, 1), f.x), f.y);
+    return glm::mix(glm::mix(hashed(low.x, low.y, seed), hashed(high.x, low.y, seed), f.x),
+                    glm::mix(hashed(low.x, high.y, seed), hashed(high.x, high.y, seed), f.x), f.y);
 }
 
 /// Four octaves, in [0, 1].
@@ -123,7 +123,7 @@ image::Image8 weaveTexture(const glm::vec3& warpSrgb, const glm::vec3& weftSrgb,
         const bool isWarp = (cell.x + cell.y) % 2 == 0;
         const float across = isWarp ? f.x : f.y;
         const float along = isWarp ? f.y : f.x;
-        const float round = (1.0F - 0.45F * across * across) * (1.0F - 0.20F * along * along);
+        const float round = (1.0F - 0.24F * across * across) * (1.0F - 0.10F * along * along);
         const float tone =
             0.94F + 0.12F * hashed(cell.x, cell.y, seed) * turbulence(u, v, {8, 8}, seed + 3);
         return (isWarp ? warpSrgb : weftSrgb) * (round * tone);

@@ -78,6 +78,30 @@ void addAmbientOcclusion(Mesh& mesh, bool isShell) {
     }
 }
 
+/// A distance to a wall, from −beyond on, brought to what is before the wall.
+float bentBack(float distanceM, float bendM, float beyondM) {
+    if (distanceM >= bendM) return distanceM;
+    const float share = std::max((distanceM + beyondM) / (bendM + beyondM), 0.0F);
+    return glm::mix(0.1F * bendM, bendM, share);
+}
+
+/// Leaves that would grow through a wall or a window pane are bent along it.
+void keepInRoom(Mesh& leaves) {
+    constexpr float kPane = kHalfRoom.z + 0.06F;
+    for (glm::vec3& p : leaves.positions) {
+        if (std::abs(p.x) < kWindowHigh.x) {  // the plant on the sill
+            p.z = bentBack(p.z + kPane, 0.12F, 0.18F) - kPane;
+            continue;
+        }
+        for (const int axis : {0, 2}) {
+            const float kept =
+                kHalfRoom[axis] - bentBack(kHalfRoom[axis] - std::abs(p[axis]), 0.3F, 0.4F);
+            p[axis] = p[axis] < 0.0F ? -kept : kept;
+        }
+    }
+    leaves.normals = vertexNormals(leaves);
+}
+
 /// All but the pile.
 void build(Builders& builders, const Detail& detail, std::uint64_t seed) {
     addShell(builders);
@@ -186,6 +210,7 @@ void addDiffuse(Scene& scene, Builders& builders) {
          {&builders.chair, {"chair_oak", kOne, kOak}}}};
     for (const auto& [builder, finish] : finishes) {
         Mesh mesh = builder->take(finish.name, addMaterial(scene, finish));
+        if (builder == &builders.plants) keepInRoom(mesh);
         const bool isShell = builder == &builders.paint || builder == &builders.wallpaper;
         const bool isDark = builder != &builders.outdoors && builder != &builders.glow &&
                             builder != &builders.pile && builder != &builders.rug;
@@ -244,8 +269,8 @@ float floorLightAt(const glm::vec2& xz) {
 
 void addRug(Builders& b, const image::Image8& pattern, int blades, Random& random) {
     constexpr float kCloth = 0.012F;
-    constexpr int kCellsX = 28;
-    constexpr int kCellsZ = 20;
+    constexpr int kCellsX = 20;
+    constexpr int kCellsZ = 14;
     const auto at = [](float u, float v) {
         return kRug +
                glm::vec3(kHalfRug.x * (2.0F * u - 1.0F), kCloth, kHalfRug.y * (1.0F - 2.0F * v));
@@ -313,7 +338,7 @@ Scene livingRoom(config::Params& params, std::uint64_t seed) {
     const auto wanted = static_cast<std::size_t>(diffuse);
     Builders builders;
     build(builders, fittingDetail(wanted, seed), seed);
-    constexpr std::size_t kClothTriangles = 2 * 28 * 20;
+    constexpr std::size_t kClothTriangles = 2 * 20 * 14;
     GFXREPRO_ASSERT(builders.triangleCount() + kClothTriangles <= wanted);
     Random random(seed, 2);
     addRug(builders, scene.textures[kRugPattern],

@@ -41,7 +41,7 @@ void addLeg(MeshBuilder& builder, const glm::vec3& place, float heightM, float r
                           {0.7F * r, 0.82F * h},
                           {1.1F * r, 0.88F * h},
                           {1.1F * r, h}};
-    addTurned(builder, outline, std::max(360, detail.cells(560)), placed(place));
+    addTurned(builder, outline, std::max(280, detail.cells(560)), placed(place));
 }
 
 void addSofa(Builders& b, const Detail& detail) {
@@ -202,7 +202,7 @@ void addTables(Builders& b, const Detail& detail) {
                        {r, s.y - 0.001F},
                        {r, s.y - 0.001F},
                        {0, s.y - 0.001F}};
-    addTurned(b.walnut, side, std::max(700, detail.cells(1800)), placed({s.x, 0, s.z}));
+    addTurned(b.walnut, side, std::max(450, detail.cells(1800)), placed({s.x, 0, s.z}));
 
     // Sideboard: body, plinth, two panelled doors between the lacquered panes.
     const glm::vec3 t = kSideboard;
@@ -237,7 +237,7 @@ void addTables(Builders& b, const Detail& detail) {
                            {0.22F, p},
                            {0, p}};
     b.plain.setColor({0.66F, 0.63F, 0.57F});
-    addTurned(b.plain, pedestal, std::max(700, detail.cells(2000)),
+    addTurned(b.plain, pedestal, std::max(450, detail.cells(2000)),
               placed({kPedestal.x, 0, kPedestal.z}));
 }
 
@@ -271,9 +271,9 @@ void addBookcase(Builders& b, const Detail& detail, Random& random) {
                 {0.16F, 0.28F, 0.34F}, {0.55F, 0.34F, 0.18F}, {0.66F, 0.60F, 0.48F}};
             b.plain.setColor(colors[random.index(3)]);
             const Outline jar{{0, 0},         {0.05F, 0},      {0.05F, 0},      {0.085F, 0.08F},
-                              {0.07F, 0.15F}, {0.035F, 0.19F}, {0.045F, 0.21F}, {0.04F, 0.21F},
-                              {0.03F, 0.19F}, {0, 0.17F}};
-            addTurned(b.plain, jar, std::max(500, detail.cells(1200)),
+                              {0.07F, 0.15F}, {0.035F, 0.19F}, {0.045F, 0.21F}, {0.045F, 0.21F},
+                              {0.04F, 0.21F}, {0.04F, 0.21F},  {0.03F, 0.19F},  {0, 0.17F}};
+            addTurned(b.plain, jar, std::max(300, detail.cells(1200)),
                       placed({x0 + 0.17F, y + 0.025F, z + 0.17F}));
         }
     }
@@ -290,11 +290,12 @@ void addPlants(Builders& b, const Detail& detail, Random& random) {
         if (k == 1) addBroadLeaves(b.plants, 1.55F, 150, leafCells, random, placed(soil));
     }
     // A small one on the window sill.
-    const glm::vec3 sill(-1.4F, kWindowLow.y, -kHalfRoom.z + 0.03F);
+    const glm::vec3 sill(-1.2F, kWindowLow.y, -kHalfRoom.z + 0.03F);
     b.plain.setColor({0.52F, 0.24F, 0.14F});
-    const Outline pot{{0, 0},          {0.045F, 0},     {0.045F, 0},
-                      {0.06F, 0.10F},  {0.068F, 0.10F}, {0.068F, 0.125F},
-                      {0.06F, 0.125F}, {0.055F, 0.10F}, {0, 0.10F}};
+    const Outline pot{{0, 0},           {0.045F, 0},     {0.045F, 0},     {0.06F, 0.10F},
+                      {0.06F, 0.10F},   {0.068F, 0.10F}, {0.068F, 0.10F}, {0.068F, 0.125F},
+                      {0.068F, 0.125F}, {0.06F, 0.125F}, {0.06F, 0.125F}, {0.055F, 0.10F},
+                      {0, 0.10F}};
     addTurned(b.plain, pot, std::max(400, detail.cells(600)), placed(sill));
     addBroadLeaves(b.plants, 0.30F, 40, leafCells, random, placed(sill + glm::vec3(0, 0.10F, 0)));
 }
@@ -322,7 +323,7 @@ void addLights(Builders& b, const Detail& detail) {
     const Outline shade{{0.17F, 0},      {0.11F, 0.22F}, {0.11F, 0.22F}, {0.107F, 0.22F},
                         {0.107F, 0.22F}, {0.167F, 0},    {0.167F, 0},    {0.17F, 0}};
     b.glow.setColor({0.85F, 0.74F, 0.55F});
-    addTurned(b.glow, shade, std::max(600, detail.cells(1400)),
+    addTurned(b.glow, shade, std::max(360, detail.cells(1400)),
               placed({kSideboard.x, kSideboard.y + 0.36F, kSideboard.z + 0.98F}));
     b.glow.setColor({1, 1, 1});
 }

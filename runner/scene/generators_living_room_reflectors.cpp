@@ -237,7 +237,7 @@ void addKnot(Collection& all, int triangles) {
         const glm::vec3 t = glm::normalize(centreAt(u + 0.002F) - centreAt(u - 0.002F));
         const glm::vec3 out = c - glm::vec3(0, 0.34F, 0);
         const glm::vec3 x = glm::normalize(out - t * glm::dot(out, t));
-        const glm::vec3 y = glm::cross(t, x);
+        const glm::vec3 y = glm::cross(x, t);
         const float a = v == 1.0F ? 0.0F : 2.0F * kPi * v;
         return kPedestal + c + 0.062F * (x * sdf::cosine(a) + y * sdf::sine(a));
     };
@@ -264,11 +264,13 @@ std::vector<Reflector> reflectors() {
     }
     all.turn("ball", 0.9F, kChrome, ball, 8'000, placed(kBall));
     const float h = kRoomHeightM;
-    const Outline column{
-        {0.27F, 0},          {0.27F, 0.10F},     {0.27F, 0.10F},     {0.25F, 0.10F},
-        {0.25F, 0.10F},      {0.262F, 0.14F},    {0.22F, 0.18F},     {0.20F, 0.22F},
-        {0.195F, h - 0.30F}, {0.21F, h - 0.26F}, {0.19F, h - 0.24F}, {0.25F, h - 0.12F},
-        {0.25F, h - 0.12F},  {0.27F, h - 0.12F}, {0.27F, h - 0.12F}, {0.27F, h}};
+    const Outline column{{0.27F, 0},          {0.27F, 0.10F},      {0.27F, 0.10F},
+                         {0.25F, 0.10F},      {0.25F, 0.10F},      {0.262F, 0.125F},
+                         {0.25F, 0.15F},      {0.25F, 0.15F},      {0.22F, 0.17F},
+                         {0.20F, 0.22F},      {0.20F, 0.22F},      {0.195F, h - 0.30F},
+                         {0.195F, h - 0.30F}, {0.215F, h - 0.27F}, {0.195F, h - 0.24F},
+                         {0.195F, h - 0.24F}, {0.25F, h - 0.12F},  {0.25F, h - 0.12F},
+                         {0.27F, h - 0.12F},  {0.27F, h - 0.12F},  {0.27F, h}};
     all.turn("column_west", 0.4F, glm::vec3(1.0F), column, 4'000, placed(kColumns[0]),
              Texture::Marble, 2.0F);
     all.turn("column_east", 0.4F, glm::vec3(1.0F), column, 4'000, placed(kColumns[1]),

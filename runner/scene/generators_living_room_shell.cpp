@@ -73,7 +73,7 @@ void addWindow(Builders& b, float sign) {
     addPanel(b.paint, {x0 - 0.07F, y0, z - kDeep}, {x0, y1, z + 0.02F});
     addPanel(b.paint, {x1, y0, z - kDeep}, {x1 + 0.07F, y1, z + 0.02F});
     addPanel(b.paint, {x0 - 0.07F, y1, z - kDeep}, {x1 + 0.07F, y1 + 0.08F, z + 0.02F});
-    addPanel(b.paint, {x0 - 0.12F, y0 - 0.04F, z - kDeep}, {x1 + 0.12F, y0, z + 0.12F});
+    addPanel(b.paint, {x0 - 0.07F, y0 - 0.04F, z - kDeep}, {x1 + 0.07F, y0, z + 0.065F});
     const float back = z - 0.11F;
     const float front = z - 0.06F;
     const float middle = 0.5F * (x0 + x1);
@@ -164,7 +164,7 @@ void addShell(Builders& b) {
 }
 
 void addCurtains(Builders& b, const Detail& detail, Random& random) {
-    const float z = -kHalfRoom.z + 0.13F;
+    const float z = -kHalfRoom.z + 0.16F;
     constexpr float kRodM = 2.5F;
     constexpr float kWidthM = 0.5F;
     for (const float sign : {-1.0F, 1.0F}) {

@@ -83,9 +83,11 @@ struct HostReflectionDepthImage {
 /// Reads back; waits for the device.
 HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& image);
 
-/// d(s_n, R, E): how far the eye is from the half line that begins in M, the mirror image of R in
-/// the plane of candidate n, and passes through W_n (Sec. 5.4.1). An eye behind M is as far as M.
-/// The normal may have any length.
+/// d(s_n, R, E): how far the eye is from the ray from M, the mirror image of R in the plane of
+/// candidate n, through W_n (Sec. 5.4.1). The normal may have any length.
+/// Departure [xie2017] Sec. 5.4.1: the ray begins in W_n, where it leaves the mirror; to an eye
+/// behind, W_n is the nearest. Begun in M, it also meets eyes between M and W_n, and candidates
+/// that turn their backs to R match.
 float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
                        const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
 

@@ -26,17 +26,17 @@ glm::vec3 mirrored(const glm::vec3& v, const glm::vec3& normal) {
     return v - (2.0F * glm::dot(v, normal) / glm::dot(normal, normal)) * normal;
 }
 
-/// From the eye to the nearest point of the half line from M through W_n.
+/// From the eye to the nearest point of the ray from M that leaves the mirror in W_n.
 glm::vec3 missAt(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& reflected,
                  const glm::vec3& eyeWorld) {
     const glm::vec3 image = position + mirrored(reflected - position, normal);
     const glm::vec3 direction = position - image;
     const float lengthSquared = squared(direction);
-    // R in the candidate itself: no line, only the point M.
+    // R in the candidate itself: no ray, only the point.
     const float t = lengthSquared > 0.0F
-                        ? std::max(glm::dot(eyeWorld - image, direction) / lengthSquared, 0.0F)
+                        ? std::max(glm::dot(eyeWorld - position, direction) / lengthSquared, 0.0F)
                         : 0.0F;
-    return image + t * direction - eyeWorld;
+    return position + t * direction - eyeWorld;
 }
 
 /// One search, for one sample of the key frame.

@@ -13,4 +13,4 @@ struct ClusterCamera {
 const uint kPlanarCluster = 1u;
 const uint kNoRoom = 2u;      // between near and far: no image, no march
 const uint kEyeBehind = 4u;   // the eye is not before the fitting plane
-const uint kRaysTurned = 8u;  // rays beyond the greatest slope: they leave the image at its side
+const uint kRaysTurned = 16u;  // rays beyond the greatest slope: they leave the image at its side

@@ -56,15 +56,16 @@ vec3 reflectedPosition(ivec2 pixel) {
     return position + (r / sqrt(squared(view))) * mirrored(view, normalAt(pixel));
 }
 
-// Sec. 5.4.1: from the eye to the nearest point of the half line that begins in M, the mirror image
-// of R in the candidate's plane, and passes through W_n. Its length is d(s_n, R, E_cur).
+// Sec. 5.4.1: from the eye to the nearest point of the ray from M, the mirror image of R in the
+// candidate's plane, through W_n. Its length is d(s_n, R, E_cur). The ray leaves the mirror in W_n:
+// else candidates that turn their backs to R match, an eye between M and W_n.
 vec3 missAt(vec3 position, vec3 normal, vec3 reflected) {
     vec3 image = position + mirrored(reflected - position, normal);
     vec3 direction = position - image;
     float lengthSquared = squared(direction);
-    // R in the candidate itself: no line, only the point M.
-    float t = lengthSquared > 0.0 ? max(dot(eyeWorld - image, direction) / lengthSquared, 0.0) : 0.0;
-    return image + t * direction - eyeWorld;
+    // R in the candidate itself: no ray, only the point.
+    float t = lengthSquared > 0.0 ? max(dot(eyeWorld - position, direction) / lengthSquared, 0.0) : 0.0;
+    return position + t * direction - eyeWorld;
 }
 
 Candidate candidateAt(ivec2 pixel, vec3 reflected) {

@@ -166,6 +166,27 @@ TEST_F(ClusteredReflectionsTest, ClustersAreNearerToTheTruthThanAnEnvironmentMap
     }
 }
 
+TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
+    // A green column in a room without green; from its silhouette rays leave along its surface.
+    scene::Scene scene = roomWithColumn({.baseColor = {0, 1, 0, 1}, .metallic = 1, .roughness = 0});
+    for (const char* options : {"{pictures: true}", "{pictures: true, depth_images: atlas}"}) {
+        SCOPED_TRACE(options);
+        const image::ImageF reflection = recorded(options, &scene).images.at("reflection");
+        int reflecting = 0, green = 0;
+        for (int y = 0; y < reflection.height(); ++y) {
+            for (int x = 0; x < reflection.width(); ++x) {
+                const glm::vec3 color(reflection.at(x, y, 0), reflection.at(x, y, 1),
+                                      reflection.at(x, y, 2));
+                reflecting += color != glm::vec3(0.0F) ? 1 : 0;
+                green += color.y > 0.05F && color.y > 2.0F * std::max(color.x, color.z) ? 1 : 0;
+            }
+        }
+        EXPECT_GT(reflecting, 50);
+        // The environment map has the column where it is near, for some of the silhouette.
+        EXPECT_LT(green, reflecting / 20);
+    }
+}
+
 TEST_F(ClusteredReflectionsTest, MoreBinsGiveMoreClustersAndSmallerOcclusionErrors) {
     const scene::Scene scene = roomWithMirrors();
     const Metrics coarse = run("{theta_bins: 1, phi_bins: 1}", scene);

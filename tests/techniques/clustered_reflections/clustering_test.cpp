@@ -94,6 +94,8 @@ TEST_F(ClusteringTest, RandomNormalsAreClusteredAsOnTheHost) {
         expectAsOnHost(scene, gbuffer, {});
         expectAsOnHost(scene, gbuffer, {.exponent = 0.0F});
         expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 1});
+        // Many of the normals lie on these borders exactly.
+        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 8, .maxPhiBins = 4, .exponent = 0.0F});
         expectAsOnHost(scene, gbuffer, {.maxThetaBins = 64, .maxPhiBins = 16, .exponent = 0.01F});
         expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 30, .exponent = 1.0F});
     }
@@ -208,6 +210,9 @@ TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
     EXPECT_EQ(tables.binOf(octahedral({1, 0.1F, -0.1F}), grid), glm::ivec2(7, 1));
     EXPECT_EQ(tables.binOf(octahedral({0, 1, 0}), grid), glm::ivec2(0, 0));
     EXPECT_EQ(tables.binOf(octahedral({0, -1, 0}), grid), glm::ivec2(0, 3));
+    // On borders: the bin that begins there.
+    EXPECT_EQ(tables.binOf(octahedral({1, 0, 1}), grid), glm::ivec2(1, 2));
+    EXPECT_EQ(tables.binOf(octahedral({1, 1, 0}), grid), glm::ivec2(0, 1));
 
     Random random(4);
     for (int i = 0; i < 20000; ++i) {

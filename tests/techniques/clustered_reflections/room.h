@@ -70,9 +70,7 @@ inline scene::Scene roomWithMirror() {
     return scene;
 }
 
-/// Beside it, a column that mirrors and moves along.
-inline scene::Scene roomWithMirrors() {
-    scene::Scene scene = roomWithMirror();
+inline void addColumn(scene::Scene& scene, const scene::Material& material) {
     scene::MeshBuilder builder;
     std::vector<scene::MeshBuilder::Station> stations;
     for (int i = 0; i <= 8; ++i) {
@@ -80,8 +78,23 @@ inline scene::Scene roomWithMirrors() {
         stations.push_back({{0, 0.05F + 0.8F * t, 0.1F}, 0.15F + 0.1F * std::sin(3.0F * t)});
     }
     builder.addTube(stations, 32, true);
+    addPart(scene, builder, material);
+}
+
+/// Beside it, a column that mirrors and moves along.
+inline scene::Scene roomWithMirrors() {
+    scene::Scene scene = roomWithMirror();
     scene.motions = {{.instance = static_cast<int>(scene.instances.size()), .swing = {0.4F, 0, 0}}};
-    addPart(scene, builder, kMirror);
+    addColumn(scene, kMirror);
+    return scene;
+}
+
+/// The column alone mirrors.
+inline scene::Scene roomWithColumn(const scene::Material& material) {
+    scene::Scene scene;
+    addRoom(scene);
+    addFloor(scene, {.name = "floor"});
+    addColumn(scene, material);
     return scene;
 }
 

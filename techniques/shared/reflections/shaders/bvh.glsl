@@ -21,15 +21,15 @@ float boxEntry(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 inverse, float tMin, 
     vec3 near = min(toMin, toMax), far = max(toMin, toMax);
     float entry = max(max(near.x, near.y), max(near.z, tMin));
     float exit = min(min(far.x, far.y), min(far.z, tMax));
-    // 1 + 2·(3 roundings of 2^-24), rounded up: without it a ray can slip past a flat box or between
-    // neighbouring ones (Ize 2013, "Robust BVH Ray Traversal").
+    // Above 1 + 2·(3 roundings of 2^-24): the entry and the exit of a box may be rounded past each
+    // other, and a ray lost that meets a triangle in it (Ize 2013, "Robust BVH Ray Traversal").
     const float kRounding = 1.0000005;
     return entry <= exit * kRounding ? entry : uintBitsToFloat(0x7F800000u);
 }
 
 // The triangle's sides as Plücker coordinates against the ray (as Embree's robust mode): an edge
 // that two triangles share gives both the same number up to the sign, so that no ray slips between
-// them. A ray through the edge meets both, the one whose t is less or that was visited first is
+// them. A ray through the edge may meet both; the one whose t is less, or that was visited first, is
 // reported. Triangles are met from both sides; those without area never: t is then not a number.
 void meetTriangle(BvhTriangle triangle, vec3 origin, vec3 direction, float tMin,
                   inout RayHit hit) {
@@ -39,7 +39,8 @@ void meetTriangle(BvhTriangle triangle, vec3 origin, vec3 direction, float tMin,
     float ofC = dot(cross(ab, a + b), direction);
     float ofA = dot(cross(bc, b + c), direction);
     float sum = ofA + ofB + ofC;
-    // A rounding's worth of the sum: rays on an edge count.
+    // A rounding's worth of the sum, so that a ray on an edge counts: compilers may fuse the terms of
+    // the three sides differently, and the number is then not the neighbour's to the last bit.
     float slack = 1.1920929e-7 * abs(sum);
     if (min(min(ofA, ofB), ofC) < -slack && max(max(ofA, ofB), ofC) > slack) return;
     vec3 normal = cross(ab, ca);

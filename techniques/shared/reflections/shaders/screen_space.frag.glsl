@@ -47,15 +47,17 @@ bool march(vec3 originWorld, vec3 direction, float endM, out ScreenHit hit) {
     float k1 = 1.0 / origin.z;
     float k2 = 1.0 / end.z - k1;  // 1 / d = k1 + k2·u, u in [0, 1] along the ray's image
     float steps = ceil(max(abs(deltaPx.x), abs(deltaPx.y)));
+    float perStep = 1.0 / max(steps, 1.0);
     for (float i = 1.0; i <= steps; ++i) {
-        float u = i / steps;
+        float u = i * perStep;
         ivec2 pixel = ivec2(clamp(beginPx + u * deltaPx, vec2(0.0), size - 1.0));
         float depth = texelFetch(gbufferDepth, pixel, 0).r;
         if (depth == 0.0) continue;
-        // What the ray passes while it is over the texel: half a step before and behind.
-        float before = (i - 0.5) / steps, behind = min((i + 0.5) / steps, 1.0);
-        float a = 1.0 / (k1 + k2 * before), b = 1.0 / (k1 + k2 * behind);
-        if (max(a, b) < depth || min(a, b) > depth + thicknessM) continue;
+        // What the ray passes while it is over the texel, half a step before and behind: it is a
+        // hit where max(1 / a, 1 / b) >= depth and min(1 / a, 1 / b) <= depth + thicknessM.
+        float before = (i - 0.5) * perStep, behind = min((i + 0.5) * perStep, 1.0);
+        float a = k1 + k2 * before, b = k1 + k2 * behind;
+        if (min(a, b) * depth > 1.0 || max(a, b) * (depth + thicknessM) < 1.0) continue;
         // A side that the eye does not see is not known; and the ray does not meet the surface that
         // it leaves, however the texels round its depth.
         if (dot(gbufferUnitNormal(pixel), direction) >= 0.0) continue;

@@ -142,7 +142,8 @@ TEST(Generators, BadParametersAreLocated) {
                   findGenerator("sdf_modle", {"s.yaml", 4, 9});
               }),
               "s.yaml:4:9: unknown generator 'sdf_modle'; did you mean 'sdf_model'? (there are: "
-              "bird_nest, city, four_objects, grass, sdf_model, tree)");
+              "bathroom, bird_nest, city, four_objects, grass, living_room, sdf_model, "
+              "tree)");
 }
 
 }  // namespace

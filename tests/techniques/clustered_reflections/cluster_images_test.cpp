@@ -1,0 +1,215 @@
+// Culling, places in the atlas and depth images against the host.
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "runner/core/random.h"
+#include "techniques/clustered_reflections/cluster_atlas.h"
+#include "tests/techniques/clustered_reflections/tracer_fixture.h"
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+using reflections::GpuObjects;
+using reflections::ReflectiveScene;
+
+class ClusterImagesTest : public TracerTest {
+  protected:
+    /// A camera that looks along `towards`, its frustum off its centre.
+    static ClusterCamera cameraLooking(const glm::vec3& eye, const glm::vec3& towards,
+                                       glm::ivec2 sizePx) {
+        ClusterCamera camera;
+        const glm::mat4 view = glm::lookAt(eye, eye + towards, glm::vec3(0.0F, 1.0F, 0.01F));
+        camera.clipFromWorld = glm::frustum(-0.1F, 0.2F, -0.15F, 0.1F, 0.25F, 6.0F) * view;
+        camera.eyeWorld = glm::vec4(eye, 0.25F);
+        camera.planeNormal = glm::vec4(glm::normalize(towards), 6.0F);
+        camera.sizePx = sizePx;
+        camera.reflector = 9999;  // none of the scene's
+        return camera;
+    }
+    static gl::Buffer cameraBuffer(std::vector<ClusterCamera> cameras) {
+        cameras.resize(kMaxClusters);
+        return gl::Buffer::of(cameras);
+    }
+    static gl::Buffer countBuffer(std::size_t count) {
+        return gl::Buffer::of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(count), 0, 0});
+    }
+    static std::vector<ClusterCamera> randomCameras(Random& random, int count, std::uint32_t most) {
+        std::vector<ClusterCamera> cameras;
+        for (int i = 0; i < count; ++i) {
+            const auto number = [&] { return random.uniform(-1.0F, 1.0F); };
+            const glm::vec3 eye(number(), number(), number());
+            const glm::ivec2 sizePx(1 + static_cast<int>(random.index(most)),
+                                    1 + static_cast<int>(random.index(most)));
+            cameras.push_back(cameraLooking(eye, {number(), number(), number()}, sizePx));
+        }
+        return cameras;
+    }
+    static ReflectiveScene furnishedRoom() {
+        scene::Scene scene = rooms::room();
+        rooms::addFurniture(scene);
+        return ReflectiveScene(scene);
+    }
+};
+
+TEST_F(ClusterImagesTest, NoObjectThatReachesIntoTheFrustumIsCulled) {
+    const ReflectiveScene scene = furnishedRoom();
+    const GpuObjects objects(scene);
+    const OneByOnePainter painter(shaders(), scene);
+    Random random(1);
+    int culled = 0;
+    for (const ClusterCamera& camera : randomCameras(random, 60, 100)) {
+        const std::vector<std::uint32_t> seen = painter.objectsSeen(objects, camera);
+        culled += static_cast<int>(scene.objects().size() - seen.size());
+        for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
+            const reflections::Object& object = scene.objects()[i];
+            bool isInside = false;  // points of its triangles, not its box
+            for (int point = 0; point < 400 && !isInside; ++point) {
+                const std::uint32_t triangle =
+                    object.firstTriangle + random.index(object.triangleCount);
+                const glm::uvec3 corners = scene.geometry().triangles[triangle];
+                glm::vec2 b(random.uniform(), random.uniform());
+                if (b.x + b.y > 1.0F) b = 1.0F - b;
+                const auto& positions = scene.geometry().positions;
+                const glm::vec3 p = positions[corners.x] * (1.0F - b.x - b.y) +
+                                    positions[corners.y] * b.x + positions[corners.z] * b.y;
+                const glm::vec4 clip = camera.clipFromWorld * glm::vec4(p, 1.0F);
+                isInside = clip.w > 0.0F && std::abs(clip.x) < clip.w &&
+                           std::abs(clip.y) < clip.w && std::abs(clip.z) < clip.w;
+            }
+            if (isInside) {
+                EXPECT_NE(std::find(seen.begin(), seen.end(), i), seen.end()) << i;
+            }
+        }
+    }
+    EXPECT_GT(culled, 100);
+}
+
+TEST_F(ClusterImagesTest, TheOwnReflectorIsSeenByConcaveClustersOnly) {
+    scene::Scene room = rooms::room();
+    rooms::add(room, rooms::bowl({0.0F, -0.4F, 0.0F}, 0.5F), glm::vec3(1.0F),
+               rooms::Surface::Mirror);
+    const ReflectiveScene scene(room);
+    const GpuObjects objects(scene);
+    const OneByOnePainter painter(shaders(), scene);
+    ClusterCamera camera = cameraLooking({0.0F, -0.5F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});
+    const auto sees = [&] {
+        const std::vector<std::uint32_t> seen = painter.objectsSeen(objects, camera);
+        return std::find(seen.begin(), seen.end(), 6U) != seen.end();
+    };
+    EXPECT_TRUE(sees());
+    camera.reflector = 1;
+    EXPECT_FALSE(sees());
+    camera.flags = kConcaveCluster;
+    EXPECT_TRUE(sees());
+}
+
+TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
+    const ReflectiveScene scene = furnishedRoom();
+    const GpuObjects objects(scene);
+    CameraSettings settings;
+    AtlasPainter painter(shaders(), scene, objects, settings);
+    ClusterImages images(shaders(), glm::ivec2(512), false);
+    Random random(2);
+    const struct {
+        int count;
+        std::uint32_t mostPx;
+        bool fits;
+    } cases[] = {{1, 500, true}, {40, 60, true}, {300, 90, false}, {3000, 40, false}, {0, 1, true}};
+    for (const auto& one : cases) {
+        std::vector<ClusterCamera> cameras = randomCameras(random, one.count, one.mostPx);
+        if (one.count > 10) cameras[3].flags = kNoRoom;
+        painter.draw(objects, cameraBuffer(cameras), countBuffer(cameras.size()), images);
+        const AtlasPainter::State state = painter.state();
+        EXPECT_EQ(state.scale == 1.0F, one.fits) << one.count;
+        const auto places = painter.places().read<glm::ivec4>(cameras.size());
+        std::vector<std::uint8_t> taken(512 * 512);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const glm::ivec2 wanted = imageSizePx(cameras[i], settings);
+            const glm::ivec4& place = places[i];
+            ASSERT_TRUE(place.x >= 0 && place.x + place.z <= 512) << i;
+            ASSERT_TRUE(place.y >= 0 && place.y + place.w <= 512) << i;
+            if (one.fits || wanted.x == 0) {
+                EXPECT_EQ(glm::ivec2(place.z, place.w), wanted) << i;
+            } else {
+                EXPECT_GE(place.z, 1);
+                EXPECT_GE(place.w, 1);
+            }
+            for (int y = place.y; y < place.y + place.w; ++y) {
+                for (int x = place.x; x < place.x + place.z; ++x) {
+                    std::uint8_t& texel = taken[static_cast<std::size_t>(y * 512 + x)];
+                    ASSERT_EQ(texel, 0) << i;
+                    texel = 1;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
+    const ReflectiveScene scene = furnishedRoom();
+    const GpuObjects objects(scene);
+    Random random(3);
+    const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 80);
+    const gl::Buffer buffer = cameraBuffer(cameras);
+    ClusterImages atlas(shaders(), glm::ivec2(512), true), alone(shaders(), glm::ivec2(512), true);
+    AtlasPainter painter(shaders(), scene, objects, {});
+    painter.draw(objects, buffer, countBuffer(cameras.size()), atlas);
+    ASSERT_EQ(painter.state().scale, 1.0F);
+    EXPECT_EQ(painter.state().leftOut, 0U);
+    const auto places = painter.places().read<glm::ivec4>(cameras.size());
+    const auto depths = atlas.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    const auto colours = atlas.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
+
+    OneByOnePainter one(shaders(), scene);
+    std::size_t texels = 0, drawn = 0, different = 0;
+    for (std::uint32_t i = 0; i < cameras.size(); ++i) {
+        const glm::ivec4 place = places[i];
+        buffer.bindStorage(kCamerasBinding);
+        one.draw(objects, i, cameras[i], {place.z, place.w}, alone);
+        const auto depth = alone.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+        const auto colour = alone.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
+        for (int y = 0; y < place.w; ++y) {
+            for (int x = 0; x < place.z; ++x) {
+                const auto a = static_cast<std::size_t>(y * 512 + x);
+                const auto b = static_cast<std::size_t>((y + place.y) * 512 + x + place.x);
+                // The same plane through other corners' rounding: 2e-5; colours to a step of 1023.
+                const bool isSame = std::abs(depth[a] - depths[b]) <= 2e-5F * depth[a] + 1e-7F &&
+                                    glm::length(colour[a] - colours[b]) < 2.0F / 1023.0F;
+                different += !isSame;
+                drawn += depth[a] > 0.0F;
+                ++texels;
+            }
+        }
+    }
+    EXPECT_GT(drawn, texels / 4);
+    // Outlines through the middle of a texel: positions are rounded to 1/256 of a pixel.
+    EXPECT_LE(different, texels / 500);
+}
+
+TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
+    const ReflectiveScene scene(rooms::room());
+    const GpuObjects objects(scene);
+    const ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.0F, 0.0F, -1.0F}, {40, 30});
+    const gl::Buffer buffer = cameraBuffer({camera});
+    ClusterImages images(shaders(), glm::ivec2(64), false);
+    OneByOnePainter painter(shaders(), scene);
+    buffer.bindStorage(kCamerasBinding);
+    painter.draw(objects, 0, camera, camera.sizePx, images);
+    const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    const glm::dmat4 worldFromClip = glm::inverse(glm::dmat4(camera.clipFromWorld));
+    for (int y = 0; y < 30; ++y) {
+        for (int x = 0; x < 40; ++x) {
+            const glm::dvec4 clip((x + 0.5) / 20.0 - 1.0, (y + 0.5) / 15.0 - 1.0, 0.0, 1.0);
+            const glm::dvec4 world = worldFromClip * clip;
+            const glm::vec3 eye(camera.eyeWorld);
+            const glm::vec3 direction = glm::normalize(glm::vec3(world / world.w) - eye);
+            const rooms::WallHit hit = rooms::wallHit(eye, direction);
+            const float z = glm::dot(hit.point - eye, glm::vec3(camera.planeNormal));
+            EXPECT_NEAR(depths[static_cast<std::size_t>(y * 64 + x)], 0.25F / z, 1e-4F / z)
+                << x << ' ' << y;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::clustered_reflections
