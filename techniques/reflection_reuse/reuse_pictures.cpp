@@ -39,7 +39,8 @@ image::ImageF offsetsPicture(const HostGBuffer& key, const std::vector<glm::vec2
     return reflections::averagedPicture(key, supersampling, [&](std::size_t i) {
         if (!key.isReflective(i)) return dimmed(key, i);
         if (!isValid(offsets[i])) return glm::vec3(0.0F);
-        return colorOf(offsets[i], glm::length(offsets[i]) / longestPx);
+        // The root: few samples go far, and most would be white.
+        return colorOf(offsets[i], std::sqrt(glm::length(offsets[i]) / longestPx));
     });
 }
 

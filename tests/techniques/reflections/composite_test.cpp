@@ -103,5 +103,43 @@ TEST_F(CompositeTest, BlendsByReflectivityOrFresnelAndAveragesSamples) {
     }
 }
 
+// [xie2017] Sec. 5.4.3: view, normal and s. A sample whose normal looks at the eye keeps s, one
+// that looks across the view takes all of the reflected colour.
+TEST_F(CompositeTest, FresnelReflectsMoreAtGrazingViews) {
+    fill(1);
+    std::vector<float> depth;
+    std::vector<glm::vec2> normal;
+    Random random(21);
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+        depth.push_back(random.uniform(0.5F, 4.0F));
+        normal.emplace_back(random.uniform(-0.5F, 0.5F), random.uniform(-0.5F, 0.5F));
+    }
+    const auto width = static_cast<std::size_t>(kOutputSize.x);
+    normal[1] = {1.0F, 0.0F};  // +x: across the view axis
+    gbuffer->depth.upload(GL_RED, GL_FLOAT, depth.data());
+    gbuffer->normal.upload(GL_RG, GL_FLOAT, normal.data());
+    const HostGBuffer host = readGBuffer(*gbuffer);
+    Composite composite(shaders, kOutputSize, 1, Blend::Fresnel);
+    composite.render(*gbuffer, *target);
+    const image::ImageF image = composite.read();
+    for (int y = 0; y < kOutputSize.y; ++y) {
+        for (int x = 0; x < kOutputSize.x; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+            const glm::vec3 toEye = glm::normalize(host.view.eyeWorld - host.positionWorld({x, y}));
+            const float cosine = std::clamp(glm::dot(host.normalWorld[i], toEye), 0.0F, 1.0F);
+            const float s = host.reflectivity(i);
+            const float share = s + (1.0F - s) * std::pow(1.0F - cosine, 5.0F);
+            const glm::vec3 own(diffuse[i]);
+            glm::vec3 colour = own;
+            if (host.isReflective(i)) colour = glm::mix(own, glm::vec3(reflected[i]), share);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(image.at(x, kOutputSize.y - 1 - y, c), colour[c], 2e-3F)
+                    << x << " " << y << " " << c;
+            }
+            if (i == 1) EXPECT_GT(share, 0.4F);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace gfxrepro::reflections
