@@ -47,8 +47,8 @@ class ReuseRenderer {
 
     /// The objects are posed and the tracer is updated. The first frame is a key frame.
     void render(const depth_images::View& view, gl::Profiler& profiler);
-    /// Takes the last render() back but for what gbuffer() and the others hold: the next one decides
-    /// and starts as it did, so that a frame can be rendered again.
+    /// Takes the last render() back but for what gbuffer() and the others hold: the next one
+    /// decides and starts as it did, so that a frame can be rendered again.
     void undo();
     const reflections::GBuffer& gbuffer() const;
     const reflections::ReflectionTarget& reflection() const;
