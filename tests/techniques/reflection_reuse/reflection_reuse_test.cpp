@@ -197,12 +197,13 @@ TEST_F(ReflectionReuseTest, ReuseIsNearerToTheTruthThanDirectReprojection) {
         SCOPED_TRACE(forward);
         const auto error = [&](const char* method) {
             return meanOf(recorded(fmt::format("{{method: {}, forward: {}, tracer: embree, "
-                                               "threshold: 1, path_frames: 40}}",
+                                               "threshold: 1, path_frames: 12}}",
                                                method, forward),
                                    &room_, 8),
                           "channel_error");
         };
-        EXPECT_LT(1.5 * error("reuse"), error("direct"));
+        // Both resample stripes of few pixels; where they are is what reuse has right.
+        EXPECT_LT(1.25 * error("reuse"), error("direct"));
     }
 }
 
