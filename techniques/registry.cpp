@@ -4,6 +4,7 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
 #include "techniques/ray_tracing/ray_tracing.h"
+#include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
@@ -17,6 +18,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
         ray_tracing::kRayTracing,
+        reflection_reuse::kReflectionReuse,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,

@@ -1,0 +1,15 @@
+// Numbers that the search on the device and the one on the host share.
+#pragma once
+
+namespace gfxrepro::reflection_reuse {
+
+/// Of the second-order search ([xie2017] Sec. 5.5.4, outlook).
+constexpr int kMaxNewtonSteps = 8;
+/// Pixels. Linear extrapolation is trusted no farther.
+constexpr float kLongestStep = 32.0F;
+/// Share of the equations' trace that is added to their diagonal. Far below what moves a match by a
+/// hundredth of a pixel; without it, reflections that do not tell two directions apart (a
+/// cylinder seen from its focal line) divide by nothing.
+constexpr float kDamping = 1e-5F;
+
+}  // namespace gfxrepro::reflection_reuse
