@@ -12,4 +12,9 @@ constexpr float kLongestStep = 32.0F;
 /// cylinder seen from its focal line) divide by nothing.
 constexpr float kDamping = 1e-5F;
 
+/// Share of the eye's distance by which a match may miss the eye for rounding alone: positions and
+/// normals are single precision. Without it a sample that has no neighbour to measure by is never
+/// valid, not even where the eye has not moved.
+constexpr float kRounding = 1e-5F;
+
 }  // namespace gfxrepro::reflection_reuse

@@ -35,7 +35,8 @@ gl::Defines matchingDefines(const MatchingSettings& settings) {
             {"IS_SECOND_ORDER", settings.matching == Matching::SecondOrder ? 1 : 0},
             {"MAX_NEWTON_STEPS", kMaxNewtonSteps},
             {"LONGEST_STEP", kLongestStep},
-            {"DAMPING", kDamping}};
+            {"DAMPING", kDamping},
+            {"ROUNDING", kRounding}};
 }
 
 gl::Defines countsDefines() {

@@ -61,7 +61,8 @@ class Search {
         match_.end = at_.pixel;
         match_.distance = std::sqrt(squared(at_.miss));
         // Inside of the silhouette: were the surface to go on, the match would lie within a step.
-        if (isOver_ && squared(at_.miss) <= reachSquared_) {
+        const glm::vec3 toEye = kRounding * (eyeWorld_ - gbuffer_.positionWorld(at_.pixel));
+        if (isOver_ && squared(at_.miss) <= std::max(reachSquared_, squared(toEye))) {
             match_.offset = glm::vec2(at_.pixel - sample_) + between_;
         }
         return match_;

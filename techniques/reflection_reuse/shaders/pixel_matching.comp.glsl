@@ -199,7 +199,9 @@ void main() {
         search = searchRings(search, reflector, reflected);
 #endif
         // Inside of the silhouette: were the surface to go on, the match would lie within a step.
-        if (search.isOver && squared(search.at.miss) <= search.reachSquared) {
+        vec3 toEye = ROUNDING * (eyeWorld - gbufferPosition(search.at.pixel));
+        if (search.isOver &&
+            squared(search.at.miss) <= max(search.reachSquared, squared(toEye))) {
             offset = vec2(search.at.pixel - pixel) + between;
         }
         steps = search.steps;
