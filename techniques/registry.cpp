@@ -5,6 +5,7 @@
 #include "techniques/depth_sampling/depth_sampling.h"
 #include "techniques/point_splatting/point_splatting.h"
 #include "techniques/ray_tracing/ray_tracing.h"
+#include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
@@ -19,6 +20,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         depth_sampling::kDepthSampling,
         point_splatting::kPointSplatting,
         ray_tracing::kRayTracing,
+        reflection_reuse::kReflectionReuse,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,

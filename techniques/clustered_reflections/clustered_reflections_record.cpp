@@ -6,6 +6,7 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/clustered_reflections/reflection_pictures.h"
+#include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -108,19 +109,21 @@ const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuff
 void ClusteredReflections::recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
                                         const image::ImageF& picture) {
     const image::ImageF& truth = truthOf(gbuffer).picture;
-    const std::vector<std::uint8_t> reflective = reflectivePixels(gbuffer, params_.supersampling);
-    const glm::dvec3 errors = channelErrors(picture, truth, &reflective);
+    const std::vector<std::uint8_t> reflective =
+        reflections::reflectivePixels(gbuffer, params_.supersampling);
+    const glm::dvec3 errors = reflections::channelErrors(picture, truth, &reflective);
     recorder.metric("channel_error", meanOf(errors), "level");
     recorder.metric("channel_error_r", errors.r, "level");
     recorder.metric("channel_error_g", errors.g, "level");
     recorder.metric("channel_error_b", errors.b, "level");
-    recorder.metric("channel_error_image", meanOf(channelErrors(picture, truth, nullptr)), "level");
+    recorder.metric("channel_error_image",
+                    meanOf(reflections::channelErrors(picture, truth, nullptr)), "level");
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
-    recorder.metric("psnr_db", shownPsnrDb(picture, truth), "dB");
+    recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
     recorder.image("truth", truth);
-    recorder.image("error", errorPicture(picture, truth, 1));
-    recorder.image("error_50", errorPicture(picture, truth, 50));
+    recorder.image("error", reflections::errorPicture(picture, truth, 1));
+    recorder.image("error_50", reflections::errorPicture(picture, truth, 50));
 }
 
 void ClusteredReflections::recordClusters(technique::Recorder& recorder, const HostGBuffer& gbuffer,
@@ -136,8 +139,8 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
     recorder.metric("environment_pct", percent(fallen, clustered), "%");
     if (params_.showsPictures) {
         recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling));
-        recorder.image("environment",
-                       markedPicture(picture, environment, gbuffer, params_.supersampling));
+        recorder.image("environment", reflections::markedPicture(picture, environment, gbuffer,
+                                                                 params_.supersampling));
     }
     if (params_.measuresErrors) recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
 }
@@ -153,8 +156,8 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
     recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
                     "%");
     if (!params_.showsPictures) return;
-    recorder.image("occlusion",
-                   markedPicture(picture, errors.isMissing, gbuffer, params_.supersampling));
+    recorder.image("occlusion", reflections::markedPicture(picture, errors.isMissing, gbuffer,
+                                                           params_.supersampling));
 }
 
 }  // namespace gfxrepro::clustered_reflections

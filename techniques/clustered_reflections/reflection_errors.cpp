@@ -105,49 +105,4 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
     return errors;
 }
 
-std::vector<std::uint8_t> reflectivePixels(const HostGBuffer& gbuffer, int supersampling) {
-    const glm::ivec2 size = gbuffer.view.sizePx / supersampling;
-    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(size.x) *
-                                     static_cast<std::size_t>(size.y));
-    for (int y = 0; y < size.y * supersampling; ++y) {
-        for (int x = 0; x < size.x * supersampling; ++x) {
-            if (!gbuffer.isReflective(gbuffer.indexOf({x, y}))) continue;
-            const int row = size.y - 1 - y / supersampling;
-            pixels[static_cast<std::size_t>(row * size.x + x / supersampling)] = 1;
-        }
-    }
-    return pixels;
-}
-
-glm::dvec3 channelErrors(const image::ImageF& picture, const image::ImageF& truth,
-                         const std::vector<std::uint8_t>* wanted) {
-    const image::Image8 a = image::toSrgb8(picture);
-    const image::Image8 b = image::toSrgb8(truth);
-    GFXREPRO_ASSERT_EQ(a.values().size(), b.values().size());
-    const std::size_t pixels = a.values().size() / 3;
-    glm::dvec3 sum(0.0);
-    std::size_t count = 0;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        if (wanted && (*wanted)[pixel] == 0) continue;
-        ++count;
-        for (std::size_t c = 0; c < 3; ++c) {
-            sum[static_cast<int>(c)] +=
-                std::abs(int{a.values()[3 * pixel + c]} - int{b.values()[3 * pixel + c]});
-        }
-    }
-    return count == 0 ? sum : sum / static_cast<double>(count);
-}
-
-double shownPsnrDb(const image::ImageF& picture, const image::ImageF& truth) {
-    const image::Image8 a = image::toSrgb8(picture);
-    const image::Image8 b = image::toSrgb8(truth);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < a.values().size(); ++i) {
-        const double difference = (int{a.values()[i]} - int{b.values()[i]}) / 255.0;
-        squares += difference * difference;
-    }
-    if (squares == 0.0) return kEqualPsnrDb;
-    return -10.0 * std::log10(squares / static_cast<double>(a.values().size()));
-}
-
 }  // namespace gfxrepro::clustered_reflections

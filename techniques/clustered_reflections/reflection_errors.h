@@ -1,27 +1,13 @@
-// How far reflections are from the truth ([xie2017] Sec. 4.7.1).
+// What the clusters' depth images lack ([xie2017] Sec. 4.7.1).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "runner/image/image.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/shared/reflections/embree_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
-
-/// Output pixels of which a sample reflects, rows from the top as images have them.
-std::vector<std::uint8_t> reflectivePixels(const reflections::HostGBuffer& gbuffer,
-                                           int supersampling);
-
-/// Mean absolute difference a channel of two pictures as they are shown: sRGB, 0 … 255. Over the
-/// pixels that `wanted` marks, all where it is null; 0 over none.
-glm::dvec3 channelErrors(const image::ImageF& picture, const image::ImageF& truth,
-                         const std::vector<std::uint8_t>* wanted);
-
-/// Of pictures as they are shown; equal pictures have kEqualPsnrDb.
-constexpr double kEqualPsnrDb = 120.0;  // above what 8 bits of any picture here can give
-double shownPsnrDb(const image::ImageF& picture, const image::ImageF& truth);
 
 /// Samples whose true hit is missing from their cluster's depth image.
 struct OcclusionErrors {

@@ -35,13 +35,14 @@ bool isOutside(const std::array<glm::vec4, 6>& planes, const scene::Box& box, fl
     });
 }
 
-/// How the patch's normals stand to the rays from the eye to its points.
+/// How the patch's normals stand to the rays from the eye to its points. A disc faces the eye where
+/// its centre does, however large it is.
 enum class Facing { Towards, Silhouette, Away };
 
-Facing facingOf(const Patch& patch, float radius, const glm::vec3& eye) {
+Facing facingOf(const Patch& patch, const glm::vec3& eye) {
     const glm::vec3 toEye = eye - patch.bounds.centre();
     const float distance = glm::length(toEye);
-    const float reach = 0.5F * glm::length(patch.bounds.size()) + radius;
+    const float reach = 0.5F * glm::length(patch.bounds.size());
     if (distance <= reach) return Facing::Silhouette;  // the eye is among the points
     // The ray to any point is within `spread` of that to the centre.
     const float spread = std::asin(reach / distance);
@@ -129,7 +130,7 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
             ++counts.outside;
             continue;
         }
-        const Facing facing = facingOf(patch, reach, view.eyeModel);
+        const Facing facing = facingOf(patch, view.eyeModel);
         if (settings.cullsCones && facing == Facing::Away) {
             ++counts.turnedAway;
             continue;

@@ -30,46 +30,78 @@ struct MatchingSettings {
 /// Offsets of Algorithm 9, a texel a sample of the key frame.
 struct Offsets {
     gl::Texture offset;  // RG16F, pixels: s* − s; kInvalidOffset where there is no match
-    gl::Texture steps;   // R8UI: ring steps that the search took, at most 255
+    gl::Texture steps;   // R8UI: steps that the search took, at most 255; 0: it ended at its start
     explicit Offsets(glm::ivec2 sizePx);
     std::size_t sizeBytes() const;
 };
 /// Both components of an invalid offset.
 constexpr float kInvalidOffset = 65504.0F;  // the largest half
 
+/// Over the reflective samples of a key frame.
+struct MatchingCounts {
+    std::uint32_t reflectiveSamples = 0;
+    std::uint32_t invalidSamples = 0;
+    std::uint32_t steps = 0;
+
+    double meanSteps() const;
+    double invalidShare() const;
+};
+
+/// When is a match valid? A search moves between neighbours of one reflector that no silhouette
+/// separates (MatchingSettings::silhouette), within the image. It ends at a sample that misses the
+/// eye by less than its neighbours do. Where the true match lies beyond the last sample of the
+/// surface, that sample still ends the search, but misses the eye by more than one step changes:
+/// such ends are outside of the silhouette, and invalid. So are wrong local minima of that kind
+/// within, ends at creases, and samples without a neighbour.
+/// Departure [xie2017] Algorithm 9: it lets the search step onto other surfaces, where a plane that
+/// has nothing to do with the reflection may draw it away, and asks at the end where it is.
 class PixelMatcher {
   public:
     PixelMatcher(const gl::ShaderLibrary& shaders, const MatchingSettings& settings);
-    /// For every reflective sample of `key`. The search begins at `previous` where that is valid,
-    /// else at the sample itself; null: at the sample.
+    /// For every reflective sample of `key`; the others become invalid. The search begins at
+    /// `previous`, offsets of the same key frame, where that is valid, else at the sample itself;
+    /// null: at the sample.
     void match(const ReflectionDepthImage& key, const glm::vec3& eyeWorld, const Offsets* previous,
                Offsets& result) const;
+    /// Waits for the device.
+    MatchingCounts counts(const ReflectionDepthImage& key, const Offsets& offsets) const;
 
   private:
     MatchingSettings settings_;
-    gl::Program program_;
+    gl::Program program_, countsProgram_;
 };
 
 /// The reflection depth image on the host, for the reference and exhaustive searches.
 struct HostReflectionDepthImage {
     reflections::HostGBuffer gbuffer;
-    std::vector<float> distanceM;
-};
+    std::vector<float> distanceM;  // 0: the ray left the scene
+    float diagonalM = 1.0F;
 
-/// d(s_n, R, E): how far the eye is from the ray that leaves M, the mirror image of R in the plane
-/// of candidate n, through W_n (Sec. 5.4.1).
+    /// R of Eq. 8: what a reflective sample shows.
+    glm::vec3 reflectedPositionWorld(glm::ivec2 sample) const;
+};
+/// Reads back; waits for the device.
+HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& image);
+
+/// d(s_n, R, E): how far the eye is from the ray from M, the mirror image of R in the plane of
+/// candidate n, through W_n (Sec. 5.4.1). The normal may have any length.
+/// Departure [xie2017] Sec. 5.4.1: the ray begins in W_n, where it leaves the mirror; to an eye
+/// behind, W_n is the nearest. Begun in M, it also meets eyes between M and W_n, and candidates
+/// that turn their backs to R match.
 float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
                        const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
 
 struct HostMatch {
-    std::optional<glm::ivec2> offset;  // nothing: invalid
+    std::optional<glm::vec2> offset;  // whole pixels in first order; nothing: invalid
     int steps = 0;
-    float distance = 0.0F;  // of the last candidate
+    float distance = 0.0F;      // of the last candidate
+    glm::ivec2 end{0};          // the last candidate
+    std::vector<float> passed;  // distances of all candidates that the search stood on
 };
 /// Algorithm 9 for one sample, line by line; the search stops on equality, too, where the printed
 /// one can cycle.
 HostMatch matchOnHost(const HostReflectionDepthImage& key, glm::ivec2 sample,
-                      const glm::vec3& eyeWorld, std::optional<glm::ivec2> previous,
+                      const glm::vec3& eyeWorld, std::optional<glm::vec2> previous,
                       const MatchingSettings& settings);
 /// The best candidate of all samples of the same reflector: what a search should have found.
 HostMatch matchExhaustively(const HostReflectionDepthImage& key, glm::ivec2 sample,

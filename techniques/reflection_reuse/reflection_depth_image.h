@@ -14,8 +14,8 @@ struct ReflectionDepthImage {
     reflections::ReflectionTarget reflection;
     float diagonalM = 1.0F;
 
-    ReflectionDepthImage(const depth_images::View& view, float diagonalM)
-        : gbuffer(view), reflection(view.sizePx), diagonalM(diagonalM) {}
+    ReflectionDepthImage(const depth_images::View& view, float sceneDiagonalM)
+        : gbuffer(view), reflection(view.sizePx), diagonalM(sceneDiagonalM) {}
     std::size_t sizeBytes() const { return gbuffer.sizeBytes() + reflection.sizeBytes(); }
 };
 

@@ -3,7 +3,9 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/reflection_reuse/cell_list.h"
 #include "techniques/reflection_reuse/pixel_matcher.h"
+#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -33,18 +35,41 @@ class Reprojection {
   public:
     Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionSettings& settings,
                  glm::ivec2 sizePx);
-    /// The grid's vertices moved by the offsets and drawn with depth s.d + s.r; cells with an
-    /// invalid corner or across a silhouette, and triangles that grow too much, write invalid.
-    void shift(const ReflectionDepthImage& key, const Offsets& offsets, ShiftedImage& result);
-    /// The shifted image forward to the view of `gbuffer`: radiance into `target` and, into
-    /// `wanted` (R8UI), 1 where a reflective sample got nothing valid, else 0.
-    void warp(const ReflectionDepthImage& key, const ShiftedImage& shifted,
+    /// Once a key frame, before the others: finds the cells that a mesh may bridge.
+    void setKeyFrame(const ReflectionDepthImage& key);
+
+    /// The grid's vertices moved by the offsets and drawn with depth s.d + s.r. Cells with an
+    /// invalid corner or across a silhouette are left out: what no other cell covers stays invalid,
+    /// as it was cleared to. Triangles that grow too much write invalid and hide what is farther,
+    /// and so do those with a corner of which `doubtful` (R8UI; may be null) says 1. A reflection
+    /// stays on its reflector.
+    void shift(const ReflectionDepthImage& key, const Offsets& offsets, const gl::Texture* doubtful,
+               ShiftedImage& result);
+    /// `radiance` (RGBA16F; the shifted image, or, for the direct comparator, the key frame's own)
+    /// forward to the view of `gbuffer`, into `target`; and, into `wanted` (R8UI), 1 where a
+    /// reflective sample got nothing valid, else 0. Distances are not known: 0.
+    void warp(const ReflectionDepthImage& key, const gl::Texture& radiance,
               const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
               gl::Texture& wanted);
+    /// 1 at every reflective sample, else 0: what a key frame traces.
+    void wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted);
+
+    /// Of the last warp() or wantAll(); waits for the device.
+    std::uint32_t reflectiveSamples() const;
+    /// Of the last list made, of shift() or warp().
+    const CellList& cells() const { return cells_; }
     std::size_t sizeBytes() const;
 
   private:
+    void drawGrid(const gl::Program& program, float pointBias);
+
     ReprojectionSettings settings_;
+    CellList cells_;
+    gl::Program shift_, warp_, wantAll_;
+    gl::Texture depthBuffer_;  // of the warped image
+    gl::Texture noDoubts_;     // one texel of 0
+    gl::SampleQuery reflective_;
+    reflections::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflection_reuse

@@ -21,8 +21,8 @@ struct ReuseSettings {
     /// Outlook of Sec. 5.5.4: samples whose reflected segment, then or now, passes the box of an
     /// object that has moved since the key frame are recomputed.
     bool recomputesMoved = false;
-    /// Outlook: recomputed samples within this distance of a reused one are mixed with what
-    /// reprojection found there; pixels, 0: none.
+    /// Outlook: recomputed samples within this distance of a reused one of their reflector are
+    /// mixed with the reused ones around; pixels, 0: none.
     int seamPx = 0;
 };
 
@@ -31,27 +31,34 @@ struct ReuseCounts {
     bool isKeyFrame = false;
     std::uint32_t reflectiveSamples = 0;
     std::uint32_t recomputedSamples = 0;  // of a key frame: all
-    double matchingSteps = 0.0;           // mean ring steps a reflective sample of the key frame
+    double matchingSteps = 0.0;  // mean ring steps a reflective sample of the key frame; 0 without
+                                 // matching
 };
 
 /// Passes, named as Table 23: `diffuse`, `pixel_matching`, `reflection_shift`, `reflection_warp`,
-/// `recompute`; `composite` is the caller's.
+/// `recompute` (around the tracer's own); `composite` is the caller's.
 class ReuseRenderer {
   public:
+    /// `objects` and `tracer` outlive this.
     ReuseRenderer(const gl::ShaderLibrary& shaders, const reflections::GpuObjects& objects,
                   reflections::ReflectionTracer& tracer, const ReuseSettings& settings,
                   glm::ivec2 sizePx, float diagonalM);
     ~ReuseRenderer();
 
-    /// The objects are posed. The first frame is a key frame.
+    /// The objects are posed and the tracer is updated. The first frame is a key frame.
     void render(const depth_images::View& view, gl::Profiler& profiler);
+    /// Takes the last render() back but for what gbuffer() and the others hold: the next one
+    /// decides and starts as it did, so that a frame can be rendered again.
+    void undo();
     const reflections::GBuffer& gbuffer() const;
     const reflections::ReflectionTarget& reflection() const;
     /// Of the last render(); waits for the device.
     ReuseCounts counts() const;
     /// 1 where a sample of the last frame was recomputed ([xie2017] Fig. 40), R8UI.
     const gl::Texture& recomputed() const;
+    /// Of the last frame that was not a key frame.
     const Offsets& offsets() const;
+    const ShiftedImage& shifted() const;
     const ReflectionDepthImage& keyFrame() const;
     std::size_t sizeBytes() const;
     void forgetKeyFrame();

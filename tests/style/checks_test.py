@@ -39,6 +39,12 @@ expect("check_layers", {"runner/report/a.cpp": "#include <EGL/egl.h>\n"},
        "runner/report/a.cpp:1: runner/report may not include EGL/egl.h")
 expect("check_layers", {"techniques/a/a.cpp": '#include "techniques/b/b.h"\n'},
        "techniques/a/a.cpp:1: techniques/a may not include techniques/b/b.h")
+# An exception holds one way.
+expect("check_layers",
+       {"techniques/reflection_reuse/a.cpp": '#include "techniques/clustered_reflections/b.h"\n',
+        "techniques/clustered_reflections/a.cpp": '#include "techniques/reflection_reuse/b.h"\n'},
+       "techniques/clustered_reflections/a.cpp:1: techniques/clustered_reflections may not include "
+       "techniques/reflection_reuse/b.h\n")
 expect("check_layers", {"techniques/marching/x.h": "", "runner/core/a.cpp": "// marching\n"},
        "runner/core/a.cpp: runner/ names the technique 'marching'")
 expect("check_layers", {"runner/core/a.cpp": '#include "error.h"\n'},

@@ -13,13 +13,15 @@ constexpr unsigned kReflectedUnit = kGBufferUnit + 4;
 
 }  // namespace
 
-Composite::Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling)
+Composite::Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling,
+                     Blend blend)
     : program_(shaders, {"reflections/whole_image.vert.glsl", "reflections/composite.frag.glsl"},
                {{"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
                 {"REFLECTED_UNIT", static_cast<int>(kReflectedUnit)}}),
       output_(gl::Texture::make2D(GL_RGBA16F, outputSizePx)),
       framebuffer_(std::array<const gl::Texture*, 1>{&output_}),
-      supersampling_(supersampling) {
+      supersampling_(supersampling),
+      blend_(blend) {
     GFXREPRO_ASSERT(supersampling >= 1);
 }
 
@@ -33,6 +35,7 @@ void Composite::render(const GBuffer& gbuffer, const ReflectionTarget& reflectio
     reflection.radiance.bind(kReflectedUnit);
     program_.set("supersampling", supersampling_);
     program_.set("showsReflectionOnly", showsReflectionOnly ? 1 : 0);
+    program_.set("hasFresnel", blend_ == Blend::Fresnel ? 1 : 0);
     framebuffer_.bind();
     wholeImage_.draw();
 }

@@ -9,11 +9,19 @@
 
 namespace gfxrepro::reflections {
 
-/// rgb = LERP(diffuse, reflected, s) a sample; an output pixel is the mean of its
+/// By what the reflected colour is mixed into the diffuse one.
+enum class Blend {
+    Reflectivity,  // s, as Algorithm 6 has it
+    Fresnel,       // [xie2017] Sec. 5.4.3: by view, normal and s. Which formula is not said: here
+                   // Schlick's, s + (1 − s)(1 − cos θ)⁵, s what is reflected head-on
+};
+
+/// rgb = LERP(diffuse, reflected, share) a sample; an output pixel is the mean of its
 /// `supersampling`² samples.
 class Composite {
   public:
-    Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling);
+    Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling,
+              Blend blend = Blend::Reflectivity);
     /// `showsReflectionOnly`: the reflected colour alone, black where nothing reflects ([xie2017]
     /// Fig. 30).
     void render(const GBuffer& gbuffer, const ReflectionTarget& reflection,
@@ -29,6 +37,7 @@ class Composite {
     gl::Framebuffer framebuffer_;
     WholeImage wholeImage_;
     int supersampling_;
+    Blend blend_;
 };
 
 }  // namespace gfxrepro::reflections

@@ -31,9 +31,8 @@ double frameTime(int frame, int frameCount) {
     return (static_cast<double>(frame) + 0.5) / static_cast<double>(frameCount);
 }
 
-scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int frame,
-                        int frameCount, float aspect) {
-    const double time = frameTime(frame, frameCount);
+scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, double time,
+                           float aspect) {
     if (view.empty()) {
         if (!scene.paths.empty()) return cameraAt(scene.paths.front(), time);
         if (!scene.cameras.empty()) return scene.cameras.front();
@@ -43,6 +42,11 @@ scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int 
     if (const scene::Camera* camera = find(scene.cameras, view)) return *camera;
     throw Error(fmt::format("the scene has no path or camera '{}'; paths: {}; cameras: {}", view,
                             namesOf(scene.paths), namesOf(scene.cameras)));
+}
+
+scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int frame,
+                        int frameCount, float aspect) {
+    return cameraAtTime(scene, view, frameTime(frame, frameCount), aspect);
 }
 
 }  // namespace gfxrepro::reflections

@@ -98,6 +98,25 @@ class TracerTest : public testing::Test {
         return -10.0 * std::log10(sum / count);
     }
 
+    /// The same of the means of 2 × 2 samples, where all four are reflective.
+    static double shownPsnrDb(const Traced& traced, const std::vector<glm::vec3>& expected) {
+        const auto width = static_cast<std::size_t>(traced.gbuffer.view.sizePx.x);
+        double sum = 0.0, count = 0.0;
+        for (std::size_t i = 0; i + width + 1 < traced.radiance.size(); i += 2) {
+            if (i / width % 2 == 1) continue;
+            glm::vec3 error(0.0F);
+            bool isWhole = true;
+            for (const std::size_t k : {i, i + 1, i + width, i + width + 1}) {
+                isWhole = isWhole && traced.gbuffer.isReflective(k);
+                error += 0.25F * (traced.radiance[k] - expected[k]);
+            }
+            if (!isWhole) continue;
+            sum += glm::dot(error, error) / 3.0F;
+            count += 1.0;
+        }
+        return -10.0 * std::log10(sum / count);
+    }
+
   private:
     static inline std::optional<gl::Device> device_;
 };

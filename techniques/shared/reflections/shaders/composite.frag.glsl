@@ -1,20 +1,31 @@
 #version 450 core
-// Step 3.c.iii of [xie2017] Algorithm 6, and the mean over the samples of an output pixel.
+// Step 3.c.iii of [xie2017] Algorithm 6, or the blend of Sec. 5.4.3, and the mean over the samples
+// of an output pixel.
 #include "reflections/gbuffer.glsl"
 
 layout(binding = REFLECTED_UNIT) uniform sampler2D reflected;  // rgb_n
 uniform int supersampling;
 uniform int showsReflectionOnly;
+uniform int hasFresnel;
 
 layout(location = 0) out vec4 color;
+
+float shareOf(ivec2 pixel, uint surface) {
+    if (showsReflectionOnly != 0) return 1.0;
+    float headOn = reflectivityOf(surface);
+    if (hasFresnel == 0) return headOn;
+    vec3 toEye = normalize(gbufferEyeWorld - gbufferPosition(pixel));
+    // Interpolated normals may turn away from the eye at silhouettes.
+    float grazing = 1.0 - clamp(dot(toEye, gbufferUnitNormal(pixel)), 0.0, 1.0);
+    return headOn + (1.0 - headOn) * pow(grazing, 5.0);  // Schlick
+}
 
 vec3 sampleColor(ivec2 pixel) {
     vec3 diffuse = showsReflectionOnly != 0 ? vec3(0.0) : texelFetch(gbufferDiffuse, pixel, 0).rgb;
     uint surface = texelFetch(gbufferSurface, pixel, 0).r;
     // What reflects nothing has no reflected colour: its texel is undefined.
     if (reflectorOf(surface) == 0u) return diffuse;
-    float share = showsReflectionOnly != 0 ? 1.0 : reflectivityOf(surface);
-    return mix(diffuse, texelFetch(reflected, pixel, 0).rgb, share);
+    return mix(diffuse, texelFetch(reflected, pixel, 0).rgb, shareOf(pixel, surface));
 }
 
 void main() {

@@ -1,0 +1,99 @@
+#include "techniques/reflection_reuse/moved_objects.h"
+
+#include <array>
+#include <cstddef>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::reflection_reuse {
+
+namespace {
+
+enum Unit : unsigned { kDistanceUnit = 1, kGBufferUnit = 2 };
+enum Storage : unsigned { kMovedBinding = reflections::kFirstFreeStorage };
+
+/// Boxes grow by this share of the scene's diagonal on all sides: a ray ends on the surface, which
+/// often is the box's, give or take rounding.
+constexpr float kBoxMargin = 1e-3F;
+
+/// Moved of moved_objects.glsl.
+struct Moved {
+    glm::vec4 keyCentre;
+    glm::vec4 keyHalfSize;
+    std::uint32_t object;
+    std::uint32_t padding[3];
+};
+static_assert(offsetof(Moved, object) == 32);
+static_assert(sizeof(Moved) == 48);
+
+gl::Defines passDefines() {
+    gl::Defines defines = reflections::objectDefines();
+    defines.merge(gl::Defines{{"DISTANCE_UNIT", static_cast<int>(kDistanceUnit)},
+                              {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
+                              {"MOVED_BINDING", static_cast<int>(kMovedBinding)}});
+    return defines;
+}
+
+}  // namespace
+
+MovedObjects::MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
+    : then_(shaders,
+            {"reflections/whole_image.vert.glsl", "reflection_reuse/doubt_moved.frag.glsl"},
+            passDefines()),
+      now_(shaders, {"reflections/whole_image.vert.glsl", "reflection_reuse/want_moved.frag.glsl"},
+           passDefines()),
+      doubtful_(gl::Texture::make2D(GL_R8UI, sizePx)),
+      framebuffer_(std::array<const gl::Texture*, 1>{&doubtful_}) {}
+
+void MovedObjects::setKeyFrame(const reflections::GpuObjects& objects) {
+    keyPoses_.assign(objects.poses().begin(), objects.poses().end());
+    keyBounds_.assign(objects.boundsWorld().begin(), objects.boundsWorld().end());
+}
+
+bool MovedObjects::find(const reflections::GpuObjects& objects) {
+    GFXREPRO_ASSERT_EQ(objects.poses().size(), keyPoses_.size());
+    std::vector<Moved> moved;
+    for (std::size_t i = 0; i < keyPoses_.size(); ++i) {
+        // Without triangles it neither is nor was anywhere.
+        if (objects.poses()[i] == keyPoses_[i] || keyBounds_[i].isEmpty()) continue;
+        moved.push_back({glm::vec4(keyBounds_[i].centre(), 1.0F),
+                         glm::vec4(0.5F * keyBounds_[i].size(), 0.0F),
+                         static_cast<std::uint32_t>(i),
+                         {}});
+    }
+    movedCount_ = static_cast<unsigned>(moved.size());
+    if (!moved.empty()) moved_ = gl::Buffer::of(moved);
+    return !moved.empty();
+}
+
+const gl::Texture& MovedObjects::doubtful(const ReflectionDepthImage& key) {
+    moved_.bindStorage(kMovedBinding);
+    framebuffer_.bind();
+    then_.use();
+    key.gbuffer.bind(then_, kGBufferUnit);
+    key.reflection.distance.bind(kDistanceUnit);
+    then_.set("movedCount", movedCount_);
+    then_.set("margin", kBoxMargin * key.diagonalM);
+    then_.set("missDistance", key.diagonalM);
+    wholeImage_.draw();
+    return doubtful_;
+}
+
+void MovedObjects::want(const reflections::GpuObjects& objects, const reflections::GBuffer& gbuffer,
+                        float diagonalM, gl::Texture& wanted) {
+    objects.bind();
+    moved_.bindStorage(kMovedBinding);
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&wanted});
+    framebuffer.bind();
+    now_.use();
+    gbuffer.bind(now_, kGBufferUnit);
+    now_.set("movedCount", movedCount_);
+    now_.set("margin", kBoxMargin * diagonalM);
+    wholeImage_.draw();
+}
+
+std::size_t MovedObjects::sizeBytes() const {
+    return doubtful_.sizeBytes() + moved_.sizeBytes();
+}
+
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,67 @@
+// The technique `reflection_reuse`: chapter 5 of xie2017. See README.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "runner/technique/technique.h"
+#include "techniques/reflection_reuse/reflection_reuse_params.h"
+#include "techniques/reflection_reuse/resting_tracer.h"
+#include "techniques/shared/reflections/embree_tracer.h"
+
+namespace gfxrepro::reflection_reuse {
+
+class ReflectionReuse final : public technique::Technique {
+  public:
+    explicit ReflectionReuse(config::Params& params);
+
+    void setup(technique::SetupContext& context) override;
+    /// Frames are consecutive. One that is rendered again starts from what was there before it.
+    void render(technique::FrameContext& context) override;
+    void record(technique::Recorder& recorder) override;
+
+  private:
+    /// Frames of `method: ray_traced`.
+    struct FullTracing {
+        reflections::GBufferRenderer renderer;
+        reflections::GBuffer gbuffer;
+        reflections::ReflectionTarget target;
+    };
+
+    std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders);
+    void place(const technique::FrameContext& context);
+    void traceFully(gl::Profiler& profiler);
+    const reflections::GBuffer& gbuffer() const;
+    const reflections::ReflectionTarget& reflection() const;
+
+    void recordReuse(technique::Recorder& recorder);
+    void recordMatches(technique::Recorder& recorder);
+    image::ImageF truthOf(const reflections::HostGBuffer& gbuffer);
+    void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                      const image::ImageF& picture);
+    void recordUndetected(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                          const image::ImageF& picture, const image::ImageF& truth);
+    void recordPictures(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                        const image::ImageF& picture);
+
+    ReuseParams params_;
+    std::optional<reflections::ReflectiveScene> scene_;
+    glm::ivec2 outputSizePx_{0};
+    std::optional<reflections::GpuObjects> objects_;
+    std::optional<reflections::EnvironmentMap> map_;
+    std::unique_ptr<reflections::ReflectionTracer> tracer_;
+    std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
+    std::optional<FullTracing> fullTracing_;  // of `ray_traced`
+    std::optional<reflections::Composite> composite_;
+    depth_images::View view_;
+    int frame_ = -1;         // last rendered
+    int lastKeyFrame_ = -1;  // last recorded key frame
+
+    std::unique_ptr<gl::Profiler> untimed_;  // of the truth
+    std::optional<reflections::EmbreeTracer> truthTracer_;
+    PoseWatch truthPoses_;
+};
+
+extern const technique::TechniqueInfo kReflectionReuse;
+
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,128 @@
+#include "techniques/reflection_reuse/reflection_reuse_params.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+namespace gfxrepro::reflection_reuse {
+namespace {
+
+constexpr config::Choice<Method> kMethods[] = {
+    {Method::Reuse, "reuse", "key frames' reflections moved to where they are seen (algorithm 8)"},
+    {Method::Direct, "direct", "the same by depth alone, as if they were painted on"},
+    {Method::RayTraced, "ray_traced", "every sample of every frame"},
+};
+constexpr config::Choice<Tracer> kTracers[] = {
+    {Tracer::Compute, "compute", "ray tracing on the same device"},
+    {Tracer::Embree, "embree", "ray tracing on the CPU"},
+    {Tracer::Clustered, "clustered", "clustered depth images, as clustered_reflections has them"},
+};
+constexpr config::Choice<reflections::Blend> kBlends[] = {
+    {reflections::Blend::Fresnel, "fresnel", "by view, normal and reflectivity"},
+    {reflections::Blend::Reflectivity, "reflectivity", "by reflectivity alone, as chapter 4"},
+};
+constexpr config::Choice<Matching> kMatchings[] = {
+    {Matching::FirstOrder, "first_order", "among planes, pixel by pixel (algorithm 9)"},
+    {Matching::SecondOrder, "second_order", "among bent surfaces, between pixels"},
+};
+constexpr config::Choice<Forward> kForwards[] = {
+    {Forward::Grid, "grid", "a mesh over the image"},
+    {Forward::Splats, "splats", "a point a pixel"},
+};
+
+float number(config::Params& params, const char* name, float fallback,
+             const config::ParamSpec& spec) {
+    return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
+}
+
+ReuseSettings readReuse(config::Params& params) {
+    ReuseSettings settings;
+    settings.keyFrameThreshold = static_cast<float>(params.getDouble(
+        "threshold", 0.3,
+        {"share of recomputed samples above which the next frame is a key frame; 1: never", "1",
+         0.0, 1.0}));
+    settings.matching.matching = params.getEnum("matching", settings.matching.matching, kMatchings,
+                                                {"how matches are found"});
+    settings.matching.maxSteps =
+        params.getInt("max_steps", settings.matching.maxSteps,
+                      {"of a search; longer ones are invalid", "steps", 1, 65536});
+    const double silhouette = params.getDouble(
+        "silhouette", 0.05,
+        {"neighbours whose eye depths differ by more of the nearer one are not connected", "1", 0.0,
+         100.0});
+    settings.matching.silhouette = static_cast<float>(silhouette);
+    settings.reprojection.silhouette = static_cast<float>(silhouette);
+    settings.reprojection.forward = params.getEnum("forward", settings.reprojection.forward,
+                                                   kForwards, {"how images are drawn forward"});
+    settings.reprojection.maxGrowth =
+        number(params, "max_growth", settings.reprojection.maxGrowth,
+               {"of a grid triangle's area; beyond, it is invalid", "1", 1.0, 1e6});
+    settings.reprojection.depthTolerance = static_cast<float>(params.getDouble(
+        "depth_tolerance", 0.01,
+        {"ε: share by which the depth of a reused sample may be off", "1", 0.0, 1.0}));
+    settings.recomputesMoved = params.getBool(
+        "moved_objects", false, {"recomputes what an object that moved reflects in or hides"});
+    settings.seamPx = params.getInt(
+        "seam_px", 0,
+        {"width over which recomputed samples are mixed with reused neighbours", "pixels", 0, 64});
+    return settings;
+}
+
+/// Parameters that `method` does not read say so instead of being ignored.
+void refuseGiven(const config::Params& params, std::initializer_list<const char*> names,
+                 const char* needs) {
+    for (const char* name : names) {
+        if (params.isGiven(name)) {
+            throw Error(params.locationOf(name), fmt::format("'{}' needs {}", name, needs));
+        }
+    }
+}
+
+}  // namespace
+
+ReuseParams::ReuseParams(config::Params& params)
+    : method(params.getEnum("method", Method::Reuse, kMethods, {"where reflections come from"})),
+      tracer(params.getEnum("tracer", Tracer::Compute, kTracers,
+                            {"what traces key frames and recomputed samples"})),
+      view(params.getText("view", "",
+                          {"a path or camera of the scene; none: its first path, else its first "
+                           "camera"})),
+      pathFrames(params.getInt("path_frames", 500,
+                               {"of the whole path: the speed along it", "frames", 1, 1000000})),
+      firstFrame(
+          params.getInt("first_frame", 0,
+                        {"of the path: where the first measured frame lies", "frame", 0, 999999})),
+      hasMotion(params.getBool("motion", false, {"objects move as the scene says"})),
+      supersampling(params.getInt("supersampling", 1,
+                                  {"samples along each edge of an output pixel", "samples", 1, 8})),
+      blend(params.getEnum("blend", reflections::Blend::Fresnel, kBlends,
+                           {"what weighs the reflected colour"})),
+      reuse(readReuse(params)) {
+    reflectors.maxRoughness = static_cast<float>(params.getDouble(
+        "reflector_roughness", 0.4, {"materials up to this roughness reflect", "1", 0.0, 1.0}));
+    measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
+    showsPictures = params.getBool(
+        "pictures", false, {"result, truth, errors, recomputed samples, key frame, offsets"});
+    exhaustiveSamples = params.getInt(
+        "exhaustive_samples", 0,
+        {"of a frame's matches, compared with a search of the whole reflector; 0: none", "samples",
+         0, 1000000});
+    params.finish();
+    reuse.isDirect = method == Method::Direct;
+    if (method == Method::RayTraced) {
+        refuseGiven(params,
+                    {"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
+                     "moved_objects", "seam_px"},
+                    "'method: reuse' or 'method: direct'");
+    }
+    if (method != Method::Reuse) {
+        refuseGiven(params, {"matching", "max_steps", "exhaustive_samples"}, "'method: reuse'");
+    }
+    if (firstFrame >= pathFrames) {
+        throw Error(params.locationOf("first_frame"),
+                    fmt::format("'first_frame' is {}; the path has frames 0 … {} ('path_frames')",
+                                firstFrame, pathFrames - 1));
+    }
+}
+
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,157 @@
+#include "techniques/reflection_reuse/reprojection.h"
+
+#include <array>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::reflection_reuse {
+
+namespace {
+
+enum Unit : unsigned {
+    kRadianceUnit = 0,
+    kDistanceUnit = 1,
+    kOffsetsUnit = 2,
+    kDoubtfulUnit = 3,
+    kKeyDepthUnit = 4,
+    kKeySurfaceUnit = 5,
+    kGBufferUnit = 6,  // … + 3
+};
+enum Target { kRadianceTarget = 0, kWantedTarget = 1 };
+
+/// Points mend the rim of the grid: they fall back by this share of their depth, so that they only
+/// show where the grid leaves a gap, and not half a pixel beside their place on a slope. Larger
+/// shares would let what is farther show through.
+constexpr float kPointBias = 0.01F;
+
+gl::Defines passDefines() {
+    return {{"RADIANCE_UNIT", static_cast<int>(kRadianceUnit)},
+            {"DISTANCE_UNIT", static_cast<int>(kDistanceUnit)},
+            {"OFFSETS_UNIT", static_cast<int>(kOffsetsUnit)},
+            {"DOUBTFUL_UNIT", static_cast<int>(kDoubtfulUnit)},
+            {"KEY_DEPTH_UNIT", static_cast<int>(kKeyDepthUnit)},
+            {"KEY_SURFACE_UNIT", static_cast<int>(kKeySurfaceUnit)},
+            {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
+            {"kRadianceTarget", static_cast<int>(kRadianceTarget)},
+            {"kWantedTarget", static_cast<int>(kWantedTarget)}};
+}
+
+void setDrawState() {
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);  // reflections in a hollow turn over
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+}
+
+}  // namespace
+
+ShiftedImage::ShiftedImage(glm::ivec2 sizePx)
+    : radiance(gl::Texture::make2D(GL_RGBA16F, sizePx)),
+      depthBuffer(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
+      framebuffer(std::array<const gl::Texture*, 1>{&radiance}, &depthBuffer) {}
+
+std::size_t ShiftedImage::sizeBytes() const {
+    return radiance.sizeBytes() + depthBuffer.sizeBytes();
+}
+
+Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionSettings& settings,
+                           glm::ivec2 sizePx)
+    : settings_(settings),
+      cells_(shaders, sizePx),
+      shift_(shaders, {"reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl"},
+             passDefines()),
+      warp_(shaders, {"reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl"},
+            passDefines()),
+      wantAll_(shaders,
+               {"reflections/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
+               passDefines()),
+      depthBuffer_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
+      noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {
+    noDoubts_.clearToZero();
+}
+
+void Reprojection::setKeyFrame(const ReflectionDepthImage& key) {
+    cells_.classify(key.gbuffer, settings_.silhouette);
+}
+
+void Reprojection::drawGrid(const gl::Program& program, float pointBias) {
+    setDrawState();
+    program.set("isPoints", 0);
+    program.set("pointBias", 0.0F);
+    cells_.drawTriangles();
+    program.set("isPoints", 1);
+    program.set("pointBias", settings_.forward == Forward::Grid ? pointBias : 0.0F);
+    cells_.drawPoints();
+}
+
+void Reprojection::shift(const ReflectionDepthImage& key, const Offsets& offsets,
+                         const gl::Texture* doubtful, ShiftedImage& result) {
+    cells_.list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
+    result.framebuffer.clearColour(kRadianceTarget, glm::vec4(0.0F));
+    result.framebuffer.clearDepth(1.0F);
+    result.framebuffer.bind();
+    shift_.use();
+    key.reflection.radiance.bind(kRadianceUnit);
+    key.reflection.distance.bind(kDistanceUnit);
+    offsets.offset.bind(kOffsetsUnit);
+    (doubtful != nullptr ? *doubtful : noDoubts_).bind(kDoubtfulUnit);
+    key.gbuffer.depth.bind(kKeyDepthUnit);
+    key.gbuffer.surface.bind(kKeySurfaceUnit);
+    shift_.set("hasDoubts", doubtful != nullptr ? 1 : 0);
+    shift_.set("missDistance", key.diagonalM);
+    // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
+    // at rest.
+    shift_.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
+    shift_.set("maxGrowth", settings_.maxGrowth);
+    drawGrid(shift_, kPointBias);
+}
+
+void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radiance,
+                        const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
+                        gl::Texture& wanted) {
+    cells_.list(radiance, CellList::Validity::Alpha, settings_.forward == Forward::Splats);
+    wantAll(gbuffer, wanted);
+    target.distance.clearToZero();
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted},
+                                      &depthBuffer_);
+    framebuffer.clearDepth(1.0F);
+    framebuffer.bind();
+    warp_.use();
+    radiance.bind(kRadianceUnit);
+    key.gbuffer.depth.bind(kKeyDepthUnit);
+    key.gbuffer.surface.bind(kKeySurfaceUnit);
+    gbuffer.bind(warp_, kGBufferUnit);
+    warp_.set(
+        "clipFromKeyPixels",
+        glm::mat4(glm::dmat4(gbuffer.view.clipFromView) * glm::dmat4(gbuffer.view.viewFromWorld) *
+                  glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
+    warp_.set("maxGrowth", settings_.maxGrowth);
+    warp_.set("depthTolerance", settings_.depthTolerance);
+    // z/w = a + b/w: what is kPointBias farther on the same ray has b / (1 + kPointBias).
+    const float b = gbuffer.view.clipFromView[3].z;
+    drawGrid(warp_, b / (1.0F + kPointBias) - b);
+}
+
+void Reprojection::wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted) {
+    wanted.clearToZero();
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&wanted});
+    framebuffer.bind();
+    wantAll_.use();
+    gbuffer.bind(wantAll_, kGBufferUnit);
+    reflective_.begin();
+    wholeImage_.draw();
+    reflective_.end();
+}
+
+std::uint32_t Reprojection::reflectiveSamples() const {
+    return static_cast<std::uint32_t>(reflective_.result());
+}
+
+std::size_t Reprojection::sizeBytes() const {
+    return cells_.sizeBytes() + depthBuffer_.sizeBytes() + noDoubts_.sizeBytes();
+}
+
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,55 @@
+#include "techniques/reflection_reuse/reuse_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "techniques/reflection_reuse/match_check.h"
+#include "techniques/shared/reflections/displayed_errors.h"
+
+namespace gfxrepro::reflection_reuse {
+
+using reflections::HostGBuffer;
+
+namespace {
+
+glm::vec3 dimmed(const HostGBuffer& gbuffer, std::size_t index) {
+    constexpr glm::vec3 kLuminance{0.2126F, 0.7152F, 0.0722F};
+    return glm::vec3(0.05F + 0.3F * glm::dot(gbuffer.diffuse[index], kLuminance));
+}
+
+/// White where `strength` is 0, the pure hue of a direction where it is 1.
+glm::vec3 colorOf(const glm::vec2& direction, float strength) {
+    const float turn = std::atan2(direction.y, direction.x) / glm::two_pi<float>();
+    const float hue = 6.0F * (turn < 0.0F ? turn + 1.0F : turn);
+    const glm::vec3 pure(std::abs(hue - 3.0F) - 1.0F, 2.0F - std::abs(hue - 2.0F),
+                         2.0F - std::abs(hue - 4.0F));
+    return glm::mix(glm::vec3(1.0F), glm::clamp(pure, 0.0F, 1.0F), strength);
+}
+
+}  // namespace
+
+image::ImageF offsetsPicture(const HostGBuffer& key, const std::vector<glm::vec2>& offsets,
+                             int supersampling) {
+    float longestPx = 1.0F;  // shorter ones stay pale
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+        if (!key.isReflective(i) || !isValid(offsets[i])) continue;
+        longestPx = std::max(longestPx, glm::length(offsets[i]));
+    }
+    return reflections::averagedPicture(key, supersampling, [&](std::size_t i) {
+        if (!key.isReflective(i)) return dimmed(key, i);
+        if (!isValid(offsets[i])) return glm::vec3(0.0F);
+        // The root: few samples go far, and most would be white.
+        return colorOf(offsets[i], std::sqrt(glm::length(offsets[i]) / longestPx));
+    });
+}
+
+image::ImageF shiftedPicture(const HostGBuffer& key, const std::vector<glm::vec4>& radiance,
+                             int supersampling) {
+    return reflections::averagedPicture(key, supersampling, [&](std::size_t i) {
+        if (!key.isReflective(i)) return dimmed(key, i);
+        return radiance[i].a > 0.5F ? glm::vec3(radiance[i]) : glm::vec3(1.0F, 0.0F, 0.0F);
+    });
+}
+
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,25 @@
+// A vertex of a grid over the key frame: a pixel centre, by gl_VertexID.
+
+layout(binding = RADIANCE_UNIT) uniform sampler2D radiance;
+layout(binding = KEY_DEPTH_UNIT) uniform sampler2D keyDepth;
+layout(binding = KEY_SURFACE_UNIT) uniform usampler2D keySurface;
+uniform float pointBias;
+
+out GridPoint {
+    vec3 radiance;
+    float trust;                 // 1: not doubtful
+    noperspective vec2 placePx;  // in the key frame
+    flat uint reflector;
+} point;
+
+ivec2 vertexPixel() {
+    int width = textureSize(keyDepth, 0).x;
+    return ivec2(gl_VertexID % width, gl_VertexID / width);
+}
+
+void passPoint(ivec2 pixel, float trust) {
+    point.radiance = texelFetch(radiance, pixel, 0).rgb;
+    point.trust = trust;
+    point.placePx = vec2(pixel) + 0.5;
+    point.reflector = texelFetch(keySurface, pixel, 0).r & 0xFFFFu;
+}

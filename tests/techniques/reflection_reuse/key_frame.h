@@ -1,0 +1,151 @@
+// Key frames of small scenes, drawn on the device and traced with Embree.
+#pragma once
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "techniques/reflection_reuse/pixel_matcher.h"
+#include "techniques/shared/reflections/embree_tracer.h"
+#include "tests/techniques/reflections/traced_scenes.h"
+
+namespace gfxrepro::reflection_reuse {
+
+using reflections::addPart;
+
+struct KeyFrame {
+    reflections::ReflectiveScene scene;
+    reflections::GpuObjects objects;
+    reflections::EnvironmentMap map;
+    ReflectionDepthImage image;
+    HostReflectionDepthImage host;
+
+    KeyFrame(const gl::ShaderLibrary& shaders, const scene::Scene& source,
+             const scene::Camera& camera, glm::ivec2 sizePx)
+        : scene(source),
+          objects(scene),
+          map(shaders, scene.boundsWorld().centre()),
+          image(depth_images::viewOf(camera, sizePx), scene.diagonalM()) {
+        map.render(objects);
+        reflections::GBufferRenderer(shaders).render(objects, image.gbuffer);
+        gl::Profiler profiler(true);
+        reflections::EmbreeTracer tracer(scene, map, {});
+        tracer.update(objects, profiler);
+        tracer.trace(image.gbuffer, nullptr, image.reflection, profiler);
+        host = readReflectionDepthImage(image);
+    }
+    glm::ivec2 sizePx() const { return image.gbuffer.view.sizePx; }
+    const glm::vec3& eyeWorld() const { return image.gbuffer.view.eyeWorld; }
+};
+
+/// Offsets read back.
+struct HostOffsets {
+    std::vector<glm::vec2> offset;
+    std::vector<std::uint8_t> steps;
+
+    explicit HostOffsets(const Offsets& offsets)
+        : steps(offsets.steps.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1)) {
+        const std::vector<float> values = offsets.offset.read<float>(GL_RG, GL_FLOAT, 2);
+        for (std::size_t i = 0; i < values.size(); i += 2) {
+            offset.emplace_back(values[i], values[i + 1]);
+        }
+    }
+    bool isValid(std::size_t index) const { return offset[index].x != kInvalidOffset; }
+    std::optional<glm::vec2> at(std::size_t index) const {
+        return isValid(index) ? std::optional(offset[index]) : std::nullopt;
+    }
+};
+
+/// Part of a sphere, from the top (polar angle 0) to `polarRad`, with exact normals: outwards, or
+/// inwards for a negative radius, which also turns it upside down: a bowl.
+inline scene::Mesh dome(const glm::vec3& centre, float radius, float polarRad) {
+    constexpr unsigned kAround = 96, kDown = 48;
+    scene::Mesh mesh;
+    for (unsigned j = 0; j <= kDown; ++j) {
+        for (unsigned i = 0; i <= kAround; ++i) {
+            const float longitude = glm::two_pi<float>() * static_cast<float>(i) / kAround;
+            const float polar = polarRad * static_cast<float>(j) / kDown;
+            const glm::vec3 up(std::sin(polar) * std::cos(longitude), std::cos(polar),
+                               std::sin(polar) * std::sin(longitude));
+            mesh.positions.push_back(centre + radius * up);
+            mesh.normals.push_back(up);
+        }
+    }
+    for (unsigned j = 0; j < kDown; ++j) {
+        for (unsigned i = 0; i < kAround; ++i) {
+            const unsigned a = j * (kAround + 1) + i, b = a + kAround + 1;
+            mesh.triangles.emplace_back(a, b + 1, b);
+            mesh.triangles.emplace_back(a, a + 1, b + 1);
+        }
+    }
+    return mesh;
+}
+
+const scene::Box kRoom{glm::vec3(-2.0F, 0.0F, -2.0F), glm::vec3(2.0F, 2.5F, 2.0F)};
+
+/// Walls of six colours; the floor too is matt.
+inline scene::Scene mattRoom() {
+    scene::Scene scene;
+    scene.name = "room";
+    using reflections::matt;
+    reflections::addRoom(
+        scene, kRoom,
+        {matt({0.9F, 0.2F, 0.2F}), matt({0.2F, 0.8F, 0.3F}), matt({0.6F, 0.5F, 0.4F}),
+         matt({0.8F, 0.8F, 0.8F}), matt({0.3F, 0.4F, 0.9F}), matt({0.9F, 0.8F, 0.3F})});
+    return scene;
+}
+
+inline scene::Scene roomWithMirrorFloor() {
+    scene::Scene scene = mattRoom();
+    scene.materials[2] = reflections::mirror();
+    return scene;
+}
+inline scene::Camera aboveFloor() {
+    return reflections::camera({0.3F, 1.3F, 1.6F}, {0.0F, 0.3F, -0.6F});
+}
+
+/// A convex reflector.
+inline scene::Scene roomWithBall() {
+    scene::Scene scene = mattRoom();
+    addPart(scene, dome({0.0F, 0.9F, 0.0F}, 0.6F, glm::pi<float>()), reflections::mirror());
+    return scene;
+}
+inline scene::Camera beforeBall() {
+    return reflections::camera({0.2F, 1.2F, 1.7F}, {0.0F, 0.9F, 0.0F});
+}
+
+/// A shallow concave reflector, seen from above; eye and room are nearer than its focus. Deeper
+/// ones gather all rays near the eye, and searches end far from the best sample (README).
+inline scene::Scene roomWithBowl() {
+    scene::Scene scene = mattRoom();
+    addPart(scene, dome({0.0F, 8.2F, 0.0F}, -8.0F, 0.19F), reflections::mirror());
+    return scene;
+}
+inline scene::Camera aboveBowl() {
+    return reflections::camera({0.3F, 1.2F, 1.5F}, {0.0F, 0.2F, 0.0F});
+}
+
+/// Floor, ball and bowl: three reflectors.
+inline scene::Scene roomWithAll() {
+    scene::Scene scene = roomWithMirrorFloor();
+    addPart(scene, dome({-0.6F, 0.5F, -0.2F}, 0.4F, glm::pi<float>()), reflections::mirror());
+    addPart(scene, dome({0.7F, 2.3F, -0.3F}, -2.0F, 0.3F), reflections::mirror());
+    return scene;
+}
+
+class KeyFrameTest : public test::GlTest {
+  protected:
+    KeyFrame keyFrame(const scene::Scene& source, const scene::Camera& camera,
+                      glm::ivec2 sizePx) const {
+        return KeyFrame(shaders, source, camera, sizePx);
+    }
+    Offsets match(const KeyFrame& key, const glm::vec3& eyeWorld,
+                  const MatchingSettings& settings = {}, const Offsets* previous = nullptr) const {
+        Offsets offsets(key.sizePx());
+        PixelMatcher(shaders, settings).match(key.image, eyeWorld, previous, offsets);
+        return offsets;
+    }
+
+    gl::ShaderLibrary shaders{dataFolder("shaders")};
+};
+
+}  // namespace gfxrepro::reflection_reuse

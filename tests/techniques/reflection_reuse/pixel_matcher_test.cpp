@@ -1,0 +1,319 @@
+// Algorithm 9 of [xie2017] on the device, against mirrors that can be worked out by hand and
+// against the search on the host.
+#include <gtest/gtest.h>
+
+#include "tests/techniques/reflection_reuse/key_frame.h"
+
+namespace gfxrepro::reflection_reuse {
+namespace {
+
+constexpr glm::ivec2 kSizePx(128, 96);
+
+using PixelMatcherTest = KeyFrameTest;
+using reflections::forEachReflective;
+
+const MatchingSettings kOrders[] = {{.matching = Matching::FirstOrder},
+                                    {.matching = Matching::SecondOrder}};
+
+/// Where the eye sees the reflection of a point in the plane y = `height`.
+glm::vec3 seenInPlane(float height, const glm::vec3& reflected, const glm::vec3& eyeWorld) {
+    const glm::dvec3 image(reflected.x, 2.0 * height - reflected.y, reflected.z);
+    const glm::dvec3 eye(eyeWorld);
+    return image + (eye - image) * ((height - image.y) / (eye.y - image.y));
+}
+/// In the key frame's image, the plane being the floor.
+glm::vec2 reflectionInFloor(const KeyFrame& key, const glm::vec3& reflected,
+                            const glm::vec3& eyeWorld) {
+    const glm::vec3 point = seenInPlane(0.0F, reflected, eyeWorld);
+    return depth_images::project(key.image.gbuffer.view, glm::vec3(point)).value();
+}
+
+/// How many of the samples within `radiusPx` of a position, a square, are of a reflector.
+int countNear(const HostReflectionDepthImage& key, const glm::vec2& positionPx, int radiusPx,
+              int reflector) {
+    const glm::ivec2 centre(glm::floor(positionPx));
+    int count = 0;
+    for (int y = centre.y - radiusPx; y <= centre.y + radiusPx; ++y) {
+        for (int x = centre.x - radiusPx; x <= centre.x + radiusPx; ++x) {
+            const glm::ivec2 size = key.gbuffer.view.sizePx;
+            if (x < 0 || y < 0 || x >= size.x || y >= size.y) continue;
+            count += key.gbuffer.reflector(key.gbuffer.indexOf({x, y})) == reflector ? 1 : 0;
+        }
+    }
+    return count;
+}
+
+TEST_F(PixelMatcherTest, AnEyeThatStaysKeepsEverySample) {
+    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kSizePx);
+    for (const MatchingSettings& settings : kOrders) {
+        const HostOffsets offsets(match(key, key.eyeWorld(), settings));
+        int count = 0;
+        forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
+            ++count;
+            EXPECT_EQ(offsets.steps[index], 0);
+            const bool isFirst = settings.matching == Matching::FirstOrder;
+            EXPECT_LE(glm::length(offsets.offset[index]), isFirst ? 0.0F : 0.01F);
+        });
+        EXPECT_GT(count, 5000);
+    }
+}
+
+TEST_F(PixelMatcherTest, PlanarMirrorsMatchWhereTheyShowThePoint) {
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    for (const glm::vec3& move : {glm::vec3(0.15F, 0, 0), glm::vec3(-0.2F, 0.1F, 0),
+                                  glm::vec3(0.1F, -0.15F, -0.3F), glm::vec3(0, 0.3F, 0.2F)}) {
+        const glm::vec3 eye = key.eyeWorld() + move;
+        for (const MatchingSettings& settings : kOrders) {
+            const bool isFirst = settings.matching == Matching::FirstOrder;
+            const HostOffsets offsets(match(key, eye, settings));
+            int inside = 0;
+            float movedPx = 0.0F, errorSumPx = 0.0F;
+            forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+                const glm::vec2 expected =
+                    reflectionInFloor(key, key.host.reflectedPositionWorld(pixel), eye);
+                if (countNear(key.host, expected, 0, 1) == 0) return;
+                ++inside;
+                ASSERT_TRUE(offsets.isValid(index)) << pixel.x << ", " << pixel.y;
+                const glm::vec2 found = glm::vec2(pixel) + 0.5F + offsets.offset[index];
+                const float errorPx = glm::length(found - expected);
+                // The worst are a pixel from a wall, where what is reflected is as near as the next
+                // sample.
+                EXPECT_LE(errorPx, isFirst ? 1.0F : 0.4F);
+                errorSumPx += errorPx;
+                movedPx = std::max(movedPx, glm::length(offsets.offset[index]));
+            });
+            EXPECT_GT(inside, 3000);
+            EXPECT_GT(movedPx, 5.0F);
+            // Whole pixels are 0.38 away from anywhere in the mean.
+            EXPECT_LE(errorSumPx / static_cast<float>(inside), isFirst ? 0.42F : 0.02F);
+        }
+    }
+}
+
+TEST_F(PixelMatcherTest, ReflectionsThatLeaveTheReflectorAreInvalid) {
+    scene::Scene source = mattRoom();
+    addPart(source, reflections::rectangle({0, 0, 0.8F}, {0, 0, 1.2F}, {0.7F, 0, 0}),
+            reflections::mirror());
+    source.instances[2].worldFromMesh[3].y = -0.01F;  // the floor, below the mirror
+    const KeyFrame key = keyFrame(source, aboveFloor(), kSizePx);
+    for (const MatchingSettings& settings : kOrders) {
+        int outOfMirror = 0, outOfImage = 0;
+        for (const glm::vec3& move : {glm::vec3(0.4F, 0.3F, -0.5F), glm::vec3(0.4F, -0.2F, 0.5F)}) {
+            const glm::vec3 eye = key.eyeWorld() + move;
+            const HostOffsets offsets(match(key, eye, settings));
+            forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+                const glm::vec2 expected =
+                    reflectionInFloor(key, key.host.reflectedPositionWorld(pixel), eye);
+                // A match that is less than two samples beyond the last one may count.
+                if (countNear(key.host, expected, 2, 1) > 0) return;
+                EXPECT_FALSE(offsets.isValid(index)) << pixel.x << ", " << pixel.y;
+                const bool isInImage = expected.x > 0.0F && expected.y > 0.0F &&
+                                       expected.x < static_cast<float>(kSizePx.x) &&
+                                       expected.y < static_cast<float>(kSizePx.y);
+                (isInImage ? outOfMirror : outOfImage) += 1;
+            });
+        }
+        EXPECT_GT(outOfMirror, 100);
+        EXPECT_GT(outOfImage, 100);
+    }
+}
+
+/// Two tiles in one plane: reflections slide from one onto the other.
+TEST_F(PixelMatcherTest, OtherReflectorsAreNeverMatched) {
+    constexpr float kHeight = 0.05F;
+    scene::Scene source = mattRoom();
+    addPart(source, reflections::rectangle({-1, kHeight, 0}, {0, 0, 2}, {1, 0, 0}),
+            reflections::mirror());
+    addPart(source, reflections::rectangle({1, kHeight, 0}, {0, 0, 2}, {1, 0, 0}),
+            reflections::mirror());
+    const KeyFrame key = keyFrame(source, aboveFloor(), kSizePx);
+    const glm::vec3 eye = key.eyeWorld() + glm::vec3(0.5F, 0, 0);
+    for (const MatchingSettings& settings : kOrders) {
+        const HostOffsets offsets(match(key, eye, settings));
+        int valid = 0, invalid = 0;
+        forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+            const int reflector = key.host.gbuffer.reflector(index);
+            if (offsets.isValid(index)) {
+                ++valid;
+                // Between samples a match may lie on the border of its own.
+                const glm::vec2 end = glm::vec2(pixel) + 0.5F + offsets.offset[index];
+                const glm::vec2 x(0.02F, 0), y(0, 0.02F);
+                EXPECT_GT(countNear(key.host, end - x - y, 0, reflector) +
+                              countNear(key.host, end + x - y, 0, reflector) +
+                              countNear(key.host, end - x + y, 0, reflector) +
+                              countNear(key.host, end + x + y, 0, reflector),
+                          0);
+            }
+            // Onto the other tile, more than a sample beyond the edge.
+            const float x = seenInPlane(kHeight, key.host.reflectedPositionWorld(pixel), eye).x;
+            if ((reflector == 1) != (x < 0.0F) && std::abs(x) > 0.1F) {
+                EXPECT_FALSE(offsets.isValid(index));
+                ++invalid;
+            }
+        });
+        EXPECT_GT(valid, 2000);
+        EXPECT_GT(invalid, 100);
+    }
+}
+
+/// One object: a far panel, and before it a near one that hides its middle.
+TEST_F(PixelMatcherTest, SearchesDoNotCrossASilhouette) {
+    scene::Scene panels;
+    addPart(panels, reflections::rectangle({0, 1.2F, -1.5F}, {1.5F, 0, 0}, {0, 1, 0}), {});
+    addPart(panels, reflections::rectangle({0, 1.2F, -0.5F}, {0.2F, 0, 0}, {0, 1, 0}), {});
+    scene::Scene source = mattRoom();
+    addPart(source, scene::flattened(panels), reflections::mirror());
+    const KeyFrame key =
+        keyFrame(source, reflections::camera({0, 1.2F, 1.5F}, {0, 1.2F, 0}), kSizePx);
+    const glm::vec3 eye = key.eyeWorld() + glm::vec3(0.3F, 0, 0);
+    const HostOffsets offsets(match(key, eye));
+    const reflections::HostGBuffer& gbuffer = key.host.gbuffer;
+    int stayed = 0, stopped = 0;
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const float depthM = gbuffer.depthM[index];
+        // The analytic match, in this sample's own panel.
+        const float planeZ = gbuffer.positionWorld(pixel).z;
+        glm::vec3 image = key.host.reflectedPositionWorld(pixel);
+        image.z = 2.0F * planeZ - image.z;
+        const glm::vec3 point = image + (eye - image) * ((planeZ - image.z) / (eye.z - image.z));
+        const glm::vec2 expected = depth_images::project(key.image.gbuffer.view, point).value();
+        if (countNear(key.host, expected, 0, 1) == 0) return;
+        const std::size_t there = gbuffer.indexOf(glm::ivec2(glm::floor(expected)));
+        if (offsets.isValid(index)) {
+            const glm::ivec2 end = pixel + glm::ivec2(offsets.offset[index]);
+            EXPECT_NEAR(gbuffer.depthM[gbuffer.indexOf(end)], depthM, 0.01F * depthM);
+            ++stayed;
+        } else if (std::abs(gbuffer.depthM[there] - depthM) > 0.1F) {
+            ++stopped;  // the match is hidden by the other panel
+        }
+    });
+    EXPECT_GT(stayed, 2000);
+    EXPECT_GT(stopped, 50);
+}
+
+TEST_F(PixelMatcherTest, DeviceAndHostAgree) {
+    const glm::ivec2 sizePx(96, 72);
+    int count = 0, equal = 0;
+    const auto compare = [&](const scene::Scene& source, const scene::Camera& camera) {
+        const KeyFrame key = keyFrame(source, camera, sizePx);
+        const glm::vec3 moved = key.eyeWorld() + glm::vec3(0.08F, 0.05F, -0.06F);
+        const glm::vec3 movedAgain = moved + glm::vec3(0.03F, -0.04F, 0.05F);
+        for (const MatchingSettings& settings : kOrders) {
+            const Offsets first = match(key, moved, settings);
+            const HostOffsets previous(first);
+            const HostOffsets offsets(match(key, movedAgain, settings, &first));
+            forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+                const HostMatch host =
+                    matchOnHost(key.host, pixel, movedAgain, previous.at(index), settings);
+                ++count;
+                const std::optional<glm::vec2> device = offsets.at(index);
+                const bool isEqual = host.steps == offsets.steps[index] &&
+                                     host.offset.has_value() == device.has_value() &&
+                                     // The device keeps offsets as halves.
+                                     (!device || glm::length(*device - *host.offset) <= 0.01F);
+                equal += isEqual ? 1 : 0;
+            });
+        }
+    };
+    compare(roomWithAll(), aboveFloor());
+    compare(roomWithBall(), beforeBall());
+    compare(roomWithBowl(), aboveBowl());
+    RecordProperty("differing", count - equal);
+    EXPECT_GT(count, 10000);
+    // A search of second order ends where its step is half a pixel, to the last bit.
+    EXPECT_GE(equal, 0.999 * count) << count - equal << " of " << count;
+}
+
+TEST_F(PixelMatcherTest, SearchesBeginWhereTheLastOneEnded) {
+    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kSizePx);
+    const PixelMatcher matcher(shaders, {});
+    Offsets previous(kSizePx), current(kSizePx), fresh(kSizePx);
+    matcher.match(key.image, key.eyeWorld(), nullptr, previous);
+    double steps = 0.0, freshSteps = 0.0;
+    constexpr int kFrames = 12;
+    for (int frame = 1; frame <= kFrames; ++frame) {
+        // About half a pixel of the floor a frame.
+        const glm::vec3 eye = key.eyeWorld() + static_cast<float>(frame) * glm::vec3(0.01F, 0, 0);
+        matcher.match(key.image, eye, &previous, current);
+        matcher.match(key.image, eye, nullptr, fresh);
+        steps += matcher.counts(key.image, current).meanSteps() / kFrames;
+        freshSteps += matcher.counts(key.image, fresh).meanSteps() / kFrames;
+        std::swap(previous, current);
+    }
+    RecordProperty("mean_steps", std::to_string(steps));
+    EXPECT_GT(steps, 0.0);
+    EXPECT_LE(steps, 1.5);
+    EXPECT_GT(freshSteps, 2.0 * steps);
+    // Both ways lead to the same matches.
+    const HostOffsets a(previous), b(fresh);
+    int count = 0, same = 0;
+    forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
+        ++count;
+        same += a.offset[index] == b.offset[index] ? 1 : 0;
+    });
+    EXPECT_GE(same, 0.97 * count) << same << " of " << count;
+}
+
+TEST_F(PixelMatcherTest, LongSearchesAreInvalid) {
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    const glm::vec3 eye = key.eyeWorld() + glm::vec3(0.3F, 0, 0);
+    const HostOffsets all(match(key, eye));
+    const HostOffsets some(match(key, eye, {.maxSteps = 3}));
+    int longer = 0, shorter = 0;
+    forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
+        if (all.steps[index] > 3) {
+            EXPECT_FALSE(some.isValid(index));
+            ++longer;
+        } else {
+            EXPECT_EQ(some.offset[index], all.offset[index]);
+            ++shorter;
+        }
+    });
+    EXPECT_GT(longer, 100);
+    EXPECT_GT(shorter, 100);
+}
+
+TEST_F(PixelMatcherTest, CountsAreSumsOverReflectiveSamples) {
+    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), {101, 67});
+    const PixelMatcher matcher(shaders, {});
+    Offsets offsets(key.sizePx());
+    matcher.match(key.image, key.eyeWorld() + glm::vec3(0.2F, 0.1F, 0), nullptr, offsets);
+    const MatchingCounts counts = matcher.counts(key.image, offsets);
+    const HostOffsets host(offsets);
+    std::uint32_t reflective = 0, invalid = 0, steps = 0;
+    forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
+        ++reflective;
+        invalid += host.isValid(index) ? 0 : 1;
+        steps += host.steps[index];
+    });
+    EXPECT_GT(invalid, 0U);
+    EXPECT_GT(steps, 0U);
+    EXPECT_EQ(counts.reflectiveSamples, reflective);
+    EXPECT_EQ(counts.invalidSamples, invalid);
+    EXPECT_EQ(counts.steps, steps);
+    EXPECT_EQ(counts.meanSteps(), static_cast<double>(steps) / reflective);
+    EXPECT_EQ(counts.invalidShare(), static_cast<double>(invalid) / reflective);
+}
+
+TEST_F(PixelMatcherTest, WithoutReflectorsNothingIsValid) {
+    const KeyFrame key = keyFrame(mattRoom(), aboveFloor(), kSizePx);
+    const PixelMatcher matcher(shaders, {});
+    Offsets offsets(kSizePx);
+    matcher.match(key.image, key.eyeWorld(), nullptr, offsets);
+    const HostOffsets host(offsets);
+    for (std::size_t i = 0; i < host.offset.size(); ++i) {
+        EXPECT_EQ(host.offset[i], glm::vec2(kInvalidOffset));
+        EXPECT_EQ(host.steps[i], 0);
+    }
+    const MatchingCounts counts = matcher.counts(key.image, offsets);
+    EXPECT_EQ(counts.reflectiveSamples, 0U);
+    EXPECT_EQ(counts.meanSteps(), 0.0);
+    EXPECT_EQ(counts.invalidShare(), 0.0);
+}
+
+TEST_F(PixelMatcherTest, OffsetsTakeSixBytesASampleOrFive) {
+    EXPECT_EQ(Offsets(kSizePx).sizeBytes(), std::size_t{128 * 96 * 5});
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflection_reuse

@@ -1,0 +1,319 @@
+// The technique as a whole: parameters, metrics, methods against each other, the choice of key
+// frames.
+#include "techniques/reflection_reuse/reflection_reuse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/core/files.h"
+#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/clustered_reflections/room.h"
+#include "tests/techniques/technique_recorder.h"
+
+namespace gfxrepro::reflection_reuse {
+namespace {
+
+using test::errorText;
+
+config::Params paramsOf(const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'reflection_reuse'");
+}
+
+scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
+    return {.position = position, .target = target, .verticalFovRad = 0.9F};
+}
+
+/// The room of chapter 4's tests: a mirror for a floor and a bent column. `walk` goes sideways,
+/// `rest` nowhere, `jump` looks down on
+/// one corner of the mirror and then on others.
+scene::Scene roomWithPaths() {
+    scene::Scene scene = clustered_reflections::roomWithMirrors();
+    const scene::Camera begin = cameraAt({0.2F, 1.2F, 1.4F}, {0, 0.35F, -0.6F});
+    const scene::Camera end = cameraAt({-0.7F, 1.1F, 1.3F}, {0, 0.35F, -0.6F});
+    scene.paths = {{"walk", {begin, end}},
+                   {"rest", {begin}},
+                   {"jump",
+                    {cameraAt({1.2F, 0.5F, 1.2F}, {1.1F, 0, 1.1F}),
+                     cameraAt({-1.2F, 0.5F, 1.2F}, {-1.1F, 0, 1.1F})}}};
+    return scene;
+}
+
+class ReflectionReuseTest : public test::GlTest {
+  protected:
+    /// What is recorded of frames 0 … frameCount − 1, each rendered `repeats` times.
+    std::vector<test::MetricRecorder> recorded(const std::string& yaml, const scene::Scene* scene,
+                                               int frameCount, int repeats = 1) {
+        config::Params params = paramsOf(yaml);
+        const auto technique = kReflectionReuse.create(params);
+        test::NoScenes scenes;
+        technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
+        technique->setup(context);
+        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
+        std::vector<test::MetricRecorder> frames(static_cast<std::size_t>(frameCount));
+        for (int frame = 0; frame < frameCount; ++frame) {
+            technique::FrameContext frameContext{frame, frameCount, profiler_};
+            for (int repeat = 0; repeat < repeats; ++repeat) {
+                technique->render(frameContext);
+                passes_.clear();
+                for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+            }
+            technique->record(frames[static_cast<std::size_t>(frame)]);
+            EXPECT_TRUE(profiler_.collect().empty()) << "recording is not timed by pass";
+        }
+        return frames;
+    }
+    static double meanOf(const std::vector<test::MetricRecorder>& frames, const char* metric) {
+        double sum = 0.0;
+        for (const test::MetricRecorder& frame : frames) sum += frame.metrics.at(metric);
+        return sum / static_cast<double>(frames.size());
+    }
+    /// K for a key frame, r for one that reuses it.
+    static std::string kindsOf(const std::vector<test::MetricRecorder>& frames) {
+        std::string kinds;
+        for (const test::MetricRecorder& frame : frames) {
+            kinds += frame.metrics.at("is_key_frame") == 1.0 ? 'K' : 'r';
+        }
+        return kinds;
+    }
+
+    gl::ShaderLibrary shaders_{dataFolder("shaders")};
+    gl::Profiler profiler_{true};
+    std::vector<std::string> passes_;  // of the last frame
+    scene::Scene room_ = roomWithPaths();
+};
+
+TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = paramsOf(yaml);
+            ReflectionReuse technique(params);
+        });
+    };
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("{method: direct, forward: splats, threshold: 1}"), "no error");
+    EXPECT_EQ(message("{threshold: 1.5}"),
+              "case.yaml:1:13: technique 'reflection_reuse': threshold is 1.5; allowed: 0 … 1 1");
+    EXPECT_EQ(message("{method: ray_traced, threshold: 0.3}"),
+              "case.yaml:1:33: 'threshold' needs 'method: reuse' or 'method: direct'");
+    EXPECT_EQ(message("{method: ray_traced, seam_px: 1}"),
+              "case.yaml:1:31: 'seam_px' needs 'method: reuse' or 'method: direct'");
+    EXPECT_EQ(message("{method: direct, matching: second_order}"),
+              "case.yaml:1:28: 'matching' needs 'method: reuse'");
+    EXPECT_EQ(message("{method: direct, exhaustive_samples: 9}"),
+              "case.yaml:1:38: 'exhaustive_samples' needs 'method: reuse'");
+    EXPECT_EQ(message("{path_frames: 50, first_frame: 50}"),
+              "case.yaml:1:32: 'first_frame' is 50; the path has frames 0 … 49 ('path_frames')");
+    EXPECT_EQ(
+        message("{path_frames: 0}"),
+        "case.yaml:1:15: technique 'reflection_reuse': path_frames is 0; allowed: 1 … 1000000 "
+        "frames");
+    EXPECT_EQ(message("{tracer: optix}"),
+              "case.yaml:1:10: technique 'reflection_reuse': tracer is 'optix'; allowed: compute "
+              "| embree | clustered");
+    EXPECT_EQ(message("{clusters: 5}").substr(0, 14), "case.yaml:1:2:");
+}
+
+TEST_F(ReflectionReuseTest, RefusesScenesWithoutReflectorsUnknownViewsAndFramesBehindThePath) {
+    const auto message = [&](const std::string& yaml, const scene::Scene* scene, int frames = 1) {
+        return errorText([&] { recorded(yaml, scene, frames); });
+    };
+    EXPECT_EQ(message("{}", nullptr), "technique 'reflection_reuse' needs a scene");
+    scene::Scene dull;
+    clustered_reflections::addRoom(dull);
+    EXPECT_EQ(message("{}", &dull),
+              "scene 'room' has no reflectors: no material's roughness is at most 0.4 "
+              "('reflector_roughness')");
+    EXPECT_EQ(message("{view: run}", &room_),
+              "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'jump'; cameras: "
+              "'front', 'ceiling'");
+    EXPECT_EQ(message("{path_frames: 10, first_frame: 8}", &room_, 3),
+              "frames 8 … 10 do not lie on a path of 10 ('first_frame', 'path_frames')");
+}
+
+TEST_F(ReflectionReuseTest, EveryMethodAndTracerRecordsSharesMemoryAndErrors) {
+    for (const char* method : {"reuse", "direct", "ray_traced"}) {
+        for (const char* tracer : {"compute", "embree", "clustered"}) {
+            SCOPED_TRACE(fmt::format("{} {}", method, tracer));
+            const auto frames =
+                recorded(fmt::format("{{method: {}, tracer: {}, path_frames: 40}}", method, tracer),
+                         &room_, 2);
+            EXPECT_EQ(passes_.front(), "diffuse");
+            EXPECT_EQ(passes_.back(), "composite");
+            EXPECT_EQ(std::ranges::count(passes_, "recompute"), 1);
+            const bool isReuse = std::string(method) == "reuse";
+            const bool isTraced = std::string(method) == "ray_traced";
+            EXPECT_EQ(std::ranges::count(passes_, "pixel_matching"), isReuse ? 1 : 0);
+            EXPECT_EQ(std::ranges::count(passes_, "reflection_warp"), isTraced ? 0 : 1);
+            const auto& metrics = frames[1].metrics;
+            EXPECT_GT(metrics.at("reflective_pct"), 20.0);
+            // G-buffer and target have 36 bytes a sample, the output 8 a pixel.
+            EXPECT_GE(metrics.at("memory_bytes"), 64 * 48 * (36 + 8));
+            EXPECT_TRUE(metrics.contains("flip_mean"));
+            EXPECT_TRUE(metrics.contains("psnr_db"));
+            EXPECT_LT(metrics.at("channel_error"), 40.0);
+            EXPECT_EQ(metrics.contains("recomputed_pct"), !isTraced);
+            EXPECT_EQ(metrics.contains("undetected_pct"), !isTraced);
+            EXPECT_EQ(metrics.contains("matching_steps"), isReuse);
+            EXPECT_EQ(metrics.contains("unmatched_pct"), isReuse);
+            EXPECT_EQ(metrics.contains("unshifted_pct"), isReuse);
+            EXPECT_FALSE(metrics.contains("key_frame_interval"));
+            if (isTraced) continue;
+            EXPECT_EQ(kindsOf(frames), "Kr");
+            EXPECT_EQ(frames[0].metrics.at("saved_pct"), 0.0);
+            EXPECT_FALSE(frames[0].metrics.contains("recomputed_pct"));
+            EXPECT_NEAR(metrics.at("saved_pct"), 100.0 - metrics.at("recomputed_pct"), 1e-9);
+        }
+    }
+}
+
+TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
+    EXPECT_EQ(meanOf(recorded("{method: ray_traced, tracer: embree}", &room_, 2), "channel_error"),
+              0.0);
+    // Rays along edges may go either way.
+    EXPECT_LT(meanOf(recorded("{method: ray_traced}", &room_, 2), "channel_error"), 0.5);
+}
+
+TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
+    for (const char* view : {"rest", "front"}) {  // a path of one key; a camera
+        for (const char* method : {"reuse", "direct"}) {
+            SCOPED_TRACE(fmt::format("{} {}", view, method));
+            const auto frames = recorded(
+                fmt::format("{{view: {}, method: {}, tracer: embree}}", view, method), &room_, 3);
+            EXPECT_EQ(kindsOf(frames), "Krr");
+            for (std::size_t i = 1; i < 3; ++i) {
+                EXPECT_EQ(frames[i].metrics.at("recomputed_pct"), 0.0);
+                // Half-precision radiance is interpolated at the very pixel centres.
+                EXPECT_LT(frames[i].metrics.at("channel_error"), 0.05);
+            }
+        }
+    }
+}
+
+TEST_F(ReflectionReuseTest, ReuseIsNearerToTheTruthThanDirectReprojection) {
+    for (const char* forward : {"grid", "splats"}) {
+        SCOPED_TRACE(forward);
+        const auto error = [&](const char* method) {
+            return meanOf(recorded(fmt::format("{{method: {}, forward: {}, tracer: embree, "
+                                               "threshold: 1, path_frames: 12}}",
+                                               method, forward),
+                                   &room_, 8),
+                          "channel_error");
+        };
+        // Both resample stripes of few pixels; where they are is what reuse has right.
+        EXPECT_LT(1.25 * error("reuse"), error("direct"));
+    }
+}
+
+TEST_F(ReflectionReuseTest, AJumpIsRecomputedAndMakesTheNextFrameAKeyFrame) {
+    const auto frames = recorded("{view: jump, path_frames: 3, tracer: embree}", &room_, 3);
+    EXPECT_EQ(kindsOf(frames), "KrK");
+    EXPECT_GT(frames[1].metrics.at("recomputed_pct"), 60.0);
+    EXPECT_FALSE(frames[0].metrics.contains("key_frame_interval"));
+    EXPECT_EQ(frames[2].metrics.at("key_frame_interval"), 2.0);
+    // What was traced is right, whatever the key frame showed.
+    EXPECT_EQ(frames[2].metrics.at("channel_error"), 0.0);
+    EXPECT_LT(frames[1].metrics.at("channel_error"), 8.0);
+}
+
+TEST_F(ReflectionReuseTest, TheThresholdDecidesWhatIsAKeyFrame) {
+    const auto kinds = [&](const char* options) {
+        return kindsOf(
+            recorded(fmt::format("{{path_frames: 40, errors: false, {}}}", options), &room_, 6));
+    };
+    EXPECT_EQ(kinds("threshold: 0"), "KrKrKr");  // every frame recomputes some
+    EXPECT_EQ(kinds("threshold: 1"), "Krrrrr");
+    EXPECT_EQ(kinds("threshold: 0, view: rest, method: direct"), "Krrrrr");  // 0 is not more
+}
+
+// The runner warms up on the first frame and may repeat each.
+TEST_F(ReflectionReuseTest, RenderingAFrameAgainChangesNothing) {
+    for (const char* options :
+         {"threshold: 0", "threshold: 1", "matching: second_order, threshold: 1",
+          "method: direct, threshold: 0"}) {
+        SCOPED_TRACE(options);
+        const std::string yaml =
+            fmt::format("{{path_frames: 40, tracer: embree, pictures: true, {}}}", options);
+        const auto once = recorded(yaml, &room_, 4);
+        const auto thrice = recorded(yaml, &room_, 4, 3);
+        for (std::size_t i = 0; i < once.size(); ++i) {
+            SCOPED_TRACE(i);
+            EXPECT_EQ(once[i].metrics, thrice[i].metrics);
+            ASSERT_EQ(once[i].images.size(), thrice[i].images.size());
+            for (const auto& [name, image] : once[i].images) {
+                EXPECT_TRUE(std::ranges::equal(image.values(), thrice[i].images.at(name).values()))
+                    << name;
+            }
+        }
+    }
+}
+
+TEST_F(ReflectionReuseTest, FramesLieOnThePathWhereAsked) {
+    const auto result = [&](const char* options, std::size_t frame) {
+        const auto frames = recorded(
+            fmt::format("{{method: ray_traced, errors: false, pictures: true, {}}}", options),
+            &room_, 2);
+        return frames[frame].images.at("result");
+    };
+    const image::ImageF third = result("path_frames: 10, first_frame: 3", 0);
+    EXPECT_EQ(third, result("path_frames: 10, first_frame: 2", 1));
+    EXPECT_EQ(third, result("path_frames: 20, first_frame: 6", 0));
+    EXPECT_NE(third, result("path_frames: 10, first_frame: 2", 0));
+}
+
+TEST_F(ReflectionReuseTest, ViewsWithoutReflectorsRecordNothingReflected) {
+    for (const char* method : {"reuse", "direct", "ray_traced"}) {
+        SCOPED_TRACE(method);
+        const auto frames = recorded(
+            fmt::format("{{view: ceiling, pictures: true, method: {}}}", method), &room_, 3);
+        for (const test::MetricRecorder& frame : frames) {
+            EXPECT_EQ(frame.metrics.at("reflective_pct"), 0.0);
+            EXPECT_EQ(frame.metrics.at("channel_error_image"), 0.0);
+            EXPECT_FALSE(frame.metrics.contains("saved_pct"));
+        }
+        if (std::string(method) == "ray_traced") continue;
+        EXPECT_EQ(kindsOf(frames), "Krr");
+        EXPECT_EQ(frames[1].metrics.at("recomputed_pct"), 0.0);
+    }
+}
+
+TEST_F(ReflectionReuseTest, MovedObjectsAreRecomputedWhereAsked) {
+    const auto frames = [&](const char* options) {
+        return recorded(fmt::format("{{view: rest, motion: true, tracer: embree, threshold: 1, "
+                                    "path_frames: 40, {}}}",
+                                    options),
+                        &room_, 5);
+    };
+    const auto unnoticed = frames("moved_objects: false");
+    const auto recomputed = frames("moved_objects: true");
+    EXPECT_GT(meanOf(unnoticed, "channel_error"), 0.1);
+    EXPECT_LT(3.0 * meanOf(recomputed, "channel_error"), meanOf(unnoticed, "channel_error"));
+    EXPECT_GT(recomputed[4].metrics.at("recomputed_pct"),
+              unnoticed[4].metrics.at("recomputed_pct"));
+}
+
+TEST_F(ReflectionReuseTest, MatchesAreComparedWithTheWholeReflector) {
+    const auto frames = recorded(
+        "{exhaustive_samples: 200, errors: false, path_frames: 40, threshold: 1}", &room_, 3);
+    EXPECT_FALSE(frames[0].metrics.contains("wrong_minimum_pct"));
+    // A plane has one minimum, and the column bends one way.
+    EXPECT_LT(frames[2].metrics.at("wrong_minimum_pct"), 5.0);
+    EXPECT_LT(frames[2].metrics.at("unmatched_pct"), 50.0);
+}
+
+TEST_F(ReflectionReuseTest, ShowsPicturesOfEveryStep) {
+    const auto frames = recorded("{pictures: true, path_frames: 40, supersampling: 2}", &room_, 2);
+    const char* expected[] = {"error",  "error_60", "recomputed", "reflection",
+                              "result", "truth",    "undetected"};
+    for (const char* name : expected) EXPECT_TRUE(frames[0].images.contains(name)) << name;
+    EXPECT_EQ(frames[0].images.size(), std::size(expected));
+    for (const char* name : expected) EXPECT_TRUE(frames[1].images.contains(name)) << name;
+    for (const char* name : {"key_frame", "offsets", "shifted"}) {
+        ASSERT_TRUE(frames[1].images.contains(name)) << name;
+        EXPECT_EQ(frames[1].images.at(name).width(), 64) << name;
+    }
+    EXPECT_EQ(frames[1].images.at("key_frame"), frames[0].images.at("result"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflection_reuse

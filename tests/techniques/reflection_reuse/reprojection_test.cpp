@@ -1,0 +1,344 @@
+// Shift and warp of key frames made by hand.
+#include "techniques/reflection_reuse/reprojection.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "tests/techniques/reflections/traced_scenes.h"
+
+namespace gfxrepro::reflection_reuse {
+namespace {
+
+constexpr glm::ivec2 kSize{28, 24};
+/// Interpolated colours in [0, 1] are kept in halves: 11 bits.
+constexpr float kHalfRounding = 1e-3F;
+
+std::size_t at(int x, int y) {
+    return static_cast<std::size_t>(y * kSize.x + x);
+}
+bool isInside(int x, int y) {
+    return x >= 0 && y >= 0 && x < kSize.x && y < kSize.y;
+}
+template <class Action>
+void forEachPixel(Action&& action) {
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) action(x, y);
+    }
+}
+
+/// Texels of a key frame; one mirror over the whole image, every colour another one.
+struct Samples {
+    std::vector<std::uint32_t> surface = std::vector<std::uint32_t>(at(0, kSize.y), 1U);
+    std::vector<float> depthM = std::vector<float>(at(0, kSize.y), 2.0F);
+    std::vector<float> distanceM = std::vector<float>(at(0, kSize.y), 1.0F);
+    std::vector<glm::vec2> offset = std::vector<glm::vec2>(at(0, kSize.y), glm::vec2(0.0F));
+    std::vector<glm::vec4> radiance;
+
+    Samples() {
+        Random random(4);
+        forEachPixel(
+            [&](int, int) { radiance.emplace_back(reflections::randomIn(random, 0.1F, 1), 1); });
+    }
+};
+
+class ReprojectionTest : public reflections::ReflectionsTest {
+  protected:
+    static depth_images::View view(const glm::vec3& eyeWorld = glm::vec3(0.0F)) {
+        return depth_images::viewOf(reflections::camera(eyeWorld, eyeWorld - glm::vec3(0, 0, 1)),
+                                    kSize);
+    }
+
+    void upload(const Samples& samples) {
+        key.emplace(view(), 10.0F);
+        offsets.emplace(kSize);
+        key->gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, samples.surface.data());
+        key->gbuffer.depth.upload(GL_RED, GL_FLOAT, samples.depthM.data());
+        key->reflection.radiance.upload(GL_RGBA, GL_FLOAT, samples.radiance.data());
+        key->reflection.distance.upload(GL_RED, GL_FLOAT, samples.distanceM.data());
+        offsets->offset.upload(GL_RG, GL_FLOAT, samples.offset.data());
+    }
+
+    std::vector<glm::vec4> shifted(const Samples& samples,
+                                   const ReprojectionSettings& settings = {},
+                                   const gl::Texture* doubtful = nullptr) {
+        upload(samples);
+        Reprojection reprojection(shaders, settings, kSize);
+        ShiftedImage result(kSize);
+        reprojection.setKeyFrame(*key);
+        reprojection.shift(*key, *offsets, doubtful, result);
+        return result.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
+    }
+
+    struct Warped {
+        std::vector<glm::vec4> radiance;
+        std::vector<std::uint8_t> wanted;
+        std::uint32_t reflectiveSamples = 0;
+        std::size_t wantedCount() const {
+            return static_cast<std::size_t>(std::count(wanted.begin(), wanted.end(), 1));
+        }
+    };
+    /// The key frame's own colours, to a view where each sample is of `surface` at `depthM`.
+    Warped warped(const Samples& samples, const depth_images::View& to,
+                  const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
+                  const ReprojectionSettings& settings = {}) {
+        upload(samples);
+        reflections::GBuffer gbuffer(to);
+        gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
+        gbuffer.depth.upload(GL_RED, GL_FLOAT, depthM.data());
+        Reprojection reprojection(shaders, settings, kSize);
+        reflections::ReflectionTarget target(kSize);
+        gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSize);
+        reprojection.setKeyFrame(*key);
+        reprojection.warp(*key, key->reflection.radiance, gbuffer, target, wanted);
+        return {target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+                wanted.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1),
+                reprojection.reflectiveSamples()};
+    }
+
+    static void expectColour(const glm::vec4& found, const glm::vec4& expected, int x, int y) {
+        for (int c = 0; c < 4; ++c) {
+            ASSERT_NEAR(found[c], expected[c], kHalfRounding) << x << " " << y << " " << c;
+        }
+    }
+
+    std::optional<ReflectionDepthImage> key;
+    std::optional<Offsets> offsets;
+};
+
+TEST_F(ReprojectionTest, AConstantOffsetMovesTheImage) {
+    for (const Forward forward : {Forward::Grid, Forward::Splats}) {
+        Samples samples;
+        for (glm::vec2& offset : samples.offset) offset = {3, -2};
+        const std::vector<glm::vec4> result = shifted(samples, {.forward = forward});
+        forEachPixel([&](int x, int y) {
+            const glm::vec4 expected =
+                isInside(x - 3, y + 2) ? samples.radiance[at(x - 3, y + 2)] : glm::vec4(0.0F);
+            expectColour(result[at(x, y)], expected, x, y);
+        });
+    }
+}
+
+TEST_F(ReprojectionTest, TheNearestReflectionWins) {
+    for (const bool isMovedOneNearer : {true, false}) {
+        Samples samples;
+        forEachPixel([&](int x, int y) {
+            if (x < 12) samples.offset[at(x, y)] = {8, 0};
+            samples.distanceM[at(x, y)] = (x < 12) == isMovedOneNearer ? 0.5F : 6.0F;
+        });
+        const std::vector<glm::vec4> result = shifted(samples);
+        for (int y = 0; y < kSize.y; ++y) {
+            for (int x = 13; x < 19; ++x) {  // both are there
+                const int from = isMovedOneNearer ? x - 8 : x;
+                expectColour(result[at(x, y)], samples.radiance[at(from, y)], x, y);
+            }
+        }
+    }
+}
+
+TEST_F(ReprojectionTest, DepthIsThatOfTheWholePath) {
+    // The reflection that is nearer to its mirror is farther from the eye.
+    Samples samples;
+    forEachPixel([&](int x, int y) {
+        const bool isMoved = x < 12;
+        samples.offset[at(x, y)] = {isMoved ? 8 : 0, 0};
+        samples.depthM[at(x, y)] = isMoved ? 8.0F : 2.0F;
+        samples.distanceM[at(x, y)] = isMoved ? 1.0F : 4.0F;
+    });
+    const std::vector<glm::vec4> result = shifted(samples);
+    for (int x = 13; x < 19; ++x) {
+        expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
+    }
+}
+
+TEST_F(ReprojectionTest, ARayThatLeftTheSceneReflectsTheFarthest) {
+    Samples samples;
+    forEachPixel([&](int x, int y) {
+        if (x < 12) samples.offset[at(x, y)] = {8, 0};
+        samples.distanceM[at(x, y)] = x < 12 ? 0.0F : 9.0F;  // the diagonal is 10
+    });
+    const std::vector<glm::vec4> result = shifted(samples);
+    for (int x = 13; x < 19; ++x) {
+        expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
+    }
+}
+
+/// A patch of 4 × 4 samples around the middle, drawn apart to `scale` times its size; the other
+/// samples have no match.
+void drawApart(Samples& samples, float scale) {
+    forEachPixel([&](int x, int y) {
+        const bool isPatch = x >= 12 && x < 16 && y >= 10 && y < 14;
+        const glm::vec2 toMiddle = glm::vec2(x, y) - glm::vec2(13.5F, 11.5F);
+        samples.offset[at(x, y)] = isPatch ? (scale - 1.0F) * toMiddle : glm::vec2(kInvalidOffset);
+    });
+}
+
+std::ptrdiff_t validCount(const std::vector<glm::vec4>& image) {
+    return std::count_if(image.begin(), image.end(), [](const auto& t) { return t.a == 1.0F; });
+}
+
+TEST_F(ReprojectionTest, TrianglesMayGrowSixteenfold) {
+    Samples samples;
+    drawApart(samples, 3.9F);  // 15.2 times the area: 11.7 pixels wide
+    EXPECT_GE(validCount(shifted(samples)), 11 * 11);
+    drawApart(samples, 4.1F);  // 16.8 times
+    // But for the samples themselves on the patch's rim.
+    EXPECT_LE(validCount(shifted(samples)), 12);
+    EXPECT_GE(validCount(shifted(samples, {.maxGrowth = 17.0F})), 12 * 12);
+}
+
+TEST_F(ReprojectionTest, TrianglesThatGrowTooMuchHideWhatIsFarther) {
+    Samples samples;
+    drawApart(samples, 4.1F);
+    forEachPixel([&](int x, int y) {
+        if (x >= 11 && x < 17 && y >= 9 && y < 15) return;
+        samples.offset[at(x, y)] = {0, 0};  // surroundings where they were, farther
+        samples.distanceM[at(x, y)] = 5.0F;
+    });
+    const std::vector<glm::vec4> result = shifted(samples);
+    // Inside of the patch, which reaches from x = 13.5 − 1.5 · 4.1 to the right; without it the
+    // surroundings show, up to x = 10.
+    EXPECT_EQ(result[at(9, 12)].a, 0.0F);
+    for (int y = 9; y < 15; ++y) {
+        for (int x = 11; x < 17; ++x) samples.offset[at(x, y)] = glm::vec2(kInvalidOffset);
+    }
+    EXPECT_EQ(shifted(samples)[at(9, 12)].a, 1.0F);
+}
+
+TEST_F(ReprojectionTest, NothingIsStretchedAcrossASilhouette) {
+    Samples samples;
+    forEachPixel([&](int x, int y) {
+        samples.offset[at(x, y)] = {x < 14 ? -4 : 4, 0};  // a cell of 9 times its area between
+        samples.depthM[at(x, y)] = x < 14 ? 2.0F : 2.2F;
+    });
+    const auto middleAlpha = [&](const std::vector<glm::vec4>& image) {
+        float sum = 0.0F;
+        for (int y = 0; y < kSize.y; ++y) {
+            for (int x = 10; x < 18; ++x) sum += image[at(x, y)].a;
+        }
+        return sum / static_cast<float>(8 * kSize.y);
+    };
+    EXPECT_EQ(middleAlpha(shifted(samples)), 0.0F);
+    // All but the uppermost or the lowest row, whose upper or lower edge is drawn or not.
+    EXPECT_GE(middleAlpha(shifted(samples, {.silhouette = 0.2F})), 0.9F);
+    forEachPixel([&](int x, int y) {
+        samples.depthM[at(x, y)] = 2.0F;
+        samples.surface[at(x, y)] = x < 14 ? 1 : 2;
+    });
+    EXPECT_EQ(middleAlpha(shifted(samples)), 0.0F);
+}
+
+TEST_F(ReprojectionTest, AReflectionStaysOnItsReflector) {
+    Samples samples;
+    forEachPixel([&](int x, int y) {
+        const bool isOther = x >= 10 && x < 16 && y >= 8 && y < 14;
+        samples.surface[at(x, y)] = isOther ? 2 : 1;
+        samples.offset[at(x, y)] = isOther ? glm::vec2(0.0F) : glm::vec2(5, 0);
+        samples.distanceM[at(x, y)] = isOther ? 5.0F : 0.5F;
+    });
+    const std::vector<glm::vec4> result = shifted(samples);
+    for (int y = 8; y < 14; ++y) {
+        for (int x = 10; x < 16; ++x) {
+            expectColour(result[at(x, y)], samples.radiance[at(x, y)], x, y);
+        }
+    }
+}
+
+TEST_F(ReprojectionTest, SplatsLeaveHolesWhereAGridDoesNot) {
+    Samples samples;
+    forEachPixel([&](int x, int y) { samples.offset[at(x, y)] = {x, 0}; });
+    const std::vector<glm::vec4> grid = shifted(samples);
+    const std::vector<glm::vec4> splats = shifted(samples, {.forward = Forward::Splats});
+    for (int y = 1; y + 1 < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            EXPECT_EQ(grid[at(x, y)].a, 1.0F) << x << " " << y;
+            EXPECT_EQ(splats[at(x, y)].a, x % 2 == 0 ? 1.0F : 0.0F) << x << " " << y;
+        }
+    }
+    expectColour(grid[at(7, 5)], 0.5F * (samples.radiance[at(3, 5)] + samples.radiance[at(4, 5)]),
+                 7, 5);
+}
+
+TEST_F(ReprojectionTest, DoubtfulSamplesAreInvalidWhereTheyGo) {
+    Samples samples;
+    std::vector<std::uint8_t> doubts(at(0, kSize.y), 0);
+    forEachPixel([&](int x, int y) {
+        samples.offset[at(x, y)] = {2, 0};
+        if (x == 9) doubts[at(x, y)] = 1;
+    });
+    gl::Texture doubtful = gl::Texture::make2D(GL_R8UI, kSize);
+    doubtful.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, doubts.data());
+    const std::vector<glm::vec4> result = shifted(samples, {}, &doubtful);
+    for (int x = 2; x < kSize.x; ++x) EXPECT_EQ(result[at(x, 9)].a, x == 11 ? 0.0F : 1.0F) << x;
+}
+
+TEST_F(ReprojectionTest, TheSameViewReusesEverySample) {
+    // Specks, lines and areas of three reflectors at jumping depths: nearly all are on a rim.
+    Samples samples;
+    Random random(11);
+    forEachPixel([&](int x, int y) {
+        samples.surface[at(x, y)] = x < 9 ? 1U : static_cast<std::uint32_t>(random.index(4));
+        samples.depthM[at(x, y)] = x < 9 ? 3.0F : random.uniform(1.0F, 9.0F);
+    });
+    const Warped result = warped(samples, view(), samples.surface, samples.depthM);
+    EXPECT_EQ(result.wantedCount(), 0U);
+    std::uint32_t reflective = 0;
+    forEachPixel([&](int x, int y) {
+        if (samples.surface[at(x, y)] == 0) return;
+        ++reflective;
+        expectColour(result.radiance[at(x, y)], samples.radiance[at(x, y)], x, y);
+    });
+    EXPECT_EQ(result.reflectiveSamples, reflective);
+}
+
+TEST_F(ReprojectionTest, AWallMovesWithTheEye) {
+    // 4 pixels to the right at 2 m: from (x·d, y·d, d) to the world.
+    const Samples samples;
+    const glm::mat4 worldFromPixels = depth_images::worldFromPixels(view());
+    const glm::vec3 step(worldFromPixels * glm::vec4(4.0F * 2.0F, 0, 0, 0));
+    const Warped result = warped(samples, view(step), samples.surface, samples.depthM);
+    forEachPixel([&](int x, int y) {
+        ASSERT_EQ(result.wanted[at(x, y)], x + 4 < kSize.x ? 0 : 1) << x << " " << y;
+        if (x + 4 < kSize.x) {
+            expectColour(result.radiance[at(x, y)], samples.radiance[at(x + 4, y)], x, y);
+        }
+    });
+}
+
+TEST_F(ReprojectionTest, OtherDepthsAndReflectorsAreWanted) {
+    const Samples samples;
+    std::vector<float> depthM(samples.depthM.size(), 2.0F * 1.02F);
+    EXPECT_EQ(warped(samples, view(), samples.surface, depthM).wantedCount(), depthM.size());
+    EXPECT_EQ(
+        warped(samples, view(), samples.surface, depthM, {.depthTolerance = 0.03F}).wantedCount(),
+        0U);
+    std::vector<std::uint32_t> surface = samples.surface;
+    surface[at(5, 5)] = 2;
+    surface[at(6, 5)] = 0;  // nothing to want
+    const Warped result = warped(samples, view(), surface, samples.depthM);
+    EXPECT_EQ(result.wantedCount(), 1U);
+    EXPECT_EQ(result.wanted[at(5, 5)], 1);
+}
+
+TEST_F(ReprojectionTest, InvalidSamplesAreWanted) {
+    Samples samples;
+    samples.radiance[at(9, 7)].a = 0.0F;
+    samples.radiance[at(20, 3)].a = 0.0F;
+    const Warped result = warped(samples, view(), samples.surface, samples.depthM);
+    EXPECT_EQ(result.wantedCount(), 2U);
+    EXPECT_EQ(result.wanted[at(9, 7)], 1);
+    EXPECT_EQ(result.wanted[at(20, 3)], 1);
+}
+
+TEST_F(ReprojectionTest, WarpingKeepsTheRuleOfGrowthToo) {
+    // Four pixels' width of the wall, from 2 m to 0.4 m: 25 times the area.
+    const Samples samples;
+    const std::vector<float> depthM(samples.depthM.size(), 0.4F);
+    const depth_images::View near = view({0, 0, -1.6F});
+    EXPECT_EQ(warped(samples, near, samples.surface, depthM).wantedCount(), depthM.size());
+    EXPECT_EQ(warped(samples, near, samples.surface, depthM, {.maxGrowth = 26.0F}).wantedCount(),
+              0U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflection_reuse
