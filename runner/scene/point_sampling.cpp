@@ -33,6 +33,8 @@ std::vector<Surfel> surfelsOf(const Scene& scene) {
                 : glm::vec3(scene.materials[static_cast<std::size_t>(mesh.material)].baseColor);
         const bool isColored =
             !mesh.colors.empty() || (mesh.material >= 0 && base != glm::vec3(1.0F));
+        const std::vector<glm::vec3> normals =
+            mesh.normals.empty() ? vertexNormals(mesh) : mesh.normals;
         for (const glm::uvec3& triangle : mesh.triangles) {
             Surfel surfel;
             surfel.isColored = isColored;
@@ -45,10 +47,7 @@ std::vector<Surfel> surfelsOf(const Scene& scene) {
             const glm::vec3 cross = glm::cross(surfel.positions[1] - surfel.positions[0],
                                                surfel.positions[2] - surfel.positions[0]);
             surfel.area = 0.5 * static_cast<double>(glm::length(cross));
-            for (int k = 0; k < 3; ++k) {
-                surfel.normals[k] =
-                    mesh.normals.empty() ? cross : toWorld * mesh.normals[triangle[k]];
-            }
+            for (int k = 0; k < 3; ++k) surfel.normals[k] = toWorld * normals[triangle[k]];
             surfels.push_back(surfel);
         }
     }

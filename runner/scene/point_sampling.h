@@ -9,10 +9,10 @@
 namespace gfxrepro::scene {
 
 /// `count` points on the triangles of a scene: evenly by area, and within a triangle by the R₂
-/// sequence (Roberts 2018). Normals interpolated (the triangle's where the mesh has none), colours
-/// of material times vertex (none without either, or all white; textures are not read), radii 1.5
-/// times those of discs that together have the surface's area: neighbours overlap. Same input, same
-/// bytes. Throws Error for scenes without area and for no points.
+/// sequence (Roberts 2018). Normals interpolated (area-weighted ones where the mesh has none: a
+/// scan is smooth), colours of material times vertex (none without either, or all white; textures
+/// are not read), radii 1.5 times those of discs that together have the surface's area: neighbours
+/// overlap. Same input, same bytes. Throws Error for scenes without area and for no points.
 PointCloud sampledPoints(const Scene& scene, std::size_t count);
 
 /// `count` of the points, at equal steps along a space-filling curve (Morton order); all of them
