@@ -211,7 +211,8 @@ void expectNear(const ImageF& a, const ImageF& b, float tolerance) {
 
 TEST(Flip, EqualImagesDoNotDiffer) {
     const ImageF a = noise(31, 17, 1);
-    for (const float value : flipMap(a, a).values()) EXPECT_EQ(value, 0.0F);
+    const ImageF map = flipMap(a, a);
+    for (const float value : map.values()) EXPECT_EQ(value, 0.0F);
     EXPECT_EQ(flip(a, a), 0.0);
 }
 
