@@ -1,5 +1,7 @@
 #include "runner/config/params.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -223,6 +225,13 @@ SourceLocation Params::locationOf(std::string_view name) const {
 bool Params::isGiven(std::string_view name) const {
     const Node* given = values_.find(name);
     return given && !given->isNull();
+}
+
+void Params::refuseGiven(std::initializer_list<std::string_view> names,
+                         std::string_view needs) const {
+    for (const std::string_view name : names) {
+        if (isGiven(name)) throw Error(locationOf(name), fmt::format("'{}' needs {}", name, needs));
+    }
 }
 
 void Params::finish() const {

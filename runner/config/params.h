@@ -2,6 +2,7 @@
 // value, marks it read, fills the manifest and feeds `gfxrepro describe`.
 #pragma once
 
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -78,6 +79,9 @@ class Params {
     /// The place of a value that was given, else of the whole map: for checks across parameters.
     SourceLocation locationOf(std::string_view name) const;
     bool isGiven(std::string_view name) const;
+    /// Throws Error ("'NAME' needs NEEDS") at the first of `names` that is given: for parameters
+    /// that nothing reads under the choice that was made. None is ignored.
+    void refuseGiven(std::initializer_list<std::string_view> names, std::string_view needs) const;
 
     /// Throws Error at the first key that nobody declared, with the nearest declared name.
     void finish() const;

@@ -15,12 +15,7 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'clustered_reflections' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
     scene_.emplace(*context.scene, params_.reflectors);
-    if (scene_->reflectorCount() == 0) {
-        throw Error(
-            fmt::format("scene '{}' has no reflectors: no material's roughness is at most {} "
-                        "('reflector_roughness')",
-                        context.scene->name, params_.reflectors.maxRoughness));
-    }
+    scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
     outputSizePx_ = context.outputSizePx;
     const glm::ivec2 samplesPx = params_.supersampling * outputSizePx_;

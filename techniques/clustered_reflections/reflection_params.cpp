@@ -83,16 +83,6 @@ ClusteredSettings readClustered(config::Params& params) {
     return settings;
 }
 
-/// Parameters that `method` does not read say so instead of being ignored.
-void refuseGiven(const config::Params& params, std::initializer_list<const char*> names,
-                 const char* needs) {
-    for (const char* name : names) {
-        if (params.isGiven(name)) {
-            throw Error(params.locationOf(name), fmt::format("'{}' needs {}", name, needs));
-        }
-    }
-}
-
 }  // namespace
 
 ReflectionParams::ReflectionParams(config::Params& params)
@@ -127,13 +117,12 @@ ReflectionParams::ReflectionParams(config::Params& params)
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
     params.finish();
     if (method != Method::Clustered) {
-        refuseGiven(params,
-                    {"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain",
-                     "depth_images", "march", "depth_image_scale", "concave_self"},
-                    "'method: clustered'");
+        params.refuseGiven({"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain",
+                            "depth_images", "march", "depth_image_scale", "concave_self"},
+                           "'method: clustered'");
     }
     if (method != Method::ScreenSpace) {
-        refuseGiven(params, {"thickness"}, "'method: screen_space'");
+        params.refuseGiven({"thickness"}, "'method: screen_space'");
     }
 }
 

@@ -72,9 +72,7 @@ ViewTriangleSettings readTriangle(config::Params& params) {
 
 void checkPlacement(const config::Params& params, const DepthSamplingParams& read) {
     if (read.placement == Placement::Fixed) {
-        if (params.isGiven("candidates")) {
-            refuse(params, "candidates", "'candidates' needs 'placement: automatic'");
-        }
+        params.refuseGiven({"candidates"}, "'placement: automatic'");
         return;
     }
     if (read.redundancy != Redundancy::Pixel) {
@@ -96,10 +94,7 @@ void checkPlacement(const config::Params& params, const DepthSamplingParams& rea
 /// Rays have neither a depth buffer nor primitives.
 void checkVisibility(const config::Params& params, const DepthSamplingParams& read) {
     if (read.redundancy == Redundancy::Pixel) return;
-    for (const char* name : {"depth_format", "triangle_ids"}) {
-        if (!params.isGiven(name)) continue;
-        refuse(params, name, fmt::format("'{}' needs 'redundancy: pixel'", name));
-    }
+    params.refuseGiven({"depth_format", "triangle_ids"}, "'redundancy: pixel'");
     if (read.measured == Measured::OutputFrame) {
         refuse(params, "measured", "'measured: output_frame' needs 'redundancy: pixel'");
     }
@@ -109,13 +104,8 @@ void checkFrames(const config::Params& params, const DepthSamplingParams& read) 
     const bool hasFrames = read.measures.usefulness || read.measures.availability ||
                            read.showsPictures || read.measured == Measured::OutputFrame;
     if (hasFrames) return;
-    for (const char* name : {"frame_size", "output_frames"}) {
-        if (!params.isGiven(name)) continue;
-        refuse(params, name,
-               fmt::format("'{}' needs 'usefulness', 'availability', 'pictures' or 'measured: "
-                           "output_frame'",
-                           name));
-    }
+    params.refuseGiven({"frame_size", "output_frames"},
+                       "'usefulness', 'availability', 'pictures' or 'measured: output_frame'");
 }
 
 }  // namespace

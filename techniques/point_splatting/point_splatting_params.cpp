@@ -149,24 +149,15 @@ PointSplattingParams::PointSplattingParams(config::Params& params)
     params.finish();
     selection.lowPassRadiusPx = splats.lowPassRadiusPx;
     if (method != Method::Adaptive) {
-        for (const char* name : {"c_min", "c_max"}) {
-            if (!params.isGiven(name)) continue;
-            throw Error(params.locationOf(name),
-                        fmt::format("'{}' needs 'method: adaptive'", name));
-        }
+        params.refuseGiven({"c_min", "c_max"}, "'method: adaptive'");
     }
     if (method == Method::Compute) {
-        for (const char* name : {"low_pass_radius_px", "cutoff", "visibility_offset"}) {
-            if (!params.isGiven(name)) continue;
-            throw Error(params.locationOf(name),
-                        fmt::format("'{}' needs a method of splats", name));
-        }
+        params.refuseGiven({"low_pass_radius_px", "cutoff", "visibility_offset"},
+                           "a method of splats");
     }
     if (!selection.choosesLevels) {
-        for (const char* name : {"target_radius_px", "curved_above", "wide_above_deg"}) {
-            if (!params.isGiven(name)) continue;
-            throw Error(params.locationOf(name), fmt::format("'{}' needs 'level: by_size'", name));
-        }
+        params.refuseGiven({"target_radius_px", "curved_above", "wide_above_deg"},
+                           "'level: by_size'");
     }
     if (selection.cMin > selection.cMax) {
         throw Error(params.locationOf("c_min"),

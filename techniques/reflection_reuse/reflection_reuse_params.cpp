@@ -68,16 +68,6 @@ ReuseSettings readReuse(config::Params& params) {
     return settings;
 }
 
-/// Parameters that `method` does not read say so instead of being ignored.
-void refuseGiven(const config::Params& params, std::initializer_list<const char*> names,
-                 const char* needs) {
-    for (const char* name : names) {
-        if (params.isGiven(name)) {
-            throw Error(params.locationOf(name), fmt::format("'{}' needs {}", name, needs));
-        }
-    }
-}
-
 }  // namespace
 
 ReuseParams::ReuseParams(config::Params& params)
@@ -110,13 +100,12 @@ ReuseParams::ReuseParams(config::Params& params)
     params.finish();
     reuse.isDirect = method == Method::Direct;
     if (method == Method::RayTraced) {
-        refuseGiven(params,
-                    {"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
-                     "moved_objects", "seam_px"},
-                    "'method: reuse' or 'method: direct'");
+        params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
+                            "moved_objects", "seam_px"},
+                           "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
-        refuseGiven(params, {"matching", "max_steps", "exhaustive_samples"}, "'method: reuse'");
+        params.refuseGiven({"matching", "max_steps", "exhaustive_samples"}, "'method: reuse'");
     }
     if (firstFrame >= pathFrames) {
         throw Error(params.locationOf("first_frame"),

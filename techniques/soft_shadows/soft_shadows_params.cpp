@@ -64,16 +64,6 @@ ReconstructionSettings readReconstruction(config::Params& params) {
     return settings;
 }
 
-/// Parameters that `method` does not read say so instead of being ignored.
-void refuseGiven(const config::Params& params, std::initializer_list<const char*> names,
-                 const char* needs) {
-    for (const char* name : names) {
-        if (params.isGiven(name)) {
-            throw Error(params.locationOf(name), fmt::format("'{}' needs {}", name, needs));
-        }
-    }
-}
-
 }  // namespace
 
 SoftShadowsParams::SoftShadowsParams(config::Params& params)
@@ -109,14 +99,13 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
                {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
     params.finish();
     if (!reconstructs()) {
-        refuseGiven(params,
-                    {"reference_images", "reference_size", "reconstruction", "discontinuity",
-                     "grazing_limit", "simplify_to", "simplification_error", "export_mesh"},
-                    "a method that takes depth images: non_redundant, conventional or "
-                    "depth_peeling");
+        params.refuseGiven({"reference_images", "reference_size", "reconstruction", "discontinuity",
+                            "grazing_limit", "simplify_to", "simplification_error", "export_mesh"},
+                           "a method that takes depth images: non_redundant, conventional or "
+                           "depth_peeling");
     }
     if (reconstruction.method == Reconstruction::Classic) {
-        refuseGiven(params, {"grazing_limit"}, "'reconstruction: hybrid'");
+        params.refuseGiven({"grazing_limit"}, "'reconstruction: hybrid'");
     }
     if (measured == Measured::DepthAndPass) {
         if (method == Method::RayTraced || isFiltered()) {
@@ -124,12 +113,12 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
                         "'measured: depth_and_pass' needs a method that draws a shadow map for "
                         "each light sample");
         }
-        refuseGiven(params, {"errors", "traced_truth", "pictures"}, "'measured: soft_shadow'");
+        params.refuseGiven({"errors", "traced_truth", "pictures"}, "'measured: soft_shadow'");
         measuresErrors = false;
     }
     if (method == Method::RayTraced && !measuresErrors) {
-        refuseGiven(params, {"shadow_map_size", "shadow_bias"},
-                    "a method that draws shadow maps, or 'errors: true'");
+        params.refuseGiven({"shadow_map_size", "shadow_bias"},
+                           "a method that draws shadow maps, or 'errors: true'");
     }
 }
 

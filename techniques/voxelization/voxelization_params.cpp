@@ -142,11 +142,9 @@ void checkInput(const config::Params& params, const VoxelizationParams& read) {
         }
         return;
     }
-    for (const char* name : {"collision", "compare", "csg", "method", "offset_b", "open_mesh",
-                             "padding", "rule", "scene_b", "split"}) {
-        if (!params.isGiven(name)) continue;
-        throw Error(params.locationOf(name), fmt::format("'{}' needs 'input: mesh'", name));
-    }
+    params.refuseGiven({"collision", "compare", "csg", "method", "offset_b", "open_mesh", "padding",
+                        "rule", "scene_b", "split"},
+                       "'input: mesh'");
     if (read.drawing.draw.mode == DrawMode::Mixed) {
         throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");
     }

@@ -124,7 +124,7 @@ scene::PointLight madeUpLight(const scene::Box& box) {
 }  // namespace
 
 ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule)
-    : scene_(scene), srgbDecoding_(image::srgbDecoding()) {
+    : scene_(scene), rule_(rule), srgbDecoding_(image::srgbDecoding()) {
     transmissiveCount_ = dropTransmissive(scene_);
     if (scene_.triangleCount() == 0) {
         throw Error(fmt::format(
@@ -135,7 +135,7 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
     }
     std::vector<int> layerOfTexture(scene_.textures.size(), -1);
     for (const scene::Instance& instance : scene_.instances) {
-        addObject(instance, rule, layerOfTexture);
+        addObject(instance, layerOfTexture);
     }
     if (reflectorCount_ > kMostReflectors) {
         throw UnsupportedError(fmt::format("scene {}: {} reflectors, at most {} can be told apart",
@@ -153,8 +153,15 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
     if (lights_.empty()) lights_.push_back(madeUpLight(boundsWorld_));
 }
 
-void ReflectiveScene::addObject(const scene::Instance& instance, const ReflectorRule& rule,
-                                std::vector<int>& layerOfTexture) {
+void ReflectiveScene::requireReflectors() const {
+    if (reflectorCount_ > 0) return;
+    throw Error(
+        fmt::format("scene '{}' has no reflectors: no material's roughness is at most {} "
+                    "('reflector_roughness')",
+                    scene_.name, rule_.maxRoughness));
+}
+
+void ReflectiveScene::addObject(const scene::Instance& instance, std::vector<int>& layerOfTexture) {
     const scene::Mesh& mesh = meshOf(scene_, instance);
     const scene::Material material = materialOf(scene_, mesh);
     Object object;
@@ -168,7 +175,7 @@ void ReflectiveScene::addObject(const scene::Instance& instance, const Reflector
         }
         object.textureLayer = layerOfTexture[texture];
     }
-    if (material.roughness <= rule.maxRoughness) {
+    if (material.roughness <= rule_.maxRoughness) {
         object.reflectivity =
             in255ths(std::max(material.metallic, headOnReflectivity(material.indexOfRefraction)));
         object.glossiness = in255ths(material.roughness);

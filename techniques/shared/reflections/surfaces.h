@@ -77,6 +77,8 @@ class ReflectiveScene {
     }  // RGBA, sRGB
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
+    /// Throws Error where reflectorCount() is 0: for methods that measure reflectors only.
+    void requireReflectors() const;
     int transmissiveCount() const { return transmissiveCount_; }  // objects left out
     /// Vertices of reflectors whose normals were missing, not finite or zero.
     int repairedNormalCount() const { return repairedNormalCount_; }
@@ -93,12 +95,12 @@ class ReflectiveScene {
     glm::vec3 normalMeshAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
 
   private:
-    void addObject(const scene::Instance& instance, const ReflectorRule& rule,
-                   std::vector<int>& layerOfTexture);
+    void addObject(const scene::Instance& instance, std::vector<int>& layerOfTexture);
     void addGeometry(const scene::Mesh& mesh, Object& object);
     glm::vec3 texelsAt(int layer, const glm::vec2& texcoord) const;
 
     scene::Scene scene_;
+    ReflectorRule rule_;
     std::vector<Object> objects_;
     ObjectGeometry geometry_;
     std::vector<image::Image8> textureLayers_;

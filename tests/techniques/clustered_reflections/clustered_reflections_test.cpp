@@ -6,52 +6,23 @@
 #include <algorithm>
 #include <map>
 
-#include "runner/core/files.h"
-#include "tests/gl/gl_fixture.h"
 #include "tests/techniques/clustered_reflections/room.h"
-#include "tests/techniques/technique_recorder.h"
+#include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
 
 using test::errorText;
 
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"),
-                          "technique 'clustered_reflections'");
-}
-
-class ClusteredReflectionsTest : public test::GlTest {
+class ClusteredReflectionsTest : public test::TechniqueTest {
   protected:
+    ClusteredReflectionsTest() : TechniqueTest(kClusteredReflections, {48, 40}) {}
+
     using Metrics = std::map<std::string, double>;
 
-    /// Frame `frame` of `frameCount`, rendered twice.
-    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
-                                  int frameCount = 1) {
-        config::Params params = paramsOf(yaml);
-        const auto technique = kClusteredReflections.create(params);
-        test::NoScenes scenes;
-        technique::SetupContext context{device, shaders_, scenes, scene, {48, 40}, 1, profiler_};
-        technique->setup(context);
-        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        technique::FrameContext frameContext{frame, frameCount, profiler_};
-        technique->render(frameContext);
-        profiler_.collect();
-        technique->render(frameContext);  // a repetition overwrites what the first has left
-        passes_.clear();
-        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-        test::MetricRecorder recorder;
-        technique->record(recorder);
-        EXPECT_TRUE(profiler_.collect().empty()) << "recording is not timed by pass";
-        return recorder;
-    }
     Metrics run(const std::string& yaml, const scene::Scene& scene) {
         return recorded(yaml, &scene).metrics;
     }
-
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
-    std::vector<std::string> passes_;
 };
 
 constexpr const char* kMethods[] = {"clustered", "environment_map", "screen_space", "ray_traced",
@@ -60,7 +31,7 @@ constexpr const char* kMethods[] = {"clustered", "environment_map", "screen_spac
 TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = paramsOf(yaml);
+            config::Params params = test::paramsOf(kClusteredReflections, yaml);
             ClusteredReflections technique(params);
         });
     };

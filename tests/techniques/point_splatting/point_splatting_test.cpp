@@ -7,20 +7,14 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/files.h"
 #include "runner/scene/mesh_builder.h"
 #include "techniques/point_splatting/compression_errors.h"
-#include "tests/gl/gl_fixture.h"
-#include "tests/techniques/technique_recorder.h"
+#include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
 
 using test::errorText;
-
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'point_splatting'");
-}
 
 /// A sphere with bumps: patches of every orientation, some curved.
 scene::Scene bumpySphere(int count) {
@@ -37,31 +31,9 @@ scene::Scene bumpySphere(int count) {
     return scene;
 }
 
-class PointSplattingTest : public test::GlTest {
+class PointSplattingTest : public test::TechniqueTest {
   protected:
-    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
-                                  int frameCount = 1) {
-        config::Params params = paramsOf(yaml);
-        const auto technique = kPointSplatting.create(params);
-        test::NoScenes scenes;
-        technique::SetupContext context{device, shaders_, scenes, scene, {96, 96}, 1, profiler_};
-        technique->setup(context);
-        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        technique::FrameContext frameContext{frame, frameCount, profiler_};
-        technique->render(frameContext);
-        profiler_.collect();
-        technique->render(frameContext);  // a repetition overwrites what the first has left
-        passes_.clear();
-        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-        test::MetricRecorder recorder;
-        technique->record(recorder);
-        EXPECT_TRUE(profiler_.collect().empty()) << "what is recorded is not timed by pass";
-        return recorder;
-    }
-
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
-    std::vector<std::string> passes_;
+    PointSplattingTest() : TechniqueTest(kPointSplatting, {96, 96}) {}
 };
 
 /// Pixels of different colour, and the largest difference.
@@ -89,7 +61,7 @@ int coveredPixels(const image::ImageF& image) {
 TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = paramsOf(yaml);
+            config::Params params = test::paramsOf(kPointSplatting, yaml);
             PointSplatting technique(params);
         });
     };

@@ -5,19 +5,13 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/files.h"
 #include "runner/scene/mesh_builder.h"
-#include "tests/gl/gl_fixture.h"
-#include "tests/techniques/technique_recorder.h"
+#include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::ray_tracing {
 namespace {
 
 using test::errorText;
-
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'ray_tracing'");
-}
 
 /// A mirror ball of `steps` × 2·steps quads with smooth normals.
 void addBall(scene::MeshBuilder& builder, const glm::vec3& centre, float radius, int steps) {
@@ -76,30 +70,9 @@ scene::Scene mirrors() {
     return scene;
 }
 
-class RayTracingTest : public test::GlTest {
+class RayTracingTest : public test::TechniqueTest {
   protected:
-    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
-                                  int frameCount = 1) {
-        config::Params params = paramsOf(yaml);
-        const auto technique = kRayTracing.create(params);
-        test::NoScenes scenes;
-        technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
-        technique->setup(context);
-        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        technique::FrameContext frameContext{frame, frameCount, profiler_};
-        technique->render(frameContext);
-        profiler_.collect();
-        technique->render(frameContext);  // a repetition overwrites what the first has left
-        passes_.clear();
-        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-        test::MetricRecorder recorder;
-        technique->record(recorder);
-        return recorder;
-    }
-
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
-    std::vector<std::string> passes_;
+    RayTracingTest() : TechniqueTest(kRayTracing, {64, 48}) {}
 };
 
 /// Mean absolute difference of two images' values.

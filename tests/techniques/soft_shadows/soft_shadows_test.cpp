@@ -5,43 +5,21 @@
 
 #include <map>
 
-#include "runner/core/files.h"
 #include "runner/core/random.h"
 #include "runner/scene/mesh_builder.h"
-#include "tests/gl/gl_fixture.h"
-#include "tests/techniques/technique_recorder.h"
+#include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
 
 using test::errorText;
 
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'soft_shadows'");
-}
-
-class SoftShadowsTest : public test::GlTest {
+class SoftShadowsTest : public test::TechniqueTest {
   protected:
+    SoftShadowsTest() : TechniqueTest(kSoftShadows, {48, 48}) {}
+
     using Metrics = std::map<std::string, double>;
 
-    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene) {
-        config::Params params = paramsOf(yaml);
-        const auto technique = kSoftShadows.create(params);
-        test::NoScenes scenes;
-        technique::SetupContext context{device, shaders_, scenes, scene, {48, 48}, 1, profiler_};
-        technique->setup(context);
-        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        technique::FrameContext frame{0, 1, profiler_};
-        technique->render(frame);
-        profiler_.collect();
-        technique->render(frame);  // a repetition overwrites what the first has left
-        passes_.clear();
-        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-        test::MetricRecorder recorder;
-        technique->record(recorder);
-        profiler_.collect();
-        return recorder;
-    }
     /// `method` with references and shadow maps of 192², 16 light samples and what `more` says.
     Metrics run(const std::string& method, const std::string& more, const scene::Scene& scene) {
         const bool takesImages =
@@ -53,10 +31,6 @@ class SoftShadowsTest : public test::GlTest {
                                              more.empty() ? "" : ", ", more);
         return recorded(yaml, &scene).metrics;
     }
-
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
-    std::vector<std::string> passes_;
 };
 
 constexpr const char* kReconstructing[] = {"non_redundant", "conventional", "depth_peeling"};
@@ -95,7 +69,7 @@ scene::Scene clutter() {
 TEST(SoftShadowsParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = paramsOf(yaml);
+            config::Params params = test::paramsOf(kSoftShadows, yaml);
             SoftShadows technique(params);
         });
     };

@@ -1,0 +1,57 @@
+// A technique run whole, as the runner does: parameters, set-up, two repetitions of a frame,
+// record.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runner/core/files.h"
+#include "runner/technique/technique.h"
+#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/technique_recorder.h"
+
+namespace gfxrepro::test {
+
+/// The parameters of a case, for the technique's constructor.
+inline config::Params paramsOf(const technique::TechniqueInfo& technique, const std::string& yaml) {
+    return config::Params(config::parseYaml(yaml, "case.yaml"),
+                          "technique '" + std::string(technique.name) + "'");
+}
+
+/// Derive from it with the technique and the size of its output.
+class TechniqueTest : public GlTest {
+  protected:
+    TechniqueTest(const technique::TechniqueInfo& technique, const glm::ivec2& outputSizePx)
+        : technique_(technique), outputSizePx_(outputSizePx) {}
+
+    /// Frame `frame` of `frameCount`, rendered twice: a repetition overwrites what the first has
+    /// left. passes_ then names the second's passes.
+    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
+                            int frameCount = 1) {
+        config::Params params = paramsOf(technique_, yaml);
+        const auto technique = technique_.create(params);
+        NoScenes scenes;
+        technique::SetupContext context{device,        shaders_, scenes,   scene,
+                                        outputSizePx_, 1,        profiler_};
+        technique->setup(context);
+        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
+        technique::FrameContext frameContext{frame, frameCount, profiler_};
+        technique->render(frameContext);
+        profiler_.collect();
+        technique->render(frameContext);
+        passes_.clear();
+        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+        MetricRecorder recorder;
+        technique->record(recorder);
+        EXPECT_TRUE(profiler_.collect().empty()) << "what is recorded is not timed by pass";
+        return recorder;
+    }
+
+    const technique::TechniqueInfo& technique_;
+    glm::ivec2 outputSizePx_;
+    gl::ShaderLibrary shaders_{dataFolder("shaders")};
+    gl::Profiler profiler_{true};
+    std::vector<std::string> passes_;
+};
+
+}  // namespace gfxrepro::test
