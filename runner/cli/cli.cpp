@@ -20,6 +20,7 @@ struct Options {
     Selection selection;
     RunOptions run;
     SceneOptions scene;
+    CompareOptions compare;
     batch::WorkerOptions worker;
     std::string name;  // of list and describe; a run directory
     std::string imageA, imageB, imageOut;
@@ -108,6 +109,24 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     addResult("table", "make a run's tables again from its records", table);
     addResult("claims", "judge a run's claims again", claims);
     addResult("report", "make a run's report.html again", report);
+}
+
+void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& command) {
+    CLI::App* compareApp =
+        app.add_subcommand("compare", "regressions between two runs, or two builds by turns");
+    compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… with --binaries")
+        ->required();
+    compareApp->add_flag("--binaries", options.areBinaries,
+                         "OLD and NEW are programs; they measure the configs by turns");
+    compareApp->add_option("--rounds", options.rounds, "of each program")
+        ->check(CLI::Range(2, 1000));
+    compareApp->add_option("--profile", options.profile, "quick | full | paper")
+        ->check(CLI::IsMember({"quick", "full", "paper"}));
+    compareApp->add_option("--device", options.device, "auto | software | number from doctor");
+    compareApp->add_option("--out", options.out, "folder (default runs/<time>-compare)");
+    compareApp->add_option("--history", options.history, "append to this CSV; say its steps");
+    addAssets(compareApp, options.assets);
+    compareApp->callback([&] { command = [&] { return compare(options); }; });
 }
 
 void addTools(CLI::App& app, const Context& context, Options& o) {
@@ -212,6 +231,7 @@ int runCommand(int argc, const char* const* argv,
     addQueries(app, context, options);
     addRuns(app, context, options);
     addTools(app, context, options);
+    addCompare(app, options.compare, options.command);
     if (argc < 2) throw UsageError("no command; see 'gfxrepro --help'");
     parse(app, argc, argv);
     return options.command ? options.command() : kExitOk;

@@ -51,6 +51,18 @@ struct SceneOptions {
     std::string device = "auto";
 };
 
+/// Two run directories; or two programs and the configs that they measure by turns.
+struct CompareOptions {
+    std::vector<std::string> inputs;
+    bool areBinaries = false;
+    int rounds = 10;  // of each program
+    std::string profile = "quick";
+    std::string device = "auto";
+    std::string assets;
+    std::string out;      // folder of the summary and of the rounds' runs
+    std::string history;  // CSV file that a night is appended to; empty: none
+};
+
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
 int describe(const Context& context, const std::string& name, const std::string& assets);
@@ -61,6 +73,7 @@ int reproduce(const Context& context, const RunOptions& options);
 int table(const std::string& runDir);
 int claims(const std::string& runDir);
 int report(const std::string& runDir);
+int compare(const CompareOptions& options);
 int imageDiff(const std::string& a, const std::string& b, const std::string& out);
 int scene(const SceneOptions& options);
 

@@ -53,7 +53,10 @@ class Mock : public technique::Technique {
     }
 
     void render(technique::FrameContext&) override {
-        std::this_thread::sleep_for(std::chrono::milliseconds(pauseMs_));
+        // A slower build, for tests that compare two.
+        const char* slower = std::getenv("GFXREPRO_MOCK_EXTRA_MS");
+        std::this_thread::sleep_for(
+            std::chrono::milliseconds(pauseMs_ + (slower ? std::atoi(slower) : 0)));
         switch (behaviour_) {
             case Behaviour::Ok:
             case Behaviour::NotANumber:

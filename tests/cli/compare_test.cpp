@@ -1,0 +1,79 @@
+// Two builds measured by turns, and two runs compared.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Compare : public ::testing::Test {
+  protected:
+    /// The mock program, slower by `extraMs` in each iteration.
+    std::string program(const std::string& name, int extraMs) const {
+        const fs::path path =
+            folder.write(name, "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
+                                   " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
+        fs::permissions(path, fs::perms::owner_all);
+        return path;
+    }
+    ProcessResult byTurns(int extraMs) const {
+        const fs::path config = writeMockConfig(folder,
+                                                "params: {pause_ms: 20}\n"
+                                                "measure: {lane: timing, warmup: 0, repeats: 2}\n");
+        return mockGfxrepro({"compare", "--binaries", "--rounds", "6", "--profile", "full",
+                             "--device", "software", "--history", history, "--out", out,
+                             program("old", 0), program("new", extraMs), config});
+    }
+
+    TemporaryFolder folder;
+    std::string out = folder.path() / "out";
+    std::string history = folder.path() / "history.csv";
+};
+
+TEST_F(Compare, FindsASlowerBuildAndConfirmsIt) {
+    const ProcessResult result = byTurns(15);
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_EQ(result.out.find("alarm; measuring again\n"), 0U) << result.out;
+    EXPECT_NE(result.out.find("sweep/mock mock wall_time_ms: slower"), std::string::npos)
+        << result.out;
+    EXPECT_NE(readFile(out + "/comparison.md").find("| slower |"), std::string::npos);
+    EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"slower"), std::string::npos);
+    EXPECT_NE(readFile(out + "/benchmark.json").find("wall_time_ms"), std::string::npos);
+    EXPECT_TRUE(fs::exists(out + "/old-11/records.csv")) << "confirmed in fresh processes";
+    EXPECT_NE(readFile(history).find("wall_time_ms"), std::string::npos);
+}
+
+TEST_F(Compare, TheSameBuildRaisesNoAlarm) {
+    const ProcessResult result = byTurns(0);
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+}
+
+TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
+    const fs::path config = writeMockConfig(folder, "measure: {lane: timing, repeats: 2}\n");
+    const std::string a = folder.path() / "a", b = folder.path() / "b";
+    for (const std::string& dir : {a, b}) {
+        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    }
+    const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    EXPECT_NE(readFile(out + "/comparison.md").find("1 process a side; 5 are needed"),
+              std::string::npos);
+}
+
+TEST_F(Compare, RefusesWhatIsNoPair) {
+    EXPECT_EQ(mockGfxrepro({"compare", "a"}).err, "gfxrepro: compare: needs two run directories\n");
+    EXPECT_EQ(mockGfxrepro({"compare", "--binaries", "a", "b"}).err,
+              "gfxrepro: compare: --binaries needs OLD NEW CONFIG…\n");
+    const ProcessResult result =
+        mockGfxrepro({"compare", "--binaries", "--out", out, "/bin/false", "/bin/false", "c.yaml"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.err, "gfxrepro: /bin/false: exit code 1: \n");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

@@ -1,0 +1,52 @@
+#include "runner/regression/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/regression/nights.h"
+
+namespace gfxrepro::regression {
+namespace {
+
+std::vector<Difference> differences() {
+    const Difference slower{test::timeOf("<a>"), 10, 12, 1.2, {1.1, 1.3}, 0.02,
+                            Verdict::Slower,     ""};
+    const Difference same{test::timeOf("b"), 10, 10, 1.0, {1.0, 1.0}, 0.02, Verdict::Same, ""};
+    const Difference unknown{
+        test::timeOf("c"),         10, 10, 1.0, {0.5, 2.0}, 0.02, Verdict::CannotTell,
+        "the interval is too wide"};
+    return {slower, same, unknown};
+}
+
+TEST(Summary, SaysHowManyAndWhich) {
+    EXPECT_EQ(summaryLine(differences()), "1 slower, 1 same, 1 cannot tell");
+    EXPECT_EQ(summaryLine({}), "nothing to compare");
+    EXPECT_EQ(markdown(differences()),
+              "# Comparison\n\n1 slower, 1 same, 1 cannot tell\n\n"
+              "| what | before | after | time after / before | floor | verdict |\n"
+              "| --- | ---: | ---: | ---: | ---: | --- |\n"
+              "| p/1 mock \\<a\\> gpu\\_time\\_ms | 10 | 12 ms | 1.200 [1.100, 1.300] | 0.02 | "
+              "slower |\n"
+              "| p/1 mock c gpu\\_time\\_ms | 10 | 10 ms | 1.000 [0.500, 2.000] | 0.02 | "
+              "cannot tell: the interval is too wide |\n");
+}
+
+TEST(Summary, JUnitFailsOnAlarmsOnly) {
+    const std::string xml = junitXml(differences());
+    EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" skipped=\"1\""), std::string::npos) << xml;
+    EXPECT_NE(xml.find("<failure message=\"slower 1.200 [1.100, 1.300]\"/>"), std::string::npos)
+        << xml;
+    EXPECT_NE(xml.find("name=\"p/1 mock &lt;a&gt; gpu_time_ms\""), std::string::npos) << xml;
+}
+
+TEST(Summary, JsonHoldsTimes) {
+    const auto json = nlohmann::json::parse(smallerIsBetterJson(differences()));
+    ASSERT_EQ(json.size(), 3U);
+    EXPECT_EQ(json[0]["name"], "p/1 mock <a> gpu_time_ms {}");
+    EXPECT_EQ(json[0]["value"], 12.0);
+    EXPECT_EQ(json[0]["unit"], "ms");
+}
+
+}  // namespace
+}  // namespace gfxrepro::regression
