@@ -12,6 +12,10 @@ constexpr float kLongestStep = 32.0F;
 /// cylinder seen from its focal line) divide by nothing.
 constexpr float kDamping = 1e-5F;
 
+/// Pixels, a power of two: how far from a sample with a match one that has lost its own is searched
+/// again. What comes back into a reflector's image enters over its border, and by less a frame.
+constexpr int kStartReach = 8;
+
 /// Share of the eye's distance by which a match may miss the eye for rounding alone: positions and
 /// normals are single precision. Without it a sample that has no neighbour to measure by is never
 /// valid, not even where the eye has not moved.

@@ -36,7 +36,8 @@ gl::Defines matchingDefines(const MatchingSettings& settings) {
             {"MAX_NEWTON_STEPS", kMaxNewtonSteps},
             {"LONGEST_STEP", kLongestStep},
             {"DAMPING", kDamping},
-            {"ROUNDING", kRounding}};
+            {"ROUNDING", kRounding},
+            {"START_REACH", kStartReach}};
 }
 
 gl::Defines countsDefines() {

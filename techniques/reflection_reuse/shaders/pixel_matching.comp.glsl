@@ -173,13 +173,27 @@ Search searchBent(Search search, uint reflector, vec3 reflected, out vec2 betwee
 }
 #endif
 
-// The previous match where there is one, else the sample itself.
-ivec2 startOf(ivec2 pixel, uint reflector) {
-    if (!hasPrevious) return pixel;
-    vec2 previous = texelFetch(previousOffsets, pixel, 0).rg;
-    if (previous.x >= INVALID_OFFSET) return pixel;
-    ivec2 start = pixel + ivec2(floor(previous + 0.5));
-    return isOnReflector(start, reflector) ? start : pixel;
+// Where the search begins: at the previous match, at the first frame in the sample itself. A sample
+// that lost its match begins as the nearest sample does that has one, of those at START_REACH
+// pixels and halves of it; far from all of them it is not searched.
+bool findStart(ivec2 pixel, uint reflector, out ivec2 start) {
+    start = pixel;
+    if (!hasPrevious) return true;
+    for (int reach = 0; reach <= START_REACH; reach = max(2 * reach, 1)) {
+        for (int i = 0; i < (reach == 0 ? 1 : 9); ++i) {
+            ivec2 from = pixel + reach * ivec2(i % 3 - 1, i / 3 - 1);
+            if (!isOnReflector(from, reflector)) continue;
+            vec2 previous = texelFetch(previousOffsets, from, 0).rg;
+            if (previous.x >= INVALID_OFFSET) continue;
+            ivec2 offset = ivec2(floor(previous + 0.5));
+            start = pixel + offset;
+            // Beyond the border it begins where the other one ended.
+            if (!isOnReflector(start, reflector)) start = from + offset;
+            if (!isOnReflector(start, reflector)) start = pixel;
+            return true;
+        }
+    }
+    return false;
 }
 
 void main() {
@@ -188,9 +202,9 @@ void main() {
     uint reflector = reflectorOf(texelFetch(gbufferSurface, pixel, 0).r);
     vec2 offset = vec2(INVALID_OFFSET);
     int steps = 0;
-    if (reflector != 0u) {
+    ivec2 start;
+    if (reflector != 0u && findStart(pixel, reflector, start)) {
         vec3 reflected = reflectedPosition(pixel);
-        ivec2 start = startOf(pixel, reflector);
         Search search = Search(candidateAt(start, reflected), 0, 0.0, false);
         vec2 between = vec2(0.0);
 #if IS_SECOND_ORDER

@@ -203,8 +203,10 @@ TEST_F(PixelMatcherTest, DeviceAndHostAgree) {
             const HostOffsets previous(first);
             const HostOffsets offsets(match(key, movedAgain, settings, &first));
             forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+                const std::optional<glm::vec2> begin =
+                    firstOffset(key.host, pixel, previous.offset);
                 const HostMatch host =
-                    matchOnHost(key.host, pixel, movedAgain, previous.at(index), settings);
+                    begin ? matchOnHost(key.host, pixel, movedAgain, begin, settings) : HostMatch{};
                 ++count;
                 const std::optional<glm::vec2> device = offsets.at(index);
                 const bool isEqual = host.steps == offsets.steps[index] &&
@@ -252,6 +254,33 @@ TEST_F(PixelMatcherTest, SearchesBeginWhereTheLastOneEnded) {
         same += a.offset[index] == b.offset[index] ? 1 : 0;
     });
     EXPECT_GE(same, 0.97 * count) << same << " of " << count;
+}
+
+/// What has left the mirror is not searched while it is far, and is matched again when the eye
+/// comes back, as fast as it left.
+TEST_F(PixelMatcherTest, LostMatchesAreFoundAgainFromTheirNeighbours) {
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    const PixelMatcher matcher(shaders, {});
+    Offsets previous(kSizePx), current(kSizePx), fresh(kSizePx);
+    matcher.match(key.image, key.eyeWorld(), nullptr, previous);
+    constexpr int kFrames = 12;
+    double lost = 0.0, steps = 0.0, freshSteps = 0.0;
+    for (int frame = 1; frame <= 2 * kFrames; ++frame) {
+        const int away = std::min(frame, 2 * kFrames - frame);
+        const glm::vec3 eye = key.eyeWorld() + static_cast<float>(away) * glm::vec3(0.04F, 0, 0);
+        matcher.match(key.image, eye, &previous, current);
+        matcher.match(key.image, eye, nullptr, fresh);
+        const MatchingCounts counts = matcher.counts(key.image, current);
+        const MatchingCounts freshCounts = matcher.counts(key.image, fresh);
+        EXPECT_LE(counts.invalidShare(), freshCounts.invalidShare() + 0.005) << frame;
+        lost = std::max(lost, counts.invalidShare());
+        steps += counts.meanSteps();
+        freshSteps += freshCounts.meanSteps();
+        std::swap(previous, current);
+    }
+    EXPECT_GT(lost, 0.05);
+    EXPECT_LT(steps, 0.5 * freshSteps);
+    EXPECT_LE(matcher.counts(key.image, previous).invalidShare(), 0.005);
 }
 
 TEST_F(PixelMatcherTest, LongSearchesAreInvalid) {
