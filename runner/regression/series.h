@@ -25,7 +25,7 @@ struct SeriesKey {
 
     bool isTime() const { return metric.ends_with("_time_ms"); }
     bool isRate() const { return metric.ends_with("frame_rate"); }
-    /// "zju2005/2.1 voxelization worksheet models/duck gpu_time_ms/synthesis"; parameters are left
+    /// "zju2005/2.1 TECHNIQUE worksheet models/duck gpu_time_ms/synthesis"; parameters are left
     /// away.
     std::string title() const;
 };
