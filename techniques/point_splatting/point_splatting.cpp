@@ -75,6 +75,8 @@ void PointSplatting::setup(technique::SetupContext& context) {
         ComputeSplatSettings settings;
         settings.storage = params_.splats.storage;
         splatter_.emplace(context.shaders, *model_, settings, sizePx_);
+    } else if (params_.method == Method::GlPoints) {
+        plain_.emplace(context.shaders, *model_, sizePx_);
     } else {
         renderer_.emplace(context.shaders, *model_, params_.splats, sizePx_);
     }
@@ -102,18 +104,23 @@ void PointSplatting::draw(gl::Profiler& profiler) {
     }
     if (splatter_) {
         splatter_->render(drawn_, view_, profiler);
+    } else if (plain_) {
+        plain_->render(drawn_, view_, profiler);
     } else {
         renderer_->render(drawn_, view_, profiler);
     }
 }
 
 const gl::Texture& PointSplatting::output() const {
+    if (plain_) return plain_->output();
     return splatter_ ? splatter_->output() : renderer_->output();
 }
 std::size_t PointSplatting::pointBytes() const {
+    if (plain_) return plain_->pointBytes();
     return splatter_ ? splatter_->pointBytes() : renderer_->pointBytes();
 }
 std::size_t PointSplatting::targetBytes() const {
+    if (plain_) return plain_->targetBytes();
     return splatter_ ? splatter_->targetBytes() : renderer_->targetBytes();
 }
 

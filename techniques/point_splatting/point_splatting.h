@@ -11,6 +11,7 @@
 #include "techniques/point_splatting/compute_splatter.h"
 #include "techniques/point_splatting/model_file.h"
 #include "techniques/point_splatting/patch_selection.h"
+#include "techniques/point_splatting/plain_points.h"
 #include "techniques/point_splatting/splat_renderer.h"
 
 namespace gfxrepro::point_splatting {
@@ -20,8 +21,9 @@ enum class Method {
     FullEwa,
     Reconstruction,
     LowPass,
-    Sprites,  // opaque squares, as QSplat
-    Compute,  // one pixel a point, by compute shaders
+    Sprites,   // opaque squares, as QSplat
+    Compute,   // one pixel a point, by compute shaders
+    GlPoints,  // one pixel a point, by a plain draw
 };
 
 /// From where a model is seen: on a turntable, from as far as frames it.
@@ -74,6 +76,8 @@ class PointSplatting final : public technique::Technique {
     void recordModel(technique::Recorder& recorder) const;
     void recordDrawn(technique::Recorder& recorder) const;
     void recordCompression(technique::Recorder& recorder) const;
+    /// The selection alone, without what follows from it: the median of many.
+    double selectionMs() const;
     void recordSpeed(technique::Recorder& recorder);
     void recordErrors(technique::Recorder& recorder, const image::ImageF& picture) const;
 
@@ -87,6 +91,7 @@ class PointSplatting final : public technique::Technique {
     scene::Box framedBox_;
     std::optional<SplatRenderer> renderer_;
     std::optional<ComputeSplatter> splatter_;  // in its place by Method::Compute
+    std::optional<PlainPoints> plain_;         // or by Method::GlPoints
 
     PatchView view_;  // of the last frame
     scene::Camera camera_;

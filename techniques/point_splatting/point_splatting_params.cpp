@@ -16,6 +16,7 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::LowPass, "low_pass", "the low-pass filter alone everywhere"},
     {Method::Sprites, "sprites", "opaque squares, as QSplat"},
     {Method::Compute, "compute", "one pixel a point, by compute shaders"},
+    {Method::GlPoints, "gl_points", "one white pixel a point, by a plain draw of positions"},
 };
 constexpr config::Choice<PointStorage> kStorages[] = {
     {PointStorage::Compressed, "compressed", "8 bytes a point (table 3.1)"},
@@ -46,6 +47,7 @@ SplatMethod splatMethod(Method method) {
             return SplatMethod::LowPass;
         case Method::Sprites:
         case Method::Compute:
+        case Method::GlPoints:
             return SplatMethod::Sprites;
     }
     return SplatMethod::Adaptive;
@@ -151,7 +153,10 @@ PointSplattingParams::PointSplattingParams(config::Params& params)
     if (method != Method::Adaptive) {
         params.refuseGiven({"c_min", "c_max"}, "'method: adaptive'");
     }
-    if (method == Method::Compute) {
+    if (method == Method::GlPoints) {
+        params.refuseGiven({"storage"}, "a method that reads compressed points");
+    }
+    if (method == Method::Compute || method == Method::GlPoints) {
         params.refuseGiven({"low_pass_radius_px", "cutoff", "visibility_offset"},
                            "a method of splats");
     }

@@ -80,7 +80,7 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
               "of the framing distance");
     EXPECT_EQ(message("{method: splats}"),
               "case.yaml:1:10: technique 'point_splatting': method is 'splats'; allowed: adaptive "
-              "| full_ewa | reconstruction | low_pass | sprites | compute");
+              "| full_ewa | reconstruction | low_pass | sprites | compute | gl_points");
     EXPECT_EQ(message("{storge: compressed}"),
               "case.yaml:1:2: technique 'point_splatting': unknown parameter 'storge'; did you "
               "mean 'storage'?");
@@ -116,6 +116,27 @@ TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {
                     : std::vector<std::string>{"selection", "sprites"};
         EXPECT_EQ(passes_, expected);
     }
+}
+
+TEST_F(PointSplattingTest, PlainPointsAreAsManyAsSpritesAndAPixelEach) {
+    const scene::Scene scene = bumpySphere(20000);
+    const auto drawn = [&](const char* method) {
+        return recorded(fmt::format("{{method: {}, level: all, cache: false, pictures: true, "
+                                    "points_per_second: true}}",
+                                    method),
+                        &scene);
+    };
+    const test::MetricRecorder plain = drawn("gl_points");
+    EXPECT_EQ(passes_, (std::vector<std::string>{"selection", "points"}));
+    const test::MetricRecorder sprites = drawn("sprites");
+    EXPECT_EQ(plain.metrics.at("drawn_points"), sprites.metrics.at("drawn_points"));
+    EXPECT_EQ(plain.metrics.at("bytes_per_point"), 12.0);
+    EXPECT_EQ(plain.metrics.count("selection_ms"), 1U);
+    const int pixels = coveredPixels(plain.images.at("image"));
+    EXPECT_GT(pixels, 1000);
+    EXPECT_LE(pixels, static_cast<int>(plain.metrics.at("drawn_points")));
+    EXPECT_EQ(errorText([&] { recorded("{method: gl_points, storage: compressed}", &scene); }),
+              "case.yaml:1:30: 'storage' needs a method that reads compressed points");
 }
 
 TEST_F(PointSplattingTest, CullingDropsNothingThatIsVisible) {

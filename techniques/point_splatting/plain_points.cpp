@@ -1,0 +1,79 @@
+#include "techniques/point_splatting/plain_points.h"
+
+#include <vector>
+
+#include "runner/gl/gl.h"
+
+namespace gfxrepro::point_splatting {
+
+namespace {
+
+constexpr GLuint kPositionLocation = 0;
+/// llvmpipe keeps every primitive of a draw in memory until it is flushed.
+constexpr GLsizei kMaxBatch = 1 << 16;
+
+gl::VertexArray positionArray(const gl::Buffer& positions) {
+    gl::VertexArray array;
+    const GLuint id = array.id();
+    glVertexArrayVertexBuffer(id, 0, positions.id(), 0, sizeof(glm::vec3));
+    glVertexArrayAttribFormat(id, kPositionLocation, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(id, kPositionLocation, 0);
+    glEnableVertexArrayAttrib(id, kPositionLocation);
+    return array;
+}
+
+}  // namespace
+
+PlainPoints::PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& model,
+                         glm::ivec2 sizePx)
+    : patches_(model.patches()),
+      levels_(model.levels()),
+      program_(shaders,
+               {"point_splatting/plain_point.vert.glsl", "point_splatting/sprite.frag.glsl"},
+               {{"POSITION_LOCATION", static_cast<int>(kPositionLocation)}}),
+      positions_(gl::Buffer::of(model.positions())),
+      array_(positionArray(positions_)),
+      depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
+      output_(gl::Texture::make2D(GL_RGBA8, sizePx)) {
+    const std::vector<const gl::Texture*> output{&output_};
+    target_ = gl::Framebuffer(output, &depth_);
+}
+
+void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& view,
+                         gl::Profiler& profiler) {
+    const gl::GpuScope scope(profiler, "points");
+    target_.clearColour(0, glm::vec4(0.0F));
+    target_.clearDepth(1.0F);
+    target_.bind();
+    glDisable(GL_BLEND);
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_TRUE);
+    program_.use();
+    program_.set("clipFromModel", view.clipFromView * view.viewFromModel);
+    array_.bind();
+    std::vector<GLint> firsts;
+    std::vector<GLsizei> counts;
+    GLsizei batch = 0;
+    const auto issue = [&] {
+        if (firsts.empty()) return;
+        glMultiDrawArrays(GL_POINTS, firsts.data(), counts.data(),
+                          static_cast<GLsizei>(firsts.size()));
+        glFlush();
+        firsts.clear();
+        counts.clear();
+        batch = 0;
+    };
+    for (const DrawnPatch& item : drawn) {
+        const Patch& patch = patches_[item.patch];
+        firsts.push_back(static_cast<GLint>(patch.firstPoint));
+        counts.push_back(static_cast<GLsizei>(levels_[patch.firstLevel + item.level].count));
+        batch += counts.back();
+        if (batch >= kMaxBatch) issue();
+    }
+    issue();
+    glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+}  // namespace gfxrepro::point_splatting

@@ -1,0 +1,35 @@
+// As many points as another method draws, as GL draws them at the least: the yardstick of sprites.
+#pragma once
+
+#include <span>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/profiler.h"
+#include "runner/gl/program.h"
+#include "techniques/point_splatting/model_file.h"
+#include "techniques/point_splatting/patch_selection.h"
+
+namespace gfxrepro::point_splatting {
+
+/// White GL points of one pixel, from a vertex buffer of positions.
+class PlainPoints {
+  public:
+    PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& model, glm::ivec2 sizePx);
+    /// Pass: `points`. Of the patches' levels; their modes make no difference.
+    void render(std::span<const DrawnPatch> drawn, const PatchView& view, gl::Profiler& profiler);
+    /// RGBA8; alpha 1 where a point fell.
+    const gl::Texture& output() const { return output_; }
+    std::size_t pointBytes() const { return positions_.sizeBytes(); }
+    std::size_t targetBytes() const { return depth_.sizeBytes() + output_.sizeBytes(); }
+
+  private:
+    std::span<const Patch> patches_;  // the model's, which must live as long
+    std::span<const Level> levels_;
+    gl::Program program_;
+    gl::Buffer positions_;
+    gl::VertexArray array_;
+    gl::Texture depth_, output_;
+    gl::Framebuffer target_;
+};
+
+}  // namespace gfxrepro::point_splatting
