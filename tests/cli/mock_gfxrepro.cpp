@@ -3,7 +3,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <new>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -23,7 +26,12 @@ enum class Behaviour {
     BadAlloc,
     Unsupported,
     DeviceLost,
-    NotANumber
+    NotANumber,
+    Leak,
+    Flake,
+    SlowDown,
+    Blank,
+    WrongWork
 };
 
 constexpr config::Choice<Behaviour> kBehaviours[] = {
@@ -36,6 +44,11 @@ constexpr config::Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Unsupported, "unsupported"},
     {Behaviour::DeviceLost, "device_lost"},
     {Behaviour::NotANumber, "not_a_number"},
+    {Behaviour::Leak, "leak", "64 MiB more every millisecond"},
+    {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
+    {Behaviour::SlowDown, "slow_down", "each iteration takes 20 ms more"},
+    {Behaviour::Blank, "blank", "an image without a difference"},
+    {Behaviour::WrongWork, "wrong_work", "each iteration draws one primitive more"},
 };
 
 class Mock : public technique::Technique {
@@ -43,6 +56,7 @@ class Mock : public technique::Technique {
     explicit Mock(config::Params& params)
         : behaviour_(params.getEnum("behaviour", Behaviour::Ok, kBehaviours, {"what happens"})),
           number_(params.getInt("number", 0, {"given back as a metric"})),
+          marker_(params.getText("marker", "/nonexistent", {"file that ends the flakes"})),
           pauseMs_(params.getInt("pause_ms", 0, {"length of an iteration", "ms", 0, 60000})),
           allocateMib_(params.getInt("allocate_mib", 0, {"memory to touch", "MiB", 0, 4096})) {
         params.finish();
@@ -53,10 +67,27 @@ class Mock : public technique::Technique {
     }
 
     void render(technique::FrameContext&) override {
+        ++iteration_;
         std::this_thread::sleep_for(std::chrono::milliseconds(pauseMs_));
         switch (behaviour_) {
             case Behaviour::Ok:
             case Behaviour::NotANumber:
+            case Behaviour::Blank:
+            case Behaviour::WrongWork:
+                return;
+            case Behaviour::SlowDown:
+                std::this_thread::sleep_for(std::chrono::milliseconds(20 * iteration_));
+                return;
+            case Behaviour::Leak:
+                while (true) {
+                    memory_.resize(memory_.size() + (std::size_t{64} << 20), 'x');
+                    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                }
+            case Behaviour::Flake:
+                if (std::filesystem::exists(marker_)) return;
+                std::ofstream(marker_) << "seen";
+                std::fputs("flaking\n", stderr);
+                std::raise(SIGSEGV);
                 return;
             case Behaviour::Crash:
                 std::fputs("about to crash\n", stderr);
@@ -87,7 +118,9 @@ class Mock : public technique::Technique {
   private:
     Behaviour behaviour_;
     int number_;
+    std::string marker_;
     int pauseMs_;
+    int iteration_ = 0;
     int allocateMib_;
     std::vector<char> memory_;
 };
