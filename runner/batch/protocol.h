@@ -43,6 +43,8 @@ struct CaseResult {
     std::vector<Sample> samples;
     std::vector<report::ImageEntry> images;
     std::vector<SceneUse> scenes;
+    /// Someone outside killed the worker: nothing that the case did. Known to the runner only.
+    bool isOutsideKill = false;
 };
 
 Json toJson(const gl::DeviceInfo& info);

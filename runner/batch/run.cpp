@@ -14,12 +14,13 @@ namespace {
 
 using UnitKey = std::pair<std::string, int>;  // case id, process
 
-/// Every unit that has rows, and whether all are `ok`.
+/// Every unit that has rows, and whether all have values.
 std::map<UnitKey, bool> recordedUnits(const std::vector<report::Record>& records) {
     std::map<UnitKey, bool> units;
     for (const report::Record& row : records) {
         const auto [unit, isNew] = units.try_emplace({row.caseId, row.process}, true);
-        unit->second = unit->second && row.status == report::Status::Ok;
+        unit->second = unit->second &&
+                       (row.status == report::Status::Ok || row.status == report::Status::Flaky);
     }
     return units;
 }

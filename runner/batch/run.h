@@ -15,8 +15,8 @@
 
 namespace gfxrepro::batch {
 
-/// The units that have no complete set of `ok` rows yet. Rows of failed units are taken out of
-/// records.csv: they are about to be made again.
+/// The units that have no complete set of `ok` or `flaky` rows yet. Rows of failed units are taken
+/// out of records.csv: they are about to be made again.
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 
 /// What a run directory holds, for tables, claims and report.

@@ -46,6 +46,27 @@ class SignalWatch {
     int fd_;
 };
 
+CaseResult skippedResult(const Expectation& skip) {
+    CaseResult result;
+    result.status = report::Status::Missing;
+    result.message = "skipped until " + skip.until + ": " + skip.reason;
+    return result;
+}
+
+/// The second try tells the result; the first one may still show in its status and message.
+CaseResult inViewOfFirstTry(const Unit& unit, CaseResult result) {
+    if (!unit.firstTry || unit.firstTry->isOutsideKill) return result;
+    const std::string first = std::string(report::statusName(unit.firstTry->status)) +
+                              (unit.firstTry->message.empty() ? "" : ": ") + unit.firstTry->message;
+    if (result.status == report::Status::Ok) {
+        result.status = report::Status::Flaky;
+        result.message = "passed at the second try; the first: " + first;
+    } else if (result.status != unit.firstTry->status) {
+        result.message += "; the first try: " + first;
+    }
+    return result;
+}
+
 class Scheduler {
   public:
     Scheduler(const std::vector<Unit>& units, const RunDirectory& directory,
@@ -55,6 +76,7 @@ class Scheduler {
           options_(options),
           phases_(phases),
           observer_(observer),
+          expectations_(options.expectations),
           records_(directory.recordsFile()) {}
 
     RunOutcome run() {
@@ -68,6 +90,7 @@ class Scheduler {
             observer_.tick();
         }
         workers_.clear();
+        outcome_.complaints = expectations_.complaints();
         return std::move(outcome_);
     }
 
@@ -82,6 +105,11 @@ class Scheduler {
     /// Gives out units in order, as far as the lanes allow.
     void dispatch() {
         while (!waiting_.empty()) {
+            if (const Expectation* skip = expectations_.skipOf(*waiting_.front().item)) {
+                finish(waiting_.front(), skippedResult(*skip), "");
+                waiting_.pop_front();
+                continue;
+            }
             const Lane lane = waiting_.front().item->measure.lane;
             const bool timingRuns = std::any_of(workers_.begin(), workers_.end(), [](auto& w) {
                 return w->isBusy() && w->lane() == Lane::Timing;
@@ -95,7 +123,7 @@ class Scheduler {
 
     void start(const Unit& unit) {
         const Lane lane = unit.item->measure.lane;
-        const bool needsOwn = unit.item->measure.processes > 1;
+        const bool needsOwn = unit.item->measure.processes > 1 || unit.firstTry;
         // Nothing beside a timing unit, and no memory held by the other lane.
         std::erase_if(workers_, [&](auto& w) {
             return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && needsOwn));
@@ -132,19 +160,27 @@ class Scheduler {
             if (!result) result = worker->checkLimits(Clock::now());
             if (!result) continue;
             const Unit unit = *worker->unit();
-            finish(unit, *result, worker->output());
+            if (isTriedAgain(unit, *result)) {
+                logCase("retry", unit, *result, worker->output());
+                waiting_.push_front({unit.item, unit.process, *result});
+            } else {
+                finish(unit, inViewOfFirstTry(unit, *result), worker->output());
+            }
             if (!worker->release(*result)) worker.reset();
         }
         std::erase(workers_, nullptr);
         std::erase_if(workers_, [](auto& w) { return w->isGone(); });
     }
 
-    /// Images first: a unit whose rows are there is complete.
-    void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
-        const bool isOk = result.status == report::Status::Ok;
-        if (!result.images.empty()) report::appendImages(directory_.path(), result.images);
-        records_.append(recordsOf(unit, result));
-        Json event = {{"event", "case"},
+    bool isTriedAgain(const Unit& unit, const CaseResult& result) const {
+        return !unit.firstTry && result.status != report::Status::Ok &&
+               result.status != report::Status::Unsupported &&
+               !expectations_.isExpected(*unit.item, result.status);
+    }
+
+    void logCase(const char* name, const Unit& unit, const CaseResult& result,
+                 const std::string& output) const {
+        Json event = {{"event", name},
                       {"case", unit.item->id},
                       {"title", unit.item->title()},
                       {"process", unit.process},
@@ -152,9 +188,26 @@ class Scheduler {
         if (!result.message.empty()) event["message"] = result.message;
         if (!output.empty()) event["output"] = output;
         directory_.log(event);
-        ++(isOk ? outcome_.finished : outcome_.failed);
+    }
+
+    /// Images first: a unit whose rows are there is complete.
+    void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
+        if (!result.images.empty()) report::appendImages(directory_.path(), result.images);
+        records_.append(recordsOf(unit, result));
+        logCase("case", unit, result, output);
+        count(*unit.item, result.status);
         outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
         observer_.unitEnded(unit, result.status, result.message);
+    }
+
+    void count(const Case& item, report::Status status) {
+        if (status == report::Status::Ok || status == report::Status::Flaky) {
+            ++outcome_.finished;
+            if (status == report::Status::Flaky) ++outcome_.flaky;
+        } else {
+            ++(expectations_.isExpected(item, status) ? outcome_.expected : outcome_.failed);
+        }
+        expectations_.note(item, status);
     }
 
     SignalWatch signals_;
@@ -163,6 +216,7 @@ class Scheduler {
     const SchedulerOptions& options_;
     PhaseClock& phases_;
     Observer& observer_;
+    Expectations expectations_;
     report::RecordWriter records_;
     Workers workers_;
     RunOutcome outcome_;
@@ -182,7 +236,7 @@ std::vector<Unit> unitsOf(const Plan& plan) {
         for (int process = 0; process < processes; ++process) {
             for (std::size_t i = first; i < next; ++i) {
                 if (process < plan.cases[i].measure.processes) {
-                    units.push_back({&plan.cases[i], process});
+                    units.push_back({&plan.cases[i], process, {}});
                 }
             }
         }
@@ -234,7 +288,7 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
     row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";
     row.status = result.status;
     row.message = result.message;
-    if (result.status != report::Status::Ok) {
+    if (result.status != report::Status::Ok && result.status != report::Status::Flaky) {
         row.value = std::numeric_limits<double>::quiet_NaN();
         return {row};
     }

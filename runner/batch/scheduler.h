@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/batch/expectations.h"
 #include "runner/batch/phase_clock.h"
 #include "runner/batch/plan.h"
 #include "runner/batch/protocol.h"
@@ -27,12 +28,16 @@ struct SchedulerOptions {
     std::string device = "auto";  // passed through to the workers
     std::string assetsFolder;
     int jobs = 1;  // quality units at once
+    Expectations expectations = {};
 };
 
 struct RunOutcome {
-    int finished = 0;  // units that ended `ok`
-    int failed = 0;
-    bool isInterrupted = false;  // by SIGINT or SIGTERM
+    int finished = 0;  // units that ended `ok` or `flaky`
+    int flaky = 0;     // of these
+    int failed = 0;    // others, but for those that were expected
+    int expected = 0;  // that failed or were skipped as a list of expectations says
+    std::vector<std::string> complaints;  // about expectations
+    bool isInterrupted = false;           // by SIGINT or SIGTERM
     std::vector<SceneUse> scenes;
 };
 
@@ -48,7 +53,9 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, config::
 /// runner with it. Throws NoDeviceError.
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases);
 
-/// Runs `units`, appending records, images and log lines as each ends.
+/// Runs `units`, appending records, images and log lines as each ends. A failure that nobody
+/// expects is tried once more, in a fresh worker; what passes then is `flaky`, unless the first
+/// worker was killed from outside.
 RunOutcome runUnits(const std::vector<Unit>& units, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
 

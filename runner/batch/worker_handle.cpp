@@ -52,6 +52,7 @@ WorkerHandle::WorkerHandle(const std::vector<std::string>& command, config::Meas
       process_(command),
       lane_(lane),
       isSingleUse_(isSingleUse),
+      oomKillsBefore_(systemOomKills()),
       limit_(Clock::now() + kStartLimit) {}
 
 WorkerHandle::~WorkerHandle() {
@@ -124,8 +125,12 @@ void WorkerHandle::endPhase() {
 CaseResult WorkerHandle::resultOfDeath() const {
     if (!unavailable_.empty()) return failure(report::Status::Unsupported, unavailable_);
     if (WIFSIGNALED(waitStatus_) && WTERMSIG(waitStatus_) == SIGKILL) {
-        return failure(report::Status::Oom,
-                       "SIGKILL from outside: most likely the system ran out of memory");
+        if (systemOomKills() > oomKillsBefore_) {
+            return failure(report::Status::Oom, "SIGKILL: the system ran out of memory");
+        }
+        CaseResult result = failure(report::Status::Crash, "SIGKILL from outside");
+        result.isOutsideKill = true;
+        return result;
     }
     std::string message = WIFSIGNALED(waitStatus_) ? signalName(WTERMSIG(waitStatus_))
                                                    : "the worker ended with exit code " +

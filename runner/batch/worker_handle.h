@@ -17,6 +17,8 @@ namespace gfxrepro::batch {
 struct Unit {
     const Case* item = nullptr;
     int process = 0;
+    /// How the first try ended, when this is the second.
+    std::optional<CaseResult> firstTry;
 };
 
 /// A worker process and the unit that it is on.
@@ -74,9 +76,10 @@ class WorkerHandle {
     std::optional<gl::DeviceInfo> device_;
     std::string unavailable_;  // why there is no device
     bool isAlive_ = true;
-    int waitStatus_ = 0;       // once it is not alive
-    Clock::time_point limit_;  // of the start, then of the unit
-    std::string phase_;        // empty between phases
+    long long oomKillsBefore_;  // of the system, when the process began
+    int waitStatus_ = 0;        // once it is not alive
+    Clock::time_point limit_;   // of the start, then of the unit
+    std::string phase_;         // empty between phases
     Clock::time_point phaseBegin_;
     std::string messages_;
     std::string output_;

@@ -40,6 +40,11 @@ bool isTable(const fs::path& file, std::string_view table) {
     return stem == table || (dash != std::string::npos && stem.substr(dash + 1) == table);
 }
 
+/// expect-software.yaml is beside the configs, but none.
+bool isConfig(const fs::path& file) {
+    return file.extension() == ".yaml" && !file.stem().string().starts_with("expect-");
+}
+
 }  // namespace
 
 std::vector<fs::path> paperConfigs() {
@@ -47,7 +52,7 @@ std::vector<fs::path> paperConfigs() {
     for (const fs::directory_entry& folder : fs::directory_iterator(dataFolder("configs"))) {
         if (!isPaperFolder(folder.path())) continue;
         for (const fs::directory_entry& file : fs::directory_iterator(folder.path())) {
-            if (file.path().extension() == ".yaml") files.push_back(fs::absolute(file.path()));
+            if (isConfig(file.path())) files.push_back(fs::absolute(file.path()));
         }
     }
     std::ranges::sort(files, comesBefore);

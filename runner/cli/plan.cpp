@@ -18,7 +18,7 @@ std::string deviceClassFor(const Selection& selection) {
     try {
         batch::PhaseClock phases;
         const gl::DeviceInfo device =
-            batch::probeDevice({selection.device, assetsFolder(selection.assets), 1}, phases);
+            batch::probeDevice({selection.device, assetsFolder(selection.assets), 1, {}}, phases);
         return device.isSoftware ? "software" : "gpu";
     } catch (const NoDeviceError&) {
         return "software";

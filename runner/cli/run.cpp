@@ -56,7 +56,7 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
     const batch::SchedulerOptions scheduler{
-        request.device, fs::absolute(assetsFolder(selection.assets)), jobsOf(options)};
+        request.device, fs::absolute(assetsFolder(selection.assets)), jobsOf(options), {}};
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
@@ -79,7 +79,8 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     batch::StoredRun stored = batch::readRun(options.resume);
     const batch::SchedulerOptions scheduler{stored.plan.request.device,
                                             fs::absolute(assetsFolder(options.selection.assets)),
-                                            jobsOf(options)};
+                                            jobsOf(options),
+                                            {}};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     const batch::Plan now =
         makePlan(context, stored.plan.request, stored.plan.profile, scheduler.assetsFolder, device);
@@ -97,6 +98,11 @@ void saveManifest(const Context& context, Prepared& run, const batch::PhaseClock
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
 }
 
+/// ", 3 failed"; nothing for none.
+std::string countText(int count, std::string_view what) {
+    return count > 0 ? fmt::format(", {} {}", count, what) : "";
+}
+
 void printClaims(const std::vector<report::ClaimResult>& claims) {
     fmt::print("claims: {}\n", report::claimSummaryLine(claims));
     for (const report::ClaimResult& claim : claims) {
@@ -112,6 +118,8 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     batch::PhaseClock phases;
     Prepared run = options.resume.empty() ? prepareNew(context, options, request, phases)
                                           : prepareResumed(context, options, phases);
+    run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
+                                                     batch::utcTime().substr(0, 10));
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(static_cast<int>(units.size()), options.isQuiet);
@@ -129,8 +137,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                    results ? "reproduce" : "run", path);
         return kExitInterrupted;
     }
-    fmt::print("{} of {} finished{}; records: {}\n", outcome.finished, units.size(),
-               outcome.failed > 0 ? fmt::format(", {} failed", outcome.failed) : "",
+    for (const std::string& line : outcome.complaints) fmt::print(stderr, "{}\n", line);
+    fmt::print("{} of {} finished{}{}{}; records: {}\n", outcome.finished, units.size(),
+               countText(outcome.flaky, "flaky"), countText(outcome.failed, "failed"),
+               countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
     if (!results) return outcome.failed > 0 ? kExitIncomplete : kExitOk;
 

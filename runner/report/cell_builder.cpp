@@ -95,10 +95,8 @@ void takeRow(const Record& record, const CellQuery& query, int unit,
                       "side; a time needs the timing lane");
         return;
     }
-    if (record.status != Status::Ok) {
-        gathered.note(record.status, record.message);
-        return;
-    }
+    if (record.status != Status::Ok) gathered.note(record.status, record.message);
+    if (record.status != Status::Ok && record.status != Status::Flaky) return;
     if (std::isnan(record.value)) {
         gathered.note(Status::Error, "case " + record.caseId + " recorded not-a-number");
         return;
@@ -253,7 +251,9 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     if (gathered.units.size() == 1 && !query.isScaled) built.unit = *gathered.units.begin();
     if (hasSamples) fillValues(query, gathered.samples, seed, cell);
     const std::string word(statusName(cell.status));
-    cell.isPartial = hasSamples && cell.status != Status::Ok;
+    const bool isFlaky = hasSamples && cell.status == Status::Flaky;
+    cell.isPartial = hasSamples && cell.status != Status::Ok && !isFlaky;
+    if (isFlaky) cell.measured += " (flaky)";
     if (cell.isPartial) cell.measured += " (partial: " + word + ")";
     if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
     return built;

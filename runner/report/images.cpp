@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <map>
 #include <tuple>
 
@@ -49,17 +51,49 @@ std::string wholeRows(const fs::path& index) {
     return text;
 }
 
+[[noreturn]] void failWriting(const fs::path& index, int reason) {
+    throw Error("cannot write " + index.string() + ": " + std::strerror(reason));
+}
+
+/// Adds `rows` to a list that ends with a whole line; false, with nothing done, when it does not.
+/// A list is not written anew for each case: that would take longer with every case of a run.
+bool appendToWhole(const fs::path& index, std::string_view rows) {
+    const int fd = ::open(index.c_str(), O_RDWR | O_APPEND | O_CLOEXEC);
+    if (fd < 0) return false;
+    const off_t before = ::lseek(fd, 0, SEEK_END);
+    char last = 0;
+    if (before <= 0 || ::pread(fd, &last, 1, before - 1) != 1 || last != '\n') {
+        ::close(fd);
+        return false;
+    }
+    errno = 0;
+    const ssize_t written = ::write(fd, rows.data(), rows.size());
+    int reason = errno;
+    bool isDone = written == static_cast<ssize_t>(rows.size());
+    if (!isDone) {  // a full disk takes a part: give it back
+        if (reason == 0) reason = ENOSPC;
+        if (::ftruncate(fd, before) != 0) reason = errno;
+    } else if (::fdatasync(fd) != 0) {
+        reason = errno;
+        isDone = false;
+    }
+    ::close(fd);
+    if (!isDone) failWriting(index, reason);
+    return true;
+}
+
 }  // namespace
 
 void appendImages(const fs::path& runDir, const std::vector<ImageEntry>& images) {
     if (images.empty()) return;
-    std::string text = wholeRows(indexOf(runDir));
+    std::string text;
     for (const ImageEntry& image : images) {
         CsvRow row(text);
         row.text(image.caseId).text(image.table).integer(image.frame).text(image.name);
         row.text(image.png).text(image.exr).text(image.title).end();
     }
-    writeFileAtomic(indexOf(runDir), text);
+    const fs::path index = indexOf(runDir);
+    if (!appendToWhole(index, text)) writeFileAtomic(index, wholeRows(index) + text);
 }
 
 std::vector<ImageEntry> readImages(const fs::path& runDir) {

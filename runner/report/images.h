@@ -21,8 +21,8 @@ struct ImageEntry {
     bool operator==(const ImageEntry&) const = default;
 };
 
-/// Appends to `runDir`/images/index.csv, making it with its header if it is not there. The new list
-/// replaces the old one whole; throws Error.
+/// Appends to `runDir`/images/index.csv, making it with its header if it is not there. A
+/// torn last line is cut off first. Throws Error, leaving the list as it was.
 void appendImages(const std::filesystem::path& runDir, const std::vector<ImageEntry>& images);
 
 /// The images of a run, in the order in which they were made; none when there is no list. Of two

@@ -128,7 +128,12 @@ DecodedPoint decoded(const CompressedPoint& point, const scene::Box& patchBounds
 }
 
 glm::vec3 positionErrorBound(const scene::Box& patchBounds) {
-    return 0.5F * patchBounds.size() / kPlaces;
+    // The box's size, the share of it and their product round by half a unit in the last place of
+    // the size each, the sum by half a unit of the coordinate.
+    constexpr float kHalfUnit = 0x1p-24F;
+    const glm::vec3 size = patchBounds.size();
+    const glm::vec3 coordinate = glm::max(glm::abs(patchBounds.min), glm::abs(patchBounds.max));
+    return 0.5F * size / kPlaces + kHalfUnit * (3.0F * size + coordinate);
 }
 
 float normalErrorBoundRad() {

@@ -46,8 +46,9 @@ CompressedPoint compressed(const glm::vec3& position, const glm::vec3& normal, f
 DecodedPoint decoded(const CompressedPoint& point, const scene::Box& patchBounds,
                      std::span<const float> radiusTable);
 
-/// Largest possible errors, from the grids alone: half a cell of 2048 × 2048 × 1024 in the box, and
-/// half a step of theta (of 256 over 360°) and of phi (of 256 over 180°) together.
+/// Largest possible errors: half a cell of 2048 × 2048 × 1024 in the box, with what single
+/// precision rounds on the way to a cell and back (all there is in a flat patch's box); half a step
+/// of theta (of 256 over 360°) and of phi (of 256 over 180°) together.
 glm::vec3 positionErrorBound(const scene::Box& patchBounds);
 float normalErrorBoundRad();
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "runner/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -46,6 +47,40 @@ TEST(Faults, MemoryLimit) {
     EXPECT_EQ(failed[0].status, report::Status::Oom);
     EXPECT_THAT(failed[0].message,
                 testing::MatchesRegex("resident memory of .* MiB is over the limit of 900 MiB"));
+}
+
+TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
+    const TemporaryFolder folder;
+    const std::string marker = folder.path() / "marker";
+    const std::string config =
+        writeMockConfig(folder, "params: {behaviour: flake, marker: " + marker +
+                                    "}\nsweep: {number: [1, 2]}\n"
+                                    "layout:\n  rows: number\n  columns:\n"
+                                    "    n: {metric: number, format: \"{median:.0f}\"}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(run.out, "2 of 2 finished, 1 flaky; records: " + dir + "/records.csv\n");
+    EXPECT_THAT(statusLines(dir),
+                ElementsAre("flake: flaky (passed at the second try; the first: crash: SIGSEGV: "
+                            "flaking)",
+                            "flake: ok"));
+    EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find("| 1 | 1 (flaky) |"), std::string::npos)
+        << readFile(dir + "/tables/sweep-mock.md");
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
+              "0 of 0 finished; records: " + dir + "/records.csv\n");
+}
+
+TEST(Faults, LeakEndsAtTheMemoryLimitAndCostsOneCase) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "sweep: {behaviour: [ok, leak]}\nmeasure: {memory_limit_bytes: 943718400}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
+    ASSERT_EQ(rowsOf(dir, "").size(), 1U);
+    EXPECT_EQ(rowsOf(dir, "")[0].status, report::Status::Oom);
 }
 
 TEST(Faults, SideBySideAndInFreshProcesses) {

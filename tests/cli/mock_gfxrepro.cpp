@@ -3,7 +3,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <new>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -23,7 +26,9 @@ enum class Behaviour {
     BadAlloc,
     Unsupported,
     DeviceLost,
-    NotANumber
+    NotANumber,
+    Leak,
+    Flake
 };
 
 constexpr config::Choice<Behaviour> kBehaviours[] = {
@@ -36,6 +41,8 @@ constexpr config::Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Unsupported, "unsupported"},
     {Behaviour::DeviceLost, "device_lost"},
     {Behaviour::NotANumber, "not_a_number"},
+    {Behaviour::Leak, "leak", "64 MiB more every millisecond"},
+    {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
 };
 
 class Mock : public technique::Technique {
@@ -43,6 +50,7 @@ class Mock : public technique::Technique {
     explicit Mock(config::Params& params)
         : behaviour_(params.getEnum("behaviour", Behaviour::Ok, kBehaviours, {"what happens"})),
           number_(params.getInt("number", 0, {"given back as a metric"})),
+          marker_(params.getText("marker", "/nonexistent", {"file that ends the flakes"})),
           pauseMs_(params.getInt("pause_ms", 0, {"length of an iteration", "ms", 0, 60000})),
           allocateMib_(params.getInt("allocate_mib", 0, {"memory to touch", "MiB", 0, 4096})) {
         params.finish();
@@ -60,6 +68,17 @@ class Mock : public technique::Technique {
         switch (behaviour_) {
             case Behaviour::Ok:
             case Behaviour::NotANumber:
+                return;
+            case Behaviour::Leak:
+                while (true) {
+                    memory_.resize(memory_.size() + (std::size_t{64} << 20), 'x');
+                    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                }
+            case Behaviour::Flake:
+                if (std::filesystem::exists(marker_)) return;
+                std::ofstream(marker_) << "seen";
+                std::fputs("flaking\n", stderr);
+                std::raise(SIGSEGV);
                 return;
             case Behaviour::Crash:
                 std::fputs("about to crash\n", stderr);
@@ -90,6 +109,7 @@ class Mock : public technique::Technique {
   private:
     Behaviour behaviour_;
     int number_;
+    std::string marker_;
     int pauseMs_;
     int allocateMib_;
     std::vector<char> memory_;

@@ -181,6 +181,19 @@ TEST(Table, OneProcessOfTwoFailedIsPartial) {
     EXPECT_EQ(cell.measured, "4.0 (partial: crash)");
 }
 
+TEST(Table, FlakyValueIsShownAndMarked) {
+    RecordMaker maker;
+    maker.beginCase("models/bunny").add("gpu_time_ms", {4.0, 4.0}, "draw");
+    std::vector<Record> records = maker.records();
+    for (Record& record : records) record.status = Status::Flaky;
+    const Table table = buildTable(experimentFrom(kPlain), records);
+    const Cell& cell = table.rows[1].cells[1];
+    EXPECT_EQ(cell.measured, "4.0 (flaky)");
+    EXPECT_EQ(cell.status, Status::Flaky);
+    EXPECT_FALSE(cell.isPartial);
+    EXPECT_FALSE(cell.isOk());
+}
+
 TEST(Table, TimesOfTheQualityLaneStayOut) {
     RecordMaker maker;
     maker.beginCase("models/bunny").lane("quality").add("gpu_time_ms", {4.0}, "draw");

@@ -1,0 +1,180 @@
+#include "runner/batch/expectations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runner/config/params.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::pair<std::string_view, Expectation::Kind> kLists[] = {
+    {"fails", Expectation::Kind::Fails},
+    {"flakes", Expectation::Kind::Flakes},
+    {"skips", Expectation::Kind::Skips}};
+
+bool isOneOf(const config::Node& value, const config::Node& allowed) {
+    if (!allowed.isSequence()) return value.sameContent(allowed);
+    const auto& items = allowed.items();
+    return std::any_of(items.begin(), items.end(),
+                       [&](const config::Node& item) { return value.sameContent(item); });
+}
+
+/// "2027-01-31"; compares as text.
+void requireDay(const std::string& text, const SourceLocation& where) {
+    constexpr std::string_view kPattern = "dddd-dd-dd";
+    bool isDay = text.size() == kPattern.size();
+    for (std::size_t i = 0; isDay && i < text.size(); ++i) {
+        isDay = kPattern[i] == 'd' ? text[i] >= '0' && text[i] <= '9' : text[i] == '-';
+    }
+    if (!isDay) {
+        throw Error(where,
+                    fmt::format("until: found '{}', expected a day such as 2027-01-31", text));
+    }
+}
+
+Expectation readEntry(const config::Node& node, Expectation::Kind kind, const std::string& list) {
+    if (!node.isMap()) {
+        throw Error(node.location(),
+                    fmt::format("{}: expected a map, found {}", list, node.kindName()));
+    }
+    config::Node values = node;
+    Expectation entry;
+    entry.kind = kind;
+    entry.location = node.location();
+    if (const config::Node* at = node.find("at")) {
+        entry.at = at->entries();
+        values.erase("at");
+    }
+    config::Params params(values, "an entry of '" + list + "'");
+    entry.table = params.getText("table", "", {"experiment, as in zju2005/2.1"});
+    entry.reason = params.getText("reason", "", {"why"});
+    entry.until = params.getText("until", "", {"the last day on which it counts"});
+    std::string status;
+    if (kind == Expectation::Kind::Fails) {
+        status = params.getText("status", "", {"how the case ends"});
+    }
+    params.finish();
+    for (const auto& [name, text] :
+         {std::pair{"table", &entry.table}, std::pair{"reason", &entry.reason},
+          std::pair{"until", &entry.until}}) {
+        if (text->empty()) {
+            throw Error(node.location(), fmt::format("{}: '{}' is missing", list, name));
+        }
+    }
+    requireDay(entry.until, params.locationOf("until"));
+    if (status.empty()) return entry;
+    try {
+        entry.status = report::statusFromName(status);
+    } catch (const Error& error) {
+        throw Error(params.locationOf("status"), error.what());
+    }
+    return entry;
+}
+
+}  // namespace
+
+bool Expectation::matches(const Case& item) const {
+    if (item.experiment != table) return false;
+    for (const auto& [axis, allowed] : at) {
+        const config::Node* value = item.axes.find(axis);
+        if (!value) value = item.params.find(axis);
+        if (!value && axis == "scene") value = &item.scene;
+        if (!value || !isOneOf(*value, allowed)) return false;
+    }
+    return true;
+}
+
+Expectations::Expectations(const std::vector<std::string>& configs, const std::string& deviceClass,
+                           std::string_view today) {
+    std::set<fs::path> files;
+    for (const std::string& config : configs) {
+        files.insert(fs::path(config).parent_path() / ("expect-" + deviceClass + ".yaml"));
+    }
+    for (const fs::path& file : files) {
+        if (fs::exists(file)) read(config::parseYamlFile(file), today);
+    }
+}
+
+void Expectations::read(const config::Node& document, std::string_view today) {
+    if (document.isNull()) return;
+    for (const auto& [name, list] : document.entries()) {
+        const auto* found = std::find_if(std::begin(kLists), std::end(kLists),
+                                         [&key = name](const auto& l) { return l.first == key; });
+        if (found == std::end(kLists)) {
+            throw Error(document.keyLocation(name),
+                        fmt::format("unknown list '{}'; allowed: fails, flakes, skips", name));
+        }
+        for (const config::Node& node : list.items()) {
+            Expectation entry = readEntry(node, found->second, name);
+            const bool isExpired = entry.until < today;
+            entries_.push_back({std::move(entry), isExpired});
+        }
+    }
+}
+
+const Expectation* Expectations::skipOf(const Case& item) const {
+    for (const Entry& entry : entries_) {
+        if (entry.isExpired || entry.expectation.kind != Expectation::Kind::Skips) continue;
+        if (entry.expectation.matches(item)) return &entry.expectation;
+    }
+    return nullptr;
+}
+
+namespace {
+
+bool allows(const Expectation& expectation, report::Status status) {
+    switch (expectation.kind) {
+        case Expectation::Kind::Fails:
+            return status != report::Status::Ok && status != report::Status::Flaky &&
+                   (!expectation.status || expectation.status == status);
+        case Expectation::Kind::Flakes:
+            return status == report::Status::Flaky;
+        case Expectation::Kind::Skips:
+            return status == report::Status::Missing;
+    }
+    return false;
+}
+
+}  // namespace
+
+bool Expectations::isExpected(const Case& item, report::Status status) const {
+    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+        return !entry.isExpired && allows(entry.expectation, status) &&
+               entry.expectation.matches(item);
+    });
+}
+
+void Expectations::note(const Case& item, report::Status status) {
+    for (Entry& entry : entries_) {
+        if (entry.isExpired || !entry.expectation.matches(item)) continue;
+        if (allows(entry.expectation, status)) ++entry.met;
+        if (status == report::Status::Ok) ++entry.passed;
+    }
+}
+
+std::vector<std::string> Expectations::complaints() const {
+    std::vector<std::string> lines;
+    for (const Entry& entry : entries_) {
+        const Expectation& expectation = entry.expectation;
+        const std::string where = toString(expectation.location);
+        if (entry.isExpired) {
+            lines.push_back(fmt::format("{}: the expectation expired on {} ({})", where,
+                                        expectation.until, expectation.reason));
+        } else if (entry.passed > 0 && entry.met == 0) {
+            lines.push_back(
+                fmt::format("{}: the expectation is not needed: every case that it "
+                            "names passed ({})",
+                            where, expectation.reason));
+        }
+    }
+    return lines;
+}
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,63 @@
+// expect-<device>.yaml beside the configs: which cases are known to fail, to flake or to be left
+// out on a class of devices, why, and until when that is believed.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "runner/batch/plan.h"
+#include "runner/report/records.h"
+
+namespace gfxrepro::batch {
+
+/// One entry of a list.
+struct Expectation {
+    enum class Kind { Fails, Flakes, Skips };
+    Kind kind = Kind::Fails;
+    std::string table;                                     // "zju2005/2.1"
+    std::vector<std::pair<std::string, config::Node>> at;  // axis or parameter = value or values
+    std::optional<report::Status> status;                  // of a failure; none: any
+    std::string reason;
+    std::string until;  // "2027-01-31": the last day on which it counts
+    SourceLocation location;
+
+    bool matches(const Case& item) const;
+};
+
+/// Those of the configs of a run.
+class Expectations {
+  public:
+    /// Nothing is expected.
+    Expectations() = default;
+    /// Reads `expect-<deviceClass>.yaml` of each folder that holds one of `configs`; a folder may
+    /// have none. Entries whose day is before `today` ("2026-11-21") do not count. Throws Error
+    /// with file:line:column.
+    Expectations(const std::vector<std::string>& configs, const std::string& deviceClass,
+                 std::string_view today);
+
+    /// The entry by which the case is not to be run; null when there is none.
+    const Expectation* skipOf(const Case& item) const;
+    /// Whether the case may end like this: not tried again, not held against the run.
+    bool isExpected(const Case& item, report::Status status) const;
+    /// Remembers how a case ended.
+    void note(const Case& item, report::Status status);
+    /// Expired entries, and those that no longer tell the truth: every case that ran passed.
+    std::vector<std::string> complaints() const;
+
+  private:
+    struct Entry {
+        Expectation expectation;
+        bool isExpired = false;
+        int passed = 0;  // units that it matches, by how they ended
+        int met = 0;
+    };
+    void read(const config::Node& document, std::string_view today);
+
+    std::vector<Entry> entries_;
+};
+
+}  // namespace gfxrepro::batch
