@@ -101,9 +101,14 @@ ShadowErrors ShadowTruth::compare(const std::vector<VisiblePoint>& points, const
     GFXREPRO_ASSERT_EQ(points.size(), shadowTerms.size());
     ShadowErrors errors;
     errors.classes.resize(points.size());
+    errors.truth.resize(points.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            errors.classes[i] = classOf(points[i], light, shadowTerms[i], edgeTexels);
+            const PixelClass pixel = classOf(points[i], light, shadowTerms[i], edgeTexels);
+            errors.classes[i] = pixel;
+            // The map's answer where it is right, else the other.
+            const bool isRight = pixel == PixelClass::Lit || pixel == PixelClass::Shadowed;
+            errors.truth[i] = (shadowTerms[i] >= 0.5F) == isRight ? 1 : 0;
         }
     });
     for (const PixelClass pixel : errors.classes) {

@@ -56,6 +56,7 @@ enum class PixelClass : std::uint8_t { NotCompared, Lit, Shadowed, Edge, Acne, L
 
 struct ShadowErrors {
     std::vector<PixelClass> classes;  // Lit and Shadowed are right
+    std::vector<std::uint8_t> truth;  // 1 where shadow rays see the light
     std::uint64_t compared = 0, edge = 0, acne = 0, leak = 0;
 
     std::uint64_t wrong() const { return edge + acne + leak; }
