@@ -64,8 +64,8 @@ class ShadowMapsTest : public test::GlTest {
         ShadedView view(shaders, settings);
         ShadedImage image = makeShadedImage(depth_images::viewOf(camera, kSize), true);
         view.render(scene, maps, image);
-        return {image.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 4),
-                image.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 4)};
+        return {image.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+                image.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1)};
     }
     static bool isFloor(const glm::vec4& position) { return position.w != 0 && position.y < 0.5F; }
 
