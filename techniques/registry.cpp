@@ -6,6 +6,7 @@
 #include "techniques/point_splatting/point_splatting.h"
 #include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
+#include "techniques/shadow_mapping/shadow_mapping.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
 #include "techniques/voxelization/voxelization.h"
@@ -21,6 +22,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         point_splatting::kPointSplatting,
         ray_tracing::kRayTracing,
         reflection_reuse::kReflectionReuse,
+        shadow_mapping::kShadowMapping,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
         voxelization::kVoxelization,

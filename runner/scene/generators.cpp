@@ -7,6 +7,7 @@
 #include "runner/core/text.h"
 #include "runner/scene/generators_indoor.h"
 #include "runner/scene/generators_outdoor.h"
+#include "runner/scene/generators_shadow_scenes.h"
 #include "runner/scene/generators_shapes.h"
 #include "runner/scene/refine.h"
 
@@ -198,7 +199,11 @@ constexpr GeneratorInfo kGenerators[] = {
     {"four_objects", "four boxes, one of which two views do not see", &fourObjects},
     {"grass", "bent blades on uneven ground", &grass},
     {"living_room", "a furnished room with 25 reflective objects", &livingRoom},
+    {"object_on_plane", "a shape that stands on a plane, and plates close above it",
+     &objectOnPlane},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
+    {"town_square", "a square with railings, wires, leaves and things close above the ground",
+     &townSquare},
     {"tree", "a deciduous tree with a dense crown of leaves", &tree},
 };
 

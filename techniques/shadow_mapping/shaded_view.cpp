@@ -1,0 +1,157 @@
+#include "techniques/shadow_mapping/shaded_view.h"
+
+#include <fmt/format.h>
+
+#include "runner/core/error.h"
+#include "runner/gpu_scene/gpu_mesh.h"
+
+namespace gfxrepro::shadow_mapping {
+namespace {
+
+constexpr unsigned kBaseColorUnit = 0;
+constexpr int kShadowMapUnit = 1;  // and the following
+
+bool looksUpInVertices(const std::vector<LightKind>& kinds, const Bias& bias) {
+    // A cube's face, and an offset along a triangle's normal, differ from fragment to fragment.
+    for (const LightKind kind : kinds) {
+        if (kind == LightKind::Point) return false;
+    }
+    return !kinds.empty() && bias.normalOffsetTexels == 0.0F;
+}
+
+glm::vec4 placeOf(const Light& light) {
+    return light.kind == LightKind::Directional
+               ? glm::vec4(-glm::normalize(light.directionWorld), 0.0F)
+               : glm::vec4(light.positionWorld, 1.0F);
+}
+
+/// Element `index` of a uniform array, where the shader reads it.
+template <class T>
+void setElement(const gl::Program& program, const char* name, std::size_t index, const T& value) {
+    const std::string element = fmt::format("{}[{}]", name, index);
+    if (program.isActive(element.c_str())) program.set(element.c_str(), value);
+}
+
+}  // namespace
+
+std::size_t ShadedImage::sizeBytes() const {
+    return colour.sizeBytes() + shadowTerms.sizeBytes() + positions.sizeBytes() +
+           normals.sizeBytes() + depth.sizeBytes();
+}
+
+ShadedImage makeShadedImage(const depth_images::View& view, bool hasTerms) {
+    ShadedImage image;
+    image.view = view;
+    image.colour = gl::Texture::make2D(GL_RGBA16F, view.sizePx);
+    image.depth = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx);
+    std::vector<const gl::Texture*> targets{&image.colour};
+    if (hasTerms) {
+        for (gl::Texture* texture : {&image.shadowTerms, &image.positions, &image.normals}) {
+            *texture = gl::Texture::make2D(GL_RGBA32F, view.sizePx);
+            targets.push_back(texture);
+        }
+    }
+    image.framebuffer = gl::Framebuffer(targets, &image.depth);
+    return image;
+}
+
+ShadedView::ShadedView(const gl::ShaderLibrary& shaders, const ShadowMapSettings& settings,
+                       const Lighting& lighting)
+    : shaders_(shaders),
+      settings_(settings),
+      lighting_(lighting),
+      step_(declaredSteps(settings).back()) {}
+
+const gl::Program& ShadedView::programFor(const Variant& variant) {
+    const auto found = programs_.find(variant);
+    if (found != programs_.end()) return found->second;
+    int viewCount = 0;
+    int pointLights = 0;  // a bit each
+    for (std::size_t i = 0; i < variant.kinds.size(); ++i) {
+        const glm::ivec2 tiles = tileCountOf(variant.kinds[i]);
+        viewCount += tiles.x * tiles.y;
+        if (variant.kinds[i] == LightKind::Point) pointLights |= 1 << i;
+    }
+    gl::Defines defines = gpu_scene::attributeDefines();
+    defines["kBaseColorUnit"] = static_cast<int>(kBaseColorUnit);
+    defines["kShadowMapUnit"] = kShadowMapUnit;
+    defines["LIGHT_COUNT"] = static_cast<int>(variant.kinds.size());
+    defines["VIEW_COUNT"] = viewCount;
+    defines["POINT_LIGHTS"] = pointLights;
+    defines["LOOKUP_IN_VERTEX"] = looksUpInVertices(variant.kinds, settings_.bias) ? 1 : 0;
+    defines["COMPARES_IN_SHADER"] = step_.comparisons > 0 ? 1 : 0;
+    defines["KERNEL"] = kernelSizeOf(settings_.filter);
+    defines["FILTER"] = static_cast<int>(settings_.filter);
+    defines["kFilterNearest"] = static_cast<int>(Filter::Nearest);
+    defines["kFilterBilinear"] = static_cast<int>(Filter::Bilinear);
+    defines["kFilterPcss"] = static_cast<int>(Filter::Pcss);
+    defines["kFilterVariance"] = static_cast<int>(Filter::Variance);
+    defines["TERMS"] = variant.hasTerms ? 1 : 0;
+    defines["TEXTURES"] = variant.hasTextures ? 1 : 0;
+    defines["ALPHA_TEST"] = variant.isAlphaTested ? 1 : 0;
+    defines["FLAT_PARTS"] = variant.hasFlatParts ? 1 : 0;
+    return programs_
+        .emplace(variant, gl::Program(shaders_,
+                                      {"shadow_mapping/shaded_view.vert.glsl",
+                                       "shadow_mapping/shaded_view.frag.glsl"},
+                                      defines))
+        .first->second;
+}
+
+void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
+                             const depth_images::View& view) const {
+    const auto setIfActive = [&](const char* name, const auto& value) {
+        if (program.isActive(name)) program.set(name, value);
+    };
+    setIfActive("clipFromWorld", view.clipFromWorld());
+    setIfActive("eyeWorld", view.eyeWorld);
+    setIfActive("ambient", lighting_.ambient);
+    setIfActive("diffuse", lighting_.diffuse);
+    setIfActive("specular", lighting_.specular);
+    setIfActive("shininess", lighting_.shininess);
+    setIfActive("epsilon", settings_.bias.constant);
+    setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
+    std::size_t firstView = 0;
+    for (std::size_t i = 0; i < maps.maps().size(); ++i) {
+        const ShadowMap& map = maps.maps()[i];
+        const Light& light = maps.lights()[i];
+        setElement(program, "lightPlaces", i, placeOf(light));
+        setElement(program, "lightColors", i, light.color);
+        setElement(program, "lightSizes", i, light.size);
+        setElement(program, "firstViews", i, static_cast<int>(firstView));
+        map.lookup().bind(static_cast<unsigned>(kShadowMapUnit) + static_cast<unsigned>(i));
+        for (std::size_t j = 0; j < map.views.size(); ++j) {
+            const LightView& from = map.views[j];
+            const glm::ivec2 last = from.tilePx + from.tileSizePx - 1;
+            setElement(program, "lookupFromWorld", firstView + j,
+                       from.lookupFromWorld(glm::ivec2(map.depth.size())));
+            setElement(program, "tiles", firstView + j, glm::vec4(from.tilePx, last));
+            setElement(program, "planes", firstView + j,
+                       glm::vec4(from.nearM, from.farM, from.texelPerDistance, from.isPerspective));
+        }
+        firstView += map.views.size();
+    }
+}
+
+void ShadedView::render(const depth_images::DrawableScene& scene, const ShadowMapRenderer& maps,
+                        ShadedImage& target) {
+    GFXREPRO_ASSERT(maps.steps().back() == step_);
+    Variant variant{
+        {}, target.hasTerms(), scene.hasTextures(), scene.isAlphaTested(), scene.hasFlatParts()};
+    for (const Light& light : maps.lights()) variant.kinds.push_back(light.kind);
+    const gl::Program& program = programFor(variant);
+    applyState(step_);
+    target.framebuffer.bind();
+    target.framebuffer.clearColour(0, glm::vec4(lighting_.background, 1.0F));
+    if (target.hasTerms()) {
+        target.framebuffer.clearColour(1, glm::vec4(1.0F));  // where nothing is, nothing is shaded
+        target.framebuffer.clearColour(2, glm::vec4(0.0F));
+        target.framebuffer.clearColour(3, glm::vec4(0.0F));
+    }
+    target.framebuffer.clearDepth(1.0F);
+    program.use();
+    setUniforms(program, maps, target.view);
+    scene.draw(program, kBaseColorUnit);
+}
+
+}  // namespace gfxrepro::shadow_mapping

@@ -1,0 +1,66 @@
+// Step 2 of [zju2005] Sec. 4.1: the scene from the camera, lit where the maps say so.
+#pragma once
+
+#include <map>
+
+#include "techniques/shadow_mapping/shadow_map.h"
+#include "techniques/shared/view.h"
+
+namespace gfxrepro::shadow_mapping {
+
+/// [zju2005] Sec. 4.2.2: (ambient + diffuse · shadow) · texture + specular · shadow.
+struct Lighting {
+    glm::vec3 ambient{0.25F};
+    float diffuse = 0.75F;
+    float specular = 0.2F;
+    float shininess = 32.0F;  // exponent of N·H
+    glm::vec3 background{0.18F, 0.20F, 0.24F};
+};
+
+/// What the camera sees. The measured frame has colour only; the rest is for errors.
+struct ShadedImage {
+    depth_images::View view;
+    gl::Texture colour;  // RGBA16F, linear
+    gl::Texture
+        shadowTerms;  // RGBA32F: light i in channel i, 1 lit, 0 in shadow; empty without terms
+    gl::Texture positions;  // RGBA32F: world; w 1 where there is a surface
+    gl::Texture normals;    // RGBA32F: the triangle's, unit, turned to the eye
+    gl::Texture depth;      // DEPTH_COMPONENT32F, window z
+    gl::Framebuffer framebuffer;
+
+    bool hasTerms() const { return shadowTerms.id() != 0; }
+    std::size_t sizeBytes() const;
+};
+
+ShadedImage makeShadedImage(const depth_images::View& view, bool hasTerms);
+
+class ShadedView {
+  public:
+    ShadedView(const gl::ShaderLibrary& shaders, const ShadowMapSettings& settings,
+               const Lighting& lighting = {});
+
+    /// Draws with the maps as they are: `maps` has the settings that this was made with.
+    void render(const depth_images::DrawableScene& scene, const ShadowMapRenderer& maps,
+                ShadedImage& target);
+
+  private:
+    struct Variant {
+        std::vector<LightKind> kinds;
+        bool hasTerms = false;
+        bool hasTextures = false;
+        bool isAlphaTested = false;
+        bool hasFlatParts = false;
+        auto operator<=>(const Variant&) const = default;
+    };
+    const gl::Program& programFor(const Variant& variant);
+    void setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
+                     const depth_images::View& view) const;
+
+    const gl::ShaderLibrary& shaders_;
+    ShadowMapSettings settings_;
+    Lighting lighting_;
+    StepDeclaration step_;
+    std::map<Variant, gl::Program> programs_;
+};
+
+}  // namespace gfxrepro::shadow_mapping

@@ -1,0 +1,168 @@
+#include "techniques/shadow_mapping/shadow_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "runner/core/error.h"
+#include "runner/gpu_scene/gpu_mesh.h"
+
+namespace gfxrepro::shadow_mapping {
+namespace {
+
+constexpr int kMomentsUnit = 0;
+
+GLenum glFormatOf(DepthFormat format) {
+    switch (format) {
+        case DepthFormat::Unorm16:
+            return GL_DEPTH_COMPONENT16;
+        case DepthFormat::Unorm24:
+            return GL_DEPTH_COMPONENT24;
+        case DepthFormat::Float32:
+            return GL_DEPTH_COMPONENT32F;
+    }
+    return GL_DEPTH_COMPONENT24;
+}
+
+gl::Program makeDepthProgram(const gl::ShaderLibrary& shaders, const StepDeclaration& step,
+                             const ShadowMapSettings& settings) {
+    gl::Defines defines = gpu_scene::attributeDefines();
+    defines["FRAGMENT_WORK"] = step.fragmentWork ? 1 : 0;
+    defines["MOMENTS"] = settings.filter == Filter::Variance ? 1 : 0;
+    std::vector<std::string> files{"shadow_mapping/depth_map.vert.glsl"};
+    if (step.fragmentWork) files.emplace_back("shadow_mapping/depth_map.frag.glsl");
+    return {shaders, files, defines};
+}
+
+gl::Framebuffer framebufferOf(const gl::Texture& colour, const gl::Texture* depth = nullptr) {
+    const gl::Texture* colours[] = {&colour};
+    return gl::Framebuffer(colours, depth);
+}
+
+}  // namespace
+
+std::size_t ShadowMap::sizeBytes() const {
+    return colour.sizeBytes() + blurred.sizeBytes() + depth.sizeBytes();
+}
+
+ShadowMapRenderer::ShadowMapRenderer(const gl::ShaderLibrary& shaders,
+                                     const ShadowMapSettings& settings)
+    : settings_(settings),
+      steps_(declaredSteps(settings)),
+      depthProgram_(makeDepthProgram(shaders, steps_.front(), settings)) {
+    if (settings.filter == Filter::Variance) {
+        blurProgram_.emplace(
+            shaders,
+            std::vector<std::string>{"shadow_mapping/whole_tile.vert.glsl",
+                                     "shadow_mapping/blur_moments.frag.glsl"},
+            gl::Defines{{"kMomentsUnit", kMomentsUnit}, {"FETCHES", settings.blurTexels}});
+    }
+}
+
+ShadowMap ShadowMapRenderer::makeMap(glm::ivec2 sizePx) const {
+    ShadowMap map;
+    map.depth = gl::Texture::make2D(glFormatOf(settings_.format), sizePx);
+    if (!steps_.front().colourWrites) {
+        if (steps_.back().comparisons == 0) {
+            // [zju2005] Sec. 4.3: a fetch compares, and gives 0 where the map is less.
+            glTextureParameteri(map.depth.id(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+            glTextureParameteri(map.depth.id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+        }
+        if (settings_.filter == Filter::Bilinear) map.depth.setFilter(GL_LINEAR, GL_LINEAR);
+        map.framebuffer = gl::Framebuffer(std::span<const gl::Texture* const>(), &map.depth);
+        return map;
+    }
+    const bool isVariance = settings_.filter == Filter::Variance;
+    map.colour = gl::Texture::make2D(isVariance ? GL_RG32F : GL_R32F, sizePx);
+    map.framebuffer = framebufferOf(map.colour, &map.depth);
+    if (isVariance) {
+        map.colour.setFilter(GL_LINEAR, GL_LINEAR);  // moments may be averaged, depths may not
+        map.blurred = gl::Texture::make2D(GL_RG32F, sizePx);
+        map.blurredFramebuffer = framebufferOf(map.blurred);
+        map.colourFramebuffer = framebufferOf(map.colour);
+    }
+    return map;
+}
+
+bool ShadowMapRenderer::isCurrent(const depth_images::DrawableScene& scene,
+                                  std::span<const Light> lights, std::uint64_t sceneVersion) const {
+    return scene_ == &scene && sceneVersion_ == sceneVersion &&
+           std::equal(lights.begin(), lights.end(), lights_.begin(), lights_.end());
+}
+
+void ShadowMapRenderer::render(const depth_images::DrawableScene& scene,
+                               std::span<const Light> lights, std::uint64_t sceneVersion) {
+    if (lights.size() > kMaxLights) {
+        throw Error(fmt::format("{} lights with shadows: at most {}", lights.size(), kMaxLights));
+    }
+    scene_ = nullptr;  // nothing is current if this throws
+    lights_.assign(lights.begin(), lights.end());
+    maps_.resize(lights.size());
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        std::vector<LightView> views = viewsOf(lights[i], scene.bounds(), settings_.sizePx);
+        const glm::ivec2 sizePx = tileCountOf(lights[i].kind) * settings_.sizePx;
+        if (glm::ivec2(maps_[i].depth.size()) != sizePx) maps_[i] = makeMap(sizePx);
+        maps_[i].views = std::move(views);
+        drawDepth(scene, maps_[i]);
+        if (blurProgram_) blur(maps_[i]);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    scene_ = &scene;
+    sceneVersion_ = sceneVersion;
+}
+
+void ShadowMapRenderer::drawDepth(const depth_images::DrawableScene& scene,
+                                  const ShadowMap& map) const {
+    const StepDeclaration& step = steps_.front();
+    applyState(step);
+    map.framebuffer.bind();
+    map.framebuffer.clearDepth(1.0F);
+    if (step.colourWrites) map.framebuffer.clearColour(0, glm::vec4(1.0F));
+    depthProgram_.use();
+    if (settings_.bias.slopeScale > 0.0F) {
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(settings_.bias.slopeScale, 0.0F);
+    }
+    for (const LightView& view : map.views) {
+        glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
+        depthProgram_.set("clipFromWorld", view.clipFromWorld);
+        if (depthProgram_.isActive("slopeScale")) {
+            depthProgram_.set("slopeScale", settings_.bias.slopeScale);
+        }
+        if (depthProgram_.isActive("planes")) {
+            depthProgram_.set("planes", glm::vec3(view.nearM, view.farM, view.isPerspective));
+        }
+        scene.drawDepthOnly();
+    }
+}
+
+void ShadowMapRenderer::blur(const ShadowMap& map) const {
+    blurProgram_->use();
+    withoutAttributes_.bind();
+    const auto pass = [&](const StepDeclaration& step, const gl::Texture& from,
+                          const gl::Framebuffer& to, glm::ivec2 along) {
+        applyState(step);
+        to.bind();
+        from.bind(kMomentsUnit);
+        blurProgram_->set("along", along);
+        for (const LightView& view : map.views) {
+            glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
+            blurProgram_->set("firstTexel", view.tilePx);
+            blurProgram_->set("lastTexel", view.tilePx + view.tileSizePx - 1);
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        }
+    };
+    pass(steps_[1], map.colour, map.blurredFramebuffer, {1, 0});
+    pass(steps_[2], map.blurred, map.colourFramebuffer, {0, 1});
+}
+
+std::size_t ShadowMapRenderer::sizeBytes() const {
+    std::size_t sum = 0;
+    for (const ShadowMap& map : maps_) sum += map.sizeBytes();
+    return sum;
+}
+
+}  // namespace gfxrepro::shadow_mapping

@@ -1,0 +1,45 @@
+#include "techniques/shadow_mapping/shadow_mapping.h"
+
+namespace gfxrepro::shadow_mapping {
+
+ShadowMapping::ShadowMapping(config::Params& params) : params_(params) {}
+
+void ShadowMapping::setup(technique::SetupContext& context) {
+    if (!context.scene) throw Error("technique 'shadow_mapping' needs a scene");
+    const scene::Scene& scene = *context.scene;
+    if (scene.triangleCount() == 0) {
+        throw Error("technique 'shadow_mapping' needs a scene with triangles");
+    }
+    if (glm::length(scene.bounds().size()) == 0.0F) {
+        throw Error(
+            "technique 'shadow_mapping' needs a scene with some extent; all of its points are one");
+    }
+    shaders_ = &context.shaders;
+    lights_ = makeLights(params_, scene);
+    tracer_.emplace(scene);
+    requireOutside(*tracer_, lights_);
+    lightsWithoutCaster_ = lightsWithoutCaster(lights_, scene, params_.maps.sizePx);
+
+    drawable_.emplace(scene);
+    maps_.emplace(context.shaders, params_.maps);
+    shadedView_.emplace(context.shaders, params_.maps);
+    const glm::vec2 size(context.outputSizePx);
+    const scene::Camera camera = scene.cameras.empty()
+                                     ? scene::framingCamera(scene.bounds(), size.x / size.y)
+                                     : scene.cameras.front();
+    image_.emplace(makeShadedImage(depth_images::viewOf(camera, context.outputSizePx), false));
+    // [zju2005] Sec. 4.1: the map is used again while the light and the objects stand still.
+    if (params_.isStatic) maps_->render(*drawable_, lights_);
+}
+
+// [zju2005] Sec. 4.1
+void ShadowMapping::render(technique::FrameContext& context) {
+    if (!params_.isStatic) {
+        const gl::GpuScope scope(context.profiler, "depth_pass");
+        maps_->render(*drawable_, lights_);
+    }
+    const gl::GpuScope scope(context.profiler, "shading_pass");
+    shadedView_->render(*drawable_, *maps_, *image_);
+}
+
+}  // namespace gfxrepro::shadow_mapping

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "techniques/shadow_mapping/shadow_mapping.h"
+
+namespace gfxrepro::shadow_mapping {
+namespace {
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// Light `light` of the four channels.
+std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light) {
+    std::vector<float> channel(terms.size() / 4);
+    for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = terms[4 * i + light];
+    return channel;
+}
+
+/// Rows from the top; three of the texture's four channels.
+image::ImageF colourPicture(const ShadedImage& image) {
+    const std::vector<float> colours = image.colour.read<float>(GL_RGBA, GL_FLOAT, 4);
+    const glm::ivec2 size = image.view.sizePx;
+    image::ImageF picture(size.x, size.y, 3);
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const auto pixel = static_cast<std::size_t>(y * size.x + x);
+            for (int c = 0; c < 3; ++c) {
+                picture.at(x, size.y - 1 - y, c) = colours[4 * pixel + static_cast<std::size_t>(c)];
+            }
+        }
+    }
+    return picture;
+}
+
+/// White where lit by truth, grey where in shadow, dark where it is not asked.
+image::ImageF truthPicture(const ShadowErrors& errors, glm::ivec2 sizePx) {
+    image::ImageF picture(sizePx.x, sizePx.y, 1);
+    for (int y = 0; y < sizePx.y; ++y) {
+        for (int x = 0; x < sizePx.x; ++x) {
+            const auto i = static_cast<std::size_t>(y * sizePx.x + x);
+            const float value = errors.classes[i] == PixelClass::NotCompared ? 0.02F
+                                : errors.truth[i]                            ? 0.9F
+                                                                             : 0.2F;
+            picture.at(x, sizePx.y - 1 - y, 0) = value;
+        }
+    }
+    return picture;
+}
+
+}  // namespace
+
+void ShadowMapping::record(technique::Recorder& recorder) {
+    recordSteps(recorder);
+    recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
+    recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
+    if (params_.showsPictures) recorder.image("result", colourPicture(*image_));
+    if (!params_.measuresErrors && !params_.comparesMethods) return;
+    // Once more with the terms that the measured frame does not write.
+    ShadedImage image = makeShadedImage(image_->view, true);
+    shadedView_->render(*drawable_, *maps_, image);
+    if (params_.measuresErrors) recordErrors(recorder, image);
+    if (params_.comparesMethods) recordDifference(recorder, image);
+}
+
+// [zju2005] Table 4.3
+void ShadowMapping::recordSteps(technique::Recorder& recorder) const {
+    for (const StepDeclaration& step : maps_->steps()) {
+        std::string pass = step.step == "depth map" ? "depth_pass"
+                           : step.step == "shading" ? "shading_pass"
+                                                    : step.step;
+        std::replace(pass.begin(), pass.end(), ' ', '_');
+        recorder.metric("colour_writes", step.colourWrites ? 1.0 : 0.0, "1", pass);
+        recorder.metric("depth_writes", step.depthWrites ? 1.0 : 0.0, "1", pass);
+        recorder.metric("fragment_work", step.fragmentWork ? 1.0 : 0.0, "1", pass);
+        recorder.metric("fetches", step.fetches, "1", pass);
+        recorder.metric("comparisons", step.comparisons, "1", pass);
+    }
+}
+
+void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImage& image) {
+    const std::vector<float> terms = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+    const std::vector<VisiblePoint> points = visiblePoints(*tracer_, image.view);
+    const scene::Box& bounds = drawable_->bounds();
+    const ShadowTruth truth(*tracer_, glm::length(bounds.size()));
+    std::uint64_t compared = 0, edge = 0, acne = 0, leak = 0;
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const ShadowErrors errors =
+            truth.compare(points, truthLight(lights_[i], bounds, params_.maps.sizePx),
+                          channelOf(terms, i), params_.edgeReachTexels());
+        compared += errors.compared;
+        edge += errors.edge;
+        acne += errors.acne;
+        leak += errors.leak;
+        if (!params_.showsPictures) continue;
+        recorder.image(fmt::format("truth_{}", i), truthPicture(errors, image.view.sizePx));
+        recorder.image(fmt::format("errors_{}", i), classPicture(errors, image.view.sizePx));
+    }
+    recorder.metric("compared_points", static_cast<double>(compared), "pixel");
+    recorder.metric("wrong_pct", percent(edge + acne + leak, compared), "%");
+    recorder.metric("acne_pct", percent(acne, compared), "%");
+    recorder.metric("leak_pct", percent(leak, compared), "%");
+    recorder.metric("edge_pct", percent(edge, compared), "%");
+}
+
+// S4: pixels whose shadow differs from that of the other method by more than a filtered fetch may:
+// texture units weigh with 8 bits on each axis.
+void ShadowMapping::recordDifference(technique::Recorder& recorder, const ShadedImage& image) {
+    ShadowMapSettings settings = params_.maps;
+    settings.storage =
+        settings.storage == Storage::Standard ? Storage::Hardware : Storage::Standard;
+    ShadowMapRenderer maps(*shaders_, settings);
+    ShadedView view(*shaders_, settings);
+    ShadedImage other = makeShadedImage(image.view, true);
+    maps.render(*drawable_, lights_);
+    view.render(*drawable_, maps, other);
+    const std::vector<float> here = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+    const std::vector<float> there = other.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+    std::uint64_t differing = 0;
+    for (std::size_t pixel = 0; pixel < here.size() / 4; ++pixel) {
+        bool differs = false;
+        for (std::size_t i = 4 * pixel; i < 4 * pixel + lights_.size(); ++i) {
+            differs = differs || std::abs(here[i] - there[i]) > 1.0F / 64.0F;
+        }
+        differing += differs ? 1 : 0;
+    }
+    recorder.metric("methods_differ_pct", percent(differing, here.size() / 4), "%");
+}
+
+namespace {
+std::unique_ptr<technique::Technique> create(config::Params& params) {
+    return std::make_unique<ShadowMapping>(params);
+}
+}  // namespace
+
+const technique::TechniqueInfo kShadowMapping{
+    "shadow_mapping", "shadow maps compared in the shader or by the texture unit", create};
+
+}  // namespace gfxrepro::shadow_mapping

@@ -1,0 +1,244 @@
+// Shadow terms of a square above a plane, whose shadow is known, with all lights and filters.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runner/core/files.h"
+#include "runner/scene/mesh_builder.h"
+#include "techniques/shadow_mapping/shaded_view.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::shadow_mapping {
+namespace {
+
+constexpr glm::ivec2 kSize{96, 72};
+// Slope: half a texel's change of depth, and a margin.
+constexpr Bias kBias{.constant = 2e-4F, .slopeScale = 1.0F};
+
+/// A floor of ±2 at y = 0 and, where asked for, a square of ±0.5 at y = 1.
+scene::Scene floorAndSquare(bool hasSquare = true) {
+    scene::MeshBuilder builder;
+    const auto addSquare = [&](float half, float y) {
+        builder.addQuad({-half, y, half}, {half, y, half}, {half, y, -half}, {-half, y, -half});
+    };
+    addSquare(2.0F, 0.0F);
+    if (hasSquare) addSquare(0.5F, 1.0F);
+    scene::Scene scene = scene::sceneOf(builder.take("square", 0));
+    scene.materials.push_back({.isDoubleSided = true});
+    scene.meshes.front().material = 0;
+    return scene;
+}
+
+Light spotLight() {
+    return {.kind = LightKind::Spot,
+            .positionWorld = {0.3F, 3.0F, 0.2F},
+            .targetWorld = {0.1F, 0.0F, 0.0F},
+            .fovRad = 1.6F,
+            .nearM = 0.5F,
+            .farM = 8.0F};
+}
+Light pointLight() {
+    Light light = spotLight();
+    // Low, so that the shadow runs over an edge of the cube.
+    light.kind = LightKind::Point;
+    light.positionWorld = {-0.9F, 1.6F, 0.3F};
+    light.nearM = 0.05F;
+    return light;
+}
+Light directionalLight() {
+    return {.kind = LightKind::Directional, .directionWorld = {0.4F, -1.0F, 0.25F}};
+}
+
+struct Terms {
+    std::vector<glm::vec4> shadow, position;
+};
+
+class ShadowMapsTest : public test::GlTest {
+  protected:
+    Terms termsOf(const ShadowMapSettings& settings, const std::vector<Light>& lights,
+                  bool hasSquare = true) {
+        const depth_images::DrawableScene scene(floorAndSquare(hasSquare));
+        scene::Camera camera = scene::framingCamera(scene.bounds(), 4.0F / 3.0F);
+        ShadowMapRenderer maps(shaders, settings);
+        maps.render(scene, lights);
+        ShadedView view(shaders, settings);
+        ShadedImage image = makeShadedImage(depth_images::viewOf(camera, kSize), true);
+        view.render(scene, maps, image);
+        return {image.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+                image.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1)};
+    }
+    static bool isFloor(const glm::vec4& position) { return position.w != 0 && position.y < 0.5F; }
+
+    gl::ShaderLibrary shaders{dataFolder("shaders")};
+};
+
+/// How far inside the square (positive) the ray from a floor point to the light passes it.
+float insideSquare(const glm::vec3& point, const Light& light) {
+    const glm::vec3 toLight =
+        light.kind == LightKind::Directional ? -light.directionWorld : light.positionWorld - point;
+    const glm::vec3 at = point + toLight * ((1.0F - point.y) / toLight.y);
+    return 0.5F - std::max(std::abs(at.x), std::abs(at.z));
+}
+
+TEST_F(ShadowMapsTest, TheShadowIsWhereGeometrySays) {
+    for (const Light& light : {spotLight(), directionalLight(), pointLight()}) {
+        for (const Storage storage : {Storage::Standard, Storage::Hardware}) {
+            const Terms terms =
+                termsOf({.storage = storage, .sizePx = 512, .bias = kBias}, {light});
+            int lit = 0, dark = 0, wrong = 0;
+            for (std::size_t i = 0; i < terms.shadow.size(); ++i) {
+                if (!isFloor(terms.position[i])) continue;
+                const float inside = insideSquare(glm::vec3(terms.position[i]), light);
+                // A texel of the map is less than 0.02 m wide on the square.
+                if (std::abs(inside) < 0.02F) continue;
+                (inside > 0.0F ? dark : lit) += 1;
+                wrong += terms.shadow[i].x == (inside > 0.0F ? 0.0F : 1.0F) ? 0 : 1;
+            }
+            EXPECT_GT(lit, 500);
+            EXPECT_GT(dark, 50);
+            EXPECT_EQ(wrong, 0) << static_cast<int>(light.kind) << static_cast<int>(storage);
+        }
+    }
+}
+
+TEST_F(ShadowMapsTest, StandardAndHardwareAgree) {
+    for (const Filter filter :
+         {Filter::Nearest, Filter::Bilinear, Filter::Pcf3, Filter::Pcf5, Filter::Pcf7}) {
+        ShadowMapSettings settings{.filter = filter, .sizePx = 64, .bias = {.constant = 4e-3F}};
+        std::vector<Light> lights{spotLight(), directionalLight(), pointLight()};
+        const Terms hardware = termsOf(settings, lights);
+        settings.storage = Storage::Standard;
+        const Terms standard = termsOf(settings, lights);
+        int between = 0;
+        float largest = 0.0F;
+        for (std::size_t i = 0; i < hardware.shadow.size(); ++i) {
+            for (int c = 0; c < 3; ++c) {
+                const float term = standard.shadow[i][c];
+                between += term > 0.0F && term < 1.0F ? 1 : 0;
+                largest = std::max(largest, std::abs(term - hardware.shadow[i][c]));
+            }
+        }
+        EXPECT_LE(largest, 1.0F / 255.0F) << static_cast<int>(filter);
+        EXPECT_EQ(between > 100, filter != Filter::Nearest) << static_cast<int>(filter);
+    }
+}
+
+TEST_F(ShadowMapsTest, NoBiasGivesAcneAndTooMuchLeaksLight) {
+    const auto wrongOf = [&](const Bias& bias) {
+        const Terms terms = termsOf({.sizePx = 128, .bias = bias}, {directionalLight()});
+        glm::ivec2 wrong(0);  // dark that is lit, lit that is dark
+        for (std::size_t i = 0; i < terms.shadow.size(); ++i) {
+            if (!isFloor(terms.position[i])) continue;
+            const float inside = insideSquare(glm::vec3(terms.position[i]), directionalLight());
+            if (std::abs(inside) < 0.1F) continue;
+            if (inside < 0.0F && terms.shadow[i].x == 0.0F) ++wrong.x;
+            if (inside > 0.0F && terms.shadow[i].x == 1.0F) ++wrong.y;
+        }
+        return wrong;
+    };
+    const glm::ivec2 none = wrongOf({}), large = wrongOf({.constant = 0.5F});
+    EXPECT_GT(none.x, 300);
+    EXPECT_EQ(none.y, 0);
+    EXPECT_EQ(large.x, 0);
+    EXPECT_GT(large.y, 40);
+    for (const Bias& bias :
+         {Bias{.constant = 0.02F}, Bias{.slopeScale = 2.0F}, Bias{.normalOffsetTexels = 1.5F}}) {
+        EXPECT_EQ(wrongOf(bias), glm::ivec2(0));
+    }
+}
+
+TEST_F(ShadowMapsTest, WithoutACasterAllIsLit) {
+    for (const Filter filter : {Filter::Nearest, Filter::Bilinear, Filter::Pcf3, Filter::Pcf7,
+                                Filter::Pcss, Filter::Variance}) {
+        Light soft = spotLight();
+        soft.size = 0.1F;
+        const ShadowMapSettings settings{.storage = Storage::Standard,
+                                         .filter = filter,
+                                         .sizePx = 128,
+                                         .bias = {.constant = 0.05F}};
+        const Terms terms = termsOf(settings, {soft, directionalLight(), pointLight()}, false);
+        for (std::size_t i = 0; i < terms.shadow.size(); ++i) {
+            const glm::vec4 at = terms.position[i];
+            ASSERT_EQ(terms.shadow[i], glm::vec4(1.0F))
+                << static_cast<int>(filter) << " at " << at.x << ' ' << at.y << ' ' << at.z;
+        }
+    }
+}
+
+TEST_F(ShadowMapsTest, PcssOfALightWithoutSizeIsNearest) {
+    for (const Storage storage : {Storage::Standard, Storage::Hardware}) {
+        ShadowMapSettings settings{.storage = storage, .sizePx = 64, .bias = {.constant = 4e-3F}};
+        const std::vector<Light> lights{spotLight(), directionalLight(), pointLight()};
+        const Terms nearest = termsOf(settings, lights);
+        settings.filter = Filter::Pcss;
+        EXPECT_EQ(termsOf(settings, lights).shadow, nearest.shadow);
+    }
+}
+
+TEST_F(ShadowMapsTest, PcssPenumbraIsAsWideAsGeometrySays) {
+    // Under parallel rays of angular width s, the square 1 m above the floor has a penumbra of s.
+    Light light{.kind = LightKind::Directional};
+    light.size = 0.3F;
+    const Terms terms =
+        termsOf({.filter = Filter::Pcss, .sizePx = 512, .bias = {.constant = 5e-3F}}, {light});
+    int full = 0, half = 0;
+    for (std::size_t i = 0; i < terms.shadow.size(); ++i) {
+        const glm::vec3 at(terms.position[i]);
+        if (!isFloor(terms.position[i]) || std::abs(at.z) > 0.3F) continue;
+        const float outside = std::abs(at.x) - 0.5F;
+        // 7 taps across: steps of s/7. A straight edge hides a linearly growing share.
+        if (std::abs(outside) < 0.15F) {
+            EXPECT_NEAR(terms.shadow[i].x, 0.5F + outside / 0.3F, 0.1F);
+            ++half;
+        } else if (std::abs(outside) > 0.17F) {
+            EXPECT_EQ(terms.shadow[i].x, outside > 0.0F ? 1.0F : 0.0F);
+            ++full;
+        }
+    }
+    EXPECT_GT(half, 20);
+    EXPECT_GT(full, 100);
+}
+
+TEST_F(ShadowMapsTest, VarianceIsBoundedAndRightFarFromEdges) {
+    const Light light = directionalLight();
+    const Terms terms = termsOf({.storage = Storage::Standard,
+                                 .filter = Filter::Variance,
+                                 .sizePx = 256,
+                                 .bias = {.constant = 0.02F}},
+                                {light});
+    for (std::size_t i = 0; i < terms.shadow.size(); ++i) {
+        if (!isFloor(terms.position[i])) continue;
+        const float inside = insideSquare(glm::vec3(terms.position[i]), light);
+        if (inside < -0.15F) EXPECT_EQ(terms.shadow[i].x, 1.0F);
+        if (inside > 0.15F) EXPECT_LT(terms.shadow[i].x, 0.01F);
+        EXPECT_GE(terms.shadow[i].x, 0.0F);
+        EXPECT_LE(terms.shadow[i].x, 1.0F);
+    }
+}
+
+TEST_F(ShadowMapsTest, MapsAreKeptWhileNothingMoves) {
+    const depth_images::DrawableScene scene(floorAndSquare());
+    ShadowMapRenderer maps(shaders, {.sizePx = 32});
+    std::vector<Light> lights{spotLight()};
+    EXPECT_FALSE(maps.isCurrent(scene, lights));
+    maps.render(scene, lights);
+    EXPECT_TRUE(maps.isCurrent(scene, lights));
+    EXPECT_FALSE(maps.isCurrent(scene, lights, 1));
+    lights[0].positionWorld.x += 0.1F;
+    EXPECT_FALSE(maps.isCurrent(scene, lights));
+}
+
+TEST_F(ShadowMapsTest, MapsBeyondTheDeviceAndTooManyLightsAreRefused) {
+    const depth_images::DrawableScene scene(floorAndSquare());
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    ShadowMapRenderer maps(shaders, {.sizePx = limit + 1});
+    EXPECT_EQ(test::errorText([&] { maps.render(scene, std::vector<Light>{spotLight()}); }),
+              "a 2D texture of " + std::to_string(limit + 1) +
+                  " pixels is beyond this device's GL_MAX_TEXTURE_SIZE = " + std::to_string(limit));
+    EXPECT_EQ(test::errorText([&] { maps.render(scene, std::vector<Light>(5, spotLight())); }),
+              "5 lights with shadows: at most 4");
+}
+
+}  // namespace
+}  // namespace gfxrepro::shadow_mapping
