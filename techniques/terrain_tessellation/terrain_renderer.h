@@ -1,0 +1,82 @@
+// Draws tiles of terrain: tessellated to the screen, as plain grids, and as morphing grids.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "techniques/terrain_tessellation/edge_factors.h"
+
+namespace gfxrepro::terrain_tessellation {
+
+enum class Spacing { FractionalEven, FractionalOdd, Equal };
+enum class Shading {
+    SlopeAltitude,
+    Height,  // the height in metres as drawn, in red: for tests and errors
+};
+
+struct RenderSettings {
+    FactorSettings factors;
+    Spacing spacing = Spacing::FractionalEven;
+    bool cullsPatches = true;
+    bool hasSkirts = true;
+    bool isWireframe = false;
+    Shading shading = Shading::SlopeAltitude;
+    /// One draw call generates no more than about this; 0: no limit. See splitPrimitivesFor().
+    int splitPrimitives = 0;
+};
+
+/// llvmpipe's tessellated draws take a time that grows with the square of what one generates.
+int splitPrimitivesFor(bool isSoftwareDevice);
+
+struct DrawCounts {
+    std::uint64_t triangles = 0;  // GL_PRIMITIVES_GENERATED, skirts included
+    int tiles = 0;
+    int patches = 0;        // given to the control stage, without skirts
+    int culledPatches = 0;  // of these, dropped by it
+    int drawCalls = 0;
+};
+
+/// Sets of the morphing grid: level l is drawn unmorphed up to rangesM[l]·startShare from the eye
+/// and as level l + 1 from rangesM[l] on. [strugar2009]
+struct MorphRanges {
+    std::vector<float> rangesM;  // one a level, at most 16
+    float startShare = 0.7F;
+};
+
+/// `terrain` must outlive it. Draws go into `target`, which the caller has cleared.
+class TerrainRenderer {
+  public:
+    TerrainRenderer(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
+                    const RenderSettings& settings);
+
+    /// [zhang2012] Sec. 2.2 to 2.4.
+    DrawCounts drawTessellated(std::span<const TerrainTile> tiles, const depth_images::View& view,
+                               const gl::Framebuffer& target);
+    /// Every tile as a grid of `stepSamples`: 1 is the full resolution (the truth); a patch's span
+    /// is what is drawn without tessellation.
+    DrawCounts drawGrid(std::span<const TerrainTile> tiles, int stepSamples,
+                        const depth_images::View& view, const gl::Framebuffer& target);
+    DrawCounts drawMorphed(std::span<const TerrainTile> tiles, const MorphRanges& ranges,
+                           const depth_images::View& view, const gl::Framebuffer& target);
+
+    const RenderSettings& settings() const { return settings_; }
+    void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
+
+  private:
+    void bind(const gl::Program& program, std::span<const TerrainTile> tiles,
+              const depth_images::View& view, const gl::Framebuffer& target);
+    int drawPatches(std::span<const TerrainTile> tiles, const depth_images::View& view) const;
+    DrawCounts drawGrids(const gl::Program& program, std::span<const TerrainTile> tiles,
+                         int stepSamples);
+    float footM() const;
+
+    const DeviceTerrain* terrain_;
+    RenderSettings settings_;
+    gl::Program tessellated_, grid_, morphed_;
+    gl::Buffer tiles_, counters_;
+    gl::VertexArray noAttributes_;
+    gl::PrimitiveQuery primitives_;
+};
+
+}  // namespace gfxrepro::terrain_tessellation
