@@ -3,26 +3,11 @@
 #pragma once
 
 #include <array>
-#include <span>
 
 #include "techniques/shared/view.h"
-#include "techniques/terrain_tessellation/height_textures.h"
+#include "techniques/terrain_tessellation/tile_selection.h"
 
 namespace gfxrepro::terrain_tessellation {
-
-/// M × M patches of one level, each N × N blocks of blockCells × blockCells cells, where a cell of
-/// level l spans 2^l samples. [zhang2012] Sec. 2.1
-struct TileShape {
-    int patchesPerTile = 8;  // M
-    int blocksPerPatch = 2;  // N
-    int blockCells = 32;     // N · blockCells is at most 64, the greatest factor
-    int patchCells() const { return blocksPerPatch * blockCells; }
-};
-
-struct TerrainTile {
-    glm::ivec2 origin{0};  // sample with the smallest x and z; a multiple of a patch's span
-    int level = 0;
-};
 
 /// Which way the segment AB of Eq. (4) points.
 enum class Segment {
@@ -37,7 +22,7 @@ enum class EdgeRule {
 };
 
 struct FactorSettings {
-    TileShape shape;
+    TileSettings tile;
     Segment segment = Segment::Vertical;
     InnerFactors inner = InnerFactors::Mean;
     EdgeRule edges = EdgeRule::Shared;
@@ -45,20 +30,20 @@ struct FactorSettings {
     float smallest = 2.0F, greatest = 64.0F;
 };
 
-/// The terrain's frame and bounds without a device.
-struct BoundsGrid {
-    std::span<const LevelBounds> levels;
-    float spacingM = 1.0F;
-    glm::vec2 originWorld{0.0F};
+/// A patch of a tile: N × N blocks.
+struct Patch {
+    int level = 0;
+    glm::ivec2 firstBlock{0};  // column and row at its level
 };
+Patch patchOf(const Tile& tile, const TileSettings& settings, int index);
 
-/// Eq. (2) to (4) for the edge that begins at sample `start` and goes along x or z.
-double edgeFactor(const BoundsGrid& terrain, const FactorSettings& settings,
-                  const depth_images::View& view, glm::ivec2 start, bool isAlongX, int level);
+/// Eq. (2): over the blocks along the patch's edge.
+HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& settings,
+                      const Patch& patch, Edge edge);
 
-/// Sides u = 0, v = 0, u = 1, v = 1 (u along x, v along z), as GL numbers the outer factors.
-std::array<double, 4> outerFactors(const BoundsGrid& terrain, const FactorSettings& settings,
-                                   const depth_images::View& view, glm::ivec2 origin, int level);
+/// Eq. (3) and (4).
+double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
+                  const depth_images::View& view, const Patch& patch, Edge edge);
 
 /// No fewer triangles than a patch of these outer factors is cut into, whatever the spacing.
 double triangleBound(const std::array<double, 4>& outer, InnerFactors inner);

@@ -14,8 +14,7 @@ class FactorReplay {
   public:
     FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
                  const RenderSettings& settings);
-    std::vector<PatchFactors> run(std::span<const TerrainTile> tiles,
-                                  const depth_images::View& view);
+    std::vector<PatchFactors> run(std::span<const Tile> tiles, const depth_images::View& view);
 
   private:
     const DeviceTerrain* terrain_;
@@ -27,7 +26,7 @@ struct EdgeAgreement {
     int sharedEdges = 0;   // between two patches of one level, neither culled
     int unequalEdges = 0;  // of these, with factors that differ in any bit
 };
-EdgeAgreement compareEdges(std::span<const TerrainTile> tiles, const TileShape& shape,
+EdgeAgreement compareEdges(std::span<const Tile> tiles, const TileSettings& settings,
                            std::span<const PatchFactors> factors);
 
 }  // namespace gfxrepro::terrain_tessellation

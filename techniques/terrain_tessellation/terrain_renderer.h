@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "runner/gl/program.h"
 #include "techniques/terrain_tessellation/edge_factors.h"
+#include "techniques/terrain_tessellation/height_textures.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -51,30 +53,27 @@ class TerrainRenderer {
                     const RenderSettings& settings);
 
     /// [zhang2012] Sec. 2.2 to 2.4.
-    DrawCounts drawTessellated(std::span<const TerrainTile> tiles, const depth_images::View& view,
+    DrawCounts drawTessellated(std::span<const Tile> tiles, const depth_images::View& view,
                                const gl::Framebuffer& target);
     /// Every tile as a grid of `stepSamples`: 1 is the full resolution (the truth); a patch's span
     /// is what is drawn without tessellation.
-    DrawCounts drawGrid(std::span<const TerrainTile> tiles, int stepSamples,
+    DrawCounts drawGrid(std::span<const Tile> tiles, int stepSamples,
                         const depth_images::View& view, const gl::Framebuffer& target);
-    DrawCounts drawMorphed(std::span<const TerrainTile> tiles, const MorphRanges& ranges,
+    DrawCounts drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
                            const depth_images::View& view, const gl::Framebuffer& target);
 
     const RenderSettings& settings() const { return settings_; }
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
-    void bind(const gl::Program& program, std::span<const TerrainTile> tiles,
-              const depth_images::View& view, const gl::Framebuffer& target);
-    int drawPatches(std::span<const TerrainTile> tiles, const depth_images::View& view) const;
-    DrawCounts drawGrids(const gl::Program& program, std::span<const TerrainTile> tiles,
-                         int stepSamples);
-    float footM() const;
+    int drawPatches(std::span<const Tile> tiles, const depth_images::View& view) const;
+    DrawCounts drawGrids(const gl::Program& program, std::span<const Tile> tiles,
+                         std::span<const int> stepsSamples);
 
     const DeviceTerrain* terrain_;
     RenderSettings settings_;
     gl::Program tessellated_, grid_, morphed_;
-    gl::Buffer tiles_, counters_;
+    gl::Buffer counters_;
     gl::VertexArray noAttributes_;
     gl::PrimitiveQuery primitives_;
 };
