@@ -8,6 +8,7 @@
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
+#include "techniques/terrain_tessellation/terrain_tessellation.h"
 #include "techniques/voxelization/voxelization.h"
 
 namespace gfxrepro::technique {
@@ -23,6 +24,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         reflection_reuse::kReflectionReuse,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
+        terrain_tessellation::kTerrainTessellation,
         voxelization::kVoxelization,
     };
     // clang-format on
