@@ -102,7 +102,7 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
     heightFormat = params.getEnum("height_format", HeightFormat::Float32, kHeightFormats,
                                   {"of the height texture"});
     view = params.getText("view", "valley",
-                          {"a camera or path of the scene, or overview, valley or flight"});
+                          {"a camera or path of the scene, or overview, valley or round_flight"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});
     measuresErrors = params.getBool("errors", false, {"compares with the full resolution"});
     showsPictures = params.getBool("pictures", false, {"the picture, and what is wrong in it"});

@@ -90,7 +90,7 @@ scene::CameraPath flight(const scene::HeightMap& map) {
     const float radius = 0.25F * frame.sideM;
     const float step = radius * glm::two_pi<float>() / (kKeys - 1);
     scene::CameraPath path;
-    path.name = "flight";
+    path.name = "round_flight";
     for (int key = 0; key < kKeys; ++key) {
         const float angle = glm::two_pi<float>() * static_cast<float>(key) / (kKeys - 1);
         const glm::vec2 outwards(std::cos(angle), std::sin(angle));
@@ -131,12 +131,12 @@ scene::Camera terrainCamera(const scene::Scene& scene, const std::string& view, 
     const scene::HeightMap& map = *scene.heights;
     if (view == "overview") return overview(map);
     if (view == "valley") return valley(map);
-    if (view == "flight") {
+    if (view == "round_flight") {
         return scene::cameraAt(flight(map), reflections::frameTime(frame, frameCount));
     }
     throw Error(
         fmt::format("the scene has no path or camera '{}', and it is none of overview, "
-                    "valley, flight",
+                    "valley, round_flight",
                     view));
 }
 

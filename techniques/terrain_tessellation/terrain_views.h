@@ -11,7 +11,7 @@ namespace gfxrepro::terrain_tessellation {
 /// none is called so, one of these, worked out from the heights alone:
 /// `overview`: the whole map from high above its southern border;
 /// `valley`: a low flight towards the highest summit;
-/// `flight`: a low round flight about the map's centre, as a path.
+/// `round_flight`: a low round flight about the map's centre, as a path.
 /// Throws Error for other names.
 scene::Camera terrainCamera(const scene::Scene& scene, const std::string& view, int frame,
                             int frameCount, float aspect);

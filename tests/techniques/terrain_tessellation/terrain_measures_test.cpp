@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "techniques/terrain_tessellation/terrain_views.h"
-#include "tests/support/error_text.h"
+#include "tests/support/support.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -123,7 +123,7 @@ TEST(TerrainViewsTest, HeightsAreBilinearAndGoOnBeyondTheBorder) {
 TEST(TerrainViewsTest, FliesAboveTheGround) {
     const scene::Scene scene = terrainScene();
     for (int frame = 0; frame < 100; ++frame) {
-        const scene::Camera camera = terrainCamera(scene, "flight", frame, 100, 1.6F);
+        const scene::Camera camera = terrainCamera(scene, "round_flight", frame, 100, 1.6F);
         EXPECT_GT(camera.position.y,
                   heightAt(*scene.heights, camera.position.x, camera.position.z) + camera.nearM);
     }
@@ -137,7 +137,7 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     scene.cameras.push_back(camera);
     EXPECT_EQ(terrainCamera(scene, "valley", 0, 1, 1.0F).position, camera.position);
     EXPECT_EQ(test::errorText([&] { terrainCamera(scene, "moon", 0, 1, 1.0F); }),
-              "the scene has no path or camera 'moon', and it is none of overview, valley, flight");
+              "the scene has no path or camera 'moon', and it is none of overview, valley, round_flight");
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST_F(TerrainTessellationTest, UntessellatedPatchesAreTwoTriangles) {
 TEST_F(TerrainTessellationTest, EveryViewAndMethodDraws) {
     const scene::Scene scene = terrain({200, 90});
     for (const char* method : {"adaptive", "patches", "uniform_grid", "cdlod"}) {
-        for (const char* view : {"overview", "valley", "flight"}) {
+        for (const char* view : {"overview", "valley", "round_flight"}) {
             const auto m = measured(fmt::format("method: {}, view: {}", method, view), scene);
             EXPECT_GT(m.at("drawn_triangles"), 0.0) << method << " " << view;
         }
