@@ -46,6 +46,15 @@ struct MorphRanges {
     float startShare = 0.7F;
 };
 
+/// Sets up what terrain.glsl and factors.glsl read; the buffers must live until the draw is done.
+gl::Buffer bindTiles(std::span<const Tile> tiles, int stepSamples);
+void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
+                 const depth_images::View& view);
+void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
+                 const RenderSettings& settings, const depth_images::View& view);
+gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings);
+constexpr unsigned kCounterBinding = 3;
+
 /// `terrain` must outlive it. Draws go into `target`, which the caller has cleared.
 class TerrainRenderer {
   public:
@@ -66,9 +75,10 @@ class TerrainRenderer {
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
-    int drawPatches(std::span<const Tile> tiles, const depth_images::View& view) const;
-    DrawCounts drawGrids(const gl::Program& program, std::span<const Tile> tiles,
-                         std::span<const int> stepsSamples);
+    int drawPatches(std::span<const Tile> tiles, const depth_images::View& view,
+                    int patchesPerTile) const;
+    int drawGridTile(const gl::Program& program, int tile, int cellsPerSide) const;
+    void bindShading(const gl::Program& program) const;
 
     const DeviceTerrain* terrain_;
     RenderSettings settings_;
