@@ -45,13 +45,17 @@ class NoiseRow {
   public:
     NoiseRow(int octave, std::uint64_t seed) : octave_(octave), seed_(seed) {}
 
-    /// to[i] = noise(i · step, y), in lattice units.
-    void evaluate(double y, double step, std::vector<float>& to) {
+    /// A place in [0, 1)² for the lattice to begin at. Without it all octaves are 0 at the first
+    /// one's lattice points, and the eye finds the grid.
+    glm::dvec2 origin() const { return 0.5 + 0.5 * glm::dvec2(gradientAt(-1, -1, octave_, seed_)); }
+
+    /// to[i] = noise(x + i · step, y), in lattice units; x ≥ 0.
+    void evaluate(double x, double y, double step, std::vector<float>& to) {
         const auto count = static_cast<std::int64_t>(to.size());
         const auto row = static_cast<std::int64_t>(std::floor(y));
         const auto fy = static_cast<float>(y - static_cast<double>(row));
         const float wy = fade(fy);
-        const auto last = static_cast<std::int64_t>(static_cast<double>(count - 1) * step) + 1;
+        const auto last = static_cast<std::int64_t>(x + static_cast<double>(count - 1) * step) + 1;
         columns_.resize(static_cast<std::size_t>(last + 1));
         for (std::int64_t c = 0; c <= last; ++c) {
             const glm::vec2 north = gradientAt(c, row, octave_, seed_);
@@ -60,9 +64,9 @@ class NoiseRow {
                 between(north.x, south.x, wy), between(north.y * fy, south.y * (fy - 1.0F), wy)};
         }
         for (std::int64_t i = 0; i < count; ++i) {
-            const double x = static_cast<double>(i) * step;
-            const auto cell = static_cast<std::int64_t>(x);
-            const auto fx = static_cast<float>(x - static_cast<double>(cell));
+            const double at = x + static_cast<double>(i) * step;
+            const auto cell = static_cast<std::int64_t>(at);
+            const auto fx = static_cast<float>(at - static_cast<double>(cell));
             const glm::vec2 west = columns_[static_cast<std::size_t>(cell)];
             const glm::vec2 east = columns_[static_cast<std::size_t>(cell + 1)];
             to[static_cast<std::size_t>(i)] =
@@ -87,10 +91,12 @@ void fractalRow(const FractalTerrain& terrain, std::uint64_t seed, int row, floa
     std::vector<float> mask(count);
     double step = static_cast<double>(terrain.spacingM) / static_cast<double>(terrain.featureM);
     // A region's character changes over four of the longest waves.
-    NoiseRow(1000, seed).evaluate(0.25 * step * row, 0.25 * step, mask);
+    NoiseRow(1000, seed).evaluate(0.0, 0.25 * step * row, 0.25 * step, mask);
     float amplitude = 1.0F;
     for (int octave = 0; octave < terrain.octaves; ++octave, step *= 2.0, amplitude *= 0.5F) {
-        NoiseRow(octave, seed).evaluate(step * row, step, noise);
+        NoiseRow lattice(octave, seed);
+        const glm::dvec2 origin = lattice.origin();
+        lattice.evaluate(origin.x, origin.y + step * row, step, noise);
         for (std::size_t i = 0; i < count; ++i) {
             hills[i] += amplitude * noise[i];
             const float fold = std::max(0.0F, 1.0F - 2.0F * std::abs(noise[i]));
@@ -231,7 +237,7 @@ HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::u
         float amplitudeM = 0.5F * detailM;  // halved each octave: less than detailM together
         // As long as a wave has four new samples; its lattice holds all old samples.
         for (int octave = 0; step * frequency <= 0.25; ++octave) {
-            NoiseRow(octave, seed).evaluate(frequency * step * row, frequency * step, noise);
+            NoiseRow(octave, seed).evaluate(0.0, frequency * step * row, frequency * step, noise);
             for (std::size_t i = 0; i < width; ++i) {
                 heights[i] += amplitudeM * noise[i] *
                               shareAt(map, shares, static_cast<double>(i) * step, row * step);

@@ -28,8 +28,12 @@ int keepFirstMessage(TIFF*, void* to, const char*, const char* format, va_list a
     return 1;
 }
 
-int ignoreWarning(TIFF*, void*, const char*, const char*, va_list) {
-    return 1;
+/// Unknown tags, which GeoTIFF is full of, are no harm. A tag that lies beyond the end of the file
+/// is: it may be the one that says which values are none.
+int keepReadWarning(TIFF* tiff, void* to, const char* module, const char* format,
+                    va_list arguments) {
+    if (std::strstr(format, "IO error") == nullptr) return 1;
+    return keepFirstMessage(tiff, to, module, format, arguments);
 }
 
 class TiffReader {
@@ -38,9 +42,9 @@ class TiffReader {
         const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(
             TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
         TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keepFirstMessage, &message_);
-        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignoreWarning, nullptr);
+        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), keepReadWarning, &message_);
         tiff_.reset(TIFFOpenExt(name_.c_str(), "r", options.get()));
-        if (!tiff_) fail();
+        if (!tiff_ || !message_.empty()) fail();
         fileBytes_ = std::filesystem::file_size(path);
         readHeader();
     }
