@@ -8,6 +8,7 @@
 #include "runner/scene/generators_indoor.h"
 #include "runner/scene/generators_outdoor.h"
 #include "runner/scene/generators_shapes.h"
+#include "runner/scene/generators_terrain.h"
 #include "runner/scene/refine.h"
 
 namespace gfxrepro::scene {
@@ -199,6 +200,7 @@ constexpr GeneratorInfo kGenerators[] = {
     {"grass", "bent blades on uneven ground", &grass},
     {"living_room", "a furnished room with 25 reflective objects", &livingRoom},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
+    {"terrain", "a height map of mountains and lowland", &terrain},
     {"tree", "a deciduous tree with a dense crown of leaves", &tree},
 };
 
