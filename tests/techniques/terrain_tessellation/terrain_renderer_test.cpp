@@ -26,7 +26,9 @@ TEST_F(TerrainTest, HeightsAtSamplesAreTheMaps) {
     makeTerrain(roughMap(257, 40.0F));
     RenderSettings set = settings();
     set.shading = Shading::Height;
-    set.factors.segmentPx = 0.01F;  // factors of 16 at the least: every sample is a vertex
+    // Every sample is a vertex: 16 segments on the 16 of a patch. Eq. (4) itself gives the smallest
+    // factor here, as the vertical AB shrinks to a point from above.
+    set.factors.smallest = 16.0F;
     set.factors.greatest = 16.0F;
     set.hasSkirts = false;
     TerrainRenderer renderer(shaders, *terrain, set);
