@@ -11,7 +11,8 @@
 
 namespace gfxrepro::terrain_tessellation {
 
-/// Distances along the view axis in metres, rows from the bottom; 0: background.
+/// Distances along the view axis in metres, rows from the bottom; 0: background, or the underside
+/// of the terrain.
 struct DepthMap {
     depth_images::View view;
     std::vector<float> depthM;
@@ -34,9 +35,9 @@ struct HeightErrors {
 HeightErrors heightErrors(const DepthMap& drawn,
                           const std::function<float(float x, float z)>& heightAt);
 
-/// Marks pixels through which the background shows although the terrain is whole there: the truth
-/// covers the pixel and its eight neighbours, and `drawn` covers one above it in its column, so
-/// that no horizon drawn too low counts. A byte a pixel, rows from the bottom.
+/// Marks pixels through which the background or the underside shows although the terrain is whole
+/// there: the truth covers the pixel and its eight neighbours, and `drawn` covers one above it in
+/// its column, so that no horizon drawn too low counts. A byte a pixel, rows from the bottom.
 std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth);
 std::size_t markedCount(const std::vector<std::uint8_t>& marks);
 

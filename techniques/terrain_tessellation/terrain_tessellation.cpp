@@ -48,7 +48,7 @@ TerrainTessellation::Target::Target(glm::ivec2 sizePx)
 
 void TerrainTessellation::Target::clear() const {
     // A contrasting sky: no ground has this blue, so that a crack is seen.
-    framebuffer.clearColour(0, {0.45F, 0.65F, 0.95F, 1.0F});
+    framebuffer.clearColour(0, {0.45F, 0.65F, 0.95F, 0.0F});
     framebuffer.clearDepth(1.0F);
 }
 

@@ -16,11 +16,16 @@ double percent(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
 
-DepthMap readDepths(const gl::Texture& depth, const depth_images::View& view) {
+/// Covered is what shows the terrain's upper side: see surface.frag.glsl.
+DepthMap readDepths(const gl::Texture& colour, const gl::Texture& depth,
+                    const depth_images::View& view) {
     DepthMap map{view, depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)};
     const double n = view.nearM, f = view.farM;
-    for (float& value : map.depthM) {
-        value = value == 1.0F ? 0.0F : static_cast<float>(n * f / (f - double{value} * (f - n)));
+    const std::vector<float> coverage = colour.read<float>(GL_ALPHA, GL_FLOAT, 1);
+    for (std::size_t i = 0; i < map.depthM.size(); ++i) {
+        float& value = map.depthM[i];
+        value =
+            coverage[i] < 0.5F ? 0.0F : static_cast<float>(n * f / (f - double{value} * (f - n)));
     }
     return map;
 }
@@ -79,7 +84,7 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
     renderer_->setSegmentPx(static_cast<float>(scale) * segmentPx);
     draw(method, selection, view, target);
     renderer_->setSegmentPx(segmentPx);
-    return {target.colour.readImage(3), readDepths(target.depth, view)};
+    return {target.colour.readImage(3), readDepths(target.colour, target.depth, view)};
 }
 
 void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Drawn& drawn,

@@ -7,6 +7,7 @@ uniform int tileIndex;
 uniform int cellsPerSide;
 out vec3 surfaceNormal;
 out float surfaceHeight;
+out float isSkirt;
 #if MORPH
 uniform vec3 eye;
 uniform vec2 morphRange;  // metres: where it begins, where it is done
@@ -30,5 +31,6 @@ void main() {
 #endif
     surfaceNormal = normalAt(at, normalStep);
     surfaceHeight = height;
+    isSkirt = 0.0;
     gl_Position = clipFromWorld * vec4(worldOf(at, height), 1.0);
 }

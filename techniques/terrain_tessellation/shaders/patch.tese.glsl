@@ -10,6 +10,7 @@ in vec2 cornerSamples[];
 patch in int drawnPatch;
 out vec3 surfaceNormal;
 out float surfaceHeight;
+out float isSkirt;
 
 void main() {
     Patch p = patchOfIndex(drawnPatch, patchesPerTile);
@@ -30,6 +31,7 @@ void main() {
     precise float height = down > 0.0 ? mix(top, skirtFoot, down) : top;
     surfaceNormal = normalAt(at, stepSamples);
     surfaceHeight = top;
+    isSkirt = p.rim != kSurface ? 1.0 : 0.0;
     precise vec4 position = clipFromWorld * vec4(worldOf(at, height), 1.0);
     gl_Position = position;
 }

@@ -136,8 +136,9 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     camera.position = {1.0F, 2.0F, 3.0F};
     scene.cameras.push_back(camera);
     EXPECT_EQ(terrainCamera(scene, "valley", 0, 1, 1.0F).position, camera.position);
-    EXPECT_EQ(test::errorText([&] { terrainCamera(scene, "moon", 0, 1, 1.0F); }),
-              "the scene has no path or camera 'moon', and it is none of overview, valley, round_flight");
+    EXPECT_EQ(
+        test::errorText([&] { terrainCamera(scene, "moon", 0, 1, 1.0F); }),
+        "the scene has no path or camera 'moon', and it is none of overview, valley, round_flight");
 }
 
 }  // namespace

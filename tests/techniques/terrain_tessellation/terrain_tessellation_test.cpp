@@ -65,8 +65,10 @@ TEST(TerrainTessellationParamsTest, RefusesWhatMeansNothing) {
 }
 
 TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
-    const auto m =
-        measured("method: uniform_grid, errors: true, culling: none", terrain({129, 129}));
+    // Tiles of 32 cells, so that none reaches beyond the map.
+    const auto m = measured(
+        "method: uniform_grid, errors: true, culling: none, tile_patches: 1, patch_blocks: 1",
+        terrain({129, 129}));
     EXPECT_EQ(m.at("drawn_triangles"), 2.0 * 128 * 128);
     EXPECT_EQ(m.at("crack_pixels"), 0.0);
     EXPECT_EQ(m.at("flip_mean"), 0.0);
@@ -91,7 +93,8 @@ TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
 
 TEST_F(TerrainTessellationTest, UnequalFactorsCrack) {
     const scene::Scene scene = terrain({257, 257});
-    const std::string yaml = "delta_s: 8, tau: 0, skirts: false, errors: true, edges: ";
+    const std::string yaml =
+        "delta_s: 8, tau: 0, skirts: false, errors: true, supersampling: 4, edges: ";
     EXPECT_EQ(measured(yaml + "shared", scene).at("crack_pixels"), 0.0);
     EXPECT_GT(measured(yaml + "own_patch", scene).at("crack_pixels"), 0.0);
 }
