@@ -1,6 +1,7 @@
 // Draws tiles of terrain: tessellated to the screen, as plain grids, and as morphing grids.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -75,6 +76,8 @@ class TerrainRenderer {
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
+    std::array<double, 4> outerFactors(const Patch& patch, const depth_images::View& view,
+                                       const glm::dmat4& clipFromWorld) const;
     int drawPatches(std::span<const Tile> tiles, const depth_images::View& view,
                     int patchesPerTile) const;
     int drawGridTile(const gl::Program& program, int tile, int cellsPerSide) const;
