@@ -9,6 +9,7 @@
 #include "techniques/shadow_mapping/shadow_mapping.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 #include "techniques/template/template.h"
+#include "techniques/terrain_tessellation/terrain_tessellation.h"
 #include "techniques/voxelization/voxelization.h"
 
 namespace gfxrepro::technique {
@@ -25,6 +26,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
         shadow_mapping::kShadowMapping,
         soft_shadows::kSoftShadows,
         template_::kTemplate,
+        terrain_tessellation::kTerrainTessellation,
         voxelization::kVoxelization,
     };
     // clang-format on

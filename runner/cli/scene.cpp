@@ -30,6 +30,12 @@ void print(const scene::Scene& scene) {
     fmt::print("meshes     {}, instances {}, materials {}, textures {}, cameras {}\n",
                scene.meshes.size(), scene.instances.size(), scene.materials.size(),
                scene.textures.size(), scene.cameras.size());
+    if (scene.heights) {
+        fmt::print("heights    {} x {} samples, {:g} m apart, {} filled{}\n",
+                   scene.heights->sizeSamples.x, scene.heights->sizeSamples.y,
+                   scene.heights->spacingM, scene.heights->filledCount,
+                   scene.heights->isEightBit ? ", of 8 bits" : "");
+    }
     fmt::print("box        ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", box.min.x, box.min.y,
                box.min.z, box.max.x, box.max.y, box.max.z);
 }
@@ -49,6 +55,14 @@ void exportTo(const fs::path& path, const scene::Scene& scene) {
 void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOptions& options) {
     if (path.extension() != ".png") {
         throw UsageError("--render " + path.string() + ": .png is allowed");
+    }
+    if (scene.heights && scene.triangleCount() == 0) {
+        // A terrain is drawn by its own technique; triangles over a part of its samples stand for
+        // it here.
+        scene::Scene preview = scene::sceneOf(scene::heightMapMesh(*scene.heights));
+        preview.cameras = scene.cameras;
+        renderTo(path, preview, options);
+        return;
     }
     const gl::Device device = gl::Device::open({options.device, gl::DebugOutput::Log});
     const gl::ShaderLibrary shaders(dataFolder("shaders"));

@@ -298,4 +298,24 @@ std::uint64_t SampleQuery::result() const {
     return count;
 }
 
+PrimitiveQuery::PrimitiveQuery() {
+    GLuint id = 0;
+    glCreateQueries(GL_PRIMITIVES_GENERATED, 1, &id);
+    name_ = detail::Name<detail::deleteQuery>(id);
+}
+
+void PrimitiveQuery::begin() const {
+    glBeginQuery(GL_PRIMITIVES_GENERATED, name_.get());
+}
+
+void PrimitiveQuery::end() const {
+    glEndQuery(GL_PRIMITIVES_GENERATED);
+}
+
+std::uint64_t PrimitiveQuery::result() const {
+    GLuint64 count = 0;
+    glGetQueryObjectui64v(name_.get(), GL_QUERY_RESULT, &count);
+    return count;
+}
+
 }  // namespace gfxrepro::gl

@@ -182,6 +182,20 @@ class SampleQuery {
     detail::Name<detail::deleteQuery> name_;
 };
 
+/// Counts the primitives that the draws between begin() and end() hand to the rasterizer
+/// (GL_PRIMITIVES_GENERATED), before clipping.
+class PrimitiveQuery {
+  public:
+    PrimitiveQuery();
+    void begin() const;
+    void end() const;
+    /// Of the last begin() … end(); waits for the device.
+    std::uint64_t result() const;
+
+  private:
+    detail::Name<detail::deleteQuery> name_;
+};
+
 class VertexArray {
   public:
     /// Makes an empty array object (for draws without attributes).

@@ -1,11 +1,14 @@
 #include "runner/scene/catalog.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
 
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
 #include "runner/scene/generators.h"
+#include "runner/scene/generators_terrain.h"
 #include "runner/scene/load.h"
 #include "runner/scene/point_sampling.h"
 #include "runner/scene/refine.h"
@@ -70,6 +73,55 @@ SceneSource readFileSource(const Node& node) {
     return source;
 }
 
+float readPositive(const Node& node, const std::string& key) {
+    const double value = node.asDouble();
+    if (value > 0.0 && value <= 1e6) return static_cast<float>(value);
+    throw Error(node.location(),
+                fmt::format("{} is {}; allowed: above 0, at most 1e6", key, node.text()));
+}
+
+SceneSource readHeightMapSource(const Node& node) {
+    requireKeys(node, "source",
+                {"detail_m", "height_map", "height_scale_m", "no_data", "resample_to", "seed",
+                 "spacing_m"});
+    SceneSource source;
+    const Node& file = required(node, "source", "height_map");
+    source.file = file.text();
+    if (source.file.empty() || fs::path(source.file).is_absolute()) {
+        throw Error(file.location(),
+                    fmt::format("height_map is '{}', but must be a path within the assets folder",
+                                source.file));
+    }
+    HeightMapSource map;
+    map.units.spacingM = readPositive(required(node, "source", "spacing_m"), "spacing_m");
+    if (const Node* scale = node.find("height_scale_m")) {
+        map.units.heightScaleM = readPositive(*scale, "height_scale_m");
+    }
+    if (const Node* noData = node.find("no_data")) {
+        map.units.noData = static_cast<float>(noData->asDouble());
+    }
+    if (const auto samples = readCount(node, "resample_to", "samples")) {
+        if (*samples > kMaxHeightMapSide) {
+            throw Error(
+                node.find("resample_to")->location(),
+                fmt::format("resample_to is {}; allowed: 1 to {}", *samples, kMaxHeightMapSide));
+        }
+        map.resampleTo = static_cast<int>(*samples);
+        source.kind = Origin::Kind::StandIn;
+    }
+    if (const Node* detail = node.find("detail_m")) {
+        if (!map.resampleTo) {
+            throw Error(detail->location(), "detail_m needs resample_to, whose gaps it fills");
+        }
+        map.detailM = readPositive(*detail, "detail_m");
+    }
+    if (const Node* seed = node.find("seed")) {
+        source.seed = static_cast<std::uint64_t>(seed->asInteger());
+    }
+    source.heightMap = map;
+    return source;
+}
+
 SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
     requireKeys(node, "source", {"generator", "params", "points", "seed"});
     SceneSource source;
@@ -99,7 +151,10 @@ SceneSource readSource(const Node& node, bool isGenerated) {
     if (isFile && isGenerated) {
         throw Error(node.location(), "source: a file cannot be the source of a generated scene");
     }
-    SceneSource source = isFile ? readFileSource(node) : readGeneratorSource(node, isGenerated);
+    const bool isHeightMap = isFile && node.find("height_map") != nullptr;
+    SceneSource source = isHeightMap ? readHeightMapSource(node)
+                         : isFile    ? readFileSource(node)
+                                     : readGeneratorSource(node, isGenerated);
     source.where = node.location();
     return source;
 }
@@ -135,6 +190,10 @@ std::string descriptionOf(const SceneSource& source) {
     if (!source.generator.empty()) {
         text = "generator " + source.generator + ", seed " + std::to_string(source.seed) +
                (source.params.isNull() ? "" : ": " + source.params.toFlowText());
+    }
+    if (source.heightMap && source.heightMap->resampleTo) {
+        text += fmt::format(", resampled to {} samples a side with up to {} m of noise, seed {}",
+                            *source.heightMap->resampleTo, source.heightMap->detailM, source.seed);
     }
     if (source.refineTo) text += ", refined to " + std::to_string(*source.refineTo) + " triangles";
     if (source.points) text += ", sampled to " + std::to_string(*source.points) + " points";
@@ -177,6 +236,24 @@ void turnIntoPoints(Scene& scene, const SceneSource& source) {
     }
     scene.meshes.clear();
     scene.instances.clear();
+}
+
+Scene loadTerrain(const fs::path& path, const SceneSource& source) {
+    const HeightMapSource& how = *source.heightMap;
+    Scene scene;
+    scene.heights = loadHeightMap(path, how.units);
+    if (how.resampleTo) {
+        scene.heights = resampled(*scene.heights, *how.resampleTo, how.detailM, source.seed);
+    }
+    addTerrainCameras(scene);
+    return scene;
+}
+
+std::string heightMapKey(const SceneSource& source) {
+    const HeightMapSource& how = *source.heightMap;
+    return fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM, how.units.heightScaleM,
+                       how.units.noData.value_or(0.0F), how.resampleTo.value_or(0), how.detailM,
+                       source.seed);
 }
 
 bool isUserFile(const std::string& reference) {
@@ -254,14 +331,18 @@ std::string Catalog::contentKey(const Node& reference) const {
     }
     return sha256("file " + digest.sha256 + ' ' +
                   (source.refineTo ? std::to_string(*source.refineTo) : "as it is") +
-                  (source.isZUp ? " z up" : "") + points);
+                  (source.isZUp ? " z up" : "") + points +
+                  (source.heightMap ? heightMapKey(source) : ""));
 }
 
 Scene Catalog::load(const Node& reference) const {
     const SceneSource source = resolve(reference);
     Scene scene;
     std::string sha256;
-    if (source.generator.empty()) {
+    if (source.heightMap) {
+        scene = loadTerrain(assetsFolder_ / source.file, source);
+        sha256 = sha256OfFile(assetsFolder_ / source.file);
+    } else if (source.generator.empty()) {
         scene = loadScene(assetsFolder_ / source.file);
         sha256 = scene.origin.sha256;
         if (source.isZUp) turnUp(scene);

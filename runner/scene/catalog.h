@@ -14,6 +14,13 @@
 
 namespace gfxrepro::scene {
 
+/// A scene that is a height map's file, and how it is read.
+struct HeightMapSource {
+    HeightMapUnits units;
+    std::optional<int> resampleTo;  // samples on the longer side
+    float detailM = 0.0F;           // of noise between the file's samples, when resampled
+};
+
 /// One way to get a scene: a file of the assets folder, possibly refined to a triangle count, or a
 /// generator.
 struct SceneSource {
@@ -22,6 +29,7 @@ struct SceneSource {
         refineTo;        // triangles: longest edges are split until the count is reached
     bool isZUp = false;  // the file's up is +z: turned so that it is +y
     std::optional<long long> points;  // the surface sampled (or its points thinned) to this many
+    std::optional<HeightMapSource> heightMap;  // `file` is one
     std::string generator;
     config::Node params;  // of the generator
     std::uint64_t seed = 1;

@@ -9,6 +9,7 @@
 #include "runner/scene/generators_outdoor.h"
 #include "runner/scene/generators_shadow_scenes.h"
 #include "runner/scene/generators_shapes.h"
+#include "runner/scene/generators_terrain.h"
 #include "runner/scene/refine.h"
 
 namespace gfxrepro::scene {
@@ -202,6 +203,7 @@ constexpr GeneratorInfo kGenerators[] = {
     {"object_on_plane", "a shape that stands on a plane, and plates close above it",
      &objectOnPlane},
     {"sdf_model", "a closed stand-in for a scanned model, with exact counts", &sdfModel},
+    {"terrain", "a height map of mountains and lowland", &terrain},
     {"town_square", "a square with railings, wires, leaves and things close above the ground",
      &townSquare},
     {"tree", "a deciduous tree with a dense crown of leaves", &tree},

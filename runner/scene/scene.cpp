@@ -95,6 +95,7 @@ Box PointCloud::bounds() const {
 
 Box Scene::bounds() const {
     Box box = points.bounds();
+    if (heights) box.add(heights->bounds());
     for (const Instance& instance : instances) {
         for (const glm::vec3& position : meshes[instance.mesh].positions) {
             box.add(transformedPoint(instance.worldFromMesh, position));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runner/image/image.h"
+#include "runner/scene/height_map.h"
 
 namespace gfxrepro::scene {
 
@@ -130,12 +131,13 @@ struct Scene {
     std::vector<image::Image8> textures;  // 3 or 4 channels, sRGB
     std::vector<Instance> instances;
     PointCloud points;
+    std::optional<HeightMap> heights;  // terrain, beside which there may be meshes
     std::vector<Camera> cameras;
     std::vector<CameraPath> paths;
     std::vector<PointLight> lights;
     std::vector<Motion> motions;  // at most one an instance
 
-    /// Of everything that is instanced, in world space, and of the points.
+    /// Of everything that is instanced, in world space, of the points and of the terrain.
     Box bounds() const;
     std::size_t triangleCount() const;  // instanced
     std::size_t vertexCount() const;    // instanced

@@ -1,0 +1,51 @@
+#include "runner/scene/generators_terrain.h"
+
+#include <algorithm>
+
+namespace gfxrepro::scene {
+
+Scene terrain(config::Params& params, std::uint64_t seed) {
+    FractalTerrain shape;
+    shape.sizeSamples = params.getInt("size_samples", shape.sizeSamples,
+                                      {"samples a side", "", 1, kMaxHeightMapSide});
+    shape.spacingM = static_cast<float>(params.getDouble(
+        "spacing_m", static_cast<double>(shape.spacingM), {"between samples", "m", 1e-3, 1e5}));
+    shape.reliefM =
+        static_cast<float>(params.getDouble("relief_m", static_cast<double>(shape.reliefM),
+                                            {"from the lowest to the highest", "m", 0, 1e5}));
+    shape.featureM =
+        static_cast<float>(params.getDouble("feature_m", static_cast<double>(shape.featureM),
+                                            {"the longest wave of the noise", "m", 1, 1e7}));
+    shape.octaves = params.getInt("octaves", shape.octaves, {"octaves of the noise", "", 1, 20});
+    shape.ridges =
+        static_cast<float>(params.getDouble("ridges", static_cast<double>(shape.ridges),
+                                            {"0: rolling hills only, 1: ridges only", "", 0, 1}));
+    params.finish();
+    Scene scene;
+    scene.heights = fractalTerrain(shape, seed);
+    addTerrainCameras(scene);
+    return scene;
+}
+
+void addTerrainCameras(Scene& scene) {
+    const HeightMap& map = *scene.heights;
+    const Box box = map.bounds();
+    const float sideM = std::max({box.size().x, box.size().z, map.spacingM});
+    Camera overview = framingCamera(box, 1.6F);
+    overview.name = "overview";
+    Camera flight;
+    flight.name = "flight";
+    const glm::ivec2 place(map.sizeSamples.x / 2, map.sizeSamples.y * 3 / 4);
+    const glm::vec3 ground(static_cast<float>(place.x) * map.spacingM,
+                           map.clampedHeightM(place.x, place.y),
+                           static_cast<float>(place.y) * map.spacingM);
+    const float aboveM = std::max(0.02F * sideM, 0.25F * box.size().y);
+    flight.position = ground + glm::vec3(0.0F, aboveM, 0.0F);
+    flight.target = flight.position + glm::vec3(0.0F, -0.25F, -1.0F) * (0.25F * sideM);
+    flight.verticalFovRad = 0.7F;
+    flight.nearM = std::min(0.05F * aboveM, map.spacingM);
+    flight.farM = 2.0F * sideM + box.size().y;
+    scene.cameras = {overview, flight};
+}
+
+}  // namespace gfxrepro::scene

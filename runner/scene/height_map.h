@@ -1,0 +1,80 @@
+// Height maps: regular grids of terrain heights, loaded, generated, repaired, resampled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+namespace gfxrepro::scene {
+
+struct Box;
+struct Mesh;
+
+/// Sample (column, row) stands at (column · spacingM, height, row · spacingM): x is east, z south,
+/// y up; the north-western sample is at x = z = 0. All heights are finite.
+struct HeightMap {
+    glm::ivec2 sizeSamples{0};  // x: columns from west to east, y: rows from north to south
+    float spacingM = 1.0F;
+    std::vector<float> heightsM;  // row by row, the northernmost first
+    std::size_t filledCount = 0;  // samples without data in the source, filled from around
+    bool isEightBit = false;      // of a source with 256 steps: terraces are to be expected
+
+    bool isEmpty() const { return heightsM.empty(); }
+    float heightM(int column, int row) const {
+        return heightsM[static_cast<std::size_t>(row) * static_cast<std::size_t>(sizeSamples.x) +
+                        static_cast<std::size_t>(column)];
+    }
+    /// The sample's, or that of the nearest one on the border for places beyond it.
+    float clampedHeightM(int column, int row) const {
+        return heightM(glm::clamp(column, 0, sizeSamples.x - 1),
+                       glm::clamp(row, 0, sizeSamples.y - 1));
+    }
+    glm::vec3 position(int column, int row) const {
+        return {static_cast<float>(column) * spacingM, heightM(column, row),
+                static_cast<float>(row) * spacingM};
+    }
+    Box bounds() const;
+};
+
+constexpr int kMaxHeightMapSide = 16385;
+
+/// How a file's values become metres: height = value · heightScaleM.
+struct HeightMapUnits {
+    float spacingM = 1.0F;
+    float heightScaleM = 1.0F;
+    std::optional<float> noData;  // a further value, before scaling, that means "none"
+};
+
+/// By extension, any case: .png (8 or 16 bits), .tif .tiff (integers of 8 or 16 bits, floats), .hgt
+/// (SRTM), .raw .r16 .bin (with a sidecar <file>.yaml: width, height, type, byte_order, no_data).
+/// Samples without data are filled (fillHoles). Throws one Error that names the file for all that
+/// it refuses, before it allocates more than the file can hold.
+HeightMap loadHeightMap(const std::filesystem::path& path, const HeightMapUnits& units);
+bool isHeightMapFile(const std::filesystem::path& path);
+
+/// Fills samples that are not finite by a push-pull pyramid: each from the finest level that has
+/// data around it. Counts them in filledCount. Throws Error when no sample has data.
+void fillHoles(HeightMap& map);
+
+/// Seeded terrain: ridged mountains that fade into rolling lowland (noise summed over octaves).
+struct FractalTerrain {
+    int sizeSamples = 4097;
+    float spacingM = 10.0F;
+    float reliefM = 3000.0F;   // from the lowest to the highest, at most
+    float featureM = 8000.0F;  // the longest wave of the noise
+    int octaves = 11;
+    float ridges = 0.7F;  // 0: rolling hills only, 1: ridges only
+};
+HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed);
+
+/// The same ground with `sizeSamples` a side (bicubic, through the old samples) and fractal detail
+/// between the old samples, at most `detailM` up or down: a stand-in for a finer survey.
+HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed);
+
+/// Triangles over every n-th sample (and the last), at most `maxSamples` a side, for previews.
+Mesh heightMapMesh(const HeightMap& map, int maxSamples = 513);
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,55 @@
+// Tiles, patches and their tessellation factors, on the CPU in double precision: the reference for
+// shaders/factors.glsl, and what draws are split by.
+#pragma once
+
+#include <array>
+
+#include "techniques/shared/view.h"
+#include "techniques/terrain_tessellation/tile_selection.h"
+
+namespace gfxrepro::terrain_tessellation {
+
+/// Which way the segment AB of Eq. (4) points.
+enum class Segment {
+    Vertical,    // along the world's up, as printed
+    ViewFacing,  // parallel to the image plane
+    Sphere,      // the apparent diameter of the sphere of diameter L_AB
+};
+enum class InnerFactors { Mean, Minimum, Maximum };
+enum class EdgeRule {
+    Shared,    // Eq. (4): both patches of an edge take the same factor
+    OwnPatch,  // every edge takes its patch's mean: cracks (figure 9's negative control)
+};
+
+struct FactorSettings {
+    TileSettings tile;
+    Segment segment = Segment::Vertical;
+    InnerFactors inner = InnerFactors::Mean;
+    EdgeRule edges = EdgeRule::Shared;
+    float segmentPx = 5.0F;  // ΔS
+    float smallest = 2.0F, greatest = 64.0F;
+};
+
+/// A patch of a tile: N × N blocks.
+struct Patch {
+    int level = 0;
+    glm::ivec2 firstBlock{0};  // column and row at its level
+};
+Patch patchOf(const Tile& tile, const TileSettings& settings, int index);
+
+/// Eq. (2): over the blocks along the patch's edge.
+HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& settings,
+                      const Patch& patch, Edge edge);
+
+/// Eq. (3) and (4).
+double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
+                  const depth_images::View& view, const Patch& patch, Edge edge);
+/// The same for many edges of one view, whose matrix is multiplied out once.
+double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
+                  const depth_images::View& view, const glm::dmat4& clipFromWorld,
+                  const Patch& patch, Edge edge);
+
+/// No fewer triangles than a patch of these outer factors is cut into, whatever the spacing.
+double triangleBound(const std::array<double, 4>& outer, InnerFactors inner);
+
+}  // namespace gfxrepro::terrain_tessellation

@@ -1,0 +1,61 @@
+#include "techniques/terrain_tessellation/factor_check.h"
+
+#include <array>
+#include <bit>
+#include <map>
+
+namespace gfxrepro::terrain_tessellation {
+
+FactorReplay::FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
+                           const RenderSettings& settings)
+    : terrain_(&terrain),
+      settings_(settings),
+      program_(shaders, {"terrain_tessellation/factor_replay.comp.glsl"},
+               terrainDefines(terrain, settings)) {}
+
+std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles,
+                                            const depth_images::View& view) {
+    const int side = settings_.factors.tile.patchesPerTile;
+    const auto count = tiles.size() * static_cast<std::size_t>(side * side);
+    if (count == 0) return {};
+    program_.use();
+    const gl::Buffer records = bindTiles(tiles, 0);
+    bindTerrain(program_, *terrain_, view);
+    bindFactors(program_, *terrain_, settings_, view);
+    program_.set("patchCount", static_cast<int>(count));
+    const gl::Buffer factors(count * sizeof(PatchFactors));
+    factors.bindStorage(kCounterBinding);
+    glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    return factors.read<PatchFactors>(count);
+}
+
+EdgeAgreement compareEdges(std::span<const Tile> tiles, const TileSettings& settings,
+                           std::span<const PatchFactors> factors) {
+    // Level, first block along the edge, and whether it runs along x.
+    std::map<std::array<int, 4>, float> seen;
+    EdgeAgreement agreement;
+    const int perTile = settings.patchesPerTile * settings.patchesPerTile;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const Tile& tile = tiles[i / static_cast<std::size_t>(perTile)];
+        const Patch patch = patchOf(tile, settings, static_cast<int>(i) % perTile);
+        for (const Edge edge : {kWest, kNorth, kEast, kSouth}) {
+            const float factor = factors[i].outer[edge];
+            if (factor < 0.0F) continue;
+            glm::ivec2 at = patch.firstBlock;
+            if (edge == kEast) at.x += settings.blocksPerPatch;
+            if (edge == kSouth) at.y += settings.blocksPerPatch;
+            const bool isAlongX = edge == kNorth || edge == kSouth;
+            const auto [place, isNew] =
+                seen.try_emplace({patch.level, at.x, at.y, isAlongX ? 1 : 0}, factor);
+            if (isNew) continue;
+            ++agreement.sharedEdges;
+            if (std::bit_cast<unsigned>(place->second) != std::bit_cast<unsigned>(factor)) {
+                ++agreement.unequalEdges;
+            }
+        }
+    }
+    return agreement;
+}
+
+}  // namespace gfxrepro::terrain_tessellation

@@ -1,0 +1,24 @@
+#version 450 core
+// Shades by slope and altitude, lit from the west and above; or writes the height itself. Alpha is
+// 0 where the surface is seen from below, which from above the ground happens through cracks only.
+in vec3 surfaceNormal;
+in float surfaceHeight;
+in float isSkirt;  // 1 or 0; has two fronts
+uniform vec2 heightExtent;  // lowest, highest
+layout(location = 0) out vec4 colour;
+
+void main() {
+    float coverage = gl_FrontFacing || isSkirt > 0.5 ? 1.0 : 0.0;
+#if SHADING == 1
+    colour = vec4(surfaceHeight, 0.0, 0.0, coverage);
+#else
+    vec3 n = normalize(surfaceNormal);
+    // A flat terrain has no altitudes: 1e-6 m keeps the division finite.
+    float altitude = (surfaceHeight - heightExtent.x) / max(heightExtent.y - heightExtent.x, 1e-6);
+    vec3 ground = mix(vec3(0.16, 0.27, 0.09), vec3(0.42, 0.36, 0.24), smoothstep(0.1, 0.5, altitude));
+    ground = mix(ground, vec3(0.85, 0.88, 0.92), smoothstep(0.6, 0.85, altitude));
+    ground = mix(vec3(0.33, 0.30, 0.27), ground, smoothstep(0.55, 0.85, n.y));  // bare rock
+    const vec3 light = normalize(vec3(-0.6, 0.7, 0.35));
+    colour = vec4(ground * (0.25 + 0.95 * max(dot(n, light), 0.0)), coverage);
+#endif
+}

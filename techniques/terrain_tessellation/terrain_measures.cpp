@@ -1,0 +1,104 @@
+#include "techniques/terrain_tessellation/terrain_measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+/// Whether the pixel and its eight neighbours are covered; those outside of the image count as the
+/// pixel does.
+bool isInside(const DepthMap& map, glm::ivec2 pixel) {
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            const glm::ivec2 neighbour =
+                glm::clamp(pixel + glm::ivec2(dx, dy), glm::ivec2(0), map.view.sizePx - 1);
+            if (!map.isCovered(neighbour)) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+HeightErrors heightErrors(const DepthMap& drawn,
+                          const std::function<float(float x, float z)>& heightAt) {
+    // k of [zhang2012] Eq. (1), in pixels a metre at a depth of one metre.
+    const double pixelsPerRadian =
+        0.5 * static_cast<double>(drawn.view.clipFromView[1].y) * drawn.view.sizePx.y;
+    HeightErrors errors;
+    for (int y = 0; y < drawn.view.sizePx.y; ++y) {
+        for (int x = 0; x < drawn.view.sizePx.x; ++x) {
+            if (!drawn.isCovered({x, y})) continue;
+            const float depthM = drawn.depthM[drawn.indexOf({x, y})];
+            const glm::vec3 point =
+                depth_images::unproject(drawn.view, glm::vec2(x, y) + 0.5F, depthM);
+            const double errorM = std::abs(double{point.y} - double{heightAt(point.x, point.z)});
+            const double errorPx = errorM * pixelsPerRadian / depthM;
+            ++errors.pixels;
+            errors.meanM += errorM;
+            errors.meanPx += errorPx;
+            errors.maxM = std::max(errors.maxM, errorM);
+            errors.maxPx = std::max(errors.maxPx, errorPx);
+        }
+    }
+    if (errors.pixels > 0) {
+        errors.meanM /= static_cast<double>(errors.pixels);
+        errors.meanPx /= static_cast<double>(errors.pixels);
+    }
+    return errors;
+}
+
+std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth) {
+    GFXREPRO_ASSERT(drawn.view.sizePx == truth.view.sizePx);
+    std::vector<std::uint8_t> marks(drawn.depthM.size());
+    for (int x = 0; x < drawn.view.sizePx.x; ++x) {
+        bool isBelowTerrain = false;
+        for (int y = drawn.view.sizePx.y - 1; y >= 0; --y) {
+            if (drawn.isCovered({x, y})) {
+                isBelowTerrain = true;
+            } else if (isBelowTerrain && isInside(truth, {x, y})) {
+                marks[drawn.indexOf({x, y})] = 1;
+            }
+        }
+    }
+    return marks;
+}
+
+std::size_t markedCount(const std::vector<std::uint8_t>& marks) {
+    return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), std::uint8_t{1}));
+}
+
+image::ImageF averaged(const image::ImageF& image, int factor) {
+    GFXREPRO_ASSERT(image.width() % factor == 0 && image.height() % factor == 0);
+    image::ImageF result(image.width() / factor, image.height() / factor, image.channels());
+    const float weight = 1.0F / static_cast<float>(factor * factor);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < image.channels(); ++c) {
+                result.at(x / factor, y / factor, c) += weight * image.at(x, y, c);
+            }
+        }
+    }
+    return result;
+}
+
+image::ImageF withMarks(const image::ImageF& picture, const std::vector<std::uint8_t>& marks) {
+    image::ImageF marked = picture;
+    for (int y = 0; y < marked.height(); ++y) {
+        for (int x = 0; x < marked.width(); ++x) {
+            const auto row = static_cast<std::size_t>(marked.height() - 1 - y);
+            const bool isMarked =
+                marks[row * static_cast<std::size_t>(marked.width()) + static_cast<std::size_t>(x)];
+            for (int c = 0; c < marked.channels(); ++c) {
+                float& value = marked.at(x, y, c);
+                value = isMarked ? (c == 0 ? 1.0F : 0.0F) : 0.6F * value;
+            }
+        }
+    }
+    return marked;
+}
+
+}  // namespace gfxrepro::terrain_tessellation

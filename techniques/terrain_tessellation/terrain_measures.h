@@ -1,0 +1,50 @@
+// What a picture of terrain gets wrong, against the full-resolution truth from the same view. On
+// the host, without GL.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "runner/image/image.h"
+#include "techniques/shared/view.h"
+
+namespace gfxrepro::terrain_tessellation {
+
+/// Distances along the view axis in metres, rows from the bottom; 0: background, or the underside
+/// of the terrain.
+struct DepthMap {
+    depth_images::View view;
+    std::vector<float> depthM;
+
+    std::size_t indexOf(glm::ivec2 pixel) const {
+        return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
+               static_cast<std::size_t>(pixel.x);
+    }
+    bool isCovered(glm::ivec2 pixel) const { return depthM[indexOf(pixel)] > 0.0F; }
+};
+
+/// Over the pixels that show terrain: how far above or below the true terrain the point is that
+/// they show.
+struct HeightErrors {
+    double meanM = 0.0, maxM = 0.0;
+    double meanPx = 0.0, maxPx = 0.0;  // seen from the side at the point's depth: an upper bound
+    std::size_t pixels = 0;
+};
+/// `heightAt(x, z)`: of the full-resolution terrain in metres.
+HeightErrors heightErrors(const DepthMap& drawn,
+                          const std::function<float(float x, float z)>& heightAt);
+
+/// Marks pixels through which the background or the underside shows although the terrain is whole
+/// there: the truth covers the pixel and its eight neighbours, and `drawn` covers one above it in
+/// its column, so that no horizon drawn too low counts. A byte a pixel, rows from the bottom.
+std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth);
+std::size_t markedCount(const std::vector<std::uint8_t>& marks);
+
+/// Blocks of factor² pixels averaged.
+image::ImageF averaged(const image::ImageF& image, int factor);
+
+/// `picture` a little darker, marked pixels red. `marks` has rows from the bottom.
+image::ImageF withMarks(const image::ImageF& picture, const std::vector<std::uint8_t>& marks);
+
+}  // namespace gfxrepro::terrain_tessellation

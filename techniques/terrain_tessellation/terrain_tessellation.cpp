@@ -1,0 +1,160 @@
+#include "techniques/terrain_tessellation/terrain_tessellation.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "runner/core/files.h"
+#include "runner/gl/gl.h"
+#include "techniques/terrain_tessellation/terrain_views.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// The horizontal angle of view has the same pixels per tangent.
+TileView tileViewOf(const depth_images::View& view) {
+    return {view.eyeWorld, view.clipFromWorld(),
+            0.5F * static_cast<float>(view.sizePx.x) * view.clipFromView[0].x};
+}
+
+/// Adaptive where it tessellates; patches as they come take one segment an edge.
+RenderSettings rendererSettings(const TerrainTessellationParams& params, bool isSoftwareDevice) {
+    RenderSettings settings = params.render;
+    settings.splitPrimitives = splitPrimitivesFor(isSoftwareDevice);
+    if (params.method == Method::Patches) {
+        settings.factors.smallest = settings.factors.greatest = 1.0F;
+        settings.spacing = Spacing::Equal;
+        settings.hasSkirts = false;
+    }
+    return settings;
+}
+
+}  // namespace
+
+TerrainTessellation::Target::Target(glm::ivec2 sizePx)
+    : colour(gl::Texture::make2D(GL_RGBA16F, sizePx)),
+      depth(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)) {
+    const gl::Texture* colours[] = {&colour};
+    framebuffer = gl::Framebuffer(colours, &depth);
+}
+
+void TerrainTessellation::Target::clear() const {
+    // A contrasting sky: no ground has this blue, so that a crack is seen.
+    framebuffer.clearColour(0, {0.45F, 0.65F, 0.95F, 0.0F});
+    framebuffer.clearDepth(1.0F);
+}
+
+TerrainTessellation::TerrainTessellation(config::Params& params) : params_(params) {}
+
+void TerrainTessellation::setup(technique::SetupContext& context) {
+    if (!context.scene) throw Error("technique 'terrain_tessellation' needs a scene");
+    if (!context.scene->heights || context.scene->heights->isEmpty()) {
+        throw Error("technique 'terrain_tessellation' needs a scene with a height map");
+    }
+    scene_ = context.scene;
+    shaders_ = &context.shaders;
+    device_ = &context.device;
+    sizePx_ = context.outputSizePx;
+    const scene::HeightMap& map = *scene_->heights;
+    const Clock::time_point begin = Clock::now();
+    metadata_ = params_.keepsMetadata
+                    ? TerrainMetadata::openOrBuild(cacheFolder() / "terrain", map, params_.metadata)
+                    : TerrainMetadata::build(map, params_.metadata);
+    preprocessMs_ = 1000.0 * secondsSince(begin);
+    tree_.emplace(*metadata_, params_.render.factors.tile);
+    terrain_.emplace(map, *metadata_, params_.heightFormat);
+    renderer_.emplace(context.shaders, *terrain_,
+                      rendererSettings(params_, context.device.info().isSoftware));
+    target_.emplace(sizePx_);
+}
+
+TileSelection TerrainTessellation::selectAll() const {
+    return tree_->select(tileView_, 0.0F, params_.culling != Culling::None);
+}
+
+TileSelection TerrainTessellation::selectTiles() const {
+    const bool isCulling = params_.culling != Culling::None;
+    switch (params_.method) {
+        case Method::UniformGrid:
+            return selectAll();
+        case Method::Cdlod:
+            return tree_->selectByDistance(tileView_, morphRanges().rangesM.front(), isCulling);
+        case Method::Adaptive:
+        case Method::Patches:
+            break;
+    }
+    return tree_->select(tileView_, params_.maxTileErrorPx, isCulling);
+}
+
+/// Cells of the finest level end where they are ΔS pixels wide, but not nearer than a tile and a
+/// half: a tile may not touch one two levels coarser.
+MorphRanges TerrainTessellation::morphRanges() const {
+    const float tileM =
+        metadata_->spacingM() * static_cast<float>(params_.metadata.blockSegments *
+                                                   params_.render.factors.tile.blocksPerTile());
+    const float wantedM =
+        params_.finestRangeM > 0.0F
+            ? params_.finestRangeM
+            : metadata_->spacingM() * tileView_.pixelsPerTangent / params_.render.factors.segmentPx;
+    MorphRanges ranges;
+    float rangeM = std::max(wantedM, 2.0F * std::sqrt(2.0F) * tileM);
+    for (int level = 0; level < tree_->levelCount(); ++level, rangeM *= 2.0F) {
+        ranges.rangesM.push_back(rangeM);
+    }
+    return ranges;
+}
+
+DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selection,
+                                     const depth_images::View& view, const Target& target) {
+    target.clear();
+    switch (method) {
+        case Method::UniformGrid:
+            return renderer_->drawGrid(selection.tiles, 1, view, target.framebuffer);
+        case Method::Cdlod:
+            return renderer_->drawMorphed(selection.tiles, morphRanges(), view, target.framebuffer);
+        case Method::Adaptive:
+        case Method::Patches:
+            break;
+    }
+    return renderer_->drawTessellated(selection.tiles, view, target.framebuffer);
+}
+
+void TerrainTessellation::render(technique::FrameContext& context) {
+    const glm::vec2 size(sizePx_);
+    view_ = depth_images::viewOf(
+        terrainCamera(*scene_, params_.view, context.frame, context.frameCount, size.x / size.y),
+        sizePx_);
+    tileView_ = tileViewOf(view_);
+    {
+        const gl::CpuScope scope(context.profiler, "tile_walk");
+        selection_ = selectTiles();
+    }
+    device_->finish("drawing terrain");  // nothing of before is timed
+    const Clock::time_point begin = Clock::now();
+    {
+        const gl::GpuScope scope(context.profiler, "draw");
+        counts_ = draw(params_.method, selection_, view_, *target_);
+    }
+    device_->finish("drawing terrain");
+    drawS_ = secondsSince(begin);
+}
+
+namespace {
+std::unique_ptr<technique::Technique> create(config::Params& params) {
+    return std::make_unique<TerrainTessellation>(params);
+}
+}  // namespace
+
+const technique::TechniqueInfo kTerrainTessellation{
+    "terrain_tessellation", "height maps tessellated to the screen's resolution (zhang2012)",
+    create};
+
+}  // namespace gfxrepro::terrain_tessellation

@@ -1,0 +1,105 @@
+// The technique `terrain_tessellation`: zhang2012. See README.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/technique/technique.h"
+#include "techniques/terrain_tessellation/terrain_measures.h"
+#include "techniques/terrain_tessellation/terrain_renderer.h"
+#include "techniques/terrain_tessellation/tile_selection.h"
+
+namespace gfxrepro::terrain_tessellation {
+
+enum class Method {
+    Adaptive,     // the paper's
+    Patches,      // the patches as they reach the GPU, two triangles each
+    UniformGrid,  // every sample: the truth
+    Cdlod,        // morphing grids, no tessellation
+};
+
+enum class Culling {
+    None,
+    Tile,
+    TileAndPatch,
+};
+
+struct TerrainTessellationParams {
+    Method method = Method::Adaptive;
+    Culling culling = Culling::TileAndPatch;
+    RenderSettings render;
+    MetadataSettings metadata;
+    float maxTileErrorPx = 4.0F;  // τ
+    float finestRangeM = 0.0F;    // of CDLOD; 0: where a cell is ΔS pixels wide
+    HeightFormat heightFormat = HeightFormat::Float32;
+    std::string view = "valley";
+    bool keepsMetadata = true;
+    bool measuresErrors = false;
+    bool showsPictures = false;
+    int supersampling = 1;  // of pictures and errors, along each axis
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit TerrainTessellationParams(config::Params& params);
+};
+
+class TerrainTessellation final : public technique::Technique {
+  public:
+    explicit TerrainTessellation(config::Params& params);
+
+    void setup(technique::SetupContext& context) override;
+    void render(technique::FrameContext& context) override;
+    void record(technique::Recorder& recorder) override;
+
+  private:
+    /// Colour and depth that the terrain is drawn into.
+    struct Target {
+        gl::Texture colour, depth;
+        gl::Framebuffer framebuffer;
+
+        explicit Target(glm::ivec2 sizePx);
+        void clear() const;
+    };
+    /// What a target shows, on the host.
+    struct Drawn {
+        image::ImageF picture;
+        DepthMap depths;
+    };
+
+    /// The tiles of the last view.
+    TileSelection selectTiles() const;
+    /// Every visible tile in full resolution.
+    TileSelection selectAll() const;
+    MorphRanges morphRanges() const;
+    DrawCounts draw(Method method, const TileSelection& selection, const depth_images::View& view,
+                    const Target& target);
+    /// The frame again, `params_.supersampling` times as large, with the tiles and the factors that
+    /// it was drawn with.
+    Drawn drawnAgain(Method method, const TileSelection& selection);
+
+    void recordDrawn(technique::Recorder& recorder);
+    void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Drawn& truth);
+
+    TerrainTessellationParams params_;
+    const scene::Scene* scene_ = nullptr;
+    glm::ivec2 sizePx_{0};
+    double preprocessMs_ = 0.0;
+    const gl::ShaderLibrary* shaders_ = nullptr;
+    gl::Device* device_ = nullptr;
+    std::optional<TerrainMetadata> metadata_;
+    std::optional<TileTree> tree_;
+    std::optional<DeviceTerrain> terrain_;
+    std::optional<TerrainRenderer> renderer_;
+    std::optional<Target> target_;
+
+    depth_images::View view_;  // of the last frame
+    TileView tileView_;
+    TileSelection selection_;
+    DrawCounts counts_;
+    double drawS_ = 0.0;  // wall clock, until the device is done
+};
+
+extern const technique::TechniqueInfo kTerrainTessellation;
+
+}  // namespace gfxrepro::terrain_tessellation

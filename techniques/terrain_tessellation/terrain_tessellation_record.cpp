@@ -1,0 +1,114 @@
+// What is recorded of a frame: what was drawn, how far it is from the full resolution, pictures.
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/metrics/flip.h"
+#include "techniques/shared/reflections/displayed_errors.h"
+#include "techniques/terrain_tessellation/factor_check.h"
+#include "techniques/terrain_tessellation/terrain_tessellation.h"
+#include "techniques/terrain_tessellation/terrain_views.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+double percent(double part, double whole) {
+    return whole > 0.0 ? 100.0 * part / whole : 0.0;
+}
+
+/// Covered is what shows the terrain's upper side: see surface.frag.glsl.
+DepthMap readDepths(const gl::Texture& colour, const gl::Texture& depth,
+                    const depth_images::View& view) {
+    DepthMap map{view, depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)};
+    const double n = view.nearM, f = view.farM;
+    const std::vector<float> coverage = colour.read<float>(GL_ALPHA, GL_FLOAT, 1);
+    for (std::size_t i = 0; i < map.depthM.size(); ++i) {
+        float& value = map.depthM[i];
+        value =
+            coverage[i] < 0.5F ? 0.0F : static_cast<float>(n * f / (f - double{value} * (f - n)));
+    }
+    return map;
+}
+
+}  // namespace
+
+void TerrainTessellation::record(technique::Recorder& recorder) {
+    recordDrawn(recorder);
+    if (!params_.measuresErrors && !params_.showsPictures) return;
+    const Drawn drawn = drawnAgain(params_.method, selection_);
+    if (params_.showsPictures) {
+        recorder.image("image", averaged(drawn.picture, params_.supersampling));
+    }
+    if (params_.measuresErrors) {
+        recordErrors(recorder, drawn, drawnAgain(Method::UniformGrid, selectAll()));
+    }
+}
+
+void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
+    const auto count = [&](const char* name, double value, const char* unit) {
+        recorder.metric(name, value, unit);
+    };
+    const auto triangles = static_cast<double>(counts_.triangles);
+    count("drawn_triangles", triangles, "triangle");
+    count("triangles_per_second", triangles / drawS_, "triangle/s");
+    count("draw_calls", counts_.drawCalls, "call");
+    count("tiles", static_cast<double>(selection_.tiles.size()), "tile");
+    count("visited_tiles", selection_.visitedCount, "tile");
+    count("culled_tiles", selection_.culledCount, "tile");
+    float errorPx = 0.0F;
+    for (const Tile& tile : selection_.tiles) errorPx = std::max(errorPx, tile.screenErrorPx);
+    count("tile_error_px", errorPx, "pixel");
+    count("preprocess_ms", preprocessMs_, "ms");
+    count("memory_bytes", static_cast<double>(terrain_->sizeBytes()), "byte");
+    const bool hasPatches = params_.method == Method::Adaptive || params_.method == Method::Patches;
+    if (!hasPatches) return;
+    count("patches", counts_.patches, "patch");
+    count("culled_patches", counts_.culledPatches, "patch");
+    count("culled_patches_pct", percent(counts_.culledPatches, counts_.patches), "%");
+    if (params_.method != Method::Adaptive) return;
+    FactorReplay replay(*shaders_, *terrain_, renderer_->settings());
+    const EdgeAgreement agreement = compareEdges(selection_.tiles, params_.render.factors.tile,
+                                                 replay.run(selection_.tiles, view_));
+    count("shared_edges", agreement.sharedEdges, "edge");
+    count("factor_mismatches", agreement.unequalEdges, "edge");
+}
+
+TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
+                                                           const TileSelection& selection) {
+    const int scale = params_.supersampling;
+    depth_images::View view = view_;
+    view.sizePx *= scale;
+    const Target target(view.sizePx);
+    // Lengths in pixels are `scale` times as large: the factors stay as they were.
+    const float segmentPx = params_.render.factors.segmentPx;
+    renderer_->setSegmentPx(static_cast<float>(scale) * segmentPx);
+    draw(method, selection, view, target);
+    renderer_->setSegmentPx(segmentPx);
+    return {target.colour.readImage(3), readDepths(target.colour, target.depth, view)};
+}
+
+void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Drawn& drawn,
+                                       const Drawn& truth) {
+    const scene::HeightMap& map = *scene_->heights;
+    const HeightErrors height =
+        heightErrors(drawn.depths, [&](float x, float z) { return heightAt(map, x, z); });
+    recorder.metric("height_error_m", height.meanM, "m", "mean");
+    recorder.metric("height_error_m", height.maxM, "m", "max");
+    recorder.metric("height_error_px", height.meanPx / params_.supersampling, "pixel", "mean");
+    recorder.metric("height_error_px", height.maxPx / params_.supersampling, "pixel", "max");
+    const std::vector<std::uint8_t> cracks = crackMarks(drawn.depths, truth.depths);
+    recorder.metric("crack_pixels", static_cast<double>(markedCount(cracks)), "pixel");
+
+    const image::ImageF picture = averaged(drawn.picture, params_.supersampling);
+    const image::ImageF truthPicture = averaged(truth.picture, params_.supersampling);
+    const glm::dvec3 channels = reflections::channelErrors(picture, truthPicture, nullptr);
+    recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "1");
+    recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truthPicture), "dB");
+    recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
+    if (!params_.showsPictures) return;
+    recorder.image("truth", truthPicture);
+    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8));
+    recorder.image("cracks", withMarks(drawn.picture, cracks));
+}
+
+}  // namespace gfxrepro::terrain_tessellation

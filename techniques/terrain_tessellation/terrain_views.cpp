@@ -1,0 +1,143 @@
+#include "techniques/terrain_tessellation/terrain_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <numeric>
+
+#include "runner/core/error.h"
+#include "runner/scene/animation.h"
+#include "techniques/shared/reflections/path_view.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+/// Not given by the paper: 45° across the height of the picture.
+constexpr float kVerticalFovRad = 0.7854F;
+
+/// The measures that views are made of.
+struct Frame {
+    glm::vec2 centre{0.0F};  // x and z
+    float sideM = 0.0F;      // the longer one
+    float clearanceM = 0.0F;
+    glm::vec3 summit{0.0F};
+};
+
+Frame frameOf(const scene::HeightMap& map) {
+    Frame frame;
+    const glm::vec2 size = glm::vec2(map.sizeSamples - 1) * map.spacingM;
+    frame.centre = 0.5F * size;
+    frame.sideM = std::max({size.x, size.y, map.spacingM});
+    const auto [lowest, highest] = std::minmax_element(map.heightsM.begin(), map.heightsM.end());
+    // A sixth of the relief over the ground is a low flight; over a plain, a hundredth of its side.
+    frame.clearanceM = std::max((*highest - *lowest) / 6.0F, 0.01F * frame.sideM);
+    const auto index = static_cast<int>(highest - map.heightsM.begin());
+    frame.summit = map.position(index % map.sizeSamples.x, index / map.sizeSamples.x);
+    return frame;
+}
+
+/// The highest ground within `radiusM`.
+float groundAround(const scene::HeightMap& map, glm::vec2 place, float radiusM) {
+    constexpr int kSteps = 8;
+    float highest = heightAt(map, place.x, place.y);
+    for (int row = -kSteps; row <= kSteps; ++row) {
+        for (int column = -kSteps; column <= kSteps; ++column) {
+            const glm::vec2 at = place + radiusM / kSteps * glm::vec2(column, row);
+            highest = std::max(highest, heightAt(map, at.x, at.y));
+        }
+    }
+    return highest;
+}
+
+/// Sees from a tenth of the clearance on, so that depths of 24 bits tell slopes of far mountains
+/// apart.
+scene::Camera camera(const Frame& frame, const glm::vec3& eye, const glm::vec3& target) {
+    scene::Camera camera;
+    camera.position = eye;
+    camera.target = target;
+    camera.verticalFovRad = kVerticalFovRad;
+    camera.nearM = 0.1F * frame.clearanceM;
+    camera.farM = 3.0F * frame.sideM + std::abs(eye.y);
+    return camera;
+}
+
+scene::Camera overview(const scene::HeightMap& map) {
+    const Frame frame = frameOf(map);
+    const glm::vec3 target(frame.centre.x, heightAt(map, frame.centre.x, frame.centre.y),
+                           frame.centre.y);
+    return camera(frame, target + frame.sideM * glm::vec3(0.0F, 0.45F, 0.75F), target);
+}
+
+scene::Camera valley(const scene::HeightMap& map) {
+    const Frame frame = frameOf(map);
+    // From the side of the map's centre, where there is ground under the eye.
+    const glm::vec2 summit(frame.summit.x, frame.summit.z);
+    const glm::vec2 inwards = frame.centre - summit;
+    const glm::vec2 direction =
+        glm::length(inwards) > 0.0F ? glm::normalize(inwards) : glm::vec2(0.0F, 1.0F);
+    const glm::vec2 place = summit + 0.15F * frame.sideM * direction;
+    const float ground = groundAround(map, place, 0.01F * frame.sideM);
+    const glm::vec3 eye(place.x, ground + frame.clearanceM, place.y);
+    const glm::vec3 target(summit.x, std::min(frame.summit.y, eye.y) - frame.clearanceM, summit.y);
+    return camera(frame, eye, target);
+}
+
+scene::CameraPath flight(const scene::HeightMap& map) {
+    const Frame frame = frameOf(map);
+    constexpr int kKeys = 25;  // the last one is the first again
+    const float radius = 0.25F * frame.sideM;
+    const float step = radius * glm::two_pi<float>() / (kKeys - 1);
+    scene::CameraPath path;
+    path.name = "round_flight";
+    for (int key = 0; key < kKeys; ++key) {
+        const float angle = glm::two_pi<float>() * static_cast<float>(key) / (kKeys - 1);
+        const glm::vec2 outwards(std::cos(angle), std::sin(angle));
+        const glm::vec2 ahead(-outwards.y, outwards.x);
+        const glm::vec2 place = frame.centre + radius * outwards;
+        // Keys look ahead for ground as far as the next one: splines between them stay above.
+        const float height = groundAround(map, place, step) + frame.clearanceM;
+        const glm::vec3 eye(place.x, height, place.y);
+        path.keys.push_back(camera(frame, eye, eye + step * glm::vec3(ahead.x, -0.25F, ahead.y)));
+    }
+    return path;
+}
+
+template <class Named>
+bool isThere(const std::vector<Named>& all, const std::string& name) {
+    return std::any_of(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+}
+
+}  // namespace
+
+float heightAt(const scene::HeightMap& map, float x, float z) {
+    const glm::vec2 position =
+        glm::clamp(glm::vec2(x, z) / map.spacingM, glm::vec2(0.0F), glm::vec2(map.sizeSamples - 1));
+    const glm::ivec2 cell(position);
+    const glm::vec2 inside = position - glm::vec2(cell);
+    const float north = glm::mix(map.clampedHeightM(cell.x, cell.y),
+                                 map.clampedHeightM(cell.x + 1, cell.y), inside.x);
+    const float south = glm::mix(map.clampedHeightM(cell.x, cell.y + 1),
+                                 map.clampedHeightM(cell.x + 1, cell.y + 1), inside.x);
+    return glm::mix(north, south, inside.y);
+}
+
+scene::Camera terrainCamera(const scene::Scene& scene, const std::string& view, int frame,
+                            int frameCount, float aspect) {
+    if (isThere(scene.paths, view) || isThere(scene.cameras, view)) {
+        return reflections::cameraFor(scene, view, frame, frameCount, aspect);
+    }
+    const scene::HeightMap& map = *scene.heights;
+    if (view == "overview") return overview(map);
+    if (view == "valley") return valley(map);
+    if (view == "round_flight") {
+        return scene::cameraAt(flight(map), reflections::frameTime(frame, frameCount));
+    }
+    throw Error(
+        fmt::format("the scene has no path or camera '{}', and it is none of overview, "
+                    "valley, round_flight",
+                    view));
+}
+
+}  // namespace gfxrepro::terrain_tessellation

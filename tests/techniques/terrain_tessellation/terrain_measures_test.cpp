@@ -1,0 +1,145 @@
+// Measures of terrain pictures on depth maps whose errors and cracks are known, and the views.
+#include "techniques/terrain_tessellation/terrain_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "techniques/terrain_tessellation/terrain_views.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+/// From 100 m above the origin down onto the plane at `planeM`.
+DepthMap fromAbove(float planeM, glm::ivec2 sizePx = {16, 12}) {
+    scene::Camera camera;
+    camera.position = {0.0F, 100.0F, 0.0F};
+    camera.target = {0.0F, 0.0F, 0.0F};
+    camera.up = {0.0F, 0.0F, -1.0F};
+    camera.nearM = 1.0F;
+    camera.farM = 1000.0F;
+    DepthMap map{depth_images::viewOf(camera, sizePx), {}};
+    map.depthM.assign(static_cast<std::size_t>(sizePx.x * sizePx.y), 100.0F - planeM);
+    return map;
+}
+
+TEST(TerrainMeasuresTest, HeightErrorsAreThoseOfThePlane) {
+    const DepthMap drawn = fromAbove(10.0F);
+    const HeightErrors errors = heightErrors(drawn, [](float, float) { return 7.0F; });
+    EXPECT_EQ(errors.pixels, 16u * 12u);
+    EXPECT_NEAR(errors.meanM, 3.0, 1e-4);
+    EXPECT_NEAR(errors.maxM, 3.0, 1e-4);
+    const double k = 6.0 / std::tan(0.5 * 0.7F);  // pixels a tangent of 12 rows and 0.7 rad
+    EXPECT_NEAR(errors.meanPx, 3.0 * k / 90.0, 1e-4);
+}
+
+TEST(TerrainMeasuresTest, HeightErrorsLookWhereThePixelLies) {
+    const DepthMap drawn = fromAbove(0.0F);
+    // Seen from above with −z upwards: x grows to the right. Half of the pixels are off by 2 m.
+    const HeightErrors errors =
+        heightErrors(drawn, [](float x, float) { return x > 0 ? 2.0F : 0.0F; });
+    EXPECT_NEAR(errors.meanM, 1.0, 1e-4);
+    EXPECT_NEAR(errors.maxM, 2.0, 1e-4);
+}
+
+TEST(TerrainMeasuresTest, NothingDrawnHasNoErrors) {
+    DepthMap drawn = fromAbove(0.0F);
+    drawn.depthM.assign(drawn.depthM.size(), 0.0F);
+    const HeightErrors errors = heightErrors(drawn, [](float, float) { return 0.0F; });
+    EXPECT_EQ(errors.pixels, 0u);
+    EXPECT_EQ(errors.meanM, 0.0);
+}
+
+TEST(TerrainMeasuresTest, CracksAreHolesBelowTerrainInsideOfTheTruth) {
+    const DepthMap truth = fromAbove(0.0F);
+    DepthMap drawn = truth;
+    drawn.depthM[drawn.indexOf({5, 4})] = 0.0F;
+    drawn.depthM[drawn.indexOf({6, 4})] = 0.0F;
+    const std::vector<std::uint8_t> marks = crackMarks(drawn, truth);
+    EXPECT_EQ(markedCount(marks), 2u);
+    EXPECT_EQ(marks[drawn.indexOf({5, 4})], 1);
+    EXPECT_EQ(marks[drawn.indexOf({6, 4})], 1);
+}
+
+TEST(TerrainMeasuresTest, ALowerHorizonIsNoCrack) {
+    const DepthMap truth = fromAbove(0.0F);
+    DepthMap drawn = truth;
+    for (int x = 0; x < 16; ++x) {
+        for (int y = 9; y < 12; ++y) drawn.depthM[drawn.indexOf({x, y})] = 0.0F;
+    }
+    EXPECT_EQ(markedCount(crackMarks(drawn, truth)), 0u);
+}
+
+TEST(TerrainMeasuresTest, TheTruthsOwnBackgroundIsNoCrack) {
+    DepthMap truth = fromAbove(0.0F);
+    for (int x = 0; x < 16; ++x) truth.depthM[truth.indexOf({x, 3})] = 0.0F;
+    DepthMap drawn = truth;
+    for (int x = 0; x < 16; ++x) drawn.depthM[drawn.indexOf({x, 2})] = 0.0F;  // its neighbours
+    EXPECT_EQ(markedCount(crackMarks(drawn, truth)), 0u);
+}
+
+TEST(TerrainMeasuresTest, MarksHaveRowsFromTheBottom) {
+    const image::ImageF grey(4, 3, 3, 0.5F);
+    std::vector<std::uint8_t> marks(12, 0);
+    marks[0] = 1;  // the lower left pixel
+    const image::ImageF marked = withMarks(grey, marks);
+    EXPECT_EQ(marked.at(0, 2, 0), 1.0F);
+    EXPECT_EQ(marked.at(0, 2, 1), 0.0F);
+    EXPECT_FLOAT_EQ(marked.at(0, 0, 1), 0.3F);
+}
+
+TEST(TerrainMeasuresTest, AveragesBlocks) {
+    image::ImageF image(4, 2, 1);
+    image.at(0, 0) = 4.0F;
+    image.at(3, 1) = 2.0F;
+    const image::ImageF small = averaged(image, 2);
+    EXPECT_EQ(small.width(), 2);
+    EXPECT_EQ(small.at(0, 0), 1.0F);
+    EXPECT_EQ(small.at(1, 0), 0.5F);
+}
+
+scene::Scene terrainScene() {
+    scene::Scene scene;
+    scene::HeightMap map;
+    map.sizeSamples = {33, 33};
+    map.spacingM = 10.0F;
+    for (int row = 0; row < 33; ++row) {
+        for (int column = 0; column < 33; ++column) {
+            map.heightsM.push_back(static_cast<float>(column + 2 * row));
+        }
+    }
+    scene.heights = map;
+    return scene;
+}
+
+TEST(TerrainViewsTest, HeightsAreBilinearAndGoOnBeyondTheBorder) {
+    const scene::HeightMap map = *terrainScene().heights;
+    EXPECT_FLOAT_EQ(heightAt(map, 15.0F, 25.0F), 1.5F + 5.0F);
+    EXPECT_FLOAT_EQ(heightAt(map, -100.0F, 20.0F), 4.0F);
+    EXPECT_FLOAT_EQ(heightAt(map, 1e6F, 1e6F), 96.0F);
+}
+
+TEST(TerrainViewsTest, FliesAboveTheGround) {
+    const scene::Scene scene = terrainScene();
+    for (int frame = 0; frame < 100; ++frame) {
+        const scene::Camera camera = terrainCamera(scene, "round_flight", frame, 100, 1.6F);
+        EXPECT_GT(camera.position.y,
+                  heightAt(*scene.heights, camera.position.x, camera.position.z) + camera.nearM);
+    }
+}
+
+TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
+    scene::Scene scene = terrainScene();
+    scene::Camera camera;
+    camera.name = "valley";
+    camera.position = {1.0F, 2.0F, 3.0F};
+    scene.cameras.push_back(camera);
+    EXPECT_EQ(terrainCamera(scene, "valley", 0, 1, 1.0F).position, camera.position);
+    EXPECT_EQ(
+        test::errorText([&] { terrainCamera(scene, "moon", 0, 1, 1.0F); }),
+        "the scene has no path or camera 'moon', and it is none of overview, valley, round_flight");
+}
+
+}  // namespace
+}  // namespace gfxrepro::terrain_tessellation

@@ -1,0 +1,178 @@
+// Pictures of tessellated terrain: heights, culling, cracks.
+#include <algorithm>
+
+#include "tests/techniques/terrain_tessellation/terrain_fixture.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+constexpr glm::ivec2 kSize{160, 100};
+
+/// Pixels that show the background with terrain above them in the same column.
+int holesBelowSilhouette(const std::vector<glm::vec4>& pixels, glm::ivec2 size) {
+    int holes = 0;
+    for (int x = 0; x < size.x; ++x) {
+        bool isBelow = false;
+        for (int y = size.y - 1; y >= 0; --y) {
+            const bool isDrawn = pixels[static_cast<std::size_t>(y * size.x + x)].a > 0.5F;
+            isBelow = isBelow || isDrawn;
+            if (isBelow && !isDrawn) ++holes;
+        }
+    }
+    return holes;
+}
+
+TEST_F(TerrainTest, HeightsAtSamplesAreTheMaps) {
+    makeTerrain(roughMap(257, 40.0F));
+    RenderSettings set = settings();
+    set.shading = Shading::Height;
+    // Every sample is a vertex: 16 segments on the 16 of a patch. Eq. (4) itself gives the smallest
+    // factor here, as the vertical AB shrinks to a point from above.
+    set.factors.smallest = 16.0F;
+    set.factors.greatest = 16.0F;
+    set.hasSkirts = false;
+    TerrainRenderer renderer(shaders, *terrain, set);
+    // From straight above, half a metre a pixel at an even height would need an orthographic view:
+    // scale the clip space of one directly, sample (i, j) in the middle of pixel (i, 63 − j).
+    depth_images::View view = viewAt({0, 0, 0}, {0, -1, -0.001F}, {64, 64});
+    view.eyeWorld = {32, 500, 32};
+    view.viewFromWorld = glm::mat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+    view.clipFromView = glm::mat4(2.0F / 64, 0, 0, 0, 0, 2.0F / 64, 0, 0, 0, 0, 1.0F / 200, 0,
+                                  0.5F * 2 / 64 - 1, 1 - 0.5F * 2 / 64, 0, 1);
+    view.nearM = 0.01F;
+    const auto pixels = picture({64, 64}, [&](const gl::Framebuffer& target) {
+        renderer.drawTessellated(tilesOf(0), view, target);
+    });
+    for (int j = 1; j < 64; ++j) {
+        for (int i = 1; i < 63; ++i) {
+            const auto at = static_cast<std::size_t>((63 - j) * 64 + i);
+            // The rasterizer's sub-pixel grid: a vertex lands within 1/256 pixel of the centre,
+            // where neighbouring heights differ by a few metres.
+            EXPECT_NEAR(pixels[at].r, map.heightM(i, j), 0.05F) << i << ' ' << j;
+        }
+    }
+}
+
+TEST_F(TerrainTest, FlatTerrainIsThePlane) {
+    makeTerrain(roughMap(257, 0.0F));
+    RenderSettings set = settings();
+    set.hasSkirts = false;
+    TerrainRenderer renderer(shaders, *terrain, set);
+    const depth_images::View view = viewAt({128, 30, 300}, {128, 0, 100}, kSize);
+    const auto pixels = picture(kSize, [&](const gl::Framebuffer& target) {
+        renderer.drawTessellated(tilesOf(0), view, target);
+    });
+    int compared = 0;
+    const glm::vec4 first = pixels[static_cast<std::size_t>(20 * kSize.x + 80)];
+    EXPECT_EQ(first.a, 1.0F);
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+            const glm::vec3 ray = depth_images::rayThrough(view, px);
+            const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
+            const glm::vec3 hit = view.eyeWorld + away * ray;
+            const float inside =
+                std::min(std::min(hit.x, 256.0F - hit.x), std::min(hit.z, 256.0F - hit.z));
+            if (away > 0.0F && std::abs(inside) < 3.0F) continue;  // on the rim
+            const bool isTerrain = away > 0.0F && inside > 0.0F;
+            const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kSize.x + x)];
+            ASSERT_EQ(pixel.a, isTerrain ? 1.0F : 0.0F) << x << ' ' << y;
+            if (isTerrain) EXPECT_LT(glm::distance(pixel, first), 1e-5F);
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 10000);
+}
+
+TEST_F(TerrainTest, CullingChangesNoPixelAndDropsPatches) {
+    makeTerrain(roughMap(257, 60.0F));
+    RenderSettings set = settings();
+    TerrainRenderer culling(shaders, *terrain, set);
+    set.cullsPatches = false;
+    TerrainRenderer whole(shaders, *terrain, set);
+    std::mt19937 random(3);
+    const auto anywhere = [&] { return static_cast<float>(random() % 256U); };
+    int culled = 0;
+    for (int i = 0; i < 6; ++i) {
+        const depth_images::View view =
+            viewAt({anywhere(), 70.0F, anywhere()}, {anywhere(), 10.0F, anywhere()}, kSize);
+        DrawCounts fewer, all;
+        const auto a = picture(kSize, [&](const gl::Framebuffer& target) {
+            fewer = culling.drawTessellated(tilesOf(0), view, target);
+        });
+        const auto b = picture(kSize, [&](const gl::Framebuffer& target) {
+            all = whole.drawTessellated(tilesOf(0), view, target);
+        });
+        EXPECT_EQ(a, b);
+        EXPECT_EQ(all.culledPatches, 0);
+        EXPECT_LT(fewer.triangles, all.triangles);
+        culled += fewer.culledPatches;
+    }
+    EXPECT_GT(culled, 100);
+}
+
+TEST_F(TerrainTest, SkirtsHideTheCracksBetweenTilesOfDifferentLevels) {
+    makeTerrain(roughMap(257, 60.0F));
+    std::vector<Tile> mixed;  // the western half coarse, the eastern half fine
+    for (const Tile& t : tilesOf(1)) {
+        if (t.originSample.x < 128) mixed.push_back(t);
+    }
+    for (const Tile& t : tilesOf(0)) {
+        if (t.originSample.x >= 128) mixed.push_back(t);
+    }
+    const auto holesOf = [&](bool hasSkirts, EdgeRule rule, const std::vector<Tile>& tiles) {
+        RenderSettings set = settings();
+        set.hasSkirts = hasSkirts;
+        set.factors.edges = rule;
+        set.factors.segmentPx = 6.0F;
+        TerrainRenderer renderer(shaders, *terrain, set);
+        std::mt19937 random(11);
+        int holes = 0;
+        for (int i = 0; i < 12; ++i) {
+            const auto about = [&](float low, float high) {
+                return low + (high - low) * static_cast<float>(random() % 1000U) / 1000.0F;
+            };
+            const glm::vec3 eye(about(40, 216), about(70, 110), about(40, 216));
+            const depth_images::View view =
+                viewAt(eye, eye + glm::vec3(about(-30, 30), -about(60, 90), 20.0F), kSize);
+            holes += holesBelowSilhouette(picture(kSize,
+                                                  [&](const gl::Framebuffer& target) {
+                                                      renderer.drawTessellated(tiles, view, target);
+                                                  }),
+                                          kSize);
+        }
+        return holes;
+    };
+    EXPECT_EQ(holesOf(true, EdgeRule::Shared, mixed), 0);
+    EXPECT_GT(holesOf(false, EdgeRule::Shared, mixed), 0);         // negative control
+    EXPECT_EQ(holesOf(false, EdgeRule::Shared, tilesOf(0)), 0);    // one level needs none
+    EXPECT_GT(holesOf(false, EdgeRule::OwnPatch, tilesOf(0)), 0);  // negative control, figure 9
+}
+
+TEST_F(TerrainTest, SplittingChangesNoPixel) {
+    makeTerrain(roughMap(257, 40.0F));
+    RenderSettings set = settings();
+    const depth_images::View view = viewAt({128, 70, 300}, {128, 0, 100}, kSize);
+    std::vector<std::vector<glm::vec4>> pictures;
+    std::vector<DrawCounts> counts;
+    for (const int limit : {0, 1500}) {
+        set.splitPrimitives = limit;
+        TerrainRenderer renderer(shaders, *terrain, set);
+        pictures.push_back(picture(kSize, [&](const gl::Framebuffer& target) {
+            counts.push_back(renderer.drawTessellated(tilesOf(0), view, target));
+        }));
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+    EXPECT_EQ(counts[0].triangles, counts[1].triangles);
+    EXPECT_EQ(counts[0].drawCalls, 1);
+    EXPECT_GT(counts[1].drawCalls, 10);
+}
+
+TEST_F(TerrainTest, RefusesAMapThatTheMetadataIsNotOf) {
+    makeTerrain(roughMap(257, 1.0F));
+    EXPECT_EQ(test::errorText([&] { DeviceTerrain(roughMap(65, 1.0F), *metadata); }),
+              "height map of 65 × 65 samples with metadata of 257 × 257");
+}
+
+}  // namespace
+}  // namespace gfxrepro::terrain_tessellation

@@ -1,0 +1,168 @@
+// The technique as a whole: parameters, metrics, cracks and their control, terrain that is wrong.
+#include "techniques/terrain_tessellation/terrain_tessellation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tests/techniques/technique_fixture.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+using test::errorText;
+
+/// Waves of several lengths: levels differ.
+scene::Scene terrain(glm::ivec2 size, float amplitudeM = 300.0F) {
+    scene::Scene scene;
+    scene::HeightMap map;
+    map.sizeSamples = size;
+    map.spacingM = 10.0F;
+    for (int row = 0; row < size.y; ++row) {
+        for (int column = 0; column < size.x; ++column) {
+            const double x = column, z = row;
+            const double wave = std::sin(0.05 * x) * std::cos(0.04 * z) +
+                                0.3 * std::sin(0.31 * x + 0.2 * z) +
+                                0.1 * std::sin(1.3 * x) * std::sin(1.1 * z);
+            map.heightsM.push_back(amplitudeM * static_cast<float>(1.5 + wave));
+        }
+    }
+    scene.heights = std::move(map);
+    return scene;
+}
+
+class TerrainTessellationTest : public test::TechniqueTest {
+  protected:
+    TerrainTessellationTest() : TechniqueTest(kTerrainTessellation, {96, 64}) {}
+
+    std::map<std::string, double> measured(const std::string& yaml, const scene::Scene& scene) {
+        return recorded("{cache: false, " + yaml + "}", &scene).metrics;
+    }
+};
+
+TEST(TerrainTessellationParamsTest, RefusesWhatMeansNothing) {
+    const auto message = [](const std::string& yaml) {
+        return errorText([&] {
+            config::Params params = test::paramsOf(kTerrainTessellation, yaml);
+            TerrainTessellation technique(params);
+        });
+    };
+    EXPECT_EQ(message("{}"), "no error");
+    EXPECT_EQ(message("{tile_patches: 3}"), "case.yaml:1:16: tile_patches 3 is no power of two");
+    EXPECT_EQ(message("{block: 32, patch_blocks: 4}"),
+              "case.yaml:1:27: a patch of 4 blocks of 32 segments is 128 wide; allowed: 64, the "
+              "largest factor");
+    EXPECT_EQ(message("{method: uniform_grid, tau: 3}"),
+              "case.yaml:1:29: 'tau' needs another method");
+    EXPECT_EQ(message("{method: cdlod, skirts: false}"),
+              "case.yaml:1:25: 'skirts' needs 'method: adaptive'");
+    EXPECT_EQ(message("{method: cdlod, culling: tile_and_patch}"),
+              "case.yaml:1:26: 'culling: tile_and_patch' needs 'method: adaptive'");
+    EXPECT_EQ(message("{finest_range: 100}"),
+              "case.yaml:1:16: 'finest_range' needs 'method: cdlod'");
+    EXPECT_EQ(message("{supersampling: 2}"),
+              "case.yaml:1:17: 'supersampling' needs 'errors: true' or 'pictures: true'");
+}
+
+TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
+    // Tiles of 32 cells, so that none reaches beyond the map.
+    const auto m = measured(
+        "method: uniform_grid, errors: true, culling: none, tile_patches: 1, patch_blocks: 1",
+        terrain({129, 129}));
+    EXPECT_EQ(m.at("drawn_triangles"), 2.0 * 128 * 128);
+    EXPECT_EQ(m.at("crack_pixels"), 0.0);
+    EXPECT_EQ(m.at("flip_mean"), 0.0);
+    EXPECT_EQ(m.at("channel_error"), 0.0);
+    EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "draw"}));
+}
+
+TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
+    const scene::Scene scene = terrain({257, 257});
+    double triangles = 1e12, error = -1.0;
+    for (const char* deltaS : {"1", "4", "16"}) {
+        const auto m = measured(fmt::format("delta_s: {}, errors: true", deltaS), scene);
+        EXPECT_LT(m.at("drawn_triangles"), triangles) << deltaS;
+        EXPECT_GT(m.at("height_error_m/mean"), error) << deltaS;
+        EXPECT_EQ(m.at("factor_mismatches"), 0.0) << deltaS;
+        EXPECT_EQ(m.at("crack_pixels"), 0.0) << deltaS;
+        EXPECT_LT(m.at("tile_error_px"), 4.0);
+        triangles = m.at("drawn_triangles");
+        error = m.at("height_error_m/mean");
+    }
+}
+
+TEST_F(TerrainTessellationTest, UnequalFactorsCrack) {
+    const scene::Scene scene = terrain({257, 257});
+    const std::string yaml =
+        "delta_s: 8, tau: 0, skirts: false, errors: true, supersampling: 4, edges: ";
+    EXPECT_EQ(measured(yaml + "shared", scene).at("crack_pixels"), 0.0);
+    EXPECT_GT(measured(yaml + "own_patch", scene).at("crack_pixels"), 0.0);
+}
+
+TEST_F(TerrainTessellationTest, CullingLeavesThePictureAsItIs) {
+    const scene::Scene scene = terrain({257, 257});
+    const auto run = [&](const char* culling) {
+        return recorded(fmt::format("{{cache: false, pictures: true, culling: {}}}", culling),
+                        &scene);
+    };
+    const auto none = run("none"), tile = run("tile"), patch = run("tile_and_patch");
+    EXPECT_LT(patch.metrics.at("drawn_triangles"), tile.metrics.at("drawn_triangles"));
+    EXPECT_LE(tile.metrics.at("drawn_triangles"), none.metrics.at("drawn_triangles"));
+    EXPECT_GT(patch.metrics.at("culled_patches"), 0.0);
+    EXPECT_EQ(tile.metrics.at("culled_patches"), 0.0);
+    EXPECT_TRUE(none.images.at("image") == tile.images.at("image"));
+    EXPECT_TRUE(none.images.at("image") == patch.images.at("image"));
+}
+
+TEST_F(TerrainTessellationTest, UntessellatedPatchesAreTwoTriangles) {
+    const auto m = measured("method: patches, culling: none", terrain({257, 257}));
+    EXPECT_EQ(m.at("drawn_triangles"), 2.0 * m.at("patches"));
+}
+
+TEST_F(TerrainTessellationTest, EveryViewAndMethodDraws) {
+    const scene::Scene scene = terrain({200, 90});
+    for (const char* method : {"adaptive", "patches", "uniform_grid", "cdlod"}) {
+        for (const char* view : {"overview", "valley", "round_flight"}) {
+            const auto m = measured(fmt::format("method: {}, view: {}", method, view), scene);
+            EXPECT_GT(m.at("drawn_triangles"), 0.0) << method << " " << view;
+        }
+    }
+}
+
+TEST_F(TerrainTessellationTest, DrawsTinyAndFlatTerrain) {
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(2, 2), glm::ivec2(5, 1)}) {
+        measured("errors: true", terrain(size));
+    }
+    const auto m = measured("errors: true", terrain({65, 65}, 0.0F));
+    EXPECT_LT(m.at("height_error_m/max"), 0.01);
+    EXPECT_EQ(m.at("crack_pixels"), 0.0);
+}
+
+TEST_F(TerrainTessellationTest, SeesNothingFromUnderTheGroundAndFarOutside) {
+    scene::Scene scene = terrain({129, 129});
+    scene::Camera camera;
+    camera.name = "far";
+    camera.position = {1e6F, 500.0F, 1e6F};
+    camera.target = {2e6F, 500.0F, 2e6F};
+    scene.cameras.push_back(camera);
+    camera.name = "under";
+    camera.position = {640.0F, 1.0F, 640.0F};
+    camera.target = {700.0F, 1.0F, 700.0F};
+    scene.cameras.push_back(camera);
+    const auto far = measured("view: far, errors: true", scene);
+    EXPECT_EQ(far.at("tiles"), 0.0);
+    EXPECT_EQ(far.at("drawn_triangles"), 0.0);
+    EXPECT_EQ(far.at("height_error_px/max"), 0.0);
+    measured("view: under, errors: true", scene);
+}
+
+TEST_F(TerrainTessellationTest, NeedsHeights) {
+    EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
+              "technique 'terrain_tessellation' needs a scene");
+    const scene::Scene nothing;
+    EXPECT_EQ(errorText([&] { recorded("{}", &nothing); }),
+              "technique 'terrain_tessellation' needs a scene with a height map");
+}
+
+}  // namespace
+}  // namespace gfxrepro::terrain_tessellation

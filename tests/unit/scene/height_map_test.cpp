@@ -1,0 +1,231 @@
+#include "runner/scene/height_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tiffio.h>
+
+#include "runner/core/error.h"
+#include "runner/core/files.h"
+#include "runner/image/png_io.h"
+#include "runner/scene/scene.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string messageOf(const fs::path& path) {
+    try {
+        loadHeightMap(path, {});
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+std::string bigEndian(const std::vector<int>& values) {
+    std::string bytes;
+    for (const int value : values) {
+        bytes += static_cast<char>((value >> 8) & 255);
+        bytes += static_cast<char>(value & 255);
+    }
+    return bytes;
+}
+
+/// A TIFF of 3 × 2 values.
+void writeTiff(const fs::path& path, const void* values, int bits, int format,
+               const char* noData = nullptr) {
+    TIFF* tiff = TIFFOpen(path.c_str(), "w");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 3);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 2);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, format);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 1);
+    if (noData != nullptr) {
+        static const TIFFFieldInfo kInfo[] = {
+            {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDAL_NODATA")}};
+        TIFFMergeFieldInfo(tiff, kInfo, 1);
+        TIFFSetField(tiff, 42113, noData);
+    }
+    for (int y = 0; y < 2; ++y) {
+        const auto* row = static_cast<const char*>(values) + y * 3 * bits / 8;
+        TIFFWriteScanline(tiff, const_cast<char*>(row), static_cast<std::uint32_t>(y), 0);
+    }
+    TIFFClose(tiff);
+}
+
+TEST(HeightMap, ReadsPngOf16And8Bits) {
+    const test::TemporaryFolder folder;
+    image::Image16 deep(3, 2, 1);
+    for (int i = 0; i < 6; ++i) deep.values()[i] = static_cast<std::uint16_t>(10000 * i);
+    image::writePng(folder.path() / "deep.PNG", deep);
+    const HeightMap map = loadHeightMap(folder.path() / "deep.PNG", {5.0F, 0.5F, {}});
+    EXPECT_EQ(map.sizeSamples, glm::ivec2(3, 2));
+    EXPECT_EQ(map.heightM(2, 1), 25000.0F);
+    EXPECT_EQ(map.position(2, 1), glm::vec3(10, 25000, 5));
+    EXPECT_EQ(map.bounds().max, glm::vec3(10, 25000, 5));
+    EXPECT_FALSE(map.isEightBit);
+
+    image::Image8 shallow(2, 1, 1);
+    shallow.values()[1] = 255;
+    image::writePng(folder.path() / "shallow.png", shallow);
+    const HeightMap eight = loadHeightMap(folder.path() / "shallow.png", {});
+    EXPECT_TRUE(eight.isEightBit);
+    EXPECT_EQ(eight.heightM(1, 0), 255.0F);
+}
+
+TEST(HeightMap, ReadsTiffsAndTheirNoData) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.tif";
+    const std::uint16_t u16[] = {1, 2, 65535, 4, 5, 6};
+    writeTiff(path, u16, 16, SAMPLEFORMAT_UINT);
+    EXPECT_EQ(loadHeightMap(path, {}).heightM(2, 0), 65535.0F);
+
+    const std::int16_t i16[] = {-7, -7, -7, -7, -32768, -7};
+    writeTiff(path, i16, 16, SAMPLEFORMAT_INT);
+    const HeightMap filled = loadHeightMap(path, {});
+    EXPECT_EQ(filled.filledCount, 1U);
+    for (const float height : filled.heightsM) EXPECT_EQ(height, -7.0F);
+
+    const float f32[] = {0.25F, NAN, -9999.0F, 0.25F, 0.25F, 0.25F};
+    writeTiff(path, f32, 32, SAMPLEFORMAT_IEEEFP, "-9999");
+    const HeightMap floats = loadHeightMap(path, {});
+    EXPECT_EQ(floats.filledCount, 2U);
+    for (const float height : floats.heightsM) EXPECT_EQ(height, 0.25F);
+
+    const std::string whole = readFile(path);
+    for (std::size_t size = 0; size < whole.size(); size += 7) {
+        writeFileAtomic(path, whole.substr(0, size));
+        EXPECT_NE(messageOf(path).find("a.tif: "), std::string::npos) << size;
+    }
+}
+
+TEST(HeightMap, ReadsSrtmTiles) {
+    const test::TemporaryFolder folder;
+    std::vector<int> values(1201 * 1201, 300);
+    values[1] = -5;
+    values[1201 * 600 + 600] = -32768;
+    writeFileAtomic(folder.path() / "N00E000.hgt", bigEndian(values));
+    const HeightMap map = loadHeightMap(folder.path() / "N00E000.hgt", {});
+    EXPECT_EQ(map.heightM(1, 0), -5.0F);
+    EXPECT_EQ(map.heightM(600, 600), 300.0F);
+    EXPECT_EQ(map.filledCount, 1U);
+
+    const fs::path cut = folder.path() / "cut.hgt";
+    writeFileAtomic(cut, "12345");
+    EXPECT_EQ(messageOf(cut), cut.string() +
+                                  ": 5 bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 "
+                                  "(3601 x 3601)");
+}
+
+TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.raw";
+    writeFileAtomic(path, bigEndian({-1, 2, 3, 4, 77, 6}));
+    EXPECT_EQ(messageOf(path), path.string() + ": a raw height map needs " + path.string() +
+                                   ".yaml with width, height, type (u16 | i16 | f32) and "
+                                   "byte_order (little | big)");
+    const fs::path sidecar = path.string() + ".yaml";
+    writeFileAtomic(sidecar, "{width: 2, height: 3, type: i16, byte_order: big, no_data: 77}\n");
+    const HeightMap map = loadHeightMap(path, {});
+    EXPECT_EQ(map.heightM(0, 0), -1.0F);
+    EXPECT_EQ(map.heightM(1, 2), 6.0F);
+    EXPECT_EQ(map.filledCount, 1U);
+
+    writeFileAtomic(sidecar, "{width: 2, height: 4, type: i16}\n");
+    EXPECT_EQ(messageOf(path), path.string() + ": 12 bytes; 2 x 4 samples of i16 need 16");
+    writeFileAtomic(sidecar, "{width: 2000000000, height: 2000000000, type: f32}\n");
+    EXPECT_EQ(messageOf(path),
+              sidecar.string() +
+                  ": a height map of 2000000000 x 2000000000 samples; allowed: 1 to 16385 a side");
+    writeFileAtomic(sidecar, "{width: 2, height: 3, type: f64}\n");
+    EXPECT_EQ(messageOf(path), sidecar.string() + ":1:29: type is 'f64'; allowed: u16 | i16 | f32");
+}
+
+TEST(HeightMap, RefusesOtherFiles) {
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(messageOf("a.asc"),
+              "a.asc: unknown kind of height map; allowed: .png .tif .tiff .hgt .raw .r16 .bin");
+    const fs::path path = folder.path() / "rgb.png";
+    image::writePng(path, image::Image8(2, 2, 3));
+    EXPECT_EQ(messageOf(path),
+              path.string() + ": 3 channels; a height map is grey, with or without alpha");
+}
+
+TEST(HeightMap, HolesAreFilledFromAround) {
+    HeightMap map;
+    map.sizeSamples = {40, 23};
+    map.heightsM.assign(40 * 23, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_THROW(fillHoles(map), Error);
+    map.heightsM[0] = 10.0F;
+    map.heightsM[40 * 23 - 1] = 20.0F;
+    fillHoles(map);
+    EXPECT_EQ(map.filledCount, 40U * 23U - 2U);
+    EXPECT_EQ(map.heightsM[0], 10.0F);
+    for (const float height : map.heightsM) {
+        EXPECT_GE(height, 10.0F);
+        EXPECT_LE(height, 20.0F);
+    }
+    EXPECT_LT(map.heightM(2, 2), map.heightM(37, 20));
+}
+
+TEST(HeightMap, FractalIsTheSameForASeedAndHasItsRelief) {
+    FractalTerrain shape;
+    shape.sizeSamples = 129;
+    const HeightMap a = fractalTerrain(shape, 1);
+    EXPECT_EQ(a.heightsM, fractalTerrain(shape, 1).heightsM);
+    EXPECT_NE(a.heightsM, fractalTerrain(shape, 2).heightsM);
+    EXPECT_EQ(a.bounds().min.y, 0.0F);
+    EXPECT_NEAR(a.bounds().max.y, shape.reliefM, 0.01F);
+    shape.sizeSamples = 1;
+    EXPECT_EQ(fractalTerrain(shape, 1).heightsM, std::vector<float>{0.0F});
+}
+
+TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {
+    FractalTerrain shape;
+    shape.sizeSamples = 33;
+    shape.spacingM = 160.0F;
+    const HeightMap coarse = fractalTerrain(shape, 5);
+    const HeightMap smooth = resampled(coarse, 257, 0.0F, 1);
+    const HeightMap rough = resampled(coarse, 257, 30.0F, 1);
+    EXPECT_EQ(rough.spacingM, 20.0F);
+    float greatest = 0.0F;
+    for (int row = 0; row < 257; ++row) {
+        for (int column = 0; column < 257; ++column) {
+            greatest = std::max(greatest,
+                                std::abs(rough.heightM(column, row) - smooth.heightM(column, row)));
+            if (row % 8 == 0 && column % 8 == 0) {
+                EXPECT_EQ(rough.heightM(column, row), coarse.heightM(column / 8, row / 8));
+            }
+        }
+    }
+    EXPECT_GT(greatest, 1.0F);
+    EXPECT_LE(greatest, 30.0F);
+    EXPECT_THROW(resampled(coarse, 32, 0.0F, 1), Error);
+}
+
+TEST(HeightMap, MeshFacesUpAndHoldsTheCorners) {
+    FractalTerrain shape;
+    shape.sizeSamples = 100;
+    const HeightMap map = fractalTerrain(shape, 5);
+    const Mesh mesh = heightMapMesh(map, 10);
+    EXPECT_LE(mesh.positions.size(), 100U);
+    EXPECT_EQ(mesh.positions.back(), map.position(99, 99));
+    for (const glm::uvec3& t : mesh.triangles) {
+        EXPECT_GT(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                             mesh.positions[t.z] - mesh.positions[t.x])
+                      .y,
+                  0.0F);
+    }
+    EXPECT_EQ(heightMapMesh(map, 513).triangles.size(), 2U * 99U * 99U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
