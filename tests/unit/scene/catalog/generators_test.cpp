@@ -143,8 +143,8 @@ TEST(Generators, BadParametersAreLocated) {
                   findGenerator("sdf_modle", {"s.yaml", 4, 9});
               }),
               "s.yaml:4:9: unknown generator 'sdf_modle'; did you mean 'sdf_model'? (there are: "
-              "bathroom, bird_nest, city, four_objects, grass, living_room, sdf_model, "
-              "tree)");
+              "bathroom, bird_nest, city, four_objects, grass, living_room, "
+              "object_on_plane, sdf_model, terrain, town_square, tree)");
 }
 
 }  // namespace
