@@ -163,7 +163,7 @@ TEST(Catalog, RefusesBadEntries) {
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_modell}]\n"),
               "DIR/scenes/m/x.yaml:3:23: unknown generator 'sdf_modell'; did you mean 'sdf_model'? "
               "(there are: bathroom, bird_nest, city, four_objects, grass, living_room, sdf_model, "
-              "tree)");
+              "terrain, tree)");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_model, seed: -1}]\n"),
               "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: at least 0");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\ngenerated: true\nsources: [{file: a.ply}]\n"),
@@ -208,6 +208,27 @@ TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
         EXPECT_EQ(scene.origin.kind, Origin::Kind::Generated) << name;
         EXPECT_TRUE(topologyOf(scene.meshes[0]).isClosed()) << name;
     }
+}
+
+TEST(ShippedCatalog, TerrainsAreHeightMaps) {
+    const Catalog generated(kShippedScenes, "nowhere");
+    const Scene fractal = generated.load(reference("terrain/fractal_small"));
+    EXPECT_EQ(fractal.origin.kind, Origin::Kind::Generated);
+    EXPECT_EQ(fractal.heights->sizeSamples, glm::ivec2(1025));
+    EXPECT_EQ(fractal.bounds().max.x, 10240.0F);
+    ASSERT_EQ(fractal.cameras.size(), 2U);
+
+    const auto real = test::asset("terrain/puget_sound/ps_height_1k.png");
+    if (!real) GTEST_SKIP() << "terrain/puget_sound/ps_height_1k.png";
+    const Catalog catalog(kShippedScenes, real->parent_path().parent_path().parent_path());
+    const Scene survey = catalog.load(reference("terrain/puget_sound_1k"));
+    EXPECT_EQ(survey.origin.kind, Origin::Kind::Real);
+    const Scene finer = catalog.load(reference("terrain/puget_sound"));
+    EXPECT_EQ(finer.origin.kind, Origin::Kind::StandIn);
+    EXPECT_EQ(finer.heights->spacingM, 40.0F);
+    EXPECT_EQ(finer.heights->heightM(4 * 700, 4 * 300), survey.heights->heightM(700, 300));
+    EXPECT_NE(catalog.contentKey(reference("terrain/puget_sound_1k")),
+              catalog.contentKey(reference("terrain/puget_sound")));
 }
 
 TEST(ShippedCatalog, RealModelsAreRecognized) {
