@@ -28,6 +28,13 @@ HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& setti
 
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const Patch& patch, Edge edge) {
+    const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
+    return edgeFactor(metadata, settings, view, clipFromWorld, patch, edge);
+}
+
+double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
+                  const depth_images::View& view, const glm::dmat4& clipFromWorld,
+                  const Patch& patch, Edge edge) {
     const int blockSamples = metadata.blockSizeSamples(patch.level);
     const double span = settings.tile.blocksPerPatch * blockSamples;
     const double spacing = metadata.spacingM();
@@ -43,7 +50,6 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
     const glm::dvec3 centre(middle.x * spacing, 0.5 * (double(range.minM) + range.maxM),
                             middle.y * spacing);
 
-    const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
     const glm::dvec2 halfPx = 0.5 * glm::dvec2(view.sizePx);
     const double nearest = view.nearM;
     const double focalPx = double(view.clipFromView[0].x) * halfPx.x;

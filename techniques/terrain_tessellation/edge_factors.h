@@ -44,6 +44,10 @@ HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& setti
 /// Eq. (3) and (4).
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const Patch& patch, Edge edge);
+/// The same for many edges of one view, whose matrix is multiplied out once.
+double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
+                  const depth_images::View& view, const glm::dmat4& clipFromWorld,
+                  const Patch& patch, Edge edge);
 
 /// No fewer triangles than a patch of these outer factors is cut into, whatever the spacing.
 double triangleBound(const std::array<double, 4>& outer, InnerFactors inner);

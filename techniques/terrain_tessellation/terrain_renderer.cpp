@@ -48,7 +48,7 @@ class PatchRuns {
 }  // namespace
 
 int splitPrimitivesFor(bool isSoftwareDevice) {
-    return isSoftwareDevice ? 1 << 16 : 0;
+    return isSoftwareDevice ? 1 << 14 : 0;
 }
 
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings) {
@@ -151,27 +151,45 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     }
 }
 
+std::array<double, 4> TerrainRenderer::outerFactors(const Patch& patch,
+                                                    const depth_images::View& view,
+                                                    const glm::dmat4& clipFromWorld) const {
+    std::array<double, 4> outer;
+    for (const Edge edge : {kWest, kNorth, kEast, kSouth}) {
+        outer[edge] =
+            edgeFactor(terrain_->metadata(), settings_.factors, view, clipFromWorld, patch, edge);
+    }
+    if (settings_.factors.edges == EdgeRule::OwnPatch) {
+        outer.fill(0.25 * (outer[0] + outer[1] + outer[2] + outer[3]));
+    }
+    return outer;
+}
+
 int TerrainRenderer::drawPatches(std::span<const Tile> tiles, const depth_images::View& view,
                                  int patchesPerTile) const {
     PatchRuns runs(settings_.splitPrimitives);
     const int m = settings_.factors.tile.patchesPerTile;
+    const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
     for (const Tile& tile : tiles) {
         if (settings_.splitPrimitives == 0) {
             runs.add(patchesPerTile, 0.0);
             continue;
         }
-        for (int i = 0; i < patchesPerTile; ++i) {
-            std::array<double, 4> outer;
-            // A skirt has two segments downwards at most: the bound of 64 along it.
-            outer = {settings_.factors.greatest, 2.0, settings_.factors.greatest, 2.0};
-            if (i < m * m) {
-                const Patch patch = patchOf(tile, settings_.factors.tile, i);
-                for (const Edge edge : {kWest, kNorth, kEast, kSouth}) {
-                    outer[edge] =
-                        edgeFactor(terrain_->metadata(), settings_.factors, view, patch, edge);
-                }
-            }
-            runs.add(1, triangleBound(outer, settings_.factors.inner));
+        for (int i = 0; i < m * m; ++i) {
+            const Patch patch = patchOf(tile, settings_.factors.tile, i);
+            runs.add(1, triangleBound(outerFactors(patch, view, clipFromWorld),
+                                      settings_.factors.inner));
+        }
+        for (int i = m * m; i < patchesPerTile; ++i) {
+            const int rim = (i - m * m) / m, along = (i - m * m) % m;
+            const int far = rim == kEast || rim == kSouth ? m - 1 : 0;
+            const bool isAlongZ = rim == kWest || rim == kEast;
+            const Patch patch =
+                patchOf(tile, settings_.factors.tile, isAlongZ ? along * m + far : far * m + along);
+            const double factor =
+                outerFactors(patch, view, clipFromWorld)[static_cast<std::size_t>(rim)];
+            // Two segments downwards at most, of two triangles each.
+            runs.add(1, 4.0 * (factor + 2.0));
         }
     }
     runs.flush();

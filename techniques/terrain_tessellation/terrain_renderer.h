@@ -1,6 +1,7 @@
 // Draws tiles of terrain: tessellated to the screen, as plain grids, and as morphing grids.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,6 +30,7 @@ struct RenderSettings {
 };
 
 /// llvmpipe's tessellated draws take a time that grows with the square of what one generates.
+/// Calls of 2^14 triangles were 2.5 times as fast as of 2^16, at ΔS = 1 on two cores.
 int splitPrimitivesFor(bool isSoftwareDevice);
 
 struct DrawCounts {
@@ -75,6 +77,8 @@ class TerrainRenderer {
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
+    std::array<double, 4> outerFactors(const Patch& patch, const depth_images::View& view,
+                                       const glm::dmat4& clipFromWorld) const;
     int drawPatches(std::span<const Tile> tiles, const depth_images::View& view,
                     int patchesPerTile) const;
     int drawGridTile(const gl::Program& program, int tile, int cellsPerSide) const;
