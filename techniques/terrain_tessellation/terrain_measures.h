@@ -35,7 +35,7 @@ struct HeightErrors {
 HeightErrors heightErrors(const DepthMap& drawn,
                           const std::function<float(float x, float z)>& heightAt);
 
-/// Marks pixels through which the background or the underside shows although the terrain is whole
+/// Marks pixels through which the background shows although the terrain is whole
 /// there: the truth covers the pixel and its eight neighbours, and `drawn` covers one above it in
 /// its column, so that no horizon drawn too low counts. A byte a pixel, rows from the bottom.
 std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth);

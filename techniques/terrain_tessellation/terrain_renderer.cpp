@@ -48,7 +48,7 @@ class PatchRuns {
 }  // namespace
 
 int splitPrimitivesFor(bool isSoftwareDevice) {
-    return isSoftwareDevice ? 1 << 16 : 0;
+    return isSoftwareDevice ? 1 << 14 : 0;
 }
 
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings) {

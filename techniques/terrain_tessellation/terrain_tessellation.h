@@ -64,7 +64,9 @@ class TerrainTessellation final : public technique::Technique {
     /// What a target shows, on the host.
     struct Drawn {
         image::ImageF picture;
-        DepthMap depths;
+        DepthMap depths;       // of all that is drawn
+        DepthMap upperDepths;  // the underside as if it were background
+        std::size_t undersidePixels = 0;
     };
 
     /// The tiles of the last view.

@@ -70,7 +70,7 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
         "method: uniform_grid, errors: true, culling: none, tile_patches: 1, patch_blocks: 1",
         terrain({129, 129}));
     EXPECT_EQ(m.at("drawn_triangles"), 2.0 * 128 * 128);
-    EXPECT_EQ(m.at("crack_pixels"), 0.0);
+    EXPECT_EQ(m.at("crack_pixels/background"), 0.0);
     EXPECT_EQ(m.at("flip_mean"), 0.0);
     EXPECT_EQ(m.at("channel_error"), 0.0);
     EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "draw"}));
@@ -84,7 +84,7 @@ TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
         EXPECT_LT(m.at("drawn_triangles"), triangles) << deltaS;
         EXPECT_GT(m.at("height_error_m/mean"), error) << deltaS;
         EXPECT_EQ(m.at("factor_mismatches"), 0.0) << deltaS;
-        EXPECT_EQ(m.at("crack_pixels"), 0.0) << deltaS;
+        EXPECT_EQ(m.at("crack_pixels/background"), 0.0) << deltaS;
         EXPECT_LT(m.at("tile_error_px"), 4.0);
         triangles = m.at("drawn_triangles");
         error = m.at("height_error_m/mean");
@@ -95,8 +95,8 @@ TEST_F(TerrainTessellationTest, UnequalFactorsCrack) {
     const scene::Scene scene = terrain({257, 257});
     const std::string yaml =
         "delta_s: 8, tau: 0, skirts: false, errors: true, supersampling: 4, edges: ";
-    EXPECT_EQ(measured(yaml + "shared", scene).at("crack_pixels"), 0.0);
-    EXPECT_GT(measured(yaml + "own_patch", scene).at("crack_pixels"), 0.0);
+    EXPECT_EQ(measured(yaml + "shared", scene).at("crack_pixels/underside"), 0.0);
+    EXPECT_GT(measured(yaml + "own_patch", scene).at("crack_pixels/underside"), 0.0);
 }
 
 TEST_F(TerrainTessellationTest, CullingLeavesThePictureAsItIs) {
@@ -135,7 +135,7 @@ TEST_F(TerrainTessellationTest, DrawsTinyAndFlatTerrain) {
     }
     const auto m = measured("errors: true", terrain({65, 65}, 0.0F));
     EXPECT_LT(m.at("height_error_m/max"), 0.01);
-    EXPECT_EQ(m.at("crack_pixels"), 0.0);
+    EXPECT_EQ(m.at("crack_pixels/background"), 0.0);
 }
 
 TEST_F(TerrainTessellationTest, SeesNothingFromUnderTheGroundAndFarOutside) {
