@@ -89,6 +89,9 @@ TEST_F(ShadowMappingTest, BadInput) {
     const auto message = [&](const std::string& yaml) {
         return errorText([&] { recorded(yaml, &scene_); });
     };
+    EXPECT_EQ(message("{shadow_map_size: 32768}"),
+              "case.yaml:1:19: technique 'shadow_mapping': shadow_map_size is 32768; allowed: 16 … "
+              "16384 pixels");
     EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
               "technique 'shadow_mapping' needs a scene");
     const scene::Scene empty;
