@@ -138,11 +138,12 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         return kExitInterrupted;
     }
     for (const std::string& line : outcome.complaints) fmt::print(stderr, "{}\n", line);
-    fmt::print("{} of {} finished{}{}{}; records: {}\n", outcome.finished, units.size(),
-               countText(outcome.flaky, "flaky"), countText(outcome.failed, "failed"),
+    fmt::print("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished,
+               batch::measuredCount(units), countText(outcome.flaky, "flaky"),
+               countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
-    if (!results) return outcome.failed > 0 ? kExitIncomplete : kExitOk;
+    if (!results) return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 
     const std::vector<report::ClaimResult> claims =
         batch::writeResults(path, batch::readRun(path), {});
@@ -153,7 +154,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         return claim.verdict == report::Verdict::Fails;
     });
     if (anyFails) return kExitClaimFailed;
-    return outcome.failed > 0 ? kExitIncomplete : kExitOk;
+    return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 }
 
 batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {

@@ -60,6 +60,7 @@ class ShadowMapping final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override { return &image_->colour; }
 
   private:
     void recordSteps(technique::Recorder& recorder) const;
