@@ -16,20 +16,25 @@ double millisecondsSince(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Says when a phase begins and ends; at an exception too.
+/// Says when a phase begins and ends, at an exception too, and adds its time to `spentS`.
 class PhaseScope {
   public:
-    PhaseScope(const MeasureContext& context, std::string_view phase)
-        : context_(context), phase_(phase) {
+    PhaseScope(const MeasureContext& context, std::string_view phase, double& spentS)
+        : context_(context), phase_(phase), spentS_(spentS) {
         context_.onPhase(phase_, true);
     }
-    ~PhaseScope() { context_.onPhase(phase_, false); }
+    ~PhaseScope() {
+        spentS_ += 1e-3 * millisecondsSince(begin_);
+        context_.onPhase(phase_, false);
+    }
     PhaseScope(const PhaseScope&) = delete;
     PhaseScope& operator=(const PhaseScope&) = delete;
 
   private:
     const MeasureContext& context_;
     std::string_view phase_;
+    double& spentS_;
+    Clock::time_point begin_ = Clock::now();
 };
 
 void recordPasses(gl::Profiler& profiler, RunRecorder& recorder) {
@@ -83,12 +88,12 @@ void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
 
 /// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is recorded.
 void renderAndRecord(const Case& item, technique::Technique& technique, gl::Profiler& profiler,
-                     const MeasureContext& context, RunRecorder& recorder) {
+                     const MeasureContext& context, RunRecorder& recorder, Cost& cost) {
     const int frames = item.measure.frames;
     for (int frame = 0; frame < frames; ++frame) {
         technique::FrameContext frameContext{frame, frames, profiler};
         {
-            const PhaseScope phase(context, "render");
+            const PhaseScope phase(context, "render", cost.renderS);
             for (int i = 0; frame == 0 && i < item.measure.warmup; ++i) {
                 technique.render(frameContext);
                 context.device.finish("warming up");
@@ -105,7 +110,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
                 recordPasses(profiler, recorder);
             }
         }
-        const PhaseScope phase(context, "record");
+        const PhaseScope phase(context, "record", cost.recordS);
         recorder.setIteration(frame, 0);
         technique.record(recorder);
         context.device.finish("recording");
@@ -128,7 +133,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     const std::unique_ptr<technique::Technique> technique = info.create(params);
     const SceneCache::Entry* scene = nullptr;
     if (!sceneName.empty()) {
-        const PhaseScope phase(context, "load");
+        const PhaseScope phase(context, "load", result.cost.loadS);
         scene = &context.scenes.get(sceneName);
         recordScene(*scene, recorder);
     }
@@ -142,15 +147,16 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
                                   item.seed,
                                   profiler};
     {
-        const PhaseScope phase(context, "setup");
+        const PhaseScope phase(context, "setup", result.cost.setupS);
         const Clock::time_point begin = Clock::now();
         technique->setup(setup);
         context.device.finish("setting up");
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
         recordPasses(profiler, recorder);
     }
-    renderAndRecord(item, *technique, profiler, context, recorder);
+    renderAndRecord(item, *technique, profiler, context, recorder, result.cost);
     recorder.setIteration(0, 0);
+    result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
     if (scene) recordMemory(context, *scene, recorder);
 
     for (const SceneCache::Entry& entry : context.scenes.entries()) {

@@ -41,8 +41,8 @@ struct RunOutcome {
     std::vector<SceneUse> scenes;
 };
 
-/// The units of a plan in the order in which they run: experiment by experiment, process 0 of all
-/// its cases, then process 1 of all, …
+/// The units of a plan, or of its shard, in the order in which they run: experiment by experiment,
+/// process 0 of all its cases, then process 1 of all, …
 std::vector<Unit> unitsOf(const Plan& plan);
 
 /// The command of a worker process: this program, with `worker` and the options.
