@@ -269,6 +269,7 @@ int runCommand(int argc, const char* const* argv,
     for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
+    app.get_formatter()->column_width(36);  // an option and its doc on one line
     app.set_version_flag("--version", "gfxrepro " + batch::programCommit());
     addQueries(app, context, options);
     addRuns(app, context, options);

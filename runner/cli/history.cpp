@@ -41,6 +41,7 @@ History openHistory(const std::vector<std::string>& from, const std::string& dev
 }
 
 std::string durationText(double timeS) {
+    if (timeS < 0.9995) return fmt::format("{:.0f} ms", 1e3 * timeS);
     if (timeS < 9.95) return fmt::format("{:.1f} s", timeS);
     const auto seconds = static_cast<long long>(std::lround(timeS));
     if (seconds < 120) return fmt::format("{} s", seconds);

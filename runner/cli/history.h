@@ -18,7 +18,7 @@ struct History {
 /// which those that cannot be read are passed over.
 History openHistory(const std::vector<std::string>& from, const std::string& deviceClass);
 
-/// "3 h 20 min", "12 min", "1.3 s".
+/// "3 h 20 min", "12 min", "1.3 s", "80 ms".
 std::string durationText(double timeS);
 /// "1.2 GiB", "310 MiB".
 std::string memoryText(double bytes);

@@ -159,7 +159,7 @@ std::string taskOf(const Stored& stored, int shard) {
     return stored.arrayJob.empty() ? "" : fmt::format("{}_{}", stored.arrayJob, shard);
 }
 
-int status(const fs::path& out) {
+int printStatus(const fs::path& out) {
     const std::optional<Stored> stored = readStored(out);
     if (!stored) throw Error(out.string() + ": holds no submission");
     const auto queue = stored->arrayJob.empty() ? std::nullopt : askQueue(*stored);
@@ -276,7 +276,7 @@ int writeCommands(const Cut& cut, bool isDryRun) {
 int submit(const Context& context, const SubmitOptions& options) {
     if (options.isStatus) {
         if (options.selection.names.size() != 1) throw UsageError("submit: --status needs one DIR");
-        return status(fs::absolute(options.selection.names.front()).lexically_normal());
+        return printStatus(fs::absolute(options.selection.names.front()).lexically_normal());
     }
     if (options.selection.names.empty() || options.out.empty()) {
         throw UsageError("submit: give config files and --out DIR, or --status DIR");
