@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # slurm_test.sh MOCK_PROGRAM: a sweep on two nodes with a failing case, a requeued task and a node that dies. Exit 77: skipped.
 set -euo pipefail
-mock=$1
+mock=$(realpath "$1")
 for program in slurmctld slurmd munged sbatch scontrol squeue; do
     command -v "$program" >/dev/null || { echo "skipped: $program is not installed (scripts/setup installs it)"; exit 77; }
 done
