@@ -125,9 +125,9 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
         cut.unitCounts[static_cast<std::size_t>(shardOf[i])] += measure.processes;
         cut.timesS[static_cast<std::size_t>(shardOf[i])] += timesS[i];
     }
-    fmt::print(stderr, "{} cases in {} shards of {} to {} units{}\n", cut.plan.cases.size(),
-               s.shardCount, *std::ranges::min_element(cut.unitCounts),
-               *std::ranges::max_element(cut.unitCounts),
+    fmt::print(stderr, "{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(),
+               s.shardCount, s.shardCount == 1 ? "" : "s",
+               *std::ranges::min_element(cut.unitCounts), *std::ranges::max_element(cut.unitCounts),
                arePredicted ? fmt::format(", the longest of about {}",
                                           durationText(*std::ranges::max_element(cut.timesS)))
                             : "; no earlier run tells their time");
