@@ -1,6 +1,7 @@
 #include "runner/batch/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -103,6 +104,16 @@ int ChildProcess::wait() {
 int ChildProcess::kill() {
     if (!isReaped_) ::kill(-pid_, SIGKILL);
     return wait();
+}
+
+ProgramEnd runToEnd(const std::vector<std::string>& arguments) {
+    ChildProcess child(arguments);
+    ProgramEnd end;
+    pollfd readable{child.outputFd(), POLLIN, 0};
+    while (readAvailable(child.outputFd(), end.output)) ::poll(&readable, 1, -1);
+    const int status = child.wait();
+    end.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return end;
 }
 
 bool readAvailable(int fd, std::string& text) {

@@ -42,6 +42,14 @@ class ChildProcess {
     int waitStatus_ = 0;
 };
 
+/// How a program ended: its exit code (128 + number after a signal), standard output and error.
+struct ProgramEnd {
+    int exitCode = 0;
+    std::string output;
+};
+/// Runs a program to its end; `arguments[0]` is a path.
+ProgramEnd runToEnd(const std::vector<std::string>& arguments);
+
 /// Appends what can be read now to `text`; false at the end of the stream.
 bool readAvailable(int fd, std::string& text);
 

@@ -84,6 +84,19 @@ void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
     }
 }
 
+std::string machineName(const Json& manifest) {
+    const Json& gl = manifest.at("gl");
+    return manifest.at("cpu").get<std::string>() + ", " +
+           std::to_string(manifest.at("cores").get<long>()) + " cores, " +
+           gl.at("renderer").get<std::string>() + ", " + gl.at("version").get<std::string>();
+}
+
+std::string timingMachine(const Json& manifest, const std::string& experiment) {
+    const auto machines = manifest.find("timing_machines");
+    if (machines == manifest.end() || !machines->contains(experiment)) return machineName(manifest);
+    return machines->at(experiment).get<std::string>();
+}
+
 report::ReportContext reportContext(const Json& manifest) {
     report::ReportContext context;
     context.device = manifest.at("gl").at("renderer").get<std::string>();

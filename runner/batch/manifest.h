@@ -24,6 +24,11 @@ void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
 /// Adds what workers loaded, one entry a reference.
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
 
+/// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6": times of two names are not compared.
+std::string machineName(const Json& manifest);
+/// The machine that the times of an experiment come from: all of them from one.
+std::string timingMachine(const Json& manifest, const std::string& experiment);
+
 /// What claims and the report ask of the run.
 report::ReportContext reportContext(const Json& manifest);
 

@@ -19,20 +19,25 @@ double millisecondsSince(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Says when a phase begins and ends; at an exception too.
+/// Says when a phase begins and ends, at an exception too, and adds its time to `spentS`.
 class PhaseScope {
   public:
-    PhaseScope(const MeasureContext& context, std::string_view phase)
-        : context_(context), phase_(phase) {
+    PhaseScope(const MeasureContext& context, std::string_view phase, double& spentS)
+        : context_(context), phase_(phase), spentS_(spentS) {
         context_.onPhase(phase_, true);
     }
-    ~PhaseScope() { context_.onPhase(phase_, false); }
+    ~PhaseScope() {
+        spentS_ += 1e-3 * millisecondsSince(begin_);
+        context_.onPhase(phase_, false);
+    }
     PhaseScope(const PhaseScope&) = delete;
     PhaseScope& operator=(const PhaseScope&) = delete;
 
   private:
     const MeasureContext& context_;
     std::string_view phase_;
+    double& spentS_;
+    Clock::time_point begin_ = Clock::now();
 };
 
 void recordPasses(gl::Profiler& profiler, RunRecorder& recorder) {
@@ -143,7 +148,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
         const std::size_t firstSample = result.samples.size();
         guard.beginFrame();
         {
-            const PhaseScope phase(context, "render");
+            const PhaseScope phase(context, "render", result.cost.renderS);
             for (int i = 0; frame == 0 && i < item.measure.warmup; ++i) {
                 technique.render(frameContext);
                 context.device.finish("warming up");
@@ -163,7 +168,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
             }
         }
         guard.endFrame(frame, firstSample, result);
-        const PhaseScope phase(context, "record");
+        const PhaseScope phase(context, "record", result.cost.recordS);
         recorder.setIteration(frame, 0);
         technique.record(recorder);
         context.device.finish("recording");
@@ -186,7 +191,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     const std::unique_ptr<technique::Technique> technique = info.create(params);
     const SceneCache::Entry* scene = nullptr;
     if (!sceneName.empty()) {
-        const PhaseScope phase(context, "load");
+        const PhaseScope phase(context, "load", result.cost.loadS);
         scene = &context.scenes.get(sceneName);
         recordScene(*scene, recorder);
     }
@@ -200,7 +205,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
                                   item.seed,
                                   profiler};
     {
-        const PhaseScope phase(context, "setup");
+        const PhaseScope phase(context, "setup", result.cost.setupS);
         const Clock::time_point begin = Clock::now();
         technique->setup(setup);
         context.device.finish("setting up");
@@ -209,6 +214,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     }
     renderAndRecord(item, *technique, profiler, context, recorder, result);
     recorder.setIteration(0, 0);
+    result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
     if (scene) recordMemory(context, *scene, recorder);
 
     for (const SceneCache::Entry& entry : context.scenes.entries()) {

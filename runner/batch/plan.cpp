@@ -134,6 +134,14 @@ Case Case::fromJson(const config::Node& node) {
     return item;
 }
 
+std::string Shard::name() const {
+    return std::to_string(index) + '/' + std::to_string(count);
+}
+
+bool Plan::measures(const Case& item) const {
+    return !shard || shard->caseIds.contains(item.id);
+}
+
 Json Plan::toJson() const {
     Json json = {{"schema", kPlanSchema},
                  {"hash", hash},
@@ -155,6 +163,10 @@ Json Plan::toJson() const {
             {{"file", experiment.file.string()}, {"document", experiment.document.toJson()}});
     }
     for (const Case& item : cases) json["cases"].push_back(item.toJson());
+    if (shard) {
+        json["shard"] = {
+            {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
+    }
     return json;
 }
 
@@ -182,6 +194,12 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     }
     for (const config::Node& item : required(node, "cases").items()) {
         plan.cases.push_back(Case::fromJson(item));
+    }
+    if (const config::Node* shard = node.find("shard")) {
+        plan.shard = Shard{requiredInt(*shard, "index"), requiredInt(*shard, "count")};
+        for (const std::string& id : textsFrom(required(*shard, "cases"))) {
+            plan.shard->caseIds.insert(id);
+        }
     }
     return plan;
 }

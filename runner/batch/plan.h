@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +45,15 @@ struct Request {
     std::string device = "auto";
 };
 
+/// The part of a plan that one of several runs measures.
+struct Shard {
+    int index = 1;  // from 1
+    int count = 1;
+    std::set<std::string> caseIds = {};
+
+    std::string name() const;  // "2/4"
+};
+
 struct Plan {
     Request request;
     std::string profile;
@@ -55,7 +66,10 @@ struct Plan {
     /// The experiments as loaded (file text after merging), so that tables can be made again from
     /// the run directory alone.
     std::vector<config::Experiment> experiments;
+    std::optional<Shard> shard;  // none: all cases
 
+    /// Whether a run of this plan measures the case: all do but those of other shards.
+    bool measures(const Case& item) const;
     nlohmann::ordered_json toJson() const;
     static Plan fromJsonFile(const std::filesystem::path& path);
 };

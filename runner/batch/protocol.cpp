@@ -26,10 +26,29 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     return info;
 }
 
+Json toJson(const Cost& cost) {
+    return {{"load_s", cost.loadS},
+            {"setup_s", cost.setupS},
+            {"render_s", cost.renderS},
+            {"record_s", cost.recordS},
+            {"peak_bytes", cost.peakBytes}};
+}
+
+Cost costFromJson(const Json& json) {
+    Cost cost;
+    json.at("load_s").get_to(cost.loadS);
+    json.at("setup_s").get_to(cost.setupS);
+    json.at("render_s").get_to(cost.renderS);
+    json.at("record_s").get_to(cost.recordS);
+    json.at("peak_bytes").get_to(cost.peakBytes);
+    return cost;
+}
+
 Json toJson(const CaseResult& result) {
     Json json = {{"status", report::statusName(result.status)},
                  {"message", result.message},
                  {"void", result.voidReason},
+                 {"cost", toJson(result.cost)},
                  {"samples", Json::array()},
                  {"images", Json::array()},
                  {"scenes", Json::array()}};
@@ -50,6 +69,7 @@ CaseResult caseResultFromJson(const Json& json) {
     result.status = report::statusFromName(json.at("status").get<std::string>());
     json.at("message").get_to(result.message);
     json.at("void").get_to(result.voidReason);
+    result.cost = costFromJson(json.at("cost"));
     for (const Json& s : json.at("samples")) {
         result.samples.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5), s.at(6)});
     }

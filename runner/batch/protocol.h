@@ -3,7 +3,7 @@
 //   runner → worker   {"case": {…}, "process": 0}
 //   worker → runner   {"ready": {device}}  or  {"unavailable": "reason"}, once, after its start
 //                     {"begin": "load"}, {"end": "load"}: load, setup, render, record
-//                     {"done": {status, message, samples, images, scenes}}
+//                     {"done": {status, message, samples, images, scenes, cost}}
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -39,6 +39,17 @@ struct SceneUse {
     std::string sha256;
 };
 
+/// What a unit took: what later runs are predicted from.
+struct Cost {
+    double loadS = 0.0;  // 0 for a scene that the worker had already
+    double setupS = 0.0;
+    double renderS = 0.0;  // warm-ups and all repeats of all frames
+    double recordS = 0.0;  // of all frames
+    long long peakBytes = 0;
+
+    double totalS() const { return loadS + setupS + renderS + recordS; }
+};
+
 /// How a case ended in one process.
 struct CaseResult {
     report::Status status = report::Status::Ok;
@@ -47,12 +58,15 @@ struct CaseResult {
     std::vector<Sample> samples;
     std::vector<report::ImageEntry> images;
     std::vector<SceneUse> scenes;
+    Cost cost;  // of a case that ended `ok`
     /// Someone outside killed the worker: nothing that the case did. Known to the runner only.
     bool isOutsideKill = false;
 };
 
 Json toJson(const gl::DeviceInfo& info);
 gl::DeviceInfo deviceInfoFromJson(const Json& json);
+Json toJson(const Cost& cost);
+Cost costFromJson(const Json& json);
 Json toJson(const CaseResult& result);
 CaseResult caseResultFromJson(const Json& json);
 

@@ -1,6 +1,7 @@
 #include "runner/batch/run.h"
 
 #include <map>
+#include <set>
 #include <utility>
 
 #include "runner/core/files.h"
@@ -25,6 +26,14 @@ std::map<UnitKey, bool> recordedUnits(const std::vector<report::Record>& records
     return units;
 }
 
+void rewriteRecords(const RunDirectory& directory, const std::vector<report::Record>& rows) {
+    fs::path rewritten = directory.recordsFile();
+    rewritten += ".tmp";
+    fs::remove(rewritten);
+    report::RecordWriter(rewritten).append(rows);
+    fs::rename(rewritten, directory.recordsFile());
+}
+
 }  // namespace
 
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
@@ -35,19 +44,40 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
     for (const report::Record& row : records) {
         if (recorded.at({row.caseId, row.process})) kept.push_back(row);
     }
-    if (kept.size() != records.size()) {
-        fs::path rewritten = directory.recordsFile();
-        rewritten += ".tmp";
-        fs::remove(rewritten);
-        report::RecordWriter(rewritten).append(kept);
-        fs::rename(rewritten, directory.recordsFile());
-    }
+    if (kept.size() != records.size()) rewriteRecords(directory, kept);
     std::vector<Unit> remaining;
     for (const Unit& unit : unitsOf(plan)) {
         const auto found = recorded.find({unit.item->id, unit.process});
         if (found == recorded.end() || !found->second) remaining.push_back(unit);
     }
     return remaining;
+}
+
+std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
+                                             Json& manifest, const std::string& machine) {
+    if (!fs::exists(directory.recordsFile())) report::RecordWriter{directory.recordsFile()};
+    std::set<std::string> unfinished;
+    for (const Unit& unit : remainingUnits(plan, directory)) {
+        if (unit.item->measure.lane != config::Measure::Lane::Timing) continue;
+        const std::string& experiment = unit.item->experiment;
+        if (timingMachine(manifest, experiment) != machine) unfinished.insert(experiment);
+    }
+    if (unfinished.empty()) return {};
+    std::vector<report::Record> kept, replaced;
+    std::set<std::string> experiments;
+    for (const report::Record& row : report::readRecords(directory.recordsFile())) {
+        const bool isReplaced = row.lane == "timing" && unfinished.contains(row.table);
+        (isReplaced ? replaced : kept).push_back(row);
+        if (isReplaced) experiments.insert(row.table);
+    }
+    if (!replaced.empty()) {
+        report::RecordWriter(directory.path() / "records-replaced.csv").append(replaced);
+        rewriteRecords(directory, kept);
+    }
+    for (const std::string& experiment : unfinished) {
+        manifest["timing_machines"][experiment] = machine;
+    }
+    return {experiments.begin(), experiments.end()};
 }
 
 StoredRun readRun(const fs::path& runDir) {

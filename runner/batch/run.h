@@ -19,6 +19,13 @@ namespace gfxrepro::batch {
 /// out of records.csv: they are about to be made again.
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 
+/// A run that goes on on another machine: the times of an experiment are of one machine, so where
+/// some of them are still to be measured, all are measured again. The rows so far go from
+/// records.csv to `records-replaced.csv`. Notes the machine in the manifest and gives the
+/// experiments. Does nothing on the machine on which the run began.
+std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
+                                             Json& manifest, const std::string& machine);
+
 /// What a run directory holds, for tables, claims and report.
 struct StoredRun {
     Plan plan;

@@ -185,6 +185,9 @@ class Scheduler {
                       {"title", unit.item->title()},
                       {"process", unit.process},
                       {"status", report::statusName(result.status)}};
+        if (result.status == report::Status::Ok || result.status == report::Status::Flaky) {
+            event["cost"] = toJson(result.cost);
+        }
         if (!result.message.empty()) event["message"] = result.message;
         if (!output.empty()) event["output"] = output;
         directory_.log(event);
@@ -230,8 +233,8 @@ class Scheduler {
 
 std::vector<Unit> unitsOf(const Plan& plan) {
     std::vector<Unit> units;
-    const auto timed = std::find_if(plan.cases.begin(), plan.cases.end(), [](const Case& item) {
-        return item.measure.lane == Lane::Timing;
+    const auto timed = std::find_if(plan.cases.begin(), plan.cases.end(), [&](const Case& item) {
+        return item.measure.lane == Lane::Timing && plan.measures(item);
     });
     if (timed != plan.cases.end()) {
         units.push_back({&*timed, report::kFirstControl, {}});
@@ -246,7 +249,7 @@ std::vector<Unit> unitsOf(const Plan& plan) {
         }
         for (int process = 0; process < processes; ++process) {
             for (std::size_t i = first; i < next; ++i) {
-                if (process < plan.cases[i].measure.processes) {
+                if (process < plan.cases[i].measure.processes && plan.measures(plan.cases[i])) {
                     units.push_back({&plan.cases[i], process, {}});
                 }
             }

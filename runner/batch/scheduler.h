@@ -42,7 +42,7 @@ struct RunOutcome {
     std::vector<SceneUse> scenes;
 };
 
-/// The units of a plan in the order in which they run: the A/A pair (the first case of the timing
+/// The units of a plan, or of its shard, in the order in which they run: the A/A pair (the first case of the timing
 /// lane twice, as processes report::kFirstControl and the next, each in a worker of its own), then
 /// experiment by experiment, process 0 of all its cases, then process 1 of all, …
 std::vector<Unit> unitsOf(const Plan& plan);

@@ -21,8 +21,10 @@ struct Options {
     RunOptions run;
     SceneOptions scene;
     CompareOptions compare;
+    SubmitOptions submit;
     batch::WorkerOptions worker;
     std::string name;  // of list and describe; a run directory
+    std::vector<std::string> shards;
     std::string imageA, imageB, imageOut;
     std::string lane = "quality";
     bool asJson = false;
@@ -44,10 +46,19 @@ void addSelection(CLI::App* app, Selection& selection) {
     addAssets(app, selection.assets);
 }
 
+void addFrom(CLI::App* app, std::vector<std::string>& from) {
+    app->add_option("--from", from, "run to predict times from (default: the newest in runs/)")
+        ->allow_extra_args(false);
+}
+
 void addRunOptions(CLI::App* app, RunOptions& options) {
     addSelection(app, options.selection);
     app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)");
-    app->add_option("--resume", options.resume, "continue this run directory");
+    app->add_option("--resume", options.resume,
+                    "continue this run; begin it where configs are given too");
+    app->add_option("--shard", options.shard,
+                    "k/n: measure one of n parts; each with the same --from");
+    addFrom(app, options.from);
     app->add_option("--jobs", options.jobs, "quality cases at once")->check(CLI::Range(1, 256));
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
@@ -79,11 +90,14 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
     addSelection(checkApp, o.selection);
     checkApp->callback([&] { o.command = [&] { return check(context, o.selection); }; });
 
-    CLI::App* planApp = app.add_subcommand("plan", "list the cases of configs");
+    CLI::App* planApp =
+        app.add_subcommand("plan", "list the cases of configs with their time and memory");
     planApp->add_option("configs", o.selection.names, "config files")->required();
     addSelection(planApp, o.selection);
+    addFrom(planApp, o.run.from);
     planApp->add_flag("--json", o.asJson, "the plan as it would be frozen");
-    planApp->callback([&] { o.command = [&] { return plan(context, o.selection, o.asJson); }; });
+    planApp->callback(
+        [&] { o.command = [&] { return plan(context, o.selection, o.run.from, o.asJson); }; });
 }
 
 void addRuns(CLI::App& app, const Context& context, Options& o) {
@@ -109,6 +123,34 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     addResult("table", "make a run's tables again from its records", table);
     addResult("claims", "judge a run's claims again", claims);
     addResult("report", "make a run's report.html again", report);
+}
+
+void addCluster(CLI::App& app, const Context& context, Options& o) {
+    CLI::App* mergeApp = app.add_subcommand("merge", "shards into one run; names what is missing");
+    mergeApp->add_option("out", o.name, "folder of the whole run")->required();
+    mergeApp->add_option("shards", o.shards, "run directories of the shards")->required();
+    mergeApp->callback([&] { o.command = [&] { return merge(context, o.name, o.shards); }; });
+
+    SubmitOptions& s = o.submit;
+    CLI::App* submitApp =
+        app.add_subcommand("submit", "shards on other machines: a Slurm array, or commands");
+    submitApp->add_option("configs", s.selection.names, "config files, papers or tables");
+    addSelection(submitApp, s.selection);
+    submitApp->add_option("--out", s.out, "folder of the shards and of the merged run");
+    submitApp->add_option("--engine", s.engine, "slurm | commands")
+        ->check(CLI::IsMember({"slurm", "commands"}));
+    submitApp->add_option("--shards", s.shardCount, "default: one a predicted half hour")
+        ->check(CLI::Range(1, 10000));
+    addFrom(submitApp, s.from);
+    submitApp->add_option("--jobs", s.jobs, "quality cases at once, a shard")
+        ->check(CLI::Range(1, 256));
+    submitApp->add_option("--partition", s.partition, "sbatch's");
+    submitApp->add_option("--gres", s.gres, "sbatch's: gpu:1");
+    submitApp->add_option("--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x")
+        ->allow_extra_args(false);
+    submitApp->add_flag("--dry-run", s.isDryRun, "print scripts and commands only");
+    submitApp->add_flag("--status", s.isStatus, "of the submission in this folder");
+    submitApp->callback([&] { o.command = [&] { return submit(context, o.submit); }; });
 }
 
 void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& command) {
@@ -227,9 +269,11 @@ int runCommand(int argc, const char* const* argv,
     for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
+    app.get_formatter()->column_width(36);  // an option and its doc on one line
     app.set_version_flag("--version", "gfxrepro " + batch::programCommit());
     addQueries(app, context, options);
     addRuns(app, context, options);
+    addCluster(app, context, options);
     addTools(app, context, options);
     addCompare(app, options.compare, options.command);
     if (argc < 2) throw UsageError("no command; see 'gfxrepro --help'");

@@ -38,8 +38,24 @@ struct RunOptions {
     Selection selection;
     std::string out;
     std::string resume;
-    int jobs = 0;  // 0: one on up to two cores, else half of them
+    std::string shard;              // "k/n"; empty: everything
+    std::vector<std::string> from;  // runs or a file to predict times from
+    int jobs = 0;                   // 0: one on up to two cores, else half of them
     bool isQuiet = false;
+};
+
+struct SubmitOptions {
+    Selection selection;
+    std::string engine = "slurm";  // slurm | commands
+    std::string out;
+    std::vector<std::string> from;
+    int shardCount = 0;  // 0: a shard for each predicted half hour
+    int jobs = 0;
+    std::string partition;
+    std::string gres;
+    std::vector<std::string> sbatchFlags;
+    bool isDryRun = false;
+    bool isStatus = false;
 };
 
 struct SceneOptions {
@@ -67,12 +83,15 @@ int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
 int describe(const Context& context, const std::string& name, const std::string& assets);
 int check(const Context& context, const Selection& selection);
-int plan(const Context& context, const Selection& selection, bool asJson);
+int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
+         bool asJson);
 int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);
 int table(const std::string& runDir);
 int claims(const std::string& runDir);
 int report(const std::string& runDir);
+int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);
+int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
 int imageDiff(const std::string& a, const std::string& b, const std::string& out);
 int scene(const SceneOptions& options);

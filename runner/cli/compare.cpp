@@ -1,8 +1,6 @@
 // Two runs, or two builds measured by turns: which is faster.
 #include <fmt/core.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -33,13 +31,8 @@ struct Measured {
 
 Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Json& manifest = run.manifest;
-    return {regression::seriesOf(run.records),
-            fmt::format("{}, {} cores, {}, {}", manifest.at("cpu").get<std::string>(),
-                        manifest.at("cores").get<long>(),
-                        manifest.at("gl").at("renderer").get<std::string>(),
-                        manifest.at("gl").at("version").get<std::string>()),
-            manifest.at("commit").get<std::string>()};
+    return {regression::seriesOf(run.records), batch::machineName(run.manifest),
+            run.manifest.at("commit").get<std::string>()};
 }
 
 void requireSameMachine(const Measured& a, const Measured& b) {
@@ -50,15 +43,10 @@ void requireSameMachine(const Measured& a, const Measured& b) {
 
 /// Runs a program to its end; its output is shown when it fails. Exit code 4 (a case did not
 /// finish) passes: the series tell what is missing.
-void runToEnd(const std::vector<std::string>& arguments) {
-    batch::ChildProcess child(arguments);
-    std::string output;
-    pollfd readable{child.outputFd(), POLLIN, 0};
-    while (batch::readAvailable(child.outputFd(), output)) ::poll(&readable, 1, -1);
-    const int status = child.wait();
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    if (code == kExitOk || code == kExitIncomplete) return;
-    throw Error(fmt::format("{}: exit code {}: {}", arguments.front(), code, output));
+void runProgram(const std::vector<std::string>& arguments) {
+    const batch::ProgramEnd end = batch::runToEnd(arguments);
+    if (end.exitCode == kExitOk || end.exitCode == kExitIncomplete) return;
+    throw Error(fmt::format("{}: exit code {}: {}", arguments.front(), end.exitCode, end.output));
 }
 
 /// Rounds of both programs by turns, in fresh processes: OLD NEW, NEW OLD, OLD NEW, …
@@ -93,7 +81,7 @@ class Turns {
             if (!value.empty()) arguments.insert(arguments.end(), {option, value});
         }
         arguments.insert(arguments.end(), options_.inputs.begin() + 2, options_.inputs.end());
-        runToEnd(arguments);
+        runProgram(arguments);
         Measured run = readMeasured(dir);
         regression::SeriesMap all = std::move(measured.series);
         regression::append(all, run.series);

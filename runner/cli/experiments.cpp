@@ -4,6 +4,7 @@
 #include <cstring>
 #include <set>
 
+#include "runner/batch/scheduler.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 
@@ -12,6 +13,8 @@ namespace gfxrepro::cli {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::uint64_t kSeed = 1;
 
 bool isPaperFolder(const fs::path& folder) {
     static const std::set<std::string> kOthers = {"scenes", "presets", "sweeps", "smoke"};
@@ -110,6 +113,42 @@ std::vector<config::Experiment> loadExperiments(const batch::Request& request,
         experiments.push_back(config::loadExperiment(file, options, configs));
     }
     return experiments;
+}
+
+batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {
+    batch::Request request{{}, selection.sets, selection.sweeps, selection.device};
+    for (const std::string& file : files) {
+        request.configs.push_back(fs::absolute(file).lexically_normal());
+    }
+    return request;
+}
+
+std::string deviceClassFor(const Selection& selection) {
+    if (selection.device == "software") return "software";
+    try {
+        batch::PhaseClock phases;
+        const gl::DeviceInfo device =
+            batch::probeDevice({selection.device, assetsFolder(selection.assets), 1, {}}, phases);
+        return device.isSoftware ? "software" : "gpu";
+    } catch (const NoDeviceError&) {
+        return "software";
+    }
+}
+
+batch::Plan planFor(const Context& context, const batch::Request& request,
+                    const std::string& profile, const std::string& assets,
+                    const std::string& deviceClass) {
+    batch::Plan plan = batch::makePlan(loadExperiments(request, profile), openCatalog(assets),
+                                       context.techniques, profile, deviceClass, kSeed);
+    plan.request = request;
+    return plan;
+}
+
+std::string runSlug(const batch::Plan& plan) {
+    if (plan.experiments.empty()) return "empty";
+    if (plan.experiments.size() == 1) return plan.experiments.front().slug();
+    const std::string& id = plan.experiments.front().id;
+    return id.substr(0, id.find('/'));
 }
 
 scene::Catalog openCatalog(const std::string& assets) {

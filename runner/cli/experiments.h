@@ -23,6 +23,19 @@ std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names)
 std::vector<config::Experiment> loadExperiments(const batch::Request& request,
                                                 const std::string& profile);
 
+/// What a selection asks for; its files as absolute paths.
+batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files);
+
+/// "software" | "gpu". A case's identity holds it; a machine without a device plans for software.
+std::string deviceClassFor(const Selection& selection);
+
+batch::Plan planFor(const Context& context, const batch::Request& request,
+                    const std::string& profile, const std::string& assets,
+                    const std::string& deviceClass);
+
+/// "zju2005-2.1" for one experiment, "zju2005" for several of a paper.
+std::string runSlug(const batch::Plan& plan);
+
 scene::Catalog openCatalog(const std::string& assets);
 
 /// Rows as aligned columns, two spaces apart.

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "runner/batch/predictions.h"
+
 namespace gfxrepro::cli {
 
 namespace {
@@ -30,8 +32,20 @@ std::size_t terminalWidth() {
 
 }  // namespace
 
-Progress::Progress(int unitCount, bool isQuiet)
-    : unitCount_(unitCount), isQuiet_(isQuiet), isTerminal_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(const std::vector<batch::Unit>& units,
+                   const std::map<const batch::Case*, double>& unitTimesS, int jobs, bool isQuiet)
+    : unitCount_(static_cast<int>(units.size())),
+      unitTimesS_(unitTimesS),
+      jobs_(jobs),
+      isQuiet_(isQuiet),
+      isTerminal_(::isatty(STDERR_FILENO) == 1) {
+    for (const batch::Unit& unit : units) totalS_ += timeS(unit);
+}
+
+double Progress::timeS(const batch::Unit& unit) const {
+    const auto found = unitTimesS_.find(unit.item);
+    return found == unitTimesS_.end() ? 1.0 : found->second;
+}
 
 void Progress::unitBegan(const batch::Unit& unit) {
     title_ = titleOf(unit);
@@ -42,6 +56,7 @@ void Progress::unitBegan(const batch::Unit& unit) {
 void Progress::unitEnded(const batch::Unit& unit, report::Status status,
                          const std::string& message) {
     ++ended_;
+    doneS_ += timeS(unit);
     const bool isOk = status == report::Status::Ok;
     if (isOk && (isQuiet_ || isTerminal_)) return;
     clear();
@@ -50,9 +65,10 @@ void Progress::unitEnded(const batch::Unit& unit, report::Status status,
 }
 
 std::string Progress::etaText() const {
-    if (ended_ == 0) return "--:--";
+    if (ended_ == 0 && unitTimesS_.empty()) return "--:--";
     const double elapsedS = std::chrono::duration<double>(Clock::now() - start_).count();
-    const auto leftS = static_cast<long long>(elapsedS / ended_ * (unitCount_ - ended_) + 0.5);
+    const auto leftS =
+        static_cast<long long>(batch::remainingS(totalS_, doneS_, elapsedS, jobs_) + 0.5);
     return fmt::format("{}:{:02}", leftS / 60, leftS % 60);
 }
 

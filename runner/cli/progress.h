@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 
 #include "runner/batch/scheduler.h"
 
@@ -10,7 +11,9 @@ namespace gfxrepro::cli {
 /// Writes to standard error. Quiet: failures only.
 class Progress : public batch::Observer {
   public:
-    Progress(int unitCount, bool isQuiet);
+    /// `unitTimesS`: predictions by case, for the time left; empty when nothing is known.
+    Progress(const std::vector<batch::Unit>& units,
+             const std::map<const batch::Case*, double>& unitTimesS, int jobs, bool isQuiet);
 
     void unitBegan(const batch::Unit& unit) override;
     void unitEnded(const batch::Unit& unit, report::Status status,
@@ -21,9 +24,14 @@ class Progress : public batch::Observer {
 
   private:
     using Clock = std::chrono::steady_clock;
+    double timeS(const batch::Unit& unit) const;
     std::string etaText() const;
 
     int unitCount_;
+    std::map<const batch::Case*, double> unitTimesS_;
+    int jobs_;
+    double totalS_ = 0.0;  // predicted; units where there are no predictions
+    double doneS_ = 0.0;
     int ended_ = 0;
     bool isQuiet_;
     bool isTerminal_;

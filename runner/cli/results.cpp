@@ -6,6 +6,7 @@
 
 #include "runner/batch/run.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/results.h"
 
 namespace gfxrepro::cli {
 
@@ -20,6 +21,21 @@ int completenessCode(const batch::StoredRun& run) {
 }
 
 }  // namespace
+
+int conclude(const std::filesystem::path& runDir) {
+    const std::vector<report::ClaimResult> claims =
+        batch::writeResults(runDir, batch::readRun(runDir), {});
+    fmt::print("claims: {}\n", report::claimSummaryLine(claims));
+    bool anyFails = false;
+    for (const report::ClaimResult& claim : claims) {
+        if (claim.verdict != report::Verdict::Fails) continue;
+        anyFails = true;
+        fmt::print("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id,
+                   claim.text, claim.measured, claim.required);
+    }
+    fmt::print("report: {}\n", (runDir / "report.html").string());
+    return anyFails ? kExitClaimFailed : kExitOk;
+}
 
 int table(const std::string& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);

@@ -6,9 +6,12 @@
 #include <filesystem>
 #include <thread>
 
+#include "runner/batch/shards.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/history.h"
 #include "runner/cli/progress.h"
+#include "runner/cli/results.h"
 #include "runner/core/files.h"
 
 namespace gfxrepro::cli {
@@ -16,8 +19,6 @@ namespace gfxrepro::cli {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::uint64_t kSeed = 1;
 
 int jobsOf(const RunOptions& options) {
     if (options.jobs > 0) return options.jobs;
@@ -33,23 +34,8 @@ struct Prepared {
     batch::SchedulerOptions scheduler;
 };
 
-batch::Plan makePlan(const Context& context, const batch::Request& request,
-                     const std::string& profile, const std::string& assets,
-                     const gl::DeviceInfo& device) {
-    const scene::Catalog catalog = openCatalog(assets);
-    batch::Plan plan =
-        batch::makePlan(loadExperiments(request, profile), catalog, context.techniques, profile,
-                        device.isSoftware ? "software" : "gpu", kSeed);
-    plan.request = request;
-    return plan;
-}
-
-/// "zju2005-2.1" for one experiment, "zju2005" for several of a paper.
-std::string runSlug(const batch::Plan& plan) {
-    if (plan.experiments.empty()) return "empty";
-    if (plan.experiments.size() == 1) return plan.experiments.front().slug();
-    const std::string& id = plan.experiments.front().id;
-    return id.substr(0, id.find('/'));
+std::string deviceClassOf(const gl::DeviceInfo& device) {
+    return device.isSoftware ? "software" : "gpu";
 }
 
 Prepared prepareNew(const Context& context, const RunOptions& options,
@@ -61,9 +47,15 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
     loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     batch::Plan plan =
-        makePlan(context, request, selection.profile, scheduler.assetsFolder, device);
-    const fs::path path =
-        options.out.empty() ? batch::defaultRunPath(runSlug(plan)) : fs::path(options.out);
+        planFor(context, request, selection.profile, scheduler.assetsFolder, deviceClassOf(device));
+    if (!options.shard.empty()) {
+        // By what was named alone: whatever else lies here may differ between the shards.
+        const auto predictor = batch::Predictor::from({options.from.begin(), options.from.end()});
+        batch::takeShard(plan, batch::parseShard(options.shard),
+                         batch::caseTimesS(plan, predictor));
+    }
+    fs::path path = options.resume.empty() ? options.out : options.resume;
+    if (path.empty()) path = batch::defaultRunPath(runSlug(plan));
     batch::RunDirectory directory = batch::RunDirectory::create(path);
     batch::Json manifest = batch::newManifest(plan, device);
     batch::beginInvocation(manifest, context.commandLine);
@@ -73,23 +65,58 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
     return {std::move(plan), std::move(directory), std::move(manifest), scheduler};
 }
 
+/// Given configs beside --resume must be those of the run that is there.
+void requireSameRequest(const RunOptions& options, const batch::Request& request,
+                        const batch::Plan& stored) {
+    if (request.configs.empty()) return;
+    std::string other;
+    if (request.configs != stored.request.configs) other = "configs";
+    if (request.sets != stored.request.sets) other = "--set";
+    if (request.sweeps != stored.request.sweeps) other = "--sweep";
+    if (request.device != stored.request.device) other = "--device";
+    if (options.selection.profile != stored.profile) other = "--profile";
+    if (options.shard != (stored.shard ? stored.shard->name() : "")) other = "--shard";
+    if (!other.empty()) {
+        throw Error(fmt::format("{}: holds a run with other {}; give another folder",
+                                options.resume, other));
+    }
+}
+
+/// Times of one table stay those of one machine, also where the run goes on on another.
+void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device, Prepared& run) {
+    const std::string machine = batch::machineName(batch::newManifest(run.plan, device));
+    const std::vector<std::string> again =
+        batch::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
+    batch::beginInvocation(run.manifest, commandLine);
+    run.manifest["invocations"].back()["machine"] = machine;
+    writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
+    for (const std::string& experiment : again) {
+        run.directory.log({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
+        fmt::print(stderr, "{}: begun on another machine; its times are measured again on {}\n",
+                   experiment, machine);
+    }
+}
+
 Prepared prepareResumed(const Context& context, const RunOptions& options,
-                        batch::PhaseClock& phases) {
+                        const batch::Request& request, batch::PhaseClock& phases) {
     batch::RunDirectory directory = batch::RunDirectory::open(options.resume);
     batch::StoredRun stored = batch::readRun(options.resume);
+    requireSameRequest(options, request, stored.plan);
     const batch::SchedulerOptions scheduler{stored.plan.request.device,
                                             fs::absolute(assetsFolder(options.selection.assets)),
                                             jobsOf(options),
                                             {}};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
-    const batch::Plan now =
-        makePlan(context, stored.plan.request, stored.plan.profile, scheduler.assetsFolder, device);
+    const batch::Plan now = planFor(context, stored.plan.request, stored.plan.profile,
+                                    scheduler.assetsFolder, deviceClassOf(device));
     if (const std::string reason = batch::planDifference(stored.plan, now); !reason.empty()) {
         throw Error(options.resume + ": cannot be resumed: " + reason +
                     "; start a new run instead");
     }
-    batch::beginInvocation(stored.manifest, context.commandLine);
-    return {std::move(stored.plan), std::move(directory), std::move(stored.manifest), scheduler};
+    Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
+                 scheduler};
+    settleMachine(context.commandLine, device, run);
+    return run;
 }
 
 void saveManifest(const Context& context, Prepared& run, const batch::PhaseClock& phases) {
@@ -103,26 +130,32 @@ std::string countText(int count, std::string_view what) {
     return count > 0 ? fmt::format(", {} {}", count, what) : "";
 }
 
-void printClaims(const std::vector<report::ClaimResult>& claims) {
-    fmt::print("claims: {}\n", report::claimSummaryLine(claims));
-    for (const report::ClaimResult& claim : claims) {
-        if (claim.verdict != report::Verdict::Fails) continue;
-        fmt::print("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id,
-                   claim.text, claim.measured, claim.required);
+/// Says what is ahead, and gives the predicted time of a unit of each case.
+std::map<const batch::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
+    const History history = openHistory(options.from, run.plan.deviceClass);
+    std::map<const batch::Case*, double> unitTimesS;
+    for (const batch::Case& item : run.plan.cases) {
+        if (const auto known = history.predictor.predict(item)) unitTimesS[&item] = known->timeS;
     }
+    const std::string text = forecastText(run.plan, history, run.scheduler.jobs);
+    if (!options.isQuiet && !text.empty()) fmt::print(stderr, "{}\n", text);
+    return unitTimesS;
 }
 
 /// Runs what is left; with `results`, makes tables, claims and report from it.
 int execute(const Context& context, const RunOptions& options, const batch::Request& request,
             bool results) {
     batch::PhaseClock phases;
-    Prepared run = options.resume.empty() ? prepareNew(context, options, request, phases)
-                                          : prepareResumed(context, options, phases);
+    const bool isNew =
+        options.resume.empty() ||
+        (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
+    Prepared run = isNew ? prepareNew(context, options, request, phases)
+                         : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
-    Progress progress(static_cast<int>(units.size()), options.isQuiet);
+    Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
     const batch::RunOutcome outcome =
         batch::runUnits(units, run.directory, run.scheduler, phases, progress);
     progress.clear();
@@ -145,39 +178,35 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                run.directory.recordsFile().string());
     if (!results) return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 
-    const std::vector<report::ClaimResult> claims =
-        batch::writeResults(path, batch::readRun(path), {});
+    const int verdict = conclude(path);
     saveManifest(context, run, phases);
-    printClaims(claims);
-    fmt::print("report: {}\n", (run.directory.path() / "report.html").string());
-    const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
-        return claim.verdict == report::Verdict::Fails;
-    });
-    if (anyFails) return kExitClaimFailed;
+    if (verdict != kExitOk) return verdict;
     return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 }
 
-batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {
-    batch::Request request{{}, selection.sets, selection.sweeps, selection.device};
-    for (const std::string& file : files) {
-        request.configs.push_back(fs::absolute(file).lexically_normal());
+void requireUsable(const RunOptions& options) {
+    if (!options.resume.empty() && !options.out.empty()) {
+        throw UsageError("--out and --resume exclude each other: both name the folder");
     }
-    return request;
+    if (!options.shard.empty()) batch::parseShard(options.shard);
 }
 
 }  // namespace
 
 int run(const Context& context, const RunOptions& options) {
     const std::vector<std::string>& files = options.selection.names;
-    if (options.resume.empty() == files.empty()) {
-        throw UsageError("run: give config files, or --resume DIR alone");
+    if (options.resume.empty() && files.empty()) {
+        throw UsageError("run: give config files, or --resume DIR");
     }
+    requireUsable(options);
     return execute(context, options, requestOf(options.selection, files), false);
 }
 
 int reproduce(const Context& context, const RunOptions& options) {
+    requireUsable(options);
+    const std::vector<std::string>& names = options.selection.names;
     std::vector<std::string> files;
-    if (options.resume.empty()) files = findPaperConfigs(options.selection.names);
+    if (options.resume.empty() || !names.empty()) files = findPaperConfigs(names);
     return execute(context, options, requestOf(options.selection, files), true);
 }
 

@@ -77,15 +77,15 @@ TEST(Usage, UnknownPaperAndKind) {
 
 TEST(Usage, RunWantsConfigsOrARun) {
     const TemporaryFolder folder;
-    EXPECT_EQ(refusal({"run"}, folder),
-              "gfxrepro: run: give config files, or --resume DIR alone\n");
+    EXPECT_EQ(refusal({"run"}, folder), "gfxrepro: run: give config files, or --resume DIR\n");
     EXPECT_EQ(refusal({"table", folder.path()}, folder),
               "gfxrepro: DIR: is no run directory (it has no plan.json)\n");
 }
 
 TEST(Usage, EveryHelpFitsOnAScreen) {
-    for (const char* command : {"doctor", "list", "describe", "check", "plan", "run", "reproduce",
-                                "table", "claims", "report", "image", "scene"}) {
+    for (const char* command :
+         {"doctor", "list", "describe", "check", "plan", "run", "reproduce", "table", "claims",
+          "report", "compare", "merge", "submit", "image", "scene"}) {
         const ProcessResult result = gfxrepro({command, "--help"});
         EXPECT_EQ(result.exitCode, 0) << command;
         EXPECT_LE(std::count(result.out.begin(), result.out.end(), '\n'), 24) << command;

@@ -1,0 +1,220 @@
+#include "runner/batch/merge.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/report/images.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using UnitRows = std::map<std::pair<std::string, int>, std::vector<report::Record>>;
+
+void requireOnePlan(const std::vector<ShardRun>& shards) {
+    const ShardRun& first = shards.front();
+    for (const ShardRun& shard : shards) {
+        const std::string difference = planDifference(first.run.plan, shard.run.plan);
+        if (difference.empty()) continue;
+        throw Error(first.path.string() + " and " + shard.path.string() +
+                    " are shards of different plans (" + first.run.plan.hash.substr(0, 12) + ", " +
+                    shard.run.plan.hash.substr(0, 12) + "): " + difference);
+    }
+}
+
+/// Cases that a shard was to measure, and those that it has rows of.
+std::set<std::string> casesOf(const StoredRun& run) {
+    std::set<std::string> ids;
+    for (const Case& item : run.plan.cases) {
+        if (run.plan.measures(item)) ids.insert(item.id);
+    }
+    for (const report::Record& row : run.records) ids.insert(row.caseId);
+    return ids;
+}
+
+void requireDisjoint(const std::vector<ShardRun>& shards) {
+    std::map<std::string, const ShardRun*> owners;
+    for (const ShardRun& shard : shards) {
+        for (const std::string& id : casesOf(shard.run)) {
+            const auto [owner, isNew] = owners.try_emplace(id, &shard);
+            if (isNew) continue;
+            const auto item = std::ranges::find(shard.run.plan.cases, id, &Case::id);
+            throw Error("the case '" + (item == shard.run.plan.cases.end() ? id : item->title()) +
+                        "' is in both " + owner->second->path.string() + " and " +
+                        shard.path.string() + ": these are no shards of one cut");
+        }
+    }
+}
+
+/// The machine that each experiment's times are from. Throws when there are two.
+Json timingMachines(const std::vector<ShardRun>& shards) {
+    std::map<std::string, std::pair<std::string, const ShardRun*>> machines;
+    for (const ShardRun& shard : shards) {
+        std::set<std::string> timed;
+        for (const report::Record& row : shard.run.records) {
+            if (row.lane == "timing") timed.insert(row.table);
+        }
+        for (const std::string& experiment : timed) {
+            const std::string machine = timingMachine(shard.run.manifest, experiment);
+            const auto [known, isNew] = machines.try_emplace(experiment, machine, &shard);
+            if (isNew || known->second.first == machine) continue;
+            throw Error("the times of " + experiment + " would mix devices: " +
+                        known->second.second->path.string() + " was measured on " +
+                        known->second.first + "; " + shard.path.string() + " on " + machine);
+        }
+    }
+    Json json = Json::object();
+    for (const auto& [experiment, machine] : machines) json[experiment] = machine.first;
+    return json;
+}
+
+/// The distinct values of a text in the manifests: "A; B".
+std::string together(const std::vector<ShardRun>& shards, const Json::json_pointer& place) {
+    std::vector<std::string> values;
+    for (const ShardRun& shard : shards) {
+        const std::string value = shard.run.manifest.at(place).get<std::string>();
+        if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+    }
+    return joined(values, "; ");
+}
+
+Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& commandLine) {
+    Json manifest = shards.front().run.manifest;
+    for (const char* place : {"/cpu", "/gl/vendor", "/gl/renderer", "/gl/version"}) {
+        const Json::json_pointer pointer(place);
+        manifest[pointer] = together(shards, pointer);
+    }
+    manifest["timing_machines"] = timingMachines(shards);
+    manifest["invocations"] = Json::array();
+    manifest["merged"] = Json::array();
+    beginInvocation(manifest, commandLine);
+    for (const ShardRun& shard : shards) {
+        const Json& from = shard.run.manifest;
+        manifest["scenes"].update(from.at("scenes"));
+        manifest["merged"].push_back(
+            {{"folder", shard.path.string()},
+             {"shard", shard.run.plan.shard ? shard.run.plan.shard->name() : "1/1"},
+             {"machine", machineName(from)},
+             {"invocations", from.at("invocations")}});
+    }
+    return manifest;
+}
+
+UnitRows rowsByUnit(const std::vector<ShardRun>& shards) {
+    UnitRows rows;
+    for (const ShardRun& shard : shards) {
+        for (const report::Record& row : shard.run.records) {
+            rows[{row.caseId, row.process}].push_back(row);
+        }
+    }
+    return rows;
+}
+
+void copyImages(const RunDirectory& directory, const std::vector<ShardRun>& shards,
+                const Plan& plan) {
+    std::map<std::string, std::vector<report::ImageEntry>> imagesOf;
+    for (const ShardRun& shard : shards) {
+        for (report::ImageEntry& image : report::readImages(shard.path)) {
+            imagesOf[image.caseId].push_back(std::move(image));
+        }
+        for (const char* folder : {"images", "artifacts"}) {
+            if (!fs::exists(shard.path / folder)) continue;
+            fs::copy(shard.path / folder, directory.path() / folder,
+                     fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+        }
+    }
+    // The copy of a shard's list goes: the new one has the images of all, in the plan's order.
+    fs::remove(directory.path() / "images" / "index.csv");
+    std::vector<report::ImageEntry> images;
+    for (const Case& item : plan.cases) {
+        std::ranges::move(imagesOf[item.id], std::back_inserter(images));
+    }
+    report::appendImages(directory.path(), images);
+}
+
+std::string logsOf(const std::vector<ShardRun>& shards) {
+    std::string text;
+    for (const ShardRun& shard : shards) {
+        if (fs::exists(shard.path / "log.jsonl")) text += readFile(shard.path / "log.jsonl");
+        if (!text.empty() && text.back() != '\n') text += '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine) {
+    GFXREPRO_ASSERT(!shards.empty());
+    requireOnePlan(shards);
+    requireDisjoint(shards);
+    StoredRun merged;
+    merged.plan = shards.front().run.plan;
+    merged.plan.shard.reset();
+    merged.manifest = mergedManifest(shards, commandLine);
+    UnitRows rows = rowsByUnit(shards);
+    // Every shard has an A/A pair of its own.
+    for (auto& [unit, ofUnit] : rows) {
+        if (unit.second < 0) std::ranges::move(ofUnit, std::back_inserter(merged.records));
+    }
+    for (const Unit& unit : unitsOf(merged.plan)) {
+        if (unit.isControl()) continue;
+        std::ranges::move(rows[{unit.item->id, unit.process}], std::back_inserter(merged.records));
+    }
+    return merged;
+}
+
+std::vector<std::string> missingUnits(const StoredRun& run) {
+    std::set<std::pair<std::string, int>> recorded;
+    for (const report::Record& row : run.records) recorded.emplace(row.caseId, row.process);
+    std::vector<std::string> missing;
+    for (const Unit& unit : unitsOf(run.plan)) {
+        if (recorded.contains({unit.item->id, unit.process})) continue;
+        missing.push_back(unit.item->title());
+        if (unit.item->measure.processes > 1) {
+            missing.back() += " process " + std::to_string(unit.process + 1);
+        }
+    }
+    return missing;
+}
+
+std::vector<std::string> missingShards(const std::vector<ShardRun>& shards) {
+    std::set<int> present;
+    int count = 0;
+    for (const ShardRun& shard : shards) {
+        if (!shard.run.plan.shard) continue;
+        present.insert(shard.run.plan.shard->index);
+        count = shard.run.plan.shard->count;
+    }
+    std::vector<std::string> missing;
+    for (int index = 1; index <= count; ++index) {
+        if (!present.contains(index)) missing.push_back(Shard{index, count}.name());
+    }
+    return missing;
+}
+
+void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& shards,
+                 const StoredRun& merged) {
+    // A merge that is made again begins anew; without a plan the folder is no run meanwhile.
+    for (const fs::path& old : {directory.planFile(), directory.recordsFile()}) fs::remove(old);
+    fs::path records = directory.recordsFile();
+    records += ".tmp";
+    fs::remove(records);
+    report::RecordWriter(records).append(merged.records);
+    fs::rename(records, directory.recordsFile());
+    copyImages(directory, shards, merged.plan);
+    writeFileAtomic(directory.path() / "log.jsonl", logsOf(shards));
+    writeFileAtomic(directory.manifestFile(), merged.manifest.dump(2) + '\n');
+    writeFileAtomic(directory.planFile(), merged.plan.toJson().dump(1) + '\n');
+}
+
+bool isOnlyMerged(const Json& manifest) {
+    return manifest.contains("merged") && manifest.at("invocations").size() == 1;
+}
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,36 @@
+// The runs of a plan's shards put together into one run, as if one machine had measured it all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/batch/run.h"
+
+namespace gfxrepro::batch {
+
+/// A shard's run and where it lies.
+struct ShardRun {
+    std::filesystem::path path;
+    StoredRun run;
+};
+
+/// One run of the whole plan: the records in the order of the plan, the manifests together.
+/// `commandLine` is the one invocation of the new manifest. Throws Error for shards of different
+/// plans, for a case that two of them have, and where the times of one table are from different
+/// machines.
+StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine);
+
+/// Of the units of the plan those without a row: "zju2005/2.1 scene=models/duck".
+std::vector<std::string> missingUnits(const StoredRun& run);
+/// Which of the cut's shards are not there: "2/4".
+std::vector<std::string> missingShards(const std::vector<ShardRun>& shards);
+
+/// Writes plan, manifest, records, log, images and artifacts into `directory`, the plan last.
+void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& shards,
+                 const StoredRun& merged);
+
+/// Whether a manifest is of a merge that nothing was measured into since.
+bool isOnlyMerged(const Json& manifest);
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,261 @@
+#include "runner/batch/predictions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/metrics/statistics.h"
+#include "runner/report/csv.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kFileHeader = "title,time_s,memory_bytes,source";
+
+double iterationsOf(const config::Measure& measure) {
+    return measure.warmup + static_cast<double>(measure.repeats) * measure.frames;
+}
+
+/// What `past` took, for the iterations and frames that `measure` asks for.
+double scaledTimeS(const PastCase& past, const config::Measure& measure) {
+    const config::Measure& then = past.item.measure;
+    const double iterations = std::max(iterationsOf(then), 1.0);
+    return past.cost.loadS + past.cost.setupS +
+           past.cost.renderS * iterationsOf(measure) / iterations +
+           past.cost.recordS * measure.frames / std::max(then.frames, 1);
+}
+
+/// Everything that a time depends on but for the build, the device and how often it is measured.
+std::string contentOf(const Case& item) {
+    return item.technique + item.scene.toFlowText() + item.params.toFlowText() +
+           std::to_string(item.outputWidthPx) + 'x' + std::to_string(item.outputHeightPx);
+}
+
+std::string methodOf(const Case& item) {
+    const config::Node* method = item.params.find("method");
+    return item.technique + '/' + (method ? method->text() : "");
+}
+
+double medianOf(std::vector<double> values) {
+    return metrics::summarize(values, metrics::Statistic::Median);
+}
+
+Cost medianOf(const std::vector<Cost>& costs) {
+    const auto of = [&](auto member) {
+        std::vector<double> values;
+        for (const Cost& cost : costs) values.push_back(static_cast<double>(cost.*member));
+        return medianOf(std::move(values));
+    };
+    return {of(&Cost::loadS), of(&Cost::setupS), of(&Cost::renderS), of(&Cost::recordS),
+            static_cast<long long>(of(&Cost::peakBytes))};
+}
+
+/// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
+std::map<std::string, std::vector<Cost>> loggedCosts(const fs::path& runDir) {
+    std::map<std::string, std::vector<Cost>> costs;
+    if (!fs::exists(runDir / "log.jsonl")) return costs;
+    for (const std::string& line : split(readFile(runDir / "log.jsonl"), '\n')) {
+        const Json event = Json::parse(line, nullptr, false);
+        if (!event.is_object() || !event.contains("cost")) continue;
+        costs[event.at("case").get<std::string>()].push_back(costFromJson(event.at("cost")));
+    }
+    return costs;
+}
+
+std::map<std::string, Prediction> readPredictions(const fs::path& file) {
+    const std::string text = readFile(file);
+    report::CsvReader reader(text, file.string());
+    std::vector<std::string> fields;
+    std::map<std::string, Prediction> predictions;
+    if (!reader.next(fields) || joined(fields, ",") != kFileHeader) {
+        throw Error(file.string() + ": neither a run directory nor a file of predictions");
+    }
+    while (reader.next(fields)) {
+        const auto timeS = fields.size() == 4 ? parseDouble(fields[1]) : std::nullopt;
+        const auto bytes = fields.size() == 4 ? parseInteger(fields[2]) : std::nullopt;
+        if (!timeS || !bytes) throw Error(reader.location(), "is no line of predictions");
+        predictions[fields[0]] = {*timeS, *bytes, Prediction::Source::File, ""};
+    }
+    return predictions;
+}
+
+}  // namespace
+
+std::string_view sourceName(Prediction::Source source) {
+    static constexpr std::string_view kNames[] = {"same case", "same case, other run", "nearest",
+                                                  "median", "file"};
+    return kNames[static_cast<std::size_t>(source)];
+}
+
+std::vector<PastCase> readPastCases(const fs::path& runDir) {
+    if (!fs::exists(runDir / "plan.json")) {
+        throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
+    }
+    const std::map<std::string, std::vector<Cost>> costs = loggedCosts(runDir);
+    std::vector<PastCase> past;
+    if (costs.empty()) return past;
+    for (Case& item : Plan::fromJsonFile(runDir / "plan.json").cases) {
+        const auto found = costs.find(item.id);
+        if (found == costs.end()) continue;
+        const Cost cost = medianOf(found->second);
+        past.push_back({std::move(item), cost});
+    }
+    return past;
+}
+
+std::vector<fs::path> newestRuns(const fs::path& folder, const std::string& deviceClass,
+                                 std::size_t count) {
+    std::vector<std::pair<fs::file_time_type, fs::path>> runs;
+    if (!fs::is_directory(folder)) return {};
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const fs::path manifestFile = entry.path() / "manifest.json";
+        if (!fs::exists(entry.path() / "plan.json") || !fs::exists(manifestFile)) continue;
+        const Json manifest = Json::parse(readFile(manifestFile), nullptr, false);
+        if (!manifest.is_object() || manifest.value("device_class", "") != deviceClass) continue;
+        runs.emplace_back(fs::last_write_time(manifestFile), entry.path());
+    }
+    std::ranges::sort(runs, std::greater());
+    std::vector<fs::path> newest;
+    for (std::size_t i = 0; i < std::min(count, runs.size()); ++i) newest.push_back(runs[i].second);
+    return newest;
+}
+
+Predictor::Predictor(std::vector<PastCase> past) : past_(std::move(past)) {
+    for (std::size_t i = 0; i < past_.size(); ++i) {
+        byId_.try_emplace(past_[i].item.id, i);
+        byContent_.try_emplace(contentOf(past_[i].item), i);
+        features_.push_back(featuresOf(past_[i].item));
+    }
+}
+
+Predictor Predictor::from(const std::vector<fs::path>& sources) {
+    std::vector<PastCase> past;
+    std::map<std::string, Prediction> file;
+    for (const fs::path& source : sources) {
+        if (fs::is_regular_file(source)) {
+            file.merge(readPredictions(source));
+        } else {
+            std::vector<PastCase> more = readPastCases(source);
+            std::ranges::move(more, std::back_inserter(past));
+        }
+    }
+    Predictor predictor(std::move(past));
+    predictor.file_ = std::move(file);
+    return predictor;
+}
+
+std::optional<Prediction> Predictor::predict(const Case& item) const {
+    if (const auto found = file_.find(item.title()); found != file_.end()) return found->second;
+    const auto as = [&](std::size_t index, Prediction::Source source) {
+        const PastCase& past = past_[index];
+        return Prediction{scaledTimeS(past, item.measure), past.cost.peakBytes, source, ""};
+    };
+    if (const auto found = byId_.find(item.id); found != byId_.end()) {
+        return as(found->second, Prediction::Source::SameCase);
+    }
+    if (const auto found = byContent_.find(contentOf(item)); found != byContent_.end()) {
+        return as(found->second, Prediction::Source::OtherRun);
+    }
+    std::optional<Prediction> prediction = nearest(item);
+    return prediction ? prediction : median(item);
+}
+
+std::vector<Predictor::Feature> Predictor::featuresOf(const Case& item) {
+    std::vector<Feature> features = {
+        {"scene", item.scene.isNull() ? "" : item.scene.text(), {}},
+        {"pixels", "", static_cast<double>(item.outputWidthPx) * item.outputHeightPx}};
+    for (const auto& [name, value] : item.params.entries()) {
+        if (value.isScalar()) {
+            features.push_back({name, value.text(), value.tryDouble()});
+        } else {
+            features.push_back({name, value.toFlowText(), {}});
+        }
+    }
+    return features;
+}
+
+/// A factor of two in a number counts as much as another word in a text. The same technique and
+/// method declare the same parameters in the same order; where not, the name differs.
+double Predictor::distance(const std::vector<Feature>& a, const std::vector<Feature>& b) {
+    double sum = std::abs(static_cast<double>(a.size()) - static_cast<double>(b.size()));
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (a[i].name == b[i].name && a[i].number && b[i].number) {
+            const double x = *a[i].number, y = *b[i].number;
+            if (x > 0.0 && y > 0.0) {
+                sum += std::abs(std::log2(x / y));
+            } else {
+                sum += x == y ? 0.0 : 1.0;
+            }
+        } else {
+            sum += a[i].name == b[i].name && a[i].text == b[i].text ? 0.0 : 1.0;
+        }
+    }
+    return sum;
+}
+
+std::optional<Prediction> Predictor::nearest(const Case& item) const {
+    const std::vector<Feature> features = featuresOf(item);
+    const std::string method = methodOf(item);
+    double least = std::numeric_limits<double>::infinity();
+    const PastCase* found = nullptr;
+    for (std::size_t i = 0; i < past_.size(); ++i) {
+        if (past_[i].item.technique != item.technique || methodOf(past_[i].item) != method)
+            continue;
+        const double d = distance(features, features_[i]);
+        if (d >= least) continue;
+        least = d;
+        found = &past_[i];
+    }
+    if (!found) return std::nullopt;
+    return Prediction{scaledTimeS(*found, item.measure), found->cost.peakBytes,
+                      Prediction::Source::Nearest, found->item.title()};
+}
+
+std::optional<Prediction> Predictor::median(const Case& item) const {
+    if (past_.empty()) return std::nullopt;
+    std::vector<double> timesS[2], bytes[2];  // of all cases; of this technique
+    for (const PastCase& past : past_) {
+        for (int i = 0; i < (past.item.technique == item.technique ? 2 : 1); ++i) {
+            timesS[i].push_back(scaledTimeS(past, item.measure));
+            bytes[i].push_back(static_cast<double>(past.cost.peakBytes));
+        }
+    }
+    const int which = timesS[1].empty() ? 0 : 1;
+    const std::string count = std::to_string(timesS[which].size());
+    return Prediction{medianOf(timesS[which]), static_cast<long long>(medianOf(bytes[which])),
+                      Prediction::Source::Median, "of " + count + " cases"};
+}
+
+void writePredictions(const fs::path& path, const Plan& plan, const Predictor& predictor) {
+    std::string text = std::string(kFileHeader) + '\n';
+    for (const Case& item : plan.cases) {
+        const std::optional<Prediction> known = predictor.predict(item);
+        if (!known) continue;
+        report::CsvRow row(text);
+        row.text(item.title()).number(known->timeS).integer(known->memoryBytes);
+        row.text(sourceName(known->source)).end();
+    }
+    writeFileAtomic(path, text);
+}
+
+std::vector<double> caseTimesS(const Plan& plan, const Predictor& predictor) {
+    std::vector<double> timesS;
+    for (const Case& item : plan.cases) {
+        const std::optional<Prediction> known = predictor.predict(item);
+        timesS.push_back(item.measure.processes *
+                         (known ? known->timeS : iterationsOf(item.measure)));
+    }
+    return timesS;
+}
+
+double remainingS(double totalS, double doneS, double elapsedS, int jobs) {
+    if (doneS <= 0.0) return totalS / jobs;
+    return elapsedS * std::max(totalS - doneS, 0.0) / doneS;
+}
+
+}  // namespace gfxrepro::batch

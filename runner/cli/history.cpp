@@ -1,0 +1,79 @@
+#include "runner/cli/history.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kRunsLookedAt = 5;
+
+/// The newest runs that can be read.
+History newestHistory(const std::string& deviceClass) {
+    std::vector<batch::PastCase> past;
+    std::vector<std::string> sources;
+    for (const fs::path& run : batch::newestRuns("runs", deviceClass, kRunsLookedAt)) {
+        // An old run of another version must not stop a new one: what cannot be read tells nothing.
+        try {
+            std::vector<batch::PastCase> more = batch::readPastCases(run);
+            if (more.empty()) continue;
+            std::ranges::move(more, std::back_inserter(past));
+            sources.push_back(run.string());
+        } catch (const std::exception&) {
+        }
+    }
+    return {batch::Predictor(std::move(past)), std::move(sources)};
+}
+
+}  // namespace
+
+History openHistory(const std::vector<std::string>& from, const std::string& deviceClass) {
+    if (from.empty()) return newestHistory(deviceClass);
+    return {batch::Predictor::from({from.begin(), from.end()}), from};
+}
+
+std::string durationText(double timeS) {
+    if (timeS < 0.9995) return fmt::format("{:.0f} ms", 1e3 * timeS);
+    if (timeS < 9.95) return fmt::format("{:.1f} s", timeS);
+    const auto seconds = static_cast<long long>(std::lround(timeS));
+    if (seconds < 120) return fmt::format("{} s", seconds);
+    const long long minutes = (seconds + 30) / 60;
+    if (minutes < 120) return fmt::format("{} min", minutes);
+    return fmt::format("{} h {} min", minutes / 60, minutes % 60);
+}
+
+std::string memoryText(double bytes) {
+    const double mib = bytes / (1 << 20);
+    return mib < 1000.0 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024.0);
+}
+
+std::string forecastText(const batch::Plan& plan, const History& history, int jobs) {
+    double timeS = 0.0;
+    long long memoryBytes = 0;
+    std::map<std::string_view, int> counts;
+    for (const batch::Case& item : plan.cases) {
+        if (!plan.measures(item)) continue;
+        const std::optional<batch::Prediction> known = history.predictor.predict(item);
+        if (!known) return "";
+        const bool isAlone = item.measure.lane == config::Measure::Lane::Timing;
+        timeS += known->timeS * item.measure.processes / (isAlone ? 1 : jobs);
+        memoryBytes = std::max(memoryBytes, known->memoryBytes);
+        ++counts[batch::sourceName(known->source)];
+    }
+    if (counts.empty()) return "";
+    std::vector<std::string> kinds;
+    for (const auto& [name, count] : counts) kinds.push_back(fmt::format("{} by {}", count, name));
+    return fmt::format("about {}, at most {} a case, as {} tell{} ({})", durationText(timeS),
+                       memoryText(static_cast<double>(memoryBytes)), joined(history.sources),
+                       history.sources.size() == 1 ? "s" : "", joined(kinds));
+}
+
+}  // namespace gfxrepro::cli

@@ -1,0 +1,31 @@
+// What earlier runs tell about the one at hand.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runner/batch/predictions.h"
+
+namespace gfxrepro::cli {
+
+/// Predictions and where they come from.
+struct History {
+    batch::Predictor predictor;
+    std::vector<std::string> sources;  // run directories, or a file of predictions
+};
+
+/// From the named sources; for none, from the newest runs in runs/ on this class of device, of
+/// which those that cannot be read are passed over.
+History openHistory(const std::vector<std::string>& from, const std::string& deviceClass);
+
+/// "3 h 20 min", "12 min", "1.3 s", "80 ms".
+std::string durationText(double timeS);
+/// "1.2 GiB", "310 MiB".
+std::string memoryText(double bytes);
+
+/// "about 12 min, at most 310 MiB a case, as runs/a tells (10 by same case, 2 by nearest)" for the
+/// cases of the plan (of its shard), with `jobs` quality cases at once; empty when nothing is
+/// known.
+std::string forecastText(const batch::Plan& plan, const History& history, int jobs);
+
+}  // namespace gfxrepro::cli

@@ -1,0 +1,81 @@
+// Shards into one run.
+#include "runner/batch/merge.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runner/cli/commands.h"
+#include "runner/cli/results.h"
+
+namespace gfxrepro::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostNamed = 20;
+
+/// Those of the folders that hold a run; the others are said.
+std::vector<batch::ShardRun> readShards(const std::vector<std::string>& folders) {
+    std::vector<batch::ShardRun> shards;
+    for (const std::string& name : folders) {
+        const fs::path folder = name;
+        if (fs::exists(folder / "plan.json")) {
+            shards.push_back({folder, batch::readRun(folder)});
+        } else {
+            fmt::print(stderr, "{}: holds no run\n", folder.string());
+        }
+    }
+    if (shards.empty()) throw Error("merge: none of the folders holds a run");
+    return shards;
+}
+
+/// A merge may be made again, unless something was measured into it since.
+batch::RunDirectory openTarget(const fs::path& out, const batch::Plan& plan) {
+    if (!fs::exists(out / "plan.json")) return batch::RunDirectory::create(out);
+    const batch::StoredRun before = batch::readRun(out);
+    if (before.plan.hash == plan.hash && batch::isOnlyMerged(before.manifest)) {
+        return batch::RunDirectory::open(out);
+    }
+    throw Error(out.string() +
+                ": holds a run that is no merge of these shards; give another "
+                "folder");
+}
+
+void printMissing(const std::vector<batch::ShardRun>& shards,
+                  const std::vector<std::string>& units) {
+    for (const std::string& shard : batch::missingShards(shards)) {
+        fmt::print("missing: shard {}\n", shard);
+    }
+    for (std::size_t i = 0; i < std::min(units.size(), kMostNamed); ++i) {
+        fmt::print("missing: {}\n", units[i]);
+    }
+    if (units.size() > kMostNamed) fmt::print("missing: {} more\n", units.size() - kMostNamed);
+}
+
+}  // namespace
+
+int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards) {
+    const std::vector<batch::ShardRun> runs = readShards(shards);
+    const batch::StoredRun merged = batch::mergeRuns(runs, context.commandLine);
+    {
+        const batch::RunDirectory directory = openTarget(out, merged.plan);
+        batch::writeMerged(directory, runs, merged);
+    }
+    const std::vector<std::string> missing = batch::missingUnits(merged);
+    const batch::Completeness counts = batch::completeness(merged);
+    const std::size_t unitCount = batch::unitsOf(merged.plan).size();
+    printMissing(runs, missing);
+    fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing\n", runs.size(),
+               runs.size() == 1 ? "" : "s", out,
+               unitCount - static_cast<std::size_t>(counts.missing + counts.failed), unitCount,
+               counts.failed, counts.missing);
+    const int verdict = conclude(out);
+    if (counts.missing + counts.failed == 0) return verdict;
+    fmt::print("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);
+    return kExitIncomplete;
+}
+
+}  // namespace gfxrepro::cli

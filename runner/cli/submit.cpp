@@ -1,0 +1,299 @@
+// A plan handed to other machines: as a Slurm array job with a merge behind it, or as commands.
+#include "runner/batch/submission.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "runner/batch/child_process.h"
+#include "runner/batch/merge.h"
+#include "runner/batch/shards.h"
+#include "runner/cli/commands.h"
+#include "runner/cli/experiments.h"
+#include "runner/cli/history.h"
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::cli {
+
+namespace fs = std::filesystem;
+using batch::Json;
+using batch::Submission;
+
+namespace {
+
+constexpr double kShardS = 1800.0;  // predicted, of a shard, where no number of them is given
+constexpr int kUnknownShards = 8;   // where nothing is predicted either
+
+/// What of a submission is kept in submission.json.
+struct Stored {
+    std::vector<std::string> runArguments;
+    std::vector<int> unitCounts;  // a shard each
+    std::string arrayJob;         // empty: not by Slurm
+    std::string mergeJob;
+};
+
+fs::path storedFile(const fs::path& out) {
+    return out / "submission.json";
+}
+
+std::optional<Stored> readStored(const fs::path& out) {
+    if (!fs::exists(storedFile(out))) return std::nullopt;
+    const Json json = Json::parse(readFile(storedFile(out)), nullptr, false);
+    if (!json.is_object()) throw Error(storedFile(out).string() + ": is no JSON object");
+    return Stored{json.at("run_arguments"), json.at("units"), json.at("array_job"),
+                  json.at("merge_job")};
+}
+
+void writeStored(const fs::path& out, const Stored& stored) {
+    const Json json = {{"run_arguments", stored.runArguments},
+                       {"units", stored.unitCounts},
+                       {"array_job", stored.arrayJob},
+                       {"merge_job", stored.mergeJob}};
+    writeFileAtomic(storedFile(out), json.dump(1) + '\n');
+}
+
+std::vector<std::string> runArgumentsOf(const SubmitOptions& options,
+                                        const batch::Request& request) {
+    std::vector<std::string> arguments = request.configs;
+    const auto add = [&](const char* option, const std::string& value) {
+        arguments.insert(arguments.end(), {option, value});
+    };
+    add("--profile", options.selection.profile);
+    add("--device", request.device);
+    add("--assets", fs::absolute(assetsFolder(options.selection.assets)));
+    for (const std::string& set : request.sets) add("--set", set);
+    for (const std::string& sweep : request.sweeps) add("--sweep", sweep);
+    if (options.jobs > 0) add("--jobs", std::to_string(options.jobs));
+    return arguments;
+}
+
+/// As many as were asked for or as the predicted time fills; not more than can be filled.
+int shardCountOf(const SubmitOptions& options, const batch::Plan& plan,
+                 const std::vector<double>& timesS, bool arePredicted) {
+    const auto most = std::max(static_cast<int>(batch::indivisibleGroups(plan.cases).size()), 1);
+    if (options.shardCount > 0) return std::min(options.shardCount, most);
+    const double totalS = std::accumulate(timesS.begin(), timesS.end(), 0.0);
+    const int wanted =
+        arePredicted ? static_cast<int>(std::ceil(totalS / kShardS)) : kUnknownShards;
+    return std::clamp(wanted, 1, most);
+}
+
+/// A submission with its cut: which shard has how many units.
+struct Cut {
+    Submission submission;
+    std::vector<int> unitCounts;
+    std::vector<double> timesS;  // predicted, a shard each
+    batch::Predictor predictor;
+    batch::Plan plan;
+};
+
+Cut cutPlan(const Context& context, const SubmitOptions& options) {
+    const batch::Request request =
+        requestOf(options.selection, findPaperConfigs(options.selection.names));
+    Cut cut;
+    cut.plan = planFor(context, request, options.selection.profile, options.selection.assets,
+                       deviceClassFor(options.selection));
+    const fs::path out = fs::absolute(options.out).lexically_normal();
+    // A submission that is continued is cut as it was.
+    const bool isBegun = fs::exists(storedFile(out));
+    History history = isBegun ? openHistory({out / "predictions.csv"}, "")
+                              : openHistory(options.from, cut.plan.deviceClass);
+    const bool arePredicted = !forecastText(cut.plan, history, 1).empty();
+    const std::vector<double> timesS = batch::caseTimesS(cut.plan, history.predictor);
+    Submission& s = cut.submission;
+    s.name = runSlug(cut.plan);
+    s.program = fs::read_symlink("/proc/self/exe");
+    s.runArguments = runArgumentsOf(options, request);
+    s.out = out;
+    s.shardCount = shardCountOf(options, cut.plan, timesS, arePredicted);
+    if (!options.partition.empty()) s.sbatchFlags.push_back("--partition=" + options.partition);
+    if (!options.gres.empty()) s.sbatchFlags.push_back("--gres=" + options.gres);
+    s.sbatchFlags.insert(s.sbatchFlags.end(), options.sbatchFlags.begin(),
+                         options.sbatchFlags.end());
+
+    const std::vector<int> shardOf = batch::cutShards(cut.plan.cases, timesS, s.shardCount);
+    s.timeLimitMin = batch::timeLimitMin(cut.plan, shardOf, timesS, arePredicted);
+    cut.unitCounts.resize(static_cast<std::size_t>(s.shardCount));
+    cut.timesS.resize(cut.unitCounts.size());
+    for (std::size_t i = 0; i < cut.plan.cases.size(); ++i) {
+        const config::Measure& measure = cut.plan.cases[i].measure;
+        s.isExclusive = s.isExclusive || measure.lane == config::Measure::Lane::Timing;
+        cut.unitCounts[static_cast<std::size_t>(shardOf[i])] += measure.processes;
+        cut.timesS[static_cast<std::size_t>(shardOf[i])] += timesS[i];
+    }
+    fmt::print(stderr, "{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(),
+               s.shardCount, s.shardCount == 1 ? "" : "s",
+               *std::ranges::min_element(cut.unitCounts), *std::ranges::max_element(cut.unitCounts),
+               arePredicted ? fmt::format(", the longest of about {}",
+                                          durationText(*std::ranges::max_element(cut.timesS)))
+                            : "; no earlier run tells their time");
+    cut.predictor = std::move(history.predictor);
+    return cut;
+}
+
+batch::ShardProgress progressOf(const fs::path& folder, int unitCount) {
+    batch::ShardProgress progress{unitCount, 0, 0};
+    if (!fs::exists(folder / "plan.json")) return progress;
+    const batch::StoredRun run = batch::readRun(folder);
+    const batch::Completeness counts = batch::completeness(run);
+    progress.unitCount = static_cast<int>(batch::unitsOf(run.plan).size());
+    progress.failed = counts.failed;
+    progress.finished = progress.unitCount - counts.failed - counts.missing;
+    return progress;
+}
+
+/// None when squeue is not there or does not answer: then nothing is known, least of all an end.
+std::optional<std::map<std::string, std::string>> askQueue(const Stored& stored) {
+    const batch::ProgramEnd end =
+        batch::runToEnd({"/usr/bin/env", "squeue", "-h", "-r", "-t", "all", "-j",
+                         stored.arrayJob + "," + stored.mergeJob, "-o", "%F_%K %T"});
+    if (end.exitCode != 0) return std::nullopt;
+    return batch::parseQueue(end.output);
+}
+
+std::string taskOf(const Stored& stored, int shard) {
+    return stored.arrayJob.empty() ? "" : fmt::format("{}_{}", stored.arrayJob, shard);
+}
+
+int printStatus(const fs::path& out) {
+    const std::optional<Stored> stored = readStored(out);
+    if (!stored) throw Error(out.string() + ": holds no submission");
+    const auto queue = stored->arrayJob.empty() ? std::nullopt : askQueue(*stored);
+    std::vector<std::vector<std::string>> rows = {{"shard", "done", "failed", "state"}};
+    const auto count = static_cast<int>(stored->unitCounts.size());
+    bool isComplete = true;
+    for (int k = 1; k <= count; ++k) {
+        const batch::ShardProgress progress =
+            progressOf(out / "shards" / std::to_string(k),
+                       stored->unitCounts[static_cast<std::size_t>(k - 1)]);
+        isComplete = isComplete && progress.isComplete();
+        rows.push_back({batch::Shard{k, count, {}}.name(),
+                        fmt::format("{}/{}", progress.finished, progress.unitCount),
+                        std::to_string(progress.failed),
+                        batch::stateOf(progress, queue, taskOf(*stored, k))});
+    }
+    const bool isMerged = fs::exists(out / "plan.json");
+    batch::ShardProgress merged{isMerged ? 0 : 1, 0, 0};
+    if (isMerged) merged = progressOf(out, 0);
+    rows.push_back({"merge",
+                    isMerged ? fmt::format("{}/{}", merged.finished, merged.unitCount) : "",
+                    isMerged ? std::to_string(merged.failed) : "",
+                    batch::stateOf(merged, queue, stored->mergeJob)});
+    fmt::print("{}", alignedColumns(rows));
+    return isComplete && isMerged && merged.finished == merged.unitCount ? kExitOk
+                                                                         : kExitIncomplete;
+}
+
+/// The job's number, which --parsable prints last: "123" or "123;cluster".
+std::string sbatch(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
+    const batch::ProgramEnd end = batch::runToEnd(arguments);
+    const std::string text(trimmed(end.output));
+    const std::string last = text.substr(text.rfind('\n') + 1);
+    const std::string job = last.substr(0, last.find(';'));
+    if (end.exitCode != 0 || !parseInteger(job)) {
+        throw Error(
+            fmt::format("sbatch did not take the job (exit code {}): {}", end.exitCode, text));
+    }
+    return job;
+}
+
+/// The array job's and the merge job's arguments; `arrayJob` is known when the second is asked for.
+std::vector<std::string> arrayArguments(const Submission& s, const std::string& indices) {
+    return {"--array=" + indices, fmt::format("--output={}", (s.out / "task-%a.txt").string()),
+            s.out / "task.sh"};
+}
+std::vector<std::string> mergeArguments(const Submission& s, const std::string& arrayJob) {
+    std::vector<std::string> arguments = {
+        fmt::format("--output={}", (s.out / "merge.txt").string()), s.out / "merge.sh"};
+    if (!arrayJob.empty()) arguments.insert(arguments.begin(), "--dependency=afterany:" + arrayJob);
+    return arguments;
+}
+
+/// Shards that are not complete. Throws where the queue still holds one of them.
+std::vector<int> pendingShards(const Cut& cut, const std::optional<Stored>& before) {
+    const auto queue = before && !before->arrayJob.empty() ? askQueue(*before) : std::nullopt;
+    std::vector<int> pending;
+    for (int k = 1; k <= cut.submission.shardCount; ++k) {
+        const batch::ShardProgress progress = progressOf(
+            cut.submission.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)]);
+        if (progress.isComplete()) continue;
+        const std::string state = batch::stateOf(progress, queue, before ? taskOf(*before, k) : "");
+        if (state == "RUNNING" || state == "PENDING") {
+            throw Error(fmt::format("{}: shard {} is {} already; wait, or scancel {}",
+                                    cut.submission.out.string(), k, state, before->arrayJob));
+        }
+        pending.push_back(k);
+    }
+    return pending;
+}
+
+int submitToSlurm(const Cut& cut, const std::optional<Stored>& before, bool isDryRun) {
+    const Submission& s = cut.submission;
+    const std::vector<int> pending = pendingShards(cut, before);
+    const std::string indices = batch::arrayIndices(pending);
+    if (isDryRun) {
+        fmt::print("# {}\n{}# {}\n{}", (s.out / "task.sh").string(), batch::taskScript(s),
+                   (s.out / "merge.sh").string(), batch::mergeScript(s));
+        if (!pending.empty()) fmt::print("sbatch {}\n", joined(arrayArguments(s, indices), " "));
+        fmt::print("sbatch {}\n", joined(mergeArguments(s, pending.empty() ? "" : "JOB"), " "));
+        return kExitOk;
+    }
+    writeFileAtomic(s.out / "task.sh", batch::taskScript(s));
+    writeFileAtomic(s.out / "merge.sh", batch::mergeScript(s));
+    Stored stored{s.runArguments, cut.unitCounts, "", ""};
+    if (!pending.empty()) stored.arrayJob = sbatch(arrayArguments(s, indices));
+    writeStored(s.out, stored);  // known even if the merge is refused
+    stored.mergeJob = sbatch(mergeArguments(s, stored.arrayJob));
+    writeStored(s.out, stored);
+    fmt::print("array {} (shards {}), merge {}; gfxrepro submit --status {}\n",
+               pending.empty() ? "none" : stored.arrayJob, pending.empty() ? "none" : indices,
+               stored.mergeJob, s.out.string());
+    return kExitOk;
+}
+
+int writeCommands(const Cut& cut, bool isDryRun) {
+    const Submission& s = cut.submission;
+    std::string commands;
+    for (int k = 1; k <= s.shardCount; ++k) commands += batch::shardCommand(s, k) + '\n';
+    const std::string merge = batch::mergeCommand(s) + '\n';
+    fmt::print("{}{}", commands, merge);
+    if (isDryRun) return kExitOk;
+    writeFileAtomic(s.out / "commands.txt", commands);
+    writeFileAtomic(s.out / "merge.sh", "#!/bin/sh\n" + merge);
+    writeStored(s.out, {s.runArguments, cut.unitCounts, "", ""});
+    fmt::print(stderr, "parallel --jobs 1 < {}; sh {}\n", (s.out / "commands.txt").string(),
+               (s.out / "merge.sh").string());
+    return kExitOk;
+}
+
+}  // namespace
+
+int submit(const Context& context, const SubmitOptions& options) {
+    if (options.isStatus) {
+        if (options.selection.names.size() != 1) throw UsageError("submit: --status needs one DIR");
+        return printStatus(fs::absolute(options.selection.names.front()).lexically_normal());
+    }
+    if (options.selection.names.empty() || options.out.empty()) {
+        throw UsageError("submit: give config files and --out DIR, or --status DIR");
+    }
+    const Cut cut = cutPlan(context, options);
+    const Submission& s = cut.submission;
+    const std::optional<Stored> before = readStored(s.out);
+    const Stored now{s.runArguments, cut.unitCounts, "", ""};
+    if (before &&
+        (before->runArguments != now.runArguments || before->unitCounts != now.unitCounts)) {
+        throw Error(s.out.string() + ": holds another submission; give another folder");
+    }
+    if (!options.isDryRun && !before) {
+        batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
+    }
+    if (options.engine == "commands") return writeCommands(cut, options.isDryRun);
+    return submitToSlurm(cut, before, options.isDryRun);
+}
+
+}  // namespace gfxrepro::cli

@@ -1,0 +1,361 @@
+// Predictions, shards, merges and submissions of the program, without a cluster.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kLayout =
+    "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n";
+
+/// `number` from 1 to `count` with these lines before the sweep; a table of the numbers.
+fs::path writeNumbers(const TemporaryFolder& folder, int count, const std::string& lines = "") {
+    return writeMockConfig(folder, lines + "sweep:\n  number: {range: [1, " +
+                                       std::to_string(count) + "]}\n" + kLayout);
+}
+
+ProcessResult measure(const fs::path& config, const std::string& dir,
+                      std::vector<std::string> more = {}) {
+    more.insert(more.begin(),
+                {"run", config.string(), "--device", "software", "--quiet", "--out", dir});
+    return mockGfxrepro(more);
+}
+
+/// What stands behind the name of the case `number=N` in the output of `plan`.
+std::string planLine(const std::string& out, int number) {
+    const std::string end = "number=" + std::to_string(number);
+    for (const std::string& line : split(out, '\n')) {
+        if (line.ends_with(end)) return line;
+    }
+    return "";
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    for (std::size_t at; (at = text.find(what)) != std::string::npos;) {
+        text.replace(at, what.size(), by);
+    }
+    return text;
+}
+
+void expectSameTables(const std::string& a, const std::string& b) {
+    for (const char* file : {"csv", "md", "tex"}) {
+        const std::string name = std::string("/tables/sweep-mock.") + file;
+        EXPECT_EQ(readFile(a + name), readFile(b + name)) << name;
+    }
+}
+
+TEST(Plan, PredictsFromEarlierRuns) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 3, "params: {pause_ms: 5}\n");
+    const ProcessResult before = mockGfxrepro({"plan", config, "--device", "software"});
+    EXPECT_THAT(before.out, HasSubstr("no earlier run tells the time; --from RUN names one\n"));
+    EXPECT_THAT(planLine(before.out, 1), HasSubstr("-     -       -"));
+    const std::string dir = folder.path() / "earlier";
+    ASSERT_EQ(measure(config, dir, {"--sweep", "number=1,2"}).exitCode, 0);
+
+    const ProcessResult after =
+        mockGfxrepro({"plan", config, "--device", "software", "--from", dir});
+    EXPECT_THAT(planLine(after.out, 1), HasSubstr(" MiB  same case "));
+    EXPECT_THAT(planLine(after.out, 3), HasSubstr(" MiB  nearest "));
+    EXPECT_THAT(after.out, HasSubstr("as " + dir + " tells (1 by nearest, 2 by same case)\n"));
+    EXPECT_THAT(mockGfxrepro({"plan", config, "--device", "software", "--from", dir, "--set",
+                              "measure.repeats=2"})
+                    .out,
+                HasSubstr("same case, other run"));
+    const ProcessResult none =
+        mockGfxrepro({"plan", config, "--device", "software", "--from", folder.path() / "none"});
+    EXPECT_EQ(none.exitCode, 2);
+    EXPECT_EQ(none.err, "gfxrepro: " + (folder.path() / "none").string() +
+                            ": is no run directory (it has no plan.json)\n");
+}
+
+TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const auto inFolder = [&](const std::string& command) {
+        return runProgram(
+            {"/bin/sh", "-c",
+             "cd '" + folder.path().string() + "' && '" + GFXREPRO_MOCK_PROGRAM "' " + command});
+    };
+    ASSERT_EQ(inFolder("run mock.yaml --device software --quiet").exitCode, 0);
+    folder.write("runs/broken/plan.json", "{");
+    folder.write("runs/broken/manifest.json", "{\"device_class\": \"software\"}");
+    folder.write("runs/broken/log.jsonl",
+                 "{\"case\": \"x\", \"cost\": {\"load_s\": 0, \"setup_s\": 0, \"render_s\": 0, "
+                 "\"record_s\": 0, \"peak_bytes\": 0}}\n");
+    const ProcessResult plan = inFolder("plan mock.yaml --device software");
+    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+    EXPECT_THAT(plan.out, HasSubstr("(2 by same case)"));
+    EXPECT_THAT(plan.out, HasSubstr("as runs/"));
+    const ProcessResult run = inFolder("run mock.yaml --device software --out again");
+    EXPECT_THAT(run.err, HasSubstr("tells (2 by same case)\n"));
+}
+
+TEST(Shards, MergeToTheTablesOfOneRun) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 10);
+    const std::string whole = folder.path() / "whole";
+    const std::string merged = folder.path() / "merged";
+    ASSERT_EQ(measure(config, whole).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
+    std::vector<std::string> merge = {"merge", merged};
+    std::size_t rows = 0;
+    for (const char* k : {"3", "1", "2"}) {  // in no order
+        const std::string dir = folder.path() / (std::string("s") + k);
+        const ProcessResult run =
+            measure(config, dir, {"--shard", std::string(k) + "/3", "--from", whole});
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        rows += rowsOf(dir, "number").size();
+        merge.push_back(dir);
+    }
+    EXPECT_EQ(rows, 10U);
+    const ProcessResult result = mockGfxrepro(merge);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.out, "merged 3 shards into " + merged +
+                              ": 10 of 10 measured, 0 failed, 0 missing\nclaims: no claims\n"
+                              "report: " +
+                              merged + "/report.html\n");
+    expectSameTables(merged, whole);
+    EXPECT_EQ(rowsOf(merged, "number").size(), 10U);
+    for (const report::Record& row : rowsOf(merged, "number")) {
+        EXPECT_TRUE(fs::exists(merged + "/images/sweep-mock/" + row.caseId + "-flat.exr"));
+    }
+    const std::string list = readFile(merged + "/images/index.csv");
+    EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 11);
+    // A merge is a past like any other run, and may be made again.
+    EXPECT_THAT(mockGfxrepro({"plan", config, "--device", "software", "--from", merged}).out,
+                HasSubstr("(10 by same case)"));
+    EXPECT_EQ(mockGfxrepro(merge).exitCode, 0);
+    expectSameTables(merged, whole);
+}
+
+TEST(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 4);
+    const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
+    const std::string merged = folder.path() / "merged", whole = folder.path() / "whole";
+    ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
+    const ProcessResult partial = mockGfxrepro({"merge", merged, s1, s2});
+    EXPECT_EQ(partial.exitCode, 4);
+    EXPECT_EQ(partial.err, s2 + ": holds no run\n");
+    EXPECT_THAT(partial.out, HasSubstr("missing: shard 2/2\nmissing: sweep/mock number=2\n"
+                                       "missing: sweep/mock number=4\nmerged 1 shard into " +
+                                       merged + ": 2 of 4 measured, 0 failed, 2 missing\n"));
+    EXPECT_THAT(partial.out, HasSubstr("what is missing or failed is measured by: gfxrepro run "
+                                       "--resume " +
+                                       merged + "\n"));
+    const ProcessResult rest = mockGfxrepro({"run", "--resume", merged});
+    EXPECT_EQ(rest.out, "2 of 2 finished; records: " + merged + "/records.csv\n");
+    ASSERT_EQ(mockGfxrepro({"table", merged}).exitCode, 0);
+    ASSERT_EQ(measure(config, whole).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
+    expectSameTables(merged, whole);
+    // What was measured into it is not overwritten.
+    const ProcessResult again = mockGfxrepro({"merge", merged, s1});
+    EXPECT_EQ(again.exitCode, 2);
+    EXPECT_EQ(again.err, "gfxrepro: " + merged +
+                             ": holds a run that is no merge of these shards; give another "
+                             "folder\n");
+    EXPECT_EQ(rowsOf(merged, "number").size(), 4U);
+}
+
+TEST(Shards, MergeRefusesOtherPlansAndNoRuns) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 4);
+    const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
+    ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
+    ASSERT_EQ(measure(config, s2, {"--shard", "2/2", "--set", "pause_ms=1"}).exitCode, 0);
+    const ProcessResult result = mockGfxrepro({"merge", folder.path() / "m", s1, s2});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr(s1 + " and " + s2 + " are shards of different plans ("));
+    EXPECT_THAT(result.err, HasSubstr("the config " + config + " changed\n"));
+    EXPECT_FALSE(fs::exists(folder.path() / "m/plan.json"));
+    const ProcessResult none = mockGfxrepro({"merge", folder.path() / "m", folder.path()});
+    EXPECT_EQ(none.exitCode, 2);
+    EXPECT_THAT(none.err, HasSubstr("gfxrepro: merge: none of the folders holds a run\n"));
+}
+
+TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 3, "measure: {lane: timing}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(measure(config, dir).exitCode, 0);
+    // As if the run had begun elsewhere and had lost its last case.
+    const std::string manifest = readFile(dir + "/manifest.json");
+    const std::size_t cpu = manifest.find("\"cpu\": \"") + 8;
+    std::string moved = manifest;
+    moved.insert(cpu, "Another ");
+    writeFileAtomic(dir + "/manifest.json", moved);
+    const auto rows = report::readRecords(dir + "/records.csv");
+    std::vector<report::Record> two = rows;
+    std::erase_if(two, [&](const report::Record& r) { return r.caseId == rows.back().caseId; });
+    fs::remove(dir + "/records.csv");
+    report::RecordWriter(dir + "/records.csv").append(two);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("sweep/mock: begun on another machine; its times are "
+                                       "measured again on "));
+    EXPECT_EQ(resumed.out, "3 of 3 finished; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(rowsOf(dir, "number").size(), 3U);
+    EXPECT_EQ(report::readRecords(dir + "/records-replaced.csv").size(), two.size());
+}
+
+TEST(Resume, WithConfigsBeginsOrGoesOn) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 4);
+    const std::string dir = folder.path() / "run";
+    const std::vector<std::string> command = {"run", config,    "--device", "software", "--shard",
+                                              "1/2", "--quiet", "--resume", dir};
+    EXPECT_EQ(mockGfxrepro(command).out, "2 of 2 finished; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(mockGfxrepro(command).out, "0 of 0 finished; records: " + dir + "/records.csv\n");
+    std::vector<std::string> other = command;
+    other[5] = "2/2";
+    EXPECT_EQ(mockGfxrepro(other).err,
+              "gfxrepro: " + dir + ": holds a run with other --shard; give another folder\n");
+    other = command;
+    other.insert(other.end(), {"--set", "pause_ms=1"});
+    EXPECT_EQ(mockGfxrepro(other).err,
+              "gfxrepro: " + dir + ": holds a run with other --set; give another folder\n");
+    other = command;
+    other.insert(other.end(), {"--out", dir});
+    EXPECT_EQ(mockGfxrepro(other).err,
+              "gfxrepro: --out and --resume exclude each other: both name the folder\n");
+}
+
+TEST(Submit, CommandsMeasureAndMerge) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, std::string("sweep:\n  zip:\n    - {number: [1, 2, 3, 4, 5], behaviour: [ok, ok, "
+                            "throw, ok, ok]}\n") +
+                    kLayout);
+    const std::string out = folder.path() / "it's out";  // a shell must not stumble
+    const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
+                                              out,      "--engine", "commands", "--shards", "2"};
+    const ProcessResult submitted = mockGfxrepro(command);
+    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    std::vector<std::string> lines = split(submitted.out, '\n');
+    ASSERT_EQ(lines.size(), 4U) << submitted.out;  // two shards, the merge, the end
+    EXPECT_EQ(lines[0] + '\n' + lines[1] + '\n', readFile(out + "/commands.txt"));
+    EXPECT_EQ("#!/bin/sh\n" + lines[2] + '\n', readFile(out + "/merge.sh"));
+
+    const ProcessResult begun = mockGfxrepro({"submit", "--status", out});
+    EXPECT_EQ(begun.exitCode, 4);
+    EXPECT_EQ(begun.out,
+              "shard  done  failed  state\n1/2    0/3   0       not complete\n"
+              "2/2    0/2   0       not complete\nmerge                not complete\n");
+    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 4);  // one case throws
+    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);
+    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);  // again: nothing to do
+    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
+    EXPECT_EQ(merged.exitCode, 4);
+    EXPECT_THAT(merged.out, HasSubstr(": 4 of 5 measured, 1 failed, 0 missing\n"));
+    const ProcessResult done = mockGfxrepro({"submit", "--status", out});
+    EXPECT_EQ(done.exitCode, 4);  // a case failed
+    EXPECT_EQ(done.out,
+              "shard  done  failed  state\n1/2    2/3   1       complete\n"
+              "2/2    2/2   0       complete\nmerge  4/5   1       complete\n");
+    std::vector<std::string> other = command;
+    other.insert(other.end(), {"--set", "pause_ms=1"});
+    EXPECT_EQ(replaced(mockGfxrepro(other).err, out, "OUT"),
+              "5 cases in 2 shards of 2 to 3 units; no earlier run tells their time\n"
+              "gfxrepro: OUT: holds another submission; give another folder\n");
+}
+
+TEST(Submit, DryRunWritesNothing) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 6, "measure: {lane: timing}\n");
+    const std::string out = folder.path() / "out";
+    const ProcessResult result = mockGfxrepro(
+        {"submit", config, "--device", "software", "--out", out, "--shards", "3", "--dry-run",
+         "--partition", "gpus", "--gres", "gpu:1", "--sbatch=--account=x", "--sbatch=--mem=8G"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    // Times of one table: one shard, alone on its node.
+    EXPECT_EQ(result.err, "6 cases in 1 shard of 6 to 6 units; no earlier run tells their time\n");
+    EXPECT_THAT(result.out, HasSubstr("#SBATCH --exclusive\n#SBATCH --partition=gpus\n"
+                                      "#SBATCH --gres=gpu:1\n#SBATCH --account=x\n"
+                                      "#SBATCH --mem=8G\nexec "));
+    EXPECT_THAT(result.out, HasSubstr("--shard \"$SLURM_ARRAY_TASK_ID\"/1 --resume " + out +
+                                      "/shards/\"$SLURM_ARRAY_TASK_ID\"\n"));
+    EXPECT_THAT(result.out, HasSubstr("sbatch --array=1 --output=" + out + "/task-%a.txt " + out +
+                                      "/task.sh\nsbatch --dependency=afterany:JOB --output=" + out +
+                                      "/merge.txt " + out + "/merge.sh\n"));
+    EXPECT_FALSE(fs::exists(out));
+}
+
+/// A PATH whose sbatch and squeue say what the test wants.
+std::string fakeSlurm(const TemporaryFolder& folder, const std::string& sbatch,
+                      const std::string& squeue) {
+    for (const auto& [name, script] : {std::pair{"sbatch", sbatch}, std::pair{"squeue", squeue}}) {
+        const fs::path file = folder.write(std::string("bin/") + name, "#!/bin/sh\n" + script);
+        fs::permissions(file, fs::perms::owner_all);
+    }
+    return "PATH=" + (folder.path() / "bin").string() + ":/usr/bin:/bin";
+}
+
+TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 4);
+    const std::string out = folder.path() / "out";
+    const std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM,
+                                              "submit",
+                                              config,
+                                              "--device",
+                                              "software",
+                                              "--out",
+                                              out,
+                                              "--shards",
+                                              "2"};
+    const ProcessResult refused = runProgram(
+        command, {fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n", "exit 1\n")});
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_THAT(refused.err, HasSubstr("gfxrepro: sbatch did not take the job (exit code 1): "
+                                       "invalid partition\n"));
+    // Numbers may come with a cluster's name; the second job waits for the first.
+    const std::string log = folder.path() / "log";
+    const std::string path = fakeSlurm(folder, "echo \"$@\" >>'" + log + "'\necho '41;here'\n",
+                                       "printf '41_1 RUNNING\\n41_2 NODE_FAIL\\n'\n");
+    const ProcessResult taken = runProgram(command, {path});
+    EXPECT_EQ(taken.out, "array 41 (shards 1-2), merge 41; gfxrepro submit --status " + out + "\n");
+    EXPECT_EQ(readFile(log), "--parsable --array=1-2 --output=" + out + "/task-%a.txt " + out +
+                                 "/task.sh\n--parsable --dependency=afterany:41 --output=" + out +
+                                 "/merge.txt " + out + "/merge.sh\n");
+    const ProcessResult status =
+        runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {path});
+    EXPECT_EQ(status.exitCode, 4);
+    EXPECT_THAT(status.out, HasSubstr("1/2    0/2   0       RUNNING\n"
+                                      "2/2    0/2   0       stopped: NODE_FAIL\n"));
+    EXPECT_EQ(replaced(runProgram(command, {path}).err, out, "OUT"),
+              "4 cases in 2 shards of 2 to 2 units; no earlier run tells their time\n"
+              "gfxrepro: OUT: shard 1 is RUNNING already; wait, or scancel 41\n");
+    // A queue that does not answer is no end, and the files go first.
+    ASSERT_EQ(runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"})
+                  .exitCode,
+              0);
+    const std::string mute = fakeSlurm(folder, "echo 42\n", "exit 1\n");
+    EXPECT_THAT(runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {mute}).out,
+                HasSubstr("1/2    2/2   0       complete\n"
+                          "2/2    0/2   0       unknown: the queue does not answer\n"));
+    // Once more: what is complete is left out.
+    EXPECT_EQ(runProgram(command, {mute}).out,
+              "array 42 (shards 2), merge 42; gfxrepro submit --status " + out + "\n");
+}
+
+TEST(Submit, SaysWhatItNeeds) {
+    EXPECT_EQ(mockGfxrepro({"submit"}).err,
+              "gfxrepro: submit: give config files and --out DIR, or --status DIR\n");
+    const TemporaryFolder folder;
+    EXPECT_EQ(mockGfxrepro({"submit", "--status", folder.path()}).err,
+              "gfxrepro: " + folder.path().string() + ": holds no submission\n");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

@@ -1,0 +1,166 @@
+// Merges of runs made by hand: complete or not, of one plan and one cut or refused.
+#include "runner/batch/merge.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/support/support.h"
+#include "tests/unit/batch/plan_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using batch::mergeRuns;
+using Lane = config::Measure::Lane;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Four quality cases q/1, then two timing cases t/1.
+batch::Plan makePlan() {
+    batch::Plan plan;
+    plan.hash = "0123456789abcdef";
+    for (int size = 1; size <= 4; ++size) plan.cases.push_back(makeCase("q/1", "a", size));
+    for (int size = 1; size <= 2; ++size) {
+        plan.cases.push_back(makeCase("t/1", "a", size, Lane::Timing));
+    }
+    return plan;
+}
+
+TEST(Merge, RecordsAreInTheOrderOfThePlan) {
+    const batch::Plan plan = makePlan();
+    const batch::StoredRun merged =
+        mergeRuns({makeShard(plan, 2, 2, {5, 4, 1}), makeShard(plan, 1, 2, {3, 0, 2})}, "merge");
+    std::vector<double> values;
+    for (const report::Record& row : merged.records) values.push_back(row.value);
+    EXPECT_THAT(values, ElementsAre(0, 1, 2, 3, 4, 5));
+    EXPECT_FALSE(merged.plan.shard);
+    EXPECT_THAT(batch::missingUnits(merged), IsEmpty());
+    EXPECT_EQ(batch::completeness(merged).missing, 0);
+    EXPECT_EQ(merged.manifest["merged"].size(), 2U);
+    EXPECT_EQ(merged.manifest["merged"][0]["shard"], "2/2");
+    EXPECT_TRUE(batch::isOnlyMerged(merged.manifest));
+    batch::Json continued = merged.manifest;
+    batch::beginInvocation(continued, "run --resume");
+    EXPECT_FALSE(batch::isOnlyMerged(continued));
+}
+
+TEST(Merge, NamesWhatIsMissing) {
+    const batch::Plan plan = makePlan();
+    std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 3, {0, 2}),
+                                           makeShard(plan, 3, 3, {4, 5})};
+    shards[0].run.records.pop_back();  // planned there, not measured
+    EXPECT_THAT(batch::missingUnits(mergeRuns(shards, "merge")),
+                ElementsAre("q/1 method=a size=2", "q/1 method=a size=3", "q/1 method=a size=4"));
+    EXPECT_THAT(batch::missingShards(shards), ElementsAre("2/3"));
+}
+
+TEST(Merge, AMissingProcessIsMissing) {
+    batch::Plan plan = makePlan();
+    plan.cases.resize(1);
+    plan.cases[0].measure.processes = 2;
+    EXPECT_THAT(batch::missingUnits(mergeRuns({makeShard(plan, 1, 1, {0})}, "merge")),
+                ElementsAre("q/1 method=a size=1 process 2"));
+}
+
+TEST(Merge, RefusesDifferentPlans) {
+    const batch::Plan plan = makePlan();
+    batch::Plan other = plan;
+    other.hash = "fedcba9876543210";
+    other.buildId = "another build";
+    EXPECT_EQ(errorText([&] {
+                  mergeRuns({makeShard(plan, 1, 2, {0}), makeShard(other, 2, 2, {1})}, "merge");
+              }),
+              "s1 and s2 are shards of different plans (0123456789ab, fedcba987654): the program "
+              "or a shader changed (build  then, another buil now)");
+}
+
+TEST(Merge, RefusesACaseThatTwoHave) {
+    const batch::Plan plan = makePlan();
+    EXPECT_EQ(
+        errorText([&] {
+            mergeRuns({makeShard(plan, 1, 2, {0, 1}), makeShard(plan, 2, 3, {1, 2})}, "");
+        }),
+        "the case 'q/1 method=a size=2' is in both s1 and s2: these are no shards of one cut");
+    // Planned in one and measured in the other is no better.
+    std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1}),
+                                           makeShard(plan, 2, 2, {1})};
+    shards[0].run.records.pop_back();
+    EXPECT_EQ(
+        errorText([&] { mergeRuns(shards, ""); }),
+        "the case 'q/1 method=a size=2' is in both s1 and s2: these are no shards of one cut");
+}
+
+TEST(Merge, RefusesToMixDevicesInOneTable) {
+    const batch::Plan plan = makePlan();
+    EXPECT_EQ(errorText([&] {
+                  mergeRuns({makeShard(plan, 1, 2, {0, 4}, "GPU A"),
+                             makeShard(plan, 2, 2, {1, 5}, "GPU B")},
+                            "merge");
+              }),
+              "the times of t/1 would mix devices: s1 was measured on CPU, 2 cores, GPU A, 4.5; s2 "
+              "on CPU, 2 cores, GPU B, 4.5");
+}
+
+TEST(Merge, DevicesMayDifferElsewhere) {
+    const batch::Plan plan = makePlan();
+    const batch::StoredRun merged = mergeRuns(
+        {makeShard(plan, 1, 2, {0, 2, 4, 5}, "GPU A"), makeShard(plan, 2, 2, {1, 3}, "GPU B")},
+        "merge");
+    EXPECT_EQ(merged.manifest["gl"]["renderer"], "GPU A; GPU B");
+    EXPECT_EQ(merged.manifest["timing_machines"],
+              (batch::Json{{"t/1", "CPU, 2 cores, GPU A, 4.5"}}));
+}
+
+TEST(Merge, AShardThatMovedTellsTheMachineOfItsTimes) {
+    const batch::Plan plan = makePlan();
+    std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 2, {0, 4}, "GPU A"),
+                                           makeShard(plan, 2, 2, {1, 5}, "GPU A")};
+    shards[1].run.manifest["timing_machines"]["t/1"] = "another node";
+    EXPECT_EQ(errorText([&] { mergeRuns(shards, "merge"); }),
+              "the times of t/1 would mix devices: s1 was measured on CPU, 2 cores, GPU A, 4.5; s2 "
+              "on another node");
+}
+
+/// A run directory with these rows.
+batch::RunDirectory directoryWith(const TemporaryFolder& folder, const batch::ShardRun& shard) {
+    batch::RunDirectory directory = batch::RunDirectory::create(folder.path());
+    report::RecordWriter(directory.recordsFile()).append(shard.run.records);
+    return directory;
+}
+
+TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
+    const batch::Plan plan = makePlan();
+    batch::ShardRun shard = makeShard(plan, 1, 1, {0, 1, 4}, "GPU A");  // 5, of times, is missing
+    shard.run.plan.shard.reset();
+    const TemporaryFolder folder;
+    const batch::RunDirectory directory = directoryWith(folder, shard);
+    EXPECT_THAT(batch::replaceForeignTimes(plan, directory, shard.run.manifest,
+                                           batch::machineName(shard.run.manifest)),
+                IsEmpty());
+    EXPECT_EQ(report::readRecords(directory.recordsFile()).size(), 3U);
+
+    EXPECT_THAT(batch::replaceForeignTimes(plan, directory, shard.run.manifest, "another node"),
+                ElementsAre("t/1"));
+    EXPECT_EQ(batch::timingMachine(shard.run.manifest, "t/1"), "another node");
+    const std::vector<report::Record> kept = report::readRecords(directory.recordsFile());
+    ASSERT_EQ(kept.size(), 2U);
+    EXPECT_EQ(kept[1].caseId, plan.cases[1].id);
+    // Nothing measured is lost.
+    const auto replaced = report::readRecords(folder.path() / "records-replaced.csv");
+    ASSERT_EQ(replaced.size(), 1U);
+    EXPECT_EQ(replaced[0].caseId, plan.cases[4].id);
+    EXPECT_EQ(batch::remainingUnits(plan, directory).size(), 4U);
+}
+
+TEST(ForeignTimes, FinishedTablesStay) {
+    const batch::Plan plan = makePlan();
+    batch::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
+    const TemporaryFolder folder;
+    const batch::RunDirectory directory = directoryWith(folder, shard);
+    EXPECT_THAT(batch::replaceForeignTimes(plan, directory, shard.run.manifest, "another node"),
+                IsEmpty());
+    EXPECT_EQ(batch::timingMachine(shard.run.manifest, "t/1"), "CPU, 2 cores, GPU A, 4.5");
+    EXPECT_EQ(report::readRecords(directory.recordsFile()).size(), 3U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
