@@ -163,7 +163,6 @@ StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& comm
         if (unit.second < 0) std::ranges::move(ofUnit, std::back_inserter(merged.records));
     }
     for (const Unit& unit : unitsOf(merged.plan)) {
-        if (unit.isControl()) continue;
         std::ranges::move(rows[{unit.item->id, unit.process}], std::back_inserter(merged.records));
     }
     return merged;

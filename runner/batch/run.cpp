@@ -1,5 +1,6 @@
 #include "runner/batch/run.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -37,20 +38,31 @@ void rewriteRecords(const RunDirectory& directory, const std::vector<report::Rec
 }  // namespace
 
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
-    if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
-    const std::vector<report::Record> records = report::readRecords(directory.recordsFile());
-    const std::map<UnitKey, bool> recorded = recordedUnits(records);
-    std::vector<report::Record> kept;
-    for (const report::Record& row : records) {
-        if (recorded.at({row.caseId, row.process})) kept.push_back(row);
+    std::map<UnitKey, bool> recorded;
+    if (fs::exists(directory.recordsFile())) {
+        const std::vector<report::Record> records = report::readRecords(directory.recordsFile());
+        recorded = recordedUnits(records);
+        std::vector<report::Record> kept;
+        for (const report::Record& row : records) {
+            if (recorded.at({row.caseId, row.process})) kept.push_back(row);
+        }
+        if (kept.size() != records.size()) rewriteRecords(directory, kept);
     }
-    if (kept.size() != records.size()) rewriteRecords(directory, kept);
-    std::vector<Unit> remaining;
-    for (const Unit& unit : unitsOf(plan)) {
-        const auto found = recorded.find({unit.item->id, unit.process});
-        if (found == recorded.end() || !found->second) remaining.push_back(unit);
-    }
-    return remaining;
+    const auto leftOf = [&](std::vector<Unit> units) {
+        std::erase_if(units, [&](const Unit& unit) {
+            const auto found = recorded.find({unit.item->id, unit.process});
+            return found != recorded.end() && found->second;
+        });
+        return units;
+    };
+    std::vector<Unit> remaining = leftOf(unitsOf(plan));
+    const bool hasTimes = std::ranges::any_of(remaining, [](const Unit& unit) {
+        return unit.item->measure.lane == config::Measure::Lane::Timing;
+    });
+    if (!hasTimes) return remaining;
+    std::vector<Unit> units = leftOf(controlUnitsOf(plan));
+    units.insert(units.end(), remaining.begin(), remaining.end());
+    return units;
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,

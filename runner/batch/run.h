@@ -15,7 +15,8 @@
 
 namespace gfxrepro::batch {
 
-/// The units that have no complete set of `ok` or `flaky` rows yet. Rows of failed units are taken
+/// The units that have no complete set of `ok` or `flaky` rows yet, behind the A/A pair where times
+/// are among them. Rows of failed units are taken
 /// out of records.csv: they are about to be made again.
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 

@@ -233,13 +233,6 @@ class Scheduler {
 
 std::vector<Unit> unitsOf(const Plan& plan) {
     std::vector<Unit> units;
-    const auto timed = std::find_if(plan.cases.begin(), plan.cases.end(), [&](const Case& item) {
-        return item.measure.lane == Lane::Timing && plan.measures(item);
-    });
-    if (timed != plan.cases.end()) {
-        units.push_back({&*timed, report::kFirstControl, {}});
-        units.push_back({&*timed, report::kFirstControl + 1, {}});
-    }
     for (std::size_t first = 0, next; first < plan.cases.size(); first = next) {
         int processes = 0;
         for (next = first; next < plan.cases.size() &&
@@ -256,6 +249,14 @@ std::vector<Unit> unitsOf(const Plan& plan) {
         }
     }
     return units;
+}
+
+std::vector<Unit> controlUnitsOf(const Plan& plan) {
+    const auto timed = std::find_if(plan.cases.begin(), plan.cases.end(), [&](const Case& item) {
+        return item.measure.lane == Lane::Timing && plan.measures(item);
+    });
+    if (timed == plan.cases.end()) return {};
+    return {{&*timed, report::kFirstControl, {}}, {&*timed, report::kFirstControl + 1, {}}};
 }
 
 int measuredCount(const std::vector<Unit>& units) {

@@ -42,10 +42,13 @@ struct RunOutcome {
     std::vector<SceneUse> scenes;
 };
 
-/// The units of a plan, or of its shard, in the order in which they run: the A/A pair (the first case of the timing
-/// lane twice, as processes report::kFirstControl and the next, each in a worker of its own), then
-/// experiment by experiment, process 0 of all its cases, then process 1 of all, …
+/// The units of a plan, or of its shard, in the order in which they run: experiment by experiment,
+/// process 0 of all its cases, then process 1 of all, …
 std::vector<Unit> unitsOf(const Plan& plan);
+
+/// The A/A pair, which runs before them: the first case of the timing lane twice, as processes
+/// report::kFirstControl and the next, each in a worker of its own. None without such a case.
+std::vector<Unit> controlUnitsOf(const Plan& plan);
 
 /// How many are not of the A/A pair.
 int measuredCount(const std::vector<Unit>& units);

@@ -22,10 +22,12 @@ struct Options {
     SceneOptions scene;
     CompareOptions compare;
     SubmitOptions submit;
+    SensitivityOptions sensitivity;
     batch::WorkerOptions worker;
     std::string name;  // of list and describe; a run directory
     std::vector<std::string> shards;
     std::string imageA, imageB, imageOut;
+    std::string out;  // of export
     std::string lane = "quality";
     bool asJson = false;
     std::function<int()> command;
@@ -123,6 +125,14 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     addResult("table", "make a run's tables again from its records", table);
     addResult("claims", "judge a run's claims again", claims);
     addResult("report", "make a run's report.html again", report);
+
+    CLI::App* exportApp =
+        app.add_subcommand("export", "a run as an artifact: results, scripts, licences, checksums");
+    exportApp->add_option("dir", o.name, "run directory")->required();
+    exportApp->add_option("--out", o.out, "folder (default DIR-artifact)");
+    addAssets(exportApp, o.selection.assets);
+    exportApp->callback(
+        [&o] { o.command = [&o] { return exportRun(o.name, o.out, o.selection.assets); }; });
 }
 
 void addCluster(CLI::App& app, const Context& context, Options& o) {
@@ -169,6 +179,21 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
     compareApp->add_option("--history", options.history, "append to this CSV; say its steps");
     addAssets(compareApp, options.assets);
     compareApp->callback([&] { command = [&] { return compare(options); }; });
+}
+
+void addSensitivity(CLI::App& app, const Context& context, Options& o) {
+    SensitivityOptions& s = o.sensitivity;
+    CLI::App* sensitivityApp =
+        app.add_subcommand("sensitivity", "how claims depend on what the paper left open");
+    sensitivityApp->add_option("names", s.selection.names, "PAPER/TABLE or config files")
+        ->required();
+    addSelection(sensitivityApp, s.selection);
+    s.selection.profile = "quick";
+    sensitivityApp->add_option("--points", s.points, "values of a range of numbers (default 3)")
+        ->check(CLI::Range(2, 100));
+    sensitivityApp->add_option("--out", s.out, "folder (default runs/<time>-sensitivity)");
+    sensitivityApp->callback(
+        [&] { o.command = [&] { return sensitivity(context, o.sensitivity); }; });
 }
 
 void addTools(CLI::App& app, const Context& context, Options& o) {
@@ -274,6 +299,7 @@ int runCommand(int argc, const char* const* argv,
     addQueries(app, context, options);
     addRuns(app, context, options);
     addCluster(app, context, options);
+    addSensitivity(app, context, options);
     addTools(app, context, options);
     addCompare(app, options.compare, options.command);
     if (argc < 2) throw UsageError("no command; see 'gfxrepro --help'");

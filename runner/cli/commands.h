@@ -79,6 +79,13 @@ struct CompareOptions {
     std::string history;  // CSV file that a night is appended to; empty: none
 };
 
+/// Tables, measured once for each value of their assumptions.
+struct SensitivityOptions {
+    Selection selection;
+    int points = 3;   // of a range of numbers
+    std::string out;  // folder of the summaries and of the runs
+};
+
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
 int describe(const Context& context, const std::string& name, const std::string& assets);
@@ -93,6 +100,9 @@ int report(const std::string& runDir);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);
 int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
+int sensitivity(const Context& context, const SensitivityOptions& options);
+/// To `out`, or DIR-artifact.
+int exportRun(const std::string& runDir, const std::string& out, const std::string& assets);
 int imageDiff(const std::string& a, const std::string& b, const std::string& out);
 int scene(const SceneOptions& options);
 

@@ -161,7 +161,8 @@ SceneSource readSource(const Node& node, bool isGenerated) {
 
 SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
     const Node root = config::parseYamlFile(path);
-    requireKeys(root, "scene entry", {"scene", "doc", "canonical", "generated", "sources"});
+    requireKeys(root, "scene entry",
+                {"scene", "doc", "canonical", "licence", "generated", "sources"});
     SceneEntry entry;
     entry.path = path;
     const Node& name = required(root, "scene entry", "scene");
@@ -172,6 +173,7 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
     }
     entry.doc = required(root, "scene entry", "doc").text();
     if (const Node* canonical = root.find("canonical")) entry.canonical = canonical->text();
+    if (const Node* licence = root.find("licence")) entry.licence = licence->text();
     const Node* generated = root.find("generated");
     const bool isGenerated = generated && generated->asBool();
     const Node& sources = required(root, "scene entry", "sources");

@@ -41,6 +41,7 @@ struct SceneEntry {
     std::string name;  // "models/dragon" = configs/scenes/models/dragon.yaml
     std::string doc;
     std::string canonical;  // where a user gets the real thing; may be empty
+    std::string licence;    // its terms, in words; may be empty
     std::vector<SceneSource> sources;
     std::filesystem::path path;
 };

@@ -145,7 +145,7 @@ TEST(Catalog, RefusesBadEntries) {
               "DIR/scenes/m/x.yaml:1:8: scene is 'm/z', but the file's place names it 'm/x'");
     EXPECT_EQ(f.errorOf("scene: m/x\nsource: []\n"),
               "DIR/scenes/m/x.yaml:2:1: scene entry: unknown key 'source'; did you mean 'sources'? "
-              "(allowed: scene, doc, canonical, generated, sources)");
+              "(allowed: scene, doc, canonical, licence, generated, sources)");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\n"),
               "DIR/scenes/m/x.yaml:1:1: scene entry: 'sources' is missing");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: []\n"),

@@ -1,0 +1,191 @@
+#include "runner/batch/artifact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "runner/batch/predictions.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/report/markup.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto kRecursive = fs::copy_options::recursive | fs::copy_options::overwrite_existing;
+
+std::uintmax_t sizeOf(const fs::path& path) {
+    if (!fs::exists(path)) return 0;
+    if (fs::is_regular_file(path)) return fs::file_size(path);
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(path)) {
+        if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    return bytes;
+}
+
+void copyResults(const fs::path& runDir, const fs::path& target) {
+    for (const char* name : {"plan.json", "manifest.json", "records.csv", "claims.csv", "junit.xml",
+                             "report.html", "log.jsonl", "tables", "images", "artifacts"}) {
+        if (fs::exists(runDir / name)) fs::copy(runDir / name, target / name, kRecursive);
+    }
+}
+
+/// Every number and text of a JSON object, a line each: "gl.vendor: Mesa".
+std::string flatText(const Json& object, const std::string& prefix) {
+    std::string text;
+    for (const auto& [key, value] : object.items()) {
+        if (value.is_object()) {
+            text += flatText(value, prefix + key + '.');
+        } else if (!value.is_array()) {
+            text +=
+                prefix + key + ": " + (value.is_string() ? value.get<std::string>() : value.dump());
+            text += '\n';
+        }
+    }
+    return text;
+}
+
+std::string environmentText(Json manifest) {
+    manifest.erase("scenes");
+    return flatText(manifest, "");
+}
+
+std::string assetsText(const Json& manifest, const scene::Catalog& catalog) {
+    using report::escapeMarkdown;
+    std::string text =
+        "# Scenes\nWhat was loaded. Generated scenes and stand-ins of generators come with the "
+        "program, under its licence (Apache-2.0).\n\n| scene | kind | what | SHA-256 | licence | "
+        "where to get it |\n| --- | --- | --- | --- | --- | --- |\n";
+    for (const auto& [name, use] : manifest.at("scenes").items()) {
+        const std::string sha256 = use.at("sha256").get<std::string>();
+        std::string licence = sha256.empty() ? "Apache-2.0" : "not recorded", where;
+        const auto entry = catalog.entries().find(name);
+        if (entry != catalog.entries().end() && !sha256.empty()) {
+            if (!entry->second.licence.empty()) licence = entry->second.licence;
+            where = entry->second.canonical;
+        }
+        text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", escapeMarkdown(name),
+                            use.at("kind").get<std::string>(),
+                            escapeMarkdown(use.at("description").get<std::string>()), sha256,
+                            escapeMarkdown(licence), escapeMarkdown(where));
+    }
+    return text;
+}
+
+std::string quoted(const std::string& word) {
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+/// configs/<folder>/<file> of an experiment.
+fs::path configPlace(const config::Experiment& experiment) {
+    return fs::path("configs") / experiment.file.parent_path().filename() /
+           experiment.file.filename();
+}
+
+std::string scriptText(const Plan& plan, const config::Experiment& experiment) {
+    std::string command = "reproduce " + quoted(configPlace(experiment).string()) + " --profile " +
+                          plan.profile + " --device " + plan.request.device;
+    for (const std::string& set : plan.request.sets) command += " --set " + quoted(set);
+    for (const std::string& sweep : plan.request.sweeps) command += " --sweep " + quoted(sweep);
+    return fmt::format(
+        "#!/bin/sh\n# {}: {}\nset -e\ncd \"$(dirname \"$0\")/..\"\n"
+        "exec \"${{GFXREPRO:-gfxrepro}}\" {} --out again/{}\n",
+        experiment.label(), experiment.title, command, experiment.slug());
+}
+
+void writeScripts(const Plan& plan, const fs::path& target) {
+    const fs::path configs = dataFolder("configs");
+    for (const char* folder : {"presets", "scenes"}) {
+        if (fs::exists(configs / folder)) {
+            fs::create_directories(target / "configs");
+            fs::copy(configs / folder, target / "configs" / folder, kRecursive);
+        }
+    }
+    for (const config::Experiment& experiment : plan.experiments) {
+        const fs::path place = target / configPlace(experiment);
+        fs::create_directories(place.parent_path());
+        fs::copy(experiment.file, place, kRecursive);
+        const fs::path script = target / "scripts" / (experiment.slug() + ".sh");
+        writeFileAtomic(script, scriptText(plan, experiment));
+        fs::permissions(script, fs::perms::owner_all | fs::perms::group_read |
+                                    fs::perms::group_exec | fs::perms::others_read |
+                                    fs::perms::others_exec);
+    }
+}
+
+/// Minutes that the cases of each experiment took, one after another.
+std::map<std::string, double> minutesOf(const fs::path& runDir) {
+    std::map<std::string, double> minutes;
+    for (const PastCase& past : readPastCases(runDir)) {
+        const Cost& cost = past.cost;
+        minutes[past.item.experiment] += cost.totalS() * past.item.measure.processes / 60.0;
+    }
+    return minutes;
+}
+
+std::string readmeText(const fs::path& runDir, const StoredRun& run) {
+    std::map<std::string, double> minutes = minutesOf(runDir);
+    const report::ReportContext context = reportContext(run.manifest);
+    std::string text = fmt::format(
+        "# Measured by gfxrepro {}\nProfile {}, on {}.\n\n"
+        "`report.html` shows all; `tables/` and `claims.csv` are what it shows, made from "
+        "`records.csv`. `environment.txt` says with what and on what it was measured, `ASSETS.md` "
+        "which models and their terms, `SHA256SUMS` that nothing changed since. `scripts/` "
+        "measures "
+        "each table again: `scripts/NAME.sh`, with the program on the path or named by "
+        "`GFXREPRO`, of the same commit for the same bytes.\n\n| table | script | minutes | MiB of "
+        "results |\n| --- | --- | ---: | ---: |\n",
+        context.commit, context.profile, report::escapeMarkdown(context.device));
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        const std::string slug = experiment.slug();
+        std::uintmax_t bytes = 0;
+        for (const fs::path& part :
+             {fs::path("images") / slug, fs::path("artifacts") / slug,
+              fs::path("tables") / (slug + ".csv"), fs::path("tables") / (slug + ".md"),
+              fs::path("tables") / (slug + ".tex")}) {
+            bytes += sizeOf(runDir / part);
+        }
+        text += fmt::format("| {}: {} | scripts/{}.sh | {:.1f} | {:.1f} |\n", experiment.label(),
+                            report::escapeMarkdown(experiment.title), slug, minutes[experiment.id],
+                            static_cast<double>(bytes) / (1 << 20));
+    }
+    return text;
+}
+
+std::string checksums(const fs::path& target) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(target)) {
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    std::string text;
+    for (const fs::path& file : files) {
+        text += sha256OfFile(file) + "  " + fs::relative(file, target).string() + '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+void writeArtifact(const fs::path& runDir, const StoredRun& run, const scene::Catalog& catalog,
+                   const fs::path& target) {
+    if (fs::exists(target))
+        throw Error(target.string() + ": is there already; give another folder");
+    writeResults(runDir, run, {});
+    writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
+    copyResults(runDir, target);
+    writeFileAtomic(target / "ASSETS.md", assetsText(run.manifest, catalog));
+    writeScripts(run.plan, target);
+    writeFileAtomic(target / "README.md", readmeText(runDir, run));
+    writeFileAtomic(target / "SHA256SUMS", checksums(target));
+}
+
+}  // namespace gfxrepro::batch

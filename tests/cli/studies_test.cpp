@@ -1,0 +1,70 @@
+// What is made of runs for others: how claims depend on assumptions, and artifacts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const char* const kClaim =
+    "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
+    "layout:\n  rows: behaviour\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n"
+    "claims:\n  small: {says: the number is small, bound: n, below: 6}\n"
+    "  any: {says: the number is there, bound: n, above: -1}\n"
+    "assumptions:\n  number: {value: 3, range: [0, 10], why: left open}\n"
+    "  scene: {value: none, range: any, why: left open}\n";
+
+TEST(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, kClaim);
+    const std::string out = folder.path() / "out";
+    const std::vector<std::string> command = {"sensitivity", config, "--device", "software",
+                                              "--profile",   "full", "--out",    out};
+    const ProcessResult run = mockGfxrepro(command);
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(run.out,
+              "sweep/mock small: holds as configured, else only if number is 0 or 5 (flips between "
+              "5 and 10, near 6)\nsweep/mock any: holds under all 4\n" +
+                  out + "/sweep-mock/sensitivity.md\n");
+    EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.csv"),
+                HasSubstr("number,10,small,fails,10,"));
+    EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.md"),
+                HasSubstr("- scene: no parameter of the technique\n"));
+    // Again: the runs are there and only read.
+    EXPECT_EQ(mockGfxrepro(command).out, run.out);
+}
+
+TEST(Export, AnArtifactCanBeMeasuredAgain) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, kClaim);
+    const std::string dir = folder.path() / "run", artifact = folder.path() / "artifact";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    const ProcessResult result = mockGfxrepro({"export", dir, "--out", artifact});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.out, artifact + "\n");
+    for (const char* name : {"plan.json", "records.csv", "claims.csv", "report.html", "ASSETS.md",
+                             "environment.txt", "tables/sweep-mock.csv"}) {
+        EXPECT_TRUE(fs::exists(fs::path(artifact) / name)) << name;
+    }
+    EXPECT_THAT(readFile(artifact + "/environment.txt"), HasSubstr("gl.renderer: llvmpipe"));
+    EXPECT_THAT(readFile(artifact + "/README.md"), HasSubstr("| scripts/sweep-mock.sh | 0.0 | "));
+    EXPECT_EQ(
+        runProgram({"/bin/sh", "-c", "cd " + artifact + " && sha256sum --quiet -c SHA256SUMS"})
+            .exitCode,
+        0);
+    const ProcessResult again = runProgram({artifact + "/scripts/sweep-mock.sh"},
+                                           {std::string("GFXREPRO=") + GFXREPRO_MOCK_PROGRAM});
+    EXPECT_EQ(again.exitCode, 0) << again.err;
+    EXPECT_EQ(readFile(artifact + "/again/sweep-mock/tables/sweep-mock.csv"),
+              readFile(artifact + "/tables/sweep-mock.csv"));
+    EXPECT_EQ(mockGfxrepro({"export", dir, "--out", artifact}).err,
+              "gfxrepro: " + artifact + ": is there already; give another folder\n");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
