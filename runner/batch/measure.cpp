@@ -1,8 +1,11 @@
 #include "runner/batch/measure.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
+#include "runner/batch/equal_work.h"
 #include "runner/batch/process_memory.h"
 #include "runner/batch/recorder.h"
 
@@ -86,14 +89,66 @@ void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
                     "byte", "");
 }
 
+bool isTimeOfFrame(const std::string& metric) {
+    return metric == "wall_time_ms" || metric == "frame_rate" || metric == "gpu_time_ms" ||
+           metric == "cpu_time_ms";
+}
+
+/// What tells whether the repeats of a frame did the same; recorded beside their times.
+class WorkGuard {
+  public:
+    WorkGuard(const gl::Device& device, bool isTiming)
+        : isTiming_(isTiming),
+          query_(isTiming && device.hasExtension("GL_ARB_pipeline_statistics_query")) {}
+
+    void beginFrame() { repeats_.clear(); }
+    void beginRepeat() const { query_.begin(); }
+    /// After the clock has stopped.
+    void endRepeat(const technique::Technique& technique, RunRecorder& recorder) {
+        query_.end();
+        if (!isTiming_) return;
+        RepeatWork work;
+        work.counts = query_.result();
+        if (work.counts) {
+            const gl::Work& counts = *work.counts;
+            recorder.metric("primitives", static_cast<double>(counts.primitives), "primitive", "");
+            recorder.metric("fragments", static_cast<double>(counts.fragments), "fragment", "");
+            recorder.metric("compute_invocations", static_cast<double>(counts.invocations), "1",
+                            "");
+        }
+        if (const gl::Texture* image = technique.frameImage()) {
+            work.image = ImageDigest::of(image->readImage(4));
+            recorder.metric("image_digest", work.image->hash, "1", "");
+        }
+        repeats_.push_back(std::move(work));
+    }
+    /// Voids the times among the samples from `first` on where the repeats were not alike.
+    void endFrame(int frame, std::size_t first, CaseResult& result) const {
+        const std::string why = whyUnequal(repeats_);
+        if (why.empty()) return;
+        if (result.voidReason.empty()) result.voidReason = fmt::format("frame {}: {}", frame, why);
+        for (std::size_t i = first; i < result.samples.size(); ++i) {
+            result.samples[i].isVoid = isTimeOfFrame(result.samples[i].metric);
+        }
+    }
+
+  private:
+    bool isTiming_;
+    gl::WorkQuery query_;
+    std::vector<RepeatWork> repeats_;
+};
+
 /// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is recorded.
 void renderAndRecord(const Case& item, technique::Technique& technique, gl::Profiler& profiler,
-                     const MeasureContext& context, RunRecorder& recorder, Cost& cost) {
+                     const MeasureContext& context, RunRecorder& recorder, CaseResult& result) {
     const int frames = item.measure.frames;
+    WorkGuard guard(context.device, item.measure.lane == config::Measure::Lane::Timing);
     for (int frame = 0; frame < frames; ++frame) {
         technique::FrameContext frameContext{frame, frames, profiler};
+        const std::size_t firstSample = result.samples.size();
+        guard.beginFrame();
         {
-            const PhaseScope phase(context, "render", cost.renderS);
+            const PhaseScope phase(context, "render", result.cost.renderS);
             for (int i = 0; frame == 0 && i < item.measure.warmup; ++i) {
                 technique.render(frameContext);
                 context.device.finish("warming up");
@@ -101,6 +156,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
             }
             for (int repeat = 0; repeat < item.measure.repeats; ++repeat) {
                 recorder.setIteration(frame, repeat);
+                guard.beginRepeat();
                 const Clock::time_point begin = Clock::now();
                 technique.render(frameContext);
                 context.device.finish("rendering");
@@ -108,9 +164,11 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
                 recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
                 recorder.metric("frame_rate", 1000.0 / wallTimeMs, "1/s", "");
                 recordPasses(profiler, recorder);
+                guard.endRepeat(technique, recorder);
             }
         }
-        const PhaseScope phase(context, "record", cost.recordS);
+        guard.endFrame(frame, firstSample, result);
+        const PhaseScope phase(context, "record", result.cost.recordS);
         recorder.setIteration(frame, 0);
         technique.record(recorder);
         context.device.finish("recording");
@@ -154,7 +212,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
         recordPasses(profiler, recorder);
     }
-    renderAndRecord(item, *technique, profiler, context, recorder, result.cost);
+    renderAndRecord(item, *technique, profiler, context, recorder, result);
     recorder.setIteration(0, 0);
     result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
     if (scene) recordMemory(context, *scene, recorder);

@@ -24,10 +24,12 @@ struct MeasureContext {
 };
 
 /// Constructor → load → set-up → warm-ups → frames × repeats → record. Beside the technique's own
-/// metrics it gives wall_time_ms, setup_time_ms, gpu_time_ms and cpu_time_ms a pass, and for a case
-/// with a scene load_time_ms, triangles, vertices, scene_source, peak_memory_bytes (highest
-/// resident size from loading to recording, less what other cached scenes hold) and
-/// baseline_memory_bytes. Throws what the technique throws.
+/// metrics it gives wall_time_ms, setup_time_ms, gpu_time_ms and cpu_time_ms a pass; in the timing
+/// lane, for each repeat, primitives, fragments, compute_invocations and image_digest, and the
+/// times of repeats that did not do the same are void (equal_work.h); for a case with a scene
+/// load_time_ms, triangles, vertices, scene_source, peak_memory_bytes (highest resident size from
+/// loading to recording, less what other cached scenes hold) and baseline_memory_bytes. Throws what
+/// the technique throws.
 CaseResult measureCase(const Case& item, MeasureContext& context);
 
 }  // namespace gfxrepro::batch

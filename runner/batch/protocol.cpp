@@ -47,12 +47,13 @@ Cost costFromJson(const Json& json) {
 Json toJson(const CaseResult& result) {
     Json json = {{"status", report::statusName(result.status)},
                  {"message", result.message},
+                 {"void", result.voidReason},
                  {"cost", toJson(result.cost)},
                  {"samples", Json::array()},
                  {"images", Json::array()},
                  {"scenes", Json::array()}};
     for (const Sample& s : result.samples) {
-        json["samples"].push_back({s.frame, s.repeat, s.pass, s.metric, s.unit, s.value});
+        json["samples"].push_back({s.frame, s.repeat, s.pass, s.metric, s.unit, s.value, s.isVoid});
     }
     for (const report::ImageEntry& i : result.images) {
         json["images"].push_back({i.caseId, i.table, i.frame, i.name, i.png, i.exr, i.title});
@@ -67,9 +68,10 @@ CaseResult caseResultFromJson(const Json& json) {
     CaseResult result;
     result.status = report::statusFromName(json.at("status").get<std::string>());
     json.at("message").get_to(result.message);
+    json.at("void").get_to(result.voidReason);
     result.cost = costFromJson(json.at("cost"));
     for (const Json& s : json.at("samples")) {
-        result.samples.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5)});
+        result.samples.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5), s.at(6)});
     }
     for (const Json& i : json.at("images")) {
         result.images.push_back({i.at(0), i.at(1), i.at(2), i.at(3), i.at(4), i.at(5), i.at(6)});

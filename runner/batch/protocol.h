@@ -26,6 +26,9 @@ struct Sample {
     std::string metric;
     std::string unit;
     double value = 0.0;
+    /// A time of work that the other repeats did not do, or of a blank picture: CaseResult's
+    /// `voidReason` says why.
+    bool isVoid = false;
 };
 
 /// A scene that a case used.
@@ -51,6 +54,7 @@ struct Cost {
 struct CaseResult {
     report::Status status = report::Status::Ok;
     std::string message;
+    std::string voidReason;  // of the void samples
     std::vector<Sample> samples;
     std::vector<report::ImageEntry> images;
     std::vector<SceneUse> scenes;

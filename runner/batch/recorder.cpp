@@ -33,7 +33,7 @@ void RunRecorder::metric(std::string_view metric, double value, std::string_view
                     "; a metric is a finite number");
     }
     result_.samples.push_back(
-        {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value});
+        {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value, false});
 }
 
 void RunRecorder::image(std::string_view name, const image::ImageF& image) {

@@ -123,7 +123,7 @@ class Scheduler {
 
     void start(const Unit& unit) {
         const Lane lane = unit.item->measure.lane;
-        const bool needsOwn = unit.item->measure.processes > 1 || unit.firstTry;
+        const bool needsOwn = unit.item->measure.processes > 1 || unit.isControl() || unit.firstTry;
         // Nothing beside a timing unit, and no memory held by the other lane.
         std::erase_if(workers_, [&](auto& w) {
             return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && needsOwn));
@@ -195,10 +195,14 @@ class Scheduler {
 
     /// Images first: a unit whose rows are there is complete.
     void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
-        if (!result.images.empty()) report::appendImages(directory_.path(), result.images);
+        if (!result.images.empty() && !unit.isControl())
+            report::appendImages(directory_.path(), result.images);
         records_.append(recordsOf(unit, result));
         logCase("case", unit, result, output);
-        count(*unit.item, result.status);
+        if (!unit.isControl()) {
+            count(*unit.item, result.status);
+            outcome_.voided += result.voidReason.empty() ? 0 : 1;
+        }
         outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
         observer_.unitEnded(unit, result.status, result.message);
     }
@@ -229,6 +233,13 @@ class Scheduler {
 
 std::vector<Unit> unitsOf(const Plan& plan) {
     std::vector<Unit> units;
+    const auto timed = std::find_if(plan.cases.begin(), plan.cases.end(), [&](const Case& item) {
+        return item.measure.lane == Lane::Timing && plan.measures(item);
+    });
+    if (timed != plan.cases.end()) {
+        units.push_back({&*timed, report::kFirstControl, {}});
+        units.push_back({&*timed, report::kFirstControl + 1, {}});
+    }
     for (std::size_t first = 0, next; first < plan.cases.size(); first = next) {
         int processes = 0;
         for (next = first; next < plan.cases.size() &&
@@ -245,6 +256,11 @@ std::vector<Unit> unitsOf(const Plan& plan) {
         }
     }
     return units;
+}
+
+int measuredCount(const std::vector<Unit>& units) {
+    return static_cast<int>(
+        std::count_if(units.begin(), units.end(), [](const Unit& u) { return !u.isControl(); }));
 }
 
 std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lane,
@@ -304,6 +320,10 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
         row.unit = sample.unit;
         row.value = sample.value;
         rows.push_back(row);
+        if (sample.isVoid) {
+            rows.back().status = report::Status::Ambiguous;
+            rows.back().message = result.voidReason;
+        }
     }
     return rows;
 }

@@ -34,6 +34,7 @@ struct SchedulerOptions {
 struct RunOutcome {
     int finished = 0;  // units that ended `ok` or `flaky`
     int flaky = 0;     // of these
+    int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others, but for those that were expected
     int expected = 0;  // that failed or were skipped as a list of expectations says
     std::vector<std::string> complaints;  // about expectations
@@ -41,9 +42,13 @@ struct RunOutcome {
     std::vector<SceneUse> scenes;
 };
 
-/// The units of a plan, or of its shard, in the order in which they run: experiment by experiment,
-/// process 0 of all its cases, then process 1 of all, …
+/// The units of a plan, or of its shard, in the order in which they run: the A/A pair (the first
+/// case of the timing lane twice, as processes report::kFirstControl and the next, each in a worker
+/// of its own), then experiment by experiment, process 0 of all its cases, then process 1 of all, …
 std::vector<Unit> unitsOf(const Plan& plan);
+
+/// How many are not of the A/A pair.
+int measuredCount(const std::vector<Unit>& units);
 
 /// The command of a worker process: this program, with `worker` and the options.
 std::vector<std::string> workerCommand(const SchedulerOptions& options, config::Measure::Lane lane,

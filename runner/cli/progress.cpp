@@ -17,6 +17,7 @@ constexpr std::chrono::milliseconds kDrawInterval{100};
 
 std::string titleOf(const batch::Unit& unit) {
     std::string title = unit.item->title();
+    if (unit.isControl()) return title + " (A/A pair)";
     if (unit.item->measure.processes > 1) {
         title += fmt::format(" process {}/{}", unit.process + 1, unit.item->measure.processes);
     }

@@ -171,16 +171,17 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         return kExitInterrupted;
     }
     for (const std::string& line : outcome.complaints) fmt::print(stderr, "{}\n", line);
-    fmt::print("{} of {} finished{}{}{}; records: {}\n", outcome.finished, units.size(),
-               countText(outcome.flaky, "flaky"), countText(outcome.failed, "failed"),
+    fmt::print("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished,
+               batch::measuredCount(units), countText(outcome.flaky, "flaky"),
+               countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
-    if (!results) return outcome.failed > 0 ? kExitIncomplete : kExitOk;
+    if (!results) return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 
     const int verdict = conclude(path);
     saveManifest(context, run, phases);
     if (verdict != kExitOk) return verdict;
-    return outcome.failed > 0 ? kExitIncomplete : kExitOk;
+    return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 }
 
 void requireUsable(const RunOptions& options) {

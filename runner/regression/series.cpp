@@ -33,14 +33,22 @@ std::string SeriesKey::title() const {
     return text;
 }
 
+namespace {
+/// Memory of the process, and what rounding and the order of parallel work change.
+bool isOfTheMachine(const std::string& metric) {
+    return metric == "peak_memory_bytes" || metric == "baseline_memory_bytes" ||
+           metric == "image_digest" || metric == "fragments";
+}
+}  // namespace
+
 SeriesMap seriesOf(const std::vector<report::Record>& records) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
     for (const report::Record& record : records) {
-        if (record.status != report::Status::Ok) continue;
+        if (record.status != report::Status::Ok || record.isControl()) continue;
         const SeriesKey key{record.table,  record.technique, record.method, record.scene,
                             record.params, record.pass,      record.metric, record.unit};
         if ((key.isTime() || key.isRate()) && record.lane != "timing") continue;
-        if (record.metric.starts_with("host_memory")) continue;
+        if (isOfTheMachine(record.metric)) continue;
         gathered[key][record.process][record.frame].push_back(record.value);
     }
     SeriesMap series;

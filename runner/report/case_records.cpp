@@ -81,7 +81,7 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
     std::vector<CaseRecords> cases;
     std::unordered_map<std::string_view, std::size_t> indices;
     for (const Record& record : records) {
-        if (record.table != table) continue;
+        if (record.table != table || record.isControl()) continue;
         const auto [found, isNew] = indices.try_emplace(record.caseId, cases.size());
         if (isNew) cases.push_back({record.caseId, axesOf(record, axes), {}});
         CaseRecords::Attempt& attempt = cases[found->second].processes[record.process];

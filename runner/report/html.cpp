@@ -131,7 +131,7 @@ std::vector<ReportSection::Failure> failuresOf(const std::string& table,
     std::map<std::pair<std::string, int>, const Record*> last;
     std::vector<std::pair<std::string, int>> order;
     for (const Record& record : records) {
-        if (record.table != table) continue;
+        if (record.table != table || record.isControl()) continue;
         const auto key = std::make_pair(record.caseId, record.process);
         if (!last.contains(key)) order.push_back(key);
         last[key] = &record;

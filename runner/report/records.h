@@ -25,6 +25,10 @@ std::string_view statusName(Status status);
 /// Throws Error for a name that is none.
 Status statusFromName(std::string_view name);
 
+/// Processes −2 and −1 are the A/A pair: a case measured twice for nothing but to see by how much
+/// two equal measurements of this run differ. They enter no cell.
+inline constexpr int kFirstControl = -2;
+
 /// A row of records.csv. Columns in this order, schema version first.
 struct Record {
     static constexpr int kSchema = 1;
@@ -46,6 +50,7 @@ struct Record {
     Status status = Status::Ok;
     std::string message;
 
+    bool isControl() const { return process < 0; }
     bool operator==(const Record&) const = default;
 };
 

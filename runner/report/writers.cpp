@@ -5,6 +5,7 @@
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/report/control_pair.h"
 #include "runner/report/csv.h"
 #include "runner/report/markup.h"
 #include "runner/report/report.h"
@@ -202,9 +203,14 @@ std::string junitXml(const std::vector<ClaimResult>& results) {
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                const std::vector<Record>& records) {
+    const std::vector<std::string> controls = controlNotes(records);
     std::vector<Table> tables;
     for (const config::Experiment& experiment : experiments) {
         tables.push_back(buildTable(experiment, records));
+        if (experiment.measure.lane == config::Measure::Lane::Timing) {
+            std::vector<std::string>& notes = tables.back().notes;
+            notes.insert(notes.end(), controls.begin(), controls.end());
+        }
     }
     return tables;
 }

@@ -13,6 +13,7 @@
 
 #include "runner/config/params.h"
 #include "runner/gl/device.h"
+#include "runner/gl/objects.h"
 #include "runner/gl/profiler.h"
 #include "runner/gl/program.h"
 #include "runner/image/exr_io.h"
@@ -73,6 +74,9 @@ class Technique {
     /// The passes in the paper's order, each in a GpuScope or CpuScope with the paper's step name.
     virtual void render(FrameContext& context) = 0;
     virtual void record(Recorder& recorder) = 0;
+    /// The 2D colour texture (floating point or normalized) that render() left, if there is one: a
+    /// blank picture, or one that changes between repeats of a frame, voids their times.
+    virtual const gl::Texture* frameImage() const { return nullptr; }
 };
 
 struct TechniqueInfo {

@@ -19,6 +19,9 @@ class ClusteredReflections final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override {
+        return composite_ ? &composite_->output() : nullptr;
+    }
 
   private:
     /// What Embree says of the last frame; with the picture that it makes of it.

@@ -60,6 +60,7 @@ class PointSplatting final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override { return &output(); }
 
   private:
     /// The scene's points, or points of its surface.

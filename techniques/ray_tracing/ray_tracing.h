@@ -40,6 +40,9 @@ class RayTracing final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override {
+        return composite_ ? &composite_->output() : nullptr;
+    }
 
   private:
     void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer);

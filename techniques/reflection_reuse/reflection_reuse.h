@@ -19,6 +19,9 @@ class ReflectionReuse final : public technique::Technique {
     /// Frames are consecutive. One that is rendered again starts from what was there before it.
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override {
+        return composite_ ? &composite_->output() : nullptr;
+    }
 
   private:
     /// Frames of `method: ray_traced`.

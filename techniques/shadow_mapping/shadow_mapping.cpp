@@ -22,6 +22,12 @@ void ShadowMapping::setup(technique::SetupContext& context) {
 
     drawable_.emplace(scene);
     maps_.emplace(context.shaders, params_.maps);
+    if (params_.drawsYardstick) {
+        ShadowMapSettings depthAlone;
+        depthAlone.sizePx = params_.maps.sizePx;
+        depthAlone.format = params_.maps.format;
+        yardstick_.emplace(context.shaders, depthAlone);
+    }
     shadedView_.emplace(context.shaders, params_.maps);
     const glm::vec2 size(context.outputSizePx);
     const scene::Camera camera = scene.cameras.empty()
@@ -37,6 +43,10 @@ void ShadowMapping::render(technique::FrameContext& context) {
     if (!params_.isStatic) {
         const gl::GpuScope scope(context.profiler, "depth_pass");
         maps_->render(*drawable_, lights_);
+    }
+    if (yardstick_) {
+        const gl::GpuScope scope(context.profiler, "yardstick_pass");
+        yardstick_->render(*drawable_, lights_);
     }
     const gl::GpuScope scope(context.profiler, "shading_pass");
     shadedView_->render(*drawable_, *maps_, *image_);

@@ -31,6 +31,7 @@ struct ShadowMappingParams {
     bool measuresErrors = false;
     float edgeTexels = 1.5F;
     bool comparesMethods = false;
+    bool drawsYardstick = false;
     bool showsPictures = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
@@ -59,6 +60,7 @@ class ShadowMapping final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override { return &image_->colour; }
 
   private:
     void recordSteps(technique::Recorder& recorder) const;
@@ -72,6 +74,7 @@ class ShadowMapping final : public technique::Technique {
     std::vector<Light> lights_;
     int lightsWithoutCaster_ = 0;
     std::optional<ShadowMapRenderer> maps_;
+    std::optional<ShadowMapRenderer> yardstick_;  // depth alone, no bias
     std::optional<ShadedView> shadedView_;
     std::optional<ShadedImage> image_;
 };

@@ -80,6 +80,7 @@ void refuseUnread(const config::Params& params, FilterKind filter, const ShadowM
     if (p.lightKind == LightKind::Directional) {
         params.refuseGiven({"light_distance"}, "'light_kind: spot' or 'light_kind: point'");
     }
+    if (p.isStatic) params.refuseGiven({"yardstick"}, "'static: false'");
     if (!p.measuresErrors) params.refuseGiven({"edge_texels"}, "'errors: true'");
     if (filter == FilterKind::Variance) {
         if (p.maps.storage == Storage::Hardware) {
@@ -124,6 +125,9 @@ ShadowMappingParams::ShadowMappingParams(config::Params& params) {
         {"an error so near a true edge, and half the filter, is the edge's", "texels", 0.0, 100.0});
     comparesMethods =
         params.getBool("compare_methods", false, {"compares with the other method's shadows"});
+    drawsYardstick =
+        params.getBool("yardstick", false,
+                       {"draws the maps again, depth alone and without a bias: yardstick_pass"});
     showsPictures = params.getBool("pictures", false, {"the image, the truth, classes of errors"});
     params.finish();
     refuseUnread(params, filter, *this);

@@ -39,7 +39,7 @@ struct ShadowMapSettings {
     Filter filter = Filter::Nearest;
     int sizePx = 1024;                          // of a view; a point light's map is 3 × 2 of them
     DepthFormat format = DepthFormat::Unorm24;  // of the depth test; Hardware: of the map
-    Bias bias;
+    Bias bias = {};
     int blurTexels = 5;  // Variance: odd
 };
 

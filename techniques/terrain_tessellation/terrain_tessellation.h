@@ -51,6 +51,7 @@ class TerrainTessellation final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    const gl::Texture* frameImage() const override { return &target_->colour; }
 
   private:
     /// Colour and depth that the terrain is drawn into.

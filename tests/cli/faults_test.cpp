@@ -95,6 +95,67 @@ TEST(Faults, SideBySideAndInFreshProcesses) {
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 12U);
 }
 
+TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {behaviour: [ok, blank, unequal]}\n"
+                        "measure: {lane: timing, repeats: 3}\n"
+                        "layout:\n  rows: behaviour\n  columns:\n    fps: {metric: frame_rate}\n"
+                        "    n: {metric: number, format: \"{median:.0f}\"}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 4) << run.err;
+    EXPECT_EQ(run.out, "3 of 3 finished, 2 with void times; records: " + dir + "/records.csv\n");
+    std::vector<std::string> messages;
+    for (const report::Record& row : rowsOf(dir, "frame_rate")) {
+        messages.push_back(std::string(report::statusName(row.status)) + ": " + row.message);
+    }
+    const std::string blank =
+        "ambiguous: frame 0: the picture of repeat 0 is blank: all its pixels are the same";
+    const std::string another =
+        "ambiguous: frame 0: the picture of repeat 1 is another than that of repeat 0";
+    EXPECT_THAT(messages, testing::UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank,
+                                                        another, another, another));
+    for (const report::Record& row : rowsOf(dir, "number"))
+        EXPECT_EQ(row.status, report::Status::Ok);
+    EXPECT_EQ(rowsOf(dir, "image_digest").size(), 9U);
+    EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 4);
+    const std::string table = readFile(dir + "/tables/sweep-mock.md");
+    EXPECT_NE(table.find("| blank | ambiguous | 0 |"), std::string::npos) << table;
+    EXPECT_NE(table.find("| unequal | ambiguous | 0 |"), std::string::npos) << table;
+}
+
+TEST(Faults, ATimingRunBeginsWithAnAAPair) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {number: [1, 2]}\n"
+                        "measure: {lane: timing, repeats: 3}\n"
+                        "layout:\n  rows: number\n  columns:\n"
+                        "    n: {metric: number, format: \"{count:.0f}\"}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(run.out, "2 of 2 finished; records: " + dir + "/records.csv\n");
+    std::vector<int> processes;
+    std::vector<std::string> cases;
+    for (const report::Record& row : report::readRecords(dir + "/records.csv")) {
+        if (row.metric != "number") continue;
+        processes.push_back(row.process);
+        cases.push_back(row.caseId);
+    }
+    ASSERT_THAT(processes, ElementsAre(-2, -1, 0, 0));
+    EXPECT_EQ(cases[0], cases[2]);
+    EXPECT_EQ(cases[1], cases[2]);
+    EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    const std::string table = readFile(dir + "/tables/sweep-mock.md");
+    EXPECT_NE(table.find("| 1 | 1 |"), std::string::npos) << table;
+    EXPECT_NE(table.find("A/A pair at the begin of the run"), std::string::npos) << table;
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
+              "0 of 0 finished; records: " + dir + "/records.csv\n");
+}
+
 TEST(Faults, NoSuchDevice) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "");

@@ -1,4 +1,5 @@
 // The program with one technique that fails in every way that a technique can.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -28,7 +29,9 @@ enum class Behaviour {
     DeviceLost,
     NotANumber,
     Leak,
-    Flake
+    Flake,
+    Blank,
+    Unequal
 };
 
 constexpr config::Choice<Behaviour> kBehaviours[] = {
@@ -43,6 +46,8 @@ constexpr config::Choice<Behaviour> kBehaviours[] = {
     {Behaviour::NotANumber, "not_a_number"},
     {Behaviour::Leak, "leak", "64 MiB more every millisecond"},
     {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
+    {Behaviour::Blank, "blank", "shows nothing"},
+    {Behaviour::Unequal, "unequal", "shows something else in every repeat"},
 };
 
 class Mock : public technique::Technique {
@@ -58,6 +63,7 @@ class Mock : public technique::Technique {
 
     void setup(technique::SetupContext&) override {
         memory_.assign(static_cast<std::size_t>(allocateMib_) << 20, 'x');
+        image_ = gl::Texture::make2D(GL_R32F, {8, 8});
     }
 
     void render(technique::FrameContext&) override {
@@ -68,6 +74,13 @@ class Mock : public technique::Technique {
         switch (behaviour_) {
             case Behaviour::Ok:
             case Behaviour::NotANumber:
+                show(1);
+                return;
+            case Behaviour::Blank:
+                show(0);
+                return;
+            case Behaviour::Unequal:
+                show(++shown_);
                 return;
             case Behaviour::Leak:
                 while (true) {
@@ -106,13 +119,24 @@ class Mock : public technique::Technique {
         recorder.image("flat", image::ImageF(4, 4, 3, 0.5F));
     }
 
+    const gl::Texture* frameImage() const override { return &image_; }
+
   private:
+    /// The first `count` pixels are white.
+    void show(std::size_t count) {
+        std::vector<float> pixels(64, 0.0F);
+        std::fill_n(pixels.begin(), count, 1.0F);
+        image_.upload(GL_RED, GL_FLOAT, pixels.data());
+    }
+
     Behaviour behaviour_;
     int number_;
     std::string marker_;
     int pauseMs_;
     int allocateMib_;
     std::vector<char> memory_;
+    gl::Texture image_;
+    std::size_t shown_ = 0;
 };
 
 std::unique_ptr<technique::Technique> create(config::Params& params) {

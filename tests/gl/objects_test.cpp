@@ -3,6 +3,7 @@
 #include <array>
 #include <numeric>
 
+#include "runner/gl/work_query.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
@@ -314,6 +315,43 @@ TEST(ObjectsTest, AnUnknownFormatIsAnError) {
                   Texture::make2D(GL_RGBA, {4, 4});
               }),
               "glTextureStorage: GL_INVALID_ENUM");
+}
+
+TEST_F(GlTest, WorkQueryCountsPrimitivesFragmentsAndInvocations) {
+    const Texture colour = Texture::make2D(GL_RGBA8, {16, 8});
+    const Texture* colours[] = {&colour};
+    const Framebuffer framebuffer(colours);
+    framebuffer.bind();
+    const gl::Program draw = program({{"whole.vert.glsl", kWholeTargetVertexShader},
+                                      {"white.frag.glsl",
+                                       "#version 450 core\nlayout(location = 0) out vec4 c;\n"
+                                       "void main() { c = vec4(1.0); }\n"}});
+    const gl::Program compute = program({{"nothing.comp.glsl",
+                                          "#version 450 core\nlayout(local_size_x = 4) in;\n"
+                                          "layout(std430, binding = 0) buffer B { uint n; };\n"
+                                          "void main() { atomicAdd(n, 1u); }\n"}});
+    const gl::VertexArray none;
+    const Buffer count = Buffer::of(std::vector<unsigned>{0});
+    count.bindStorage(0);
+    const gl::WorkQuery query(device.hasExtension("GL_ARB_pipeline_statistics_query"));
+    const gl::SampleQuery samples;
+    query.begin();
+    samples.begin();  // another query inside is no matter
+    none.bind();
+    draw.use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    samples.end();
+    compute.use();
+    glDispatchCompute(3, 1, 1);
+    query.end();
+    EXPECT_EQ(samples.result(), 2U * 16 * 8);
+    const std::optional<gl::Work> work = query.result();
+    ASSERT_TRUE(work);
+    EXPECT_EQ(work->primitives, 2U);
+    EXPECT_GE(work->fragments, 2U * 16 * 8);
+    EXPECT_EQ(work->invocations, 12U);
+    EXPECT_FALSE(gl::WorkQuery(false).result());
 }
 
 }  // namespace

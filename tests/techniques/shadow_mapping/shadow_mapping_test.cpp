@@ -75,6 +75,23 @@ TEST_F(ShadowMappingTest, AKeptMapIsNotDrawnAgain) {
     EXPECT_EQ(passes_, std::vector<std::string>{"shading_pass"});
 }
 
+TEST_F(ShadowMappingTest, TheYardstickIsOnePassMore) {
+    recorded("{yardstick: true}", &scene_);
+    EXPECT_EQ(passes_, (std::vector<std::string>{"depth_pass", "yardstick_pass", "shading_pass"}));
+}
+
+TEST_F(ShadowMappingTest, VarianceIsWrongAtEdgesOnly) {
+    auto m = recorded(
+                 "{method: standard, filter: variance, shadow_map_size: 128, bias: 0.01, errors: "
+                 "true}",
+                 &scene_)
+                 .metrics;
+    EXPECT_EQ(m["acne_pct"], 0.0);
+    EXPECT_LT(m["leak_pct"], 0.1);
+    EXPECT_GT(m["edge_pct"], 0.0);
+    EXPECT_LT(m["edge_pct"], 5.0);
+}
+
 TEST_F(ShadowMappingTest, DeclaresTheStepsOfTable43) {
     auto standard = recorded("{method: standard, filter: bilinear}", &scene_).metrics;
     EXPECT_EQ(standard["colour_writes/depth_pass"], 1.0);
@@ -106,6 +123,8 @@ TEST_F(ShadowMappingTest, BadInput) {
     EXPECT_EQ(message("{filter: variance}"),
               "case.yaml:1:10: 'filter: variance' needs 'method: standard': moments are colours");
     EXPECT_EQ(message("{light_size: 1}"), "case.yaml:1:14: 'light_size' needs 'filter: pcss'");
+    EXPECT_EQ(message("{static: true, yardstick: true}"),
+              "case.yaml:1:27: 'yardstick' needs 'static: false'");
     scene_.lights = {{.position = {0.0F, 0.7F, 0.0F}}};
     EXPECT_EQ(message("{light_place: scene}"),
               "light 0 at (0.000, 0.700, 0.000) lies inside of geometry: every ray from it meets a "

@@ -3,75 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 #include <string>
 
-#include "runner/core/hash.h"
-#include "runner/scene/generators.h"
-#include "tests/support/support.h"
+#include "tests/unit/scene/catalog/generated_scene.h"
 
 namespace gfxrepro::scene {
 namespace {
 
-Scene generated(const std::string& name, const std::string& yaml, std::uint64_t seed = 1) {
-    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator '" + name + "'");
-    return findGenerator(name, {}).generate(params, seed);
-}
-
 Scene sized(const std::string& name, int triangles, std::uint64_t seed = 1) {
     return generated(name, "{triangles: " + std::to_string(triangles) + "}", seed);
-}
-
-template <class T>
-std::string digestOf(const std::vector<T>& values) {
-    return sha256(std::as_bytes(std::span(values)));
-}
-
-std::string digestOf(const Scene& scene) {
-    std::string digests;
-    for (const Mesh& mesh : scene.meshes) {
-        digests += digestOf(mesh.positions) + digestOf(mesh.normals) + digestOf(mesh.colors) +
-                   digestOf(mesh.triangles);
-    }
-    return sha256(digests);
-}
-
-void expectSoundMesh(const Mesh& mesh) {
-    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
-    ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
-    float largest = 0.0F;
-    float furthestFromUnit = 0.0F;
-    bool areColorsValid = true;
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            const float p = mesh.positions[i][c];
-            largest = std::isfinite(p) ? std::max(largest, std::abs(p)) : HUGE_VALF;
-            const float color = mesh.colors[i][c];
-            areColorsValid &= color >= 0.0F && color <= 1.0F;
-        }
-        const float error = std::abs(glm::length(mesh.normals[i]) - 1.0F);
-        // The negation counts not-a-number.
-        if (!(error <= furthestFromUnit)) furthestFromUnit = error;
-    }
-    EXPECT_LT(largest, 1e4F);
-    EXPECT_LT(furthestFromUnit, 1e-4F);
-    EXPECT_TRUE(areColorsValid);
-
-    std::size_t bad = 0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        ASSERT_LT(std::max({t.x, t.y, t.z}), mesh.positions.size());
-        const glm::vec3 a = mesh.positions[t.x];
-        const glm::vec3 b = mesh.positions[t.y];
-        const glm::vec3 c = mesh.positions[t.z];
-        const glm::vec3 cross = glm::cross(b - a, c - a);
-        const float longest =
-            std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
-        // Twice the area against the longest side's square: a sliver of 1 : 10⁵ is a mistake.
-        bad += !(glm::length(cross) > 1e-5F * longest * longest);
-        // Winding and vertex normals must agree about the outside.
-        bad += !(glm::dot(cross, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) > 0.0F);
-    }
-    EXPECT_EQ(bad, 0U);
 }
 
 struct Case {

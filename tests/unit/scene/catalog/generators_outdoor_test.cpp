@@ -5,38 +5,16 @@
 
 #include <cmath>
 #include <set>
-#include <span>
 #include <string>
 
-#include "runner/core/hash.h"
-#include "runner/scene/generators.h"
 #include "runner/scene/topology.h"
-#include "tests/support/support.h"
+#include "tests/unit/scene/catalog/generated_scene.h"
 
 namespace gfxrepro::scene {
 namespace {
 
-Scene generated(const std::string& generator, const std::string& yaml, std::uint64_t seed = 1) {
-    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator '" + generator + "'");
-    return findGenerator(generator, {}).generate(params, seed);
-}
-
-Scene generated(const std::string& generator, int triangles, std::uint64_t seed = 1) {
+Scene sized(const std::string& generator, int triangles, std::uint64_t seed = 1) {
     return generated(generator, "{triangles: " + std::to_string(triangles) + "}", seed);
-}
-
-template <class T>
-std::string digestOf(const std::vector<T>& values) {
-    return sha256(std::as_bytes(std::span(values)));
-}
-
-std::string digestOf(const Scene& scene) {
-    std::string all;
-    for (const Mesh& mesh : scene.meshes) {
-        all += digestOf(mesh.positions) + digestOf(mesh.normals) + digestOf(mesh.colors) +
-               digestOf(mesh.triangles);
-    }
-    return sha256(all);
 }
 
 const Mesh& meshNamed(const Scene& scene, const std::string& name) {
@@ -81,7 +59,7 @@ struct Wanted {
 class NestOrGrass : public testing::TestWithParam<Wanted> {};
 
 TEST_P(NestOrGrass, IsSoundWithExactlyTheWantedTriangles) {
-    const Scene scene = generated(GetParam().generator, GetParam().triangles, 7);
+    const Scene scene = sized(GetParam().generator, GetParam().triangles, 7);
     EXPECT_EQ(scene.triangleCount(), static_cast<std::size_t>(GetParam().triangles));
     for (const Mesh& mesh : scene.meshes) expectSound(mesh);
     EXPECT_EQ(scene.meshes.size(), scene.materials.size());
@@ -108,7 +86,7 @@ float fillOf(const Scene& scene, const Camera& camera, const glm::vec3& eye) {
 }
 
 TEST_P(NestOrGrass, FillsItsCameraAndStaysInFrontOfReferenceViews) {
-    const Scene scene = generated(GetParam().generator, GetParam().triangles);
+    const Scene scene = sized(GetParam().generator, GetParam().triangles);
     ASSERT_EQ(scene.cameras.size(), 1U);
     const Camera& camera = scene.cameras[0];
     const float fill = fillOf(scene, camera, camera.position);
@@ -143,21 +121,20 @@ TEST(NestAndGrass, DefaultsAreThePrintedCounts) {
 
 TEST(NestAndGrass, SameSeedSameBytes) {
     for (const char* generator : {"bird_nest", "grass"}) {
-        EXPECT_EQ(digestOf(generated(generator, 20'000)), digestOf(generated(generator, 20'000)));
-        EXPECT_NE(digestOf(generated(generator, 20'000)),
-                  digestOf(generated(generator, 20'000, 2)));
+        EXPECT_EQ(digestOf(sized(generator, 20'000)), digestOf(sized(generator, 20'000)));
+        EXPECT_NE(digestOf(sized(generator, 20'000)), digestOf(sized(generator, 20'000, 2)));
     }
 }
 
 TEST(NestAndGrass, SameBytesOnEveryMachine) {
-    EXPECT_EQ(digestOf(generated("bird_nest", 67'000)),
+    EXPECT_EQ(digestOf(sized("bird_nest", 67'000)),
               "976ecd68f3d71ea0eee259caac644d2568c4dff44061370e4c43701ba9a66a89");
-    EXPECT_EQ(digestOf(generated("grass", 56'000)),
+    EXPECT_EQ(digestOf(sized("grass", 56'000)),
               "a92cd5325fbce87abe0be1e117eaf17d327c0a74da9fe1d949ec236016c8acf1");
 }
 
 TEST(BirdNest, PartsAreClosedAndFaceOutwards) {
-    const Scene scene = generated("bird_nest", 67'000);
+    const Scene scene = sized("bird_nest", 67'000);
     for (const Mesh& mesh : scene.meshes) {
         const Topology topology = topologyOf(mesh);
         EXPECT_TRUE(topology.isClosed()) << mesh.name;
@@ -172,12 +149,12 @@ TEST(BirdNest, PartsAreClosedAndFaceOutwards) {
         return topologyOf(meshNamed(of, "twigs")).components;
     };
     EXPECT_EQ(twigs(scene), 974U);
-    EXPECT_GT(twigs(generated("bird_nest", 670'000)), 9U * twigs(scene));
+    EXPECT_GT(twigs(sized("bird_nest", 670'000)), 9U * twigs(scene));
 }
 
 TEST(BirdNest, HoldsAsMuchWoodWhateverTheCount) {
     const auto volumeOf = [](int triangles) {
-        return signedVolume(meshNamed(generated("bird_nest", triangles), "twigs"));
+        return signedVolume(meshNamed(sized("bird_nest", triangles), "twigs"));
     };
     const double reference = volumeOf(67'000);
     EXPECT_NEAR(volumeOf(670'000) / reference, 1.0, 0.05);
@@ -185,7 +162,7 @@ TEST(BirdNest, HoldsAsMuchWoodWhateverTheCount) {
 }
 
 TEST(BirdNest, IsABowlWithRoomForTheEggs) {
-    const Scene scene = generated("bird_nest", 67'000);
+    const Scene scene = sized("bird_nest", 67'000);
     const Mesh& twigs = meshNamed(scene, "twigs");
     std::size_t inside = 0;
     for (const glm::vec3& p : twigs.positions) {
@@ -234,7 +211,7 @@ std::vector<std::size_t> bladeStarts(const Mesh& blades) {
 }
 
 TEST(Grass, EveryBladeStandsOnTheGround) {
-    const Scene scene = generated("grass", 56'000);
+    const Scene scene = sized("grass", 56'000);
     const Mesh& blades = meshNamed(scene, "blades");
     const Mesh& ground = meshNamed(scene, "ground");
     const std::vector<std::size_t> starts = bladeStarts(blades);
@@ -251,8 +228,8 @@ TEST(Grass, EveryBladeStandsOnTheGround) {
 }
 
 TEST(Grass, DensityGrowsOnTheSameGround) {
-    const Scene sparse = generated("grass", 56'000);
-    const Scene dense = generated("grass", 2'048 + 4 * (56'000 - 2'048));
+    const Scene sparse = sized("grass", 56'000);
+    const Scene dense = sized("grass", 2'048 + 4 * (56'000 - 2'048));
     EXPECT_EQ(digestOf(meshNamed(sparse, "ground").positions),
               digestOf(meshNamed(dense, "ground").positions));
     const auto areaOf = [](const Scene& scene) {

@@ -1,0 +1,82 @@
+// Folders that cannot be written to, and disks that are full.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// The mock in a shell, where no file can grow beyond `blocks` of 512 bytes: what a full disk looks
+/// like to a program that outlives the signal.
+ProcessResult mockWithFullDisk(const std::string& arguments, int blocks) {
+    return runProgram({"/bin/sh", "-c",
+                       "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec " +
+                           GFXREPRO_MOCK_PROGRAM + " " + arguments});
+}
+
+TEST(Disk, AFullDiskLosesNothingMeasured) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder,
+        "sweep:\n  number: {range: [1, 40]}\n"
+        "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n");
+    const std::string whole = folder.path() / "whole", full = folder.path() / "full";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
+    // The plan fits, the records of 40 cases do not.
+    const auto planBlocks = static_cast<int>(fs::file_size(whole + "/plan.json") / 512 + 1);
+    const auto recordBlocks = static_cast<int>(fs::file_size(whole + "/records.csv") / 512);
+    ASSERT_LT(planBlocks, recordBlocks) << "the test needs records larger than the plan";
+    const ProcessResult run =
+        mockWithFullDisk("run " + config + " --device software --out " + full, planBlocks);
+    EXPECT_EQ(run.exitCode, 2) << run.err;
+    EXPECT_THAT(run.err, testing::EndsWith("gfxrepro: cannot write " + full +
+                                           "/records.csv: No space left on device\n"));
+    const std::size_t measured = rowsOf(full, "number").size();
+    EXPECT_GT(measured, 0U);
+    EXPECT_LT(measured, 40U);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", full});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    const std::string left = std::to_string(40 - measured);
+    EXPECT_EQ(resumed.out, left + " of " + left + " finished; records: " + full + "/records.csv\n");
+    EXPECT_EQ(mockGfxrepro({"table", full}).exitCode, 0);
+    for (const char* file : {"csv", "md", "tex"}) {
+        const std::string name = std::string("/tables/sweep-mock.") + file;
+        EXPECT_EQ(readFile(full + name), readFile(whole + name));
+    }
+}
+
+TEST(Disk, AFolderThatCannotBeWrittenIsNamed) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "");
+    // Nobody, root either, makes folders there.
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--out", "/proc/gfxrepro/run"});
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_EQ(run.err,
+              "gfxrepro: cannot make the folder /proc/gfxrepro/run: No such file or directory\n");
+    EXPECT_EQ(run.out, "");
+}
+
+TEST(Disk, AReadOnlyRunIsNotContinued) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root writes to read-only folders";
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 3}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    fs::permissions(dir, fs::perms::owner_read | fs::perms::owner_exec);
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_EQ(table.exitCode, 2);
+    EXPECT_THAT(table.err, HasSubstr("Permission denied"));
+    fs::permissions(dir, fs::perms::owner_all);
+    EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
