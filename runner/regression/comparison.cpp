@@ -133,8 +133,10 @@ Difference compareTimes(const SeriesKey& key, const Series& before, const Series
     return result;
 }
 
-std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
-                                const Rules& rules) {
+std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& allAfter,
+                                Pairing pairing, const Rules& rules) {
+    SeriesMap before = allBefore, after = allAfter;
+    matchParams(before, after);
     const auto timeCount = std::ranges::count_if(
         before, [](const auto& entry) { return entry.first.isTime() || entry.first.isRate(); });
     const double confidence =

@@ -52,7 +52,7 @@ double detectableChange(const Series& values, const Rules& rules);
 Difference compareTimes(const SeriesKey& key, const Series& before, const Series& after,
                         Pairing pairing, double confidence, const Rules& rules);
 
-/// Every series of both sides, in the order of their keys.
+/// Every series of both sides, after matchParams, in the order of their keys.
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
                                 const Rules& rules = {});
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "runner/metrics/statistics.h"
@@ -21,6 +23,43 @@ double meanOfMedians(const Frames& frames) {
     return sum / static_cast<double>(frames.size());
 }
 
+/// Memory of the process, and what rounding and the order of parallel work change.
+bool isOfTheMachine(const std::string& metric) {
+    return metric == "peak_memory_bytes" || metric == "baseline_memory_bytes" ||
+           metric == "image_digest" || metric == "fragments";
+}
+
+using Json = nlohmann::ordered_json;
+using ParamNames = std::map<std::string, std::set<std::string>>;  // of each technique
+
+ParamNames paramNamesOf(const SeriesMap& series) {
+    ParamNames names;
+    for (const auto& [key, values] : series) {
+        const Json params = Json::parse(key.params);
+        for (const auto& [name, value] : params.items()) {
+            names[key.technique].insert(name);
+        }
+    }
+    return names;
+}
+
+/// With the parameters in `known` alone. Null where keys fall together.
+std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& known) {
+    SeriesMap result;
+    for (const auto& [key, values] : series) {
+        SeriesKey own = key;
+        const Json all = Json::parse(key.params);
+        Json params = Json::object();
+        const auto found = known.find(key.technique);
+        for (const auto& [name, value] : all.items()) {
+            if (found != known.end() && found->second.contains(name)) params[name] = value;
+        }
+        own.params = params.dump();
+        if (!result.emplace(own, values).second) return std::nullopt;
+    }
+    return result;
+}
+
 }  // namespace
 
 std::string SeriesKey::title() const {
@@ -32,14 +71,6 @@ std::string SeriesKey::title() const {
     if (!pass.empty()) text += fmt::format("/{}", pass);
     return text;
 }
-
-namespace {
-/// Memory of the process, and what rounding and the order of parallel work change.
-bool isOfTheMachine(const std::string& metric) {
-    return metric == "peak_memory_bytes" || metric == "baseline_memory_bytes" ||
-           metric == "image_digest" || metric == "fragments";
-}
-}  // namespace
 
 SeriesMap seriesOf(const std::vector<report::Record>& records) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
@@ -65,6 +96,14 @@ void append(SeriesMap& series, const SeriesMap& more) {
         Series& own = series[key];
         own.insert(own.end(), values.begin(), values.end());
     }
+}
+
+void matchParams(SeriesMap& before, SeriesMap& after) {
+    const std::optional<SeriesMap> shortBefore = reduced(before, paramNamesOf(after));
+    const std::optional<SeriesMap> shortAfter = reduced(after, paramNamesOf(before));
+    if (!shortBefore || !shortAfter) return;
+    before = *shortBefore;
+    after = *shortAfter;
 }
 
 }  // namespace gfxrepro::regression

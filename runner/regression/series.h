@@ -41,4 +41,9 @@ SeriesMap seriesOf(const std::vector<report::Record>& records);
 /// Puts `more`'s processes behind those of `series`: rounds of alternating runs.
 void append(SeriesMap& series, const SeriesMap& more);
 
+/// Takes parameters that only one side's build knows out of both sides' keys, so that a build with
+/// a new parameter can be compared with the one before. Not where keys of a side would fall
+/// together: then the new parameter was varied.
+void matchParams(SeriesMap& before, SeriesMap& after);
+
 }  // namespace gfxrepro::regression

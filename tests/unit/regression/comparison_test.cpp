@@ -96,6 +96,29 @@ TEST(Comparison, AnUnsteadyBuildRaisesTheFloor) {
     EXPECT_GT(detectableChange(unsteady, {}), 0.05);
 }
 
+TEST(Comparison, AParameterThatOneBuildDoesNotKnowIsNoDifference) {
+    const auto key = [](const char* params) {
+        SeriesKey key = test::timeOf("m");
+        key.params = params;
+        return key;
+    };
+    const Series values = {10, 10, 10, 10, 10};
+    const auto matched = compare(
+        {{key(R"({"size":1})"), values}, {key(R"({"size":2})"), values}},
+        {{key(R"({"size":1,"new":false})"), values}, {key(R"({"size":2,"new":false})"), values}},
+        Pairing::Apart);
+    ASSERT_EQ(matched.size(), 2U);
+    EXPECT_EQ(matched[0].verdict, Verdict::Same);
+    EXPECT_EQ(matched[0].key.params, R"({"size":1})");
+    // Varied by one side: it cannot be left away.
+    const auto varied = compare(
+        {{key(R"({"size":1})"), values}},
+        {{key(R"({"size":1,"new":false})"), values}, {key(R"({"size":1,"new":true})"), values}},
+        Pairing::Apart);
+    ASSERT_EQ(varied.size(), 3U);
+    for (const Difference& difference : varied) EXPECT_EQ(difference.verdict, Verdict::Missing);
+}
+
 TEST(Comparison, QualityIsTheSameOrChanged) {
     SeriesKey key = test::timeOf("m");
     key.metric = "psnr_db";
