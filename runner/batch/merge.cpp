@@ -158,9 +158,9 @@ StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& comm
     merged.plan.shard.reset();
     merged.manifest = mergedManifest(shards, commandLine);
     UnitRows rows = rowsByUnit(shards);
-    // Every shard has an A/A pair of its own.
-    for (auto& [unit, ofUnit] : rows) {
-        if (unit.second < 0) std::ranges::move(ofUnit, std::back_inserter(merged.records));
+    // Each shard with times has an A/A pair of its own; they come first, as in a run.
+    for (auto& [unit, pair] : rows) {
+        if (unit.second < 0) std::ranges::move(pair, std::back_inserter(merged.records));
     }
     for (const Unit& unit : unitsOf(merged.plan)) {
         std::ranges::move(rows[{unit.item->id, unit.process}], std::back_inserter(merged.records));
@@ -173,7 +173,7 @@ std::vector<std::string> missingUnits(const StoredRun& run) {
     for (const report::Record& row : run.records) recorded.emplace(row.caseId, row.process);
     std::vector<std::string> missing;
     for (const Unit& unit : unitsOf(run.plan)) {
-        if (recorded.contains({unit.item->id, unit.process})) continue;
+        if (unit.isControl() || recorded.contains({unit.item->id, unit.process})) continue;
         missing.push_back(unit.item->title());
         if (unit.item->measure.processes > 1) {
             missing.back() += " process " + std::to_string(unit.process + 1);

@@ -70,7 +70,7 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
     if (!fs::exists(directory.recordsFile())) report::RecordWriter{directory.recordsFile()};
     std::set<std::string> unfinished;
     for (const Unit& unit : remainingUnits(plan, directory)) {
-        if (unit.item->measure.lane != config::Measure::Lane::Timing) continue;
+        if (unit.item->measure.lane != config::Measure::Lane::Timing || unit.isControl()) continue;
         const std::string& experiment = unit.item->experiment;
         if (timingMachine(manifest, experiment) != machine) unfinished.insert(experiment);
     }
@@ -111,6 +111,7 @@ Completeness completeness(const StoredRun& run) {
     const std::map<UnitKey, bool> recorded = recordedUnits(run.records);
     Completeness counts;
     for (const Unit& unit : unitsOf(run.plan)) {
+        if (unit.isControl()) continue;
         const auto found = recorded.find({unit.item->id, unit.process});
         if (found == recorded.end()) {
             ++counts.missing;

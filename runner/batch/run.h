@@ -36,7 +36,8 @@ struct StoredRun {
 /// Throws Error when the folder is no run.
 StoredRun readRun(const std::filesystem::path& runDir);
 
-/// Units without a row of any kind, and units that did not end `ok`.
+/// Units without a row of any kind, and units that did not end `ok`; the A/A pair, which enters no
+/// cell, is not counted.
 struct Completeness {
     int missing = 0;
     int failed = 0;

@@ -66,12 +66,11 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
     }
     const std::vector<std::string> missing = batch::missingUnits(merged);
     const batch::Completeness counts = batch::completeness(merged);
-    const std::size_t unitCount = batch::unitsOf(merged.plan).size();
+    const int unitCount = batch::measuredCount(batch::unitsOf(merged.plan));
     printMissing(runs, missing);
     fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing\n", runs.size(),
-               runs.size() == 1 ? "" : "s", out,
-               unitCount - static_cast<std::size_t>(counts.missing + counts.failed), unitCount,
-               counts.failed, counts.missing);
+               runs.size() == 1 ? "" : "s", out, unitCount - counts.missing - counts.failed,
+               unitCount, counts.failed, counts.missing);
     const int verdict = conclude(out);
     if (counts.missing + counts.failed == 0) return verdict;
     fmt::print("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);

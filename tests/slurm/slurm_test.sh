@@ -29,7 +29,7 @@ sweep_of: mock
 title: A mock
 technique: mock
 output: {width: 8, height: 8}
-params: {pause_ms: 1500}
+params: {pause_ms: 2500}
 sweep:
   zip:
     - {number: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], behaviour: [ok, ok, ok, ok, throw, ok, ok, ok, ok, ok, ok, ok]}

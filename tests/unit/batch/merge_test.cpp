@@ -43,6 +43,27 @@ TEST(Merge, RecordsAreInTheOrderOfThePlan) {
     EXPECT_FALSE(batch::isOnlyMerged(continued));
 }
 
+TEST(Merge, KeepsThePairOfEveryShard) {
+    batch::Plan plan = makePlan();
+    plan.cases.push_back(makeCase("t/2", "a", 1, Lane::Timing));
+    std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1, 6}),
+                                           makeShard(plan, 2, 2, {2, 3, 4, 5}, "GPU B")};
+    for (batch::ShardRun& shard : shards) {
+        const std::vector<batch::Unit> units = batch::unitsOf(shard.run.plan);
+        ASSERT_TRUE(units[0].isControl() && units[1].isControl());
+        for (int i = 0; i < 2; ++i) {
+            shard.run.records.push_back(makeRow(*units[i].item, -1.0, units[i].process));
+        }
+    }
+    const batch::StoredRun merged = mergeRuns(shards, "merge");
+    ASSERT_EQ(merged.records.size(), 4U + 7U);
+    std::vector<std::string> pairs;
+    for (int i = 0; i < 4; ++i) pairs.push_back(merged.records[i].table);
+    EXPECT_THAT(pairs, ElementsAre("t/1", "t/1", "t/2", "t/2"));
+    EXPECT_DOUBLE_EQ(merged.records[4].value, 0.0);
+    EXPECT_EQ(batch::completeness(merged).missing, 0);
+}
+
 TEST(Merge, NamesWhatIsMissing) {
     const batch::Plan plan = makePlan();
     std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 3, {0, 2}),
@@ -148,7 +169,8 @@ TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     const auto replaced = report::readRecords(folder.path() / "records-replaced.csv");
     ASSERT_EQ(replaced.size(), 1U);
     EXPECT_EQ(replaced[0].caseId, plan.cases[4].id);
-    EXPECT_EQ(batch::remainingUnits(plan, directory).size(), 4U);
+    // Two quality cases, both timing cases, and the A/A pair, which was never there.
+    EXPECT_EQ(batch::remainingUnits(plan, directory).size(), 6U);
 }
 
 TEST(ForeignTimes, FinishedTablesStay) {
