@@ -97,11 +97,14 @@ ReuseParams::ReuseParams(config::Params& params)
         "exhaustive_samples", 0,
         {"of a frame's matches, compared with a search of the whole reflector; 0: none", "samples",
          0, 1000000});
+    fitsRecompute = params.getBool(
+        "recompute_fit", false,
+        {"a line through recomputing's times over the samples, of all frames but key frames"});
     params.finish();
     reuse.isDirect = method == Method::Direct;
     if (method == Method::RayTraced) {
         params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
-                            "moved_objects", "seam_px"},
+                            "moved_objects", "seam_px", "recompute_fit"},
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
