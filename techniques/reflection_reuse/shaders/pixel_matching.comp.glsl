@@ -68,9 +68,12 @@ vec3 missAt(vec3 position, vec3 normal, vec3 reflected) {
     return position + t * direction - eyeWorld;
 }
 
+Candidate candidateAt(ivec2 pixel, float depthM, vec3 reflected) {
+    return Candidate(pixel, depthM,
+                     missAt(gbufferPositionAt(pixel, depthM), normalAt(pixel), reflected));
+}
 Candidate candidateAt(ivec2 pixel, vec3 reflected) {
-    return Candidate(pixel, texelFetch(gbufferDepth, pixel, 0).r,
-                     missAt(gbufferPosition(pixel), normalAt(pixel), reflected));
+    return candidateAt(pixel, texelFetch(gbufferDepth, pixel, 0).r, reflected);
 }
 
 bool isOnReflector(ivec2 pixel, uint reflector) {
@@ -80,10 +83,11 @@ bool isOnReflector(ivec2 pixel, uint reflector) {
 }
 
 // Whether a neighbour continues the surface: no silhouette lies between.
-bool isNeighbour(Candidate from, ivec2 pixel, uint reflector) {
+bool isNeighbour(Candidate from, ivec2 pixel, uint reflector, out float depthM) {
+    depthM = 0.0;
     if (!isOnReflector(pixel, reflector)) return false;
-    float depth = texelFetch(gbufferDepth, pixel, 0).r;
-    return abs(depth - from.depthM) <= silhouette * min(depth, from.depthM);
+    depthM = texelFetch(gbufferDepth, pixel, 0).r;
+    return abs(depthM - from.depthM) <= silhouette * min(depthM, from.depthM);
 }
 
 // The loop of Algorithm 9. Samples beyond a silhouette are no candidates.
@@ -94,8 +98,9 @@ Search searchRings(Search search, uint reflector, vec3 reflected) {
         search.reachSquared = 0.0;
         for (int i = 0; i < 9; ++i) {
             ivec2 pixel = search.at.pixel + ivec2(i % 3 - 1, i / 3 - 1);
-            if (i == 4 || !isNeighbour(search.at, pixel, reflector)) continue;
-            Candidate candidate = candidateAt(pixel, reflected);
+            float depthM;
+            if (i == 4 || !isNeighbour(search.at, pixel, reflector, depthM)) continue;
+            Candidate candidate = candidateAt(pixel, depthM, reflected);
             search.reachSquared =
                 max(search.reachSquared, squared(candidate.miss - search.at.miss));
             float distanceSquared = squared(candidate.miss);
@@ -123,8 +128,9 @@ vec3 missDifference(Search search, ivec2 axis, uint reflector, vec3 reflected,
     float count = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         ivec2 pixel = search.at.pixel + side * axis;
-        if (!isNeighbour(search.at, pixel, reflector)) continue;
-        vec3 difference = candidateAt(pixel, reflected).miss - search.at.miss;
+        float depthM;
+        if (!isNeighbour(search.at, pixel, reflector, depthM)) continue;
+        vec3 difference = candidateAt(pixel, depthM, reflected).miss - search.at.miss;
         reachSquared = max(reachSquared, squared(difference));
         sum += float(side) * difference;
         count += 1.0;
