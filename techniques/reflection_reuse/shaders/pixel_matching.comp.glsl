@@ -17,6 +17,7 @@ uniform float diagonalM;
 uniform bool hasPrevious;
 uniform int maxSteps;
 uniform float silhouette;
+uniform int widestRingPx;
 
 // A sample of the key frame as the search sees it: a plane, and by how much the reflection misses
 // the eye there.
@@ -82,32 +83,54 @@ bool isOnReflector(ivec2 pixel, uint reflector) {
            reflectorOf(texelFetch(gbufferSurface, pixel, 0).r) == reflector;
 }
 
-// Whether a neighbour continues the surface: no silhouette lies between.
-bool isNeighbour(Candidate from, ivec2 pixel, uint reflector, out float depthM) {
+// Whether a sample, `reach` steps away, continues the surface: no silhouette lies between.
+bool isNeighbour(Candidate from, ivec2 pixel, int reach, uint reflector, out float depthM) {
     depthM = 0.0;
     if (!isOnReflector(pixel, reflector)) return false;
     depthM = texelFetch(gbufferDepth, pixel, 0).r;
-    return abs(depthM - from.depthM) <= silhouette * min(depthM, from.depthM);
+    return abs(depthM - from.depthM) <= float(reach) * silhouette * min(depthM, from.depthM);
 }
 
-// The loop of Algorithm 9. Samples beyond a silhouette are no candidates.
+// The samples of the square ring `reach` pixels around 0, row by row.
+ivec2 onRing(int i, int reach) {
+    int width = 2 * reach + 1;
+    if (i < width) return ivec2(i - reach, -reach);
+    if (i >= 8 * reach - width) return ivec2(i - 8 * reach + reach + 1, reach);
+    int between = i - width;
+    return ivec2(between % 2 == 0 ? -reach : reach, between / 2 - reach + 1);
+}
+
+// The best of the samples of the square ring `reach` pixels from where the search is, or that
+// itself.
+Candidate bestOfRing(Candidate at, int reach, uint reflector, vec3 reflected,
+                     out float reachSquared) {
+    Candidate best = at;
+    float bestSquared = squared(best.miss);
+    reachSquared = 0.0;
+    for (int i = 0; i < 8 * reach; ++i) {
+        ivec2 pixel = at.pixel + onRing(i, reach);
+        float depthM;
+        if (!isNeighbour(at, pixel, reach, reflector, depthM)) continue;
+        Candidate candidate = candidateAt(pixel, depthM, reflected);
+        reachSquared = max(reachSquared, squared(candidate.miss - at.miss));
+        float distanceSquared = squared(candidate.miss);
+        if (distanceSquared < bestSquared) {
+            bestSquared = distanceSquared;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
+// The loop of Algorithm 9. Samples beyond a silhouette are no candidates. With widestRingPx > 1 a
+// minimum has to be one among wider rings, too.
 Search searchRings(Search search, uint reflector, vec3 reflected) {
     for (; search.steps <= maxSteps; ++search.steps) {
-        Candidate best = search.at;
-        float bestSquared = squared(best.miss);
-        search.reachSquared = 0.0;
-        for (int i = 0; i < 9; ++i) {
-            ivec2 pixel = search.at.pixel + ivec2(i % 3 - 1, i / 3 - 1);
-            float depthM;
-            if (i == 4 || !isNeighbour(search.at, pixel, reflector, depthM)) continue;
-            Candidate candidate = candidateAt(pixel, depthM, reflected);
-            search.reachSquared =
-                max(search.reachSquared, squared(candidate.miss - search.at.miss));
-            float distanceSquared = squared(candidate.miss);
-            if (distanceSquared < bestSquared) {
-                bestSquared = distanceSquared;
-                best = candidate;
-            }
+        Candidate best =
+            bestOfRing(search.at, 1, reflector, reflected, search.reachSquared);
+        for (int reach = 2; reach <= widestRingPx && best.pixel == search.at.pixel; ++reach) {
+            float ignored;
+            best = bestOfRing(search.at, reach, reflector, reflected, ignored);
         }
         if (best.pixel == search.at.pixel) {
             search.isOver = true;
@@ -129,7 +152,7 @@ vec3 missDifference(Search search, ivec2 axis, uint reflector, vec3 reflected,
     for (int side = -1; side <= 1; side += 2) {
         ivec2 pixel = search.at.pixel + side * axis;
         float depthM;
-        if (!isNeighbour(search.at, pixel, reflector, depthM)) continue;
+        if (!isNeighbour(search.at, pixel, 1, reflector, depthM)) continue;
         vec3 difference = candidateAt(pixel, depthM, reflected).miss - search.at.miss;
         reachSquared = max(reachSquared, squared(difference));
         sum += float(side) * difference;

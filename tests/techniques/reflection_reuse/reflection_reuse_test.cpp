@@ -102,6 +102,8 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:37: 'recompute_fit' needs 'method: reuse' or 'method: direct'");
     EXPECT_EQ(message("{method: direct, matching: second_order}"),
               "case.yaml:1:28: 'matching' needs 'method: reuse'");
+    EXPECT_EQ(message("{method: direct, widest_ring: 2}"),
+              "case.yaml:1:31: 'widest_ring' needs 'method: reuse'");
     EXPECT_EQ(message("{method: direct, exhaustive_samples: 9}"),
               "case.yaml:1:38: 'exhaustive_samples' needs 'method: reuse'");
     EXPECT_EQ(message("{path_frames: 50, first_frame: 50}"),
