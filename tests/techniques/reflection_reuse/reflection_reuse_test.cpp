@@ -25,17 +25,19 @@ scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
 }
 
 /// The room of chapter 4's tests: a mirror for a floor and a bent column. `walk` goes sideways,
-/// `rest` nowhere, `jump` looks down on
-/// one corner of the mirror and then on others.
+/// `rest` and `still` (of no length) nowhere, `jump` looks down on one corner of the mirror and
+/// then on others; `none` has no keys.
 scene::Scene roomWithPaths() {
     scene::Scene scene = clustered_reflections::roomWithMirrors();
     const scene::Camera begin = cameraAt({0.2F, 1.2F, 1.4F}, {0, 0.35F, -0.6F});
     const scene::Camera end = cameraAt({-0.7F, 1.1F, 1.3F}, {0, 0.35F, -0.6F});
     scene.paths = {{"walk", {begin, end}},
                    {"rest", {begin}},
+                   {"still", {begin, begin, begin}},
                    {"jump",
                     {cameraAt({1.2F, 0.5F, 1.2F}, {1.1F, 0, 1.1F}),
-                     cameraAt({-1.2F, 0.5F, 1.2F}, {-1.1F, 0, 1.1F})}}};
+                     cameraAt({-1.2F, 0.5F, 1.2F}, {-1.1F, 0, 1.1F})}},
+                   {"none", {}}};
     return scene;
 }
 
@@ -129,8 +131,9 @@ TEST_F(ReflectionReuseTest, RefusesScenesWithoutReflectorsUnknownViewsAndFramesB
               "scene 'room' has no reflectors: no material's roughness is at most 0.4 "
               "('reflector_roughness')");
     EXPECT_EQ(message("{view: run}", &room_),
-              "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'jump'; cameras: "
-              "'front', 'ceiling'");
+              "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'still', 'jump', "
+              "'none'; cameras: 'front', 'ceiling'");
+    EXPECT_EQ(message("{view: none}", &room_), "the camera path 'none' has no keys");
     EXPECT_EQ(message("{path_frames: 10, first_frame: 8}", &room_, 3),
               "frames 8 … 10 do not lie on a path of 10 ('first_frame', 'path_frames')");
 }
@@ -179,7 +182,8 @@ TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
 }
 
 TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
-    for (const char* view : {"rest", "front"}) {  // a path of one key; a camera
+    // A path of one key; one of no length; a camera.
+    for (const char* view : {"rest", "still", "front"}) {
         for (const char* method : {"reuse", "direct"}) {
             SCOPED_TRACE(fmt::format("{} {}", view, method));
             const auto frames = recorded(
