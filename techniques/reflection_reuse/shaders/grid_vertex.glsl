@@ -1,12 +1,15 @@
-// A vertex of a grid over the key frame: a pixel centre, by gl_VertexID. Colours wait for the
-// fragments, which know their cell.
+// A vertex of a grid over the key frame: a pixel centre, by gl_VertexID.
 
+layout(binding = RADIANCE_UNIT) uniform sampler2D radiance;
 layout(binding = KEY_DEPTH_UNIT) uniform sampler2D keyDepth;
+layout(binding = KEY_SURFACE_UNIT) uniform usampler2D keySurface;
 uniform float pointBias;
 
 out GridPoint {
+    vec3 radiance;
+    float trust;                 // 1: not doubtful
     noperspective vec2 placePx;  // in the key frame
-    flat ivec2 pixel;            // of a triangle's last vertex: the upper left corner of its cell
+    flat uint reflector;
 } point;
 
 ivec2 vertexPixel() {
@@ -14,7 +17,9 @@ ivec2 vertexPixel() {
     return ivec2(gl_VertexID % width, gl_VertexID / width);
 }
 
-void passPoint(ivec2 pixel) {
+void passPoint(ivec2 pixel, float trust) {
+    point.radiance = texelFetch(radiance, pixel, 0).rgb;
+    point.trust = trust;
     point.placePx = vec2(pixel) + 0.5;
-    point.pixel = pixel;
+    point.reflector = texelFetch(keySurface, pixel, 0).r & 0xFFFFu;
 }

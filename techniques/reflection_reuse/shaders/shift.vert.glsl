@@ -5,12 +5,15 @@
 
 layout(binding = DISTANCE_UNIT) uniform sampler2D distanceM;
 layout(binding = OFFSETS_UNIT) uniform sampler2D offsets;
+layout(binding = DOUBTFUL_UNIT) uniform usampler2D doubtful;
+uniform bool hasDoubts;
 uniform float missDistance;  // of rays that left the scene
 uniform float longestPath;
 
 void main() {
     ivec2 pixel = vertexPixel();
-    passPoint(pixel);
+    bool isDoubtful = hasDoubts && texelFetch(doubtful, pixel, 0).r != 0u;
+    passPoint(pixel, isDoubtful ? 0.0 : 1.0);
     float reflected = texelFetch(distanceM, pixel, 0).r;
     if (reflected <= 0.0) reflected = missDistance;
     float path = (texelFetch(keyDepth, pixel, 0).r + reflected) * (1.0 + pointBias);

@@ -12,10 +12,10 @@ layout(location = kWantedTarget) out uint wanted;
 void main() {
     bool isUsable = !hasGrown();
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (reflectorOf(texelFetch(gbufferSurface, pixel, 0).r) != reflectorOfPoint()) discard;
+    if (reflectorOf(texelFetch(gbufferSurface, pixel, 0).r) != point.reflector) discard;
     float depth = texelFetch(gbufferDepth, pixel, 0).r;
     if (abs(1.0 / gl_FragCoord.w - depth) > depthTolerance * depth) discard;
     if (!isUsable) discard;
-    warped = vec4(radianceOf(corners()), 1.0);
+    warped = vec4(point.radiance, 1.0);
     wanted = 0u;
 }
