@@ -3,6 +3,7 @@
 // now shows the eye what s showed. Reads the key frame's G-buffer and travel distances and the
 // offsets of the frame before; writes the offsets s* − s and how many steps each search took.
 // pixel_matcher_on_host.cpp has the same, operation by operation.
+#include "reflection_reuse/square_ring.glsl"
 #include "reflections/gbuffer.glsl"
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
@@ -89,15 +90,6 @@ bool isNeighbour(Candidate from, ivec2 pixel, int reach, uint reflector, out flo
     if (!isOnReflector(pixel, reflector)) return false;
     depthM = texelFetch(gbufferDepth, pixel, 0).r;
     return abs(depthM - from.depthM) <= float(reach) * silhouette * min(depthM, from.depthM);
-}
-
-// The samples of the square ring `reach` pixels around 0, row by row.
-ivec2 onRing(int i, int reach) {
-    int width = 2 * reach + 1;
-    if (i < width) return ivec2(i - reach, -reach);
-    if (i >= 8 * reach - width) return ivec2(i - 8 * reach + reach + 1, reach);
-    int between = i - width;
-    return ivec2(between % 2 == 0 ? -reach : reach, between / 2 - reach + 1);
 }
 
 // The best of the samples of the square ring `reach` pixels from where the search is, or that
