@@ -96,6 +96,7 @@ void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWo
     program_.set("diagonalM", key.diagonalM);
     program_.set("maxSteps", settings_.maxSteps);
     program_.set("silhouette", settings_.silhouette);
+    program_.set("widestRingPx", settings_.widestRingPx);
     result.offset.bindImage(kOffsetImage, GL_WRITE_ONLY);
     result.steps.bindImage(kStepsImage, GL_WRITE_ONLY);
     glDispatchCompute(groupsFor(sizePx.x), groupsFor(sizePx.y), 1);

@@ -39,6 +39,15 @@ glm::vec3 missAt(const glm::vec3& position, const glm::vec3& normal, const glm::
     return position + t * direction - eyeWorld;
 }
 
+/// The samples of the square ring `reach` pixels around 0, row by row.
+glm::ivec2 onRing(int i, int reach) {
+    const int width = 2 * reach + 1;
+    if (i < width) return {i - reach, -reach};
+    if (i >= 8 * reach - width) return {i - 8 * reach + reach + 1, reach};
+    const int between = i - width;
+    return {between % 2 == 0 ? -reach : reach, between / 2 - reach + 1};
+}
+
 /// One search, for one sample of the key frame.
 class Search {
   public:
@@ -88,11 +97,12 @@ class Search {
                gbuffer_.reflector(gbuffer_.indexOf(pixel)) == reflector_;
     }
 
-    /// Whether a neighbour continues the surface: no silhouette lies between.
-    bool isNeighbour(glm::ivec2 pixel) const {
+    /// Whether a sample, `reach` steps away, continues the surface: no silhouette lies between.
+    bool isNeighbour(glm::ivec2 pixel, int reach = 1) const {
         if (!isOnReflector(pixel)) return false;
         const float depth = gbuffer_.depthM[gbuffer_.indexOf(pixel)];
-        return std::abs(depth - at_.depthM) <= settings_.silhouette * std::min(depth, at_.depthM);
+        return std::abs(depth - at_.depthM) <=
+               static_cast<float>(reach) * settings_.silhouette * std::min(depth, at_.depthM);
     }
 
     glm::ivec2 startOf(const std::optional<glm::vec2>& previous) const {
@@ -101,21 +111,31 @@ class Search {
         return isOnReflector(start) ? start : sample_;
     }
 
+    Candidate bestOfRing(int reach, float& reachSquared) const {
+        Candidate best = at_;
+        float bestSquared = squared(at_.miss);
+        reachSquared = 0.0F;
+        for (int i = 0; i < 8 * reach; ++i) {
+            const glm::ivec2 pixel = at_.pixel + onRing(i, reach);
+            if (!isNeighbour(pixel, reach)) continue;
+            const Candidate candidate = candidateAt(pixel);
+            reachSquared = std::max(reachSquared, squared(candidate.miss - at_.miss));
+            const float distanceSquared = squared(candidate.miss);
+            if (distanceSquared < bestSquared) {
+                bestSquared = distanceSquared;
+                best = candidate;
+            }
+        }
+        return best;
+    }
+
     void searchRings() {
         for (; match_.steps <= settings_.maxSteps; ++match_.steps) {
-            Candidate best = at_;
-            float bestSquared = squared(at_.miss);
-            reachSquared_ = 0.0F;
-            for (int i = 0; i < 9; ++i) {
-                const glm::ivec2 pixel = at_.pixel + glm::ivec2(i % 3 - 1, i / 3 - 1);
-                if (i == 4 || !isNeighbour(pixel)) continue;
-                const Candidate candidate = candidateAt(pixel);
-                reachSquared_ = std::max(reachSquared_, squared(candidate.miss - at_.miss));
-                const float distanceSquared = squared(candidate.miss);
-                if (distanceSquared < bestSquared) {
-                    bestSquared = distanceSquared;
-                    best = candidate;
-                }
+            Candidate best = bestOfRing(1, reachSquared_);
+            for (int reach = 2; reach <= settings_.widestRingPx && best.pixel == at_.pixel;
+                 ++reach) {
+                float ignored = 0.0F;
+                best = bestOfRing(reach, ignored);
             }
             if (best.pixel == at_.pixel) {
                 isOver_ = true;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runner/scene/animation.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
@@ -33,6 +35,7 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
         renderer_.emplace(shaders, *objects_, *tracer_, params_.reuse, samplesPx,
                           scene_->diagonalM());
     }
+    if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info().isSoftware);
     if (!params_.measuresErrors) return;
     untimed_ = std::make_unique<gl::Profiler>(context.device.info().isSoftware);
     truthTracer_.emplace(*scene_, *map_, reflections::LobeSettings{});
@@ -83,13 +86,22 @@ void ReflectionReuse::render(technique::FrameContext& context) {
     if (renderer_) {
         // Warm-ups and repetitions must not move the choice of key frames on.
         if (context.frame == frame_) renderer_->undo();
-        renderer_->render(view_, profiler);
+        if (recomputeTimes_) keepLeastRecomputeTime();
+        renderer_->render(view_, profiler, recomputeTimes_ ? &*recomputeTimes_ : nullptr);
     } else {
         traceFully(profiler);
     }
     frame_ = context.frame;
+    frameCount_ = context.frameCount;
     const gl::GpuScope scope(profiler, "composite");
     composite_->render(gbuffer(), reflection());
+}
+
+/// Of a frame's repetitions the fastest counts: what else runs on the machine only adds.
+void ReflectionReuse::keepLeastRecomputeTime() {
+    for (const gl::PassTime& time : recomputeTimes_->collect()) {
+        leastRecomputeMs_ = std::min(leastRecomputeMs_.value_or(time.timeMs), time.timeMs);
+    }
 }
 
 // The passes have the names that they have between key frames.

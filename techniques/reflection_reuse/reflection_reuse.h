@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "runner/technique/technique.h"
 #include "techniques/reflection_reuse/reflection_reuse_params.h"
@@ -38,6 +39,8 @@ class ReflectionReuse final : public technique::Technique {
     const reflections::ReflectionTarget& reflection() const;
 
     void recordReuse(technique::Recorder& recorder);
+    void keepLeastRecomputeTime();
+    void recordRecomputeFit(technique::Recorder& recorder, const ReuseCounts& counts);
     void recordMatches(technique::Recorder& recorder);
     image::ImageF truthOf(const reflections::HostGBuffer& gbuffer);
     void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
@@ -59,6 +62,11 @@ class ReflectionReuse final : public technique::Technique {
     depth_images::View view_;
     int frame_ = -1;         // last rendered
     int lastKeyFrame_ = -1;  // last recorded key frame
+    int frameCount_ = 0;
+
+    std::optional<gl::Profiler> recomputeTimes_;  // of `recompute_fit`
+    std::optional<double> leastRecomputeMs_;      // of the frame at hand
+    std::vector<glm::dvec2> recomputed_;          // (samples, ms) of frames that are not key frames
 
     std::unique_ptr<gl::Profiler> untimed_;  // of the truth
     std::optional<reflections::EmbreeTracer> truthTracer_;

@@ -46,6 +46,10 @@ ReuseSettings readReuse(config::Params& params) {
     settings.matching.maxSteps =
         params.getInt("max_steps", settings.matching.maxSteps,
                       {"of a search; longer ones are invalid", "steps", 1, 65536});
+    settings.matching.widestRingPx =
+        params.getInt("widest_ring", settings.matching.widestRingPx,
+                      {"around a minimum, where the search looks for a better one; 1: algorithm 9",
+                       "pixels", 1, 64});
     const double silhouette = params.getDouble(
         "silhouette", 0.05,
         {"neighbours whose eye depths differ by more of the nearer one are not connected", "1", 0.0,
@@ -97,15 +101,19 @@ ReuseParams::ReuseParams(config::Params& params)
         "exhaustive_samples", 0,
         {"of a frame's matches, compared with a search of the whole reflector; 0: none", "samples",
          0, 1000000});
+    fitsRecompute = params.getBool(
+        "recompute_fit", false,
+        {"a line through recomputing's times over the samples, of all frames but key frames"});
     params.finish();
     reuse.isDirect = method == Method::Direct;
     if (method == Method::RayTraced) {
         params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
-                            "moved_objects", "seam_px"},
+                            "moved_objects", "seam_px", "recompute_fit"},
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
-        params.refuseGiven({"matching", "max_steps", "exhaustive_samples"}, "'method: reuse'");
+        params.refuseGiven({"matching", "max_steps", "widest_ring", "exhaustive_samples"},
+                           "'method: reuse'");
     }
     if (firstFrame >= pathFrames) {
         throw Error(params.locationOf("first_frame"),

@@ -35,6 +35,7 @@ struct ReuseParams {
     ReuseSettings reuse;  // isDirect is set, too
     bool measuresErrors = true;
     bool showsPictures = false;
+    bool fitsRecompute = false;
     int exhaustiveSamples = 0;  // searched over their whole reflector; 0: none
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.

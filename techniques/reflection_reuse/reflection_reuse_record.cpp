@@ -5,6 +5,7 @@
 
 #include "runner/image/srgb.h"
 #include "runner/metrics/flip.h"
+#include "techniques/reflection_reuse/linear_fit.h"
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
@@ -104,6 +105,7 @@ void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
     recorder.metric("is_key_frame", counts.isKeyFrame ? 1.0 : 0.0, "1");
     recorder.metric("recomputed_samples", counts.recomputedSamples, "sample");
     if (counts.reflectiveSamples > 0) recorder.metric("saved_pct", 100.0 - recomputedPct, "%");
+    recordRecomputeFit(recorder, counts);
     if (counts.isKeyFrame) {
         if (lastKeyFrame_ >= 0 && frame_ > lastKeyFrame_) {
             recorder.metric("key_frame_interval", frame_ - lastKeyFrame_, "frame");
@@ -113,6 +115,21 @@ void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
     }
     recorder.metric("recomputed_pct", recomputedPct, "%");
     if (params_.method == Method::Reuse) recordMatches(recorder);
+}
+
+/// Whether the time follows the number of samples, over all frames that have been rendered, in the
+/// last one. Key frames are left out: far from all others they would settle the line alone.
+void ReflectionReuse::recordRecomputeFit(technique::Recorder& recorder, const ReuseCounts& counts) {
+    if (!recomputeTimes_) return;
+    keepLeastRecomputeTime();
+    if (leastRecomputeMs_) recomputed_.emplace_back(counts.recomputedSamples, *leastRecomputeMs_);
+    leastRecomputeMs_.reset();
+    if (frame_ + 1 < frameCount_) return;
+    const std::optional<LinearFit> fit = linearFit(recomputed_);
+    if (!fit) return;
+    recorder.metric("recompute_fit_r_squared", fit->rSquared, "1");
+    recorder.metric("recompute_fit_us_per_sample", 1e3 * fit->slope, "us");
+    recorder.metric("recompute_fit_fixed_ms", fit->intercept, "ms");
 }
 
 void ReflectionReuse::recordMatches(technique::Recorder& recorder) {

@@ -1,6 +1,7 @@
 #include "techniques/reflection_reuse/reuse_renderer.h"
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "runner/core/error.h"
@@ -110,7 +111,8 @@ struct ReuseRenderer::Impl {
         hasOffsets = false;
     }
 
-    void renderReused(const depth_images::View& view, gl::Profiler& profiler) {
+    void renderReused(const depth_images::View& view, gl::Profiler& profiler,
+                      gl::Profiler* recomputeTimes) {
         {
             const gl::GpuScope scope(profiler, "diffuse");
             gbuffer.view = view;
@@ -125,6 +127,8 @@ struct ReuseRenderer::Impl {
             if (hasMoved) movedObjects.want(objects, gbuffer, key.diagonalM, wanted);
         }
         const gl::GpuScope scope(profiler, "recompute");
+        std::optional<gl::GpuScope> own;
+        if (recomputeTimes != nullptr) own.emplace(*recomputeTimes, "recompute");
         tracer.trace(gbuffer, &wanted, traced, profiler);
         mendReflections();
     }
@@ -170,14 +174,15 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
 
 ReuseRenderer::~ReuseRenderer() = default;
 
-void ReuseRenderer::render(const depth_images::View& view, gl::Profiler& profiler) {
+void ReuseRenderer::render(const depth_images::View& view, gl::Profiler& profiler,
+                           gl::Profiler* recomputeTimes) {
     GFXREPRO_ASSERT(view.sizePx == impl_->gbuffer.view.sizePx);
     impl_->isKeyFrame = impl_->isKeyFrameNext();
     impl_->hadOffsets = impl_->hasOffsets;
     if (impl_->isKeyFrame) {
         impl_->renderKeyFrame(view, profiler);
     } else {
-        impl_->renderReused(view, profiler);
+        impl_->renderReused(view, profiler, recomputeTimes);
     }
     impl_->hasFrame = true;
     impl_->isKeyForgotten = false;

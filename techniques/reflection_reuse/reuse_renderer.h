@@ -45,8 +45,10 @@ class ReuseRenderer {
                   glm::ivec2 sizePx, float diagonalM);
     ~ReuseRenderer();
 
-    /// The objects are posed and the tracer is updated. The first frame is a key frame.
-    void render(const depth_images::View& view, gl::Profiler& profiler);
+    /// The objects are posed and the tracer is updated. The first frame is a key frame. A profiler
+    /// for `recomputeTimes` gets a scope of its own within `recompute`, between key frames.
+    void render(const depth_images::View& view, gl::Profiler& profiler,
+                gl::Profiler* recomputeTimes = nullptr);
     /// Takes the last render() back but for what gbuffer() and the others hold: the next one
     /// decides and starts as it did, so that a frame can be rendered again.
     void undo();

@@ -3,6 +3,7 @@
 // now shows the eye what s showed. Reads the key frame's G-buffer and travel distances and the
 // offsets of the frame before; writes the offsets s* − s and how many steps each search took.
 // pixel_matcher_on_host.cpp has the same, operation by operation.
+#include "reflection_reuse/square_ring.glsl"
 #include "reflections/gbuffer.glsl"
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
@@ -17,6 +18,7 @@ uniform float diagonalM;
 uniform bool hasPrevious;
 uniform int maxSteps;
 uniform float silhouette;
+uniform int widestRingPx;
 
 // A sample of the key frame as the search sees it: a plane, and by how much the reflection misses
 // the eye there.
@@ -68,9 +70,12 @@ vec3 missAt(vec3 position, vec3 normal, vec3 reflected) {
     return position + t * direction - eyeWorld;
 }
 
+Candidate candidateAt(ivec2 pixel, float depthM, vec3 reflected) {
+    return Candidate(pixel, depthM,
+                     missAt(gbufferPositionAt(pixel, depthM), normalAt(pixel), reflected));
+}
 Candidate candidateAt(ivec2 pixel, vec3 reflected) {
-    return Candidate(pixel, texelFetch(gbufferDepth, pixel, 0).r,
-                     missAt(gbufferPosition(pixel), normalAt(pixel), reflected));
+    return candidateAt(pixel, texelFetch(gbufferDepth, pixel, 0).r, reflected);
 }
 
 bool isOnReflector(ivec2 pixel, uint reflector) {
@@ -79,30 +84,45 @@ bool isOnReflector(ivec2 pixel, uint reflector) {
            reflectorOf(texelFetch(gbufferSurface, pixel, 0).r) == reflector;
 }
 
-// Whether a neighbour continues the surface: no silhouette lies between.
-bool isNeighbour(Candidate from, ivec2 pixel, uint reflector) {
+// Whether a sample, `reach` steps away, continues the surface: no silhouette lies between.
+bool isNeighbour(Candidate from, ivec2 pixel, int reach, uint reflector, out float depthM) {
+    depthM = 0.0;
     if (!isOnReflector(pixel, reflector)) return false;
-    float depth = texelFetch(gbufferDepth, pixel, 0).r;
-    return abs(depth - from.depthM) <= silhouette * min(depth, from.depthM);
+    depthM = texelFetch(gbufferDepth, pixel, 0).r;
+    return abs(depthM - from.depthM) <= float(reach) * silhouette * min(depthM, from.depthM);
 }
 
-// The loop of Algorithm 9. Samples beyond a silhouette are no candidates.
+// The best of the samples of the square ring `reach` pixels from where the search is, or that
+// itself.
+Candidate bestOfRing(Candidate at, int reach, uint reflector, vec3 reflected,
+                     out float reachSquared) {
+    Candidate best = at;
+    float bestSquared = squared(best.miss);
+    reachSquared = 0.0;
+    for (int i = 0; i < 8 * reach; ++i) {
+        ivec2 pixel = at.pixel + onRing(i, reach);
+        float depthM;
+        if (!isNeighbour(at, pixel, reach, reflector, depthM)) continue;
+        Candidate candidate = candidateAt(pixel, depthM, reflected);
+        reachSquared = max(reachSquared, squared(candidate.miss - at.miss));
+        float distanceSquared = squared(candidate.miss);
+        if (distanceSquared < bestSquared) {
+            bestSquared = distanceSquared;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
+// The loop of Algorithm 9. Samples beyond a silhouette are no candidates. With widestRingPx > 1 a
+// minimum has to be one among wider rings, too.
 Search searchRings(Search search, uint reflector, vec3 reflected) {
     for (; search.steps <= maxSteps; ++search.steps) {
-        Candidate best = search.at;
-        float bestSquared = squared(best.miss);
-        search.reachSquared = 0.0;
-        for (int i = 0; i < 9; ++i) {
-            ivec2 pixel = search.at.pixel + ivec2(i % 3 - 1, i / 3 - 1);
-            if (i == 4 || !isNeighbour(search.at, pixel, reflector)) continue;
-            Candidate candidate = candidateAt(pixel, reflected);
-            search.reachSquared =
-                max(search.reachSquared, squared(candidate.miss - search.at.miss));
-            float distanceSquared = squared(candidate.miss);
-            if (distanceSquared < bestSquared) {
-                bestSquared = distanceSquared;
-                best = candidate;
-            }
+        Candidate best =
+            bestOfRing(search.at, 1, reflector, reflected, search.reachSquared);
+        for (int reach = 2; reach <= widestRingPx && best.pixel == search.at.pixel; ++reach) {
+            float ignored;
+            best = bestOfRing(search.at, reach, reflector, reflected, ignored);
         }
         if (best.pixel == search.at.pixel) {
             search.isOver = true;
@@ -123,8 +143,9 @@ vec3 missDifference(Search search, ivec2 axis, uint reflector, vec3 reflected,
     float count = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         ivec2 pixel = search.at.pixel + side * axis;
-        if (!isNeighbour(search.at, pixel, reflector)) continue;
-        vec3 difference = candidateAt(pixel, reflected).miss - search.at.miss;
+        float depthM;
+        if (!isNeighbour(search.at, pixel, 1, reflector, depthM)) continue;
+        vec3 difference = candidateAt(pixel, depthM, reflected).miss - search.at.miss;
         reachSquared = max(reachSquared, squared(difference));
         sum += float(side) * difference;
         count += 1.0;

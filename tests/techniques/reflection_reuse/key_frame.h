@@ -120,6 +120,12 @@ inline scene::Scene roomWithBowl() {
     addPart(scene, dome({0.0F, 8.2F, 0.0F}, -8.0F, 0.19F), reflections::mirror());
     return scene;
 }
+/// What it reflects lies near or beyond its focus.
+inline scene::Scene roomWithDeepBowl() {
+    scene::Scene scene = mattRoom();
+    addPart(scene, dome({0.0F, 3.2F, 0.0F}, -3.0F, 0.5F), reflections::mirror());
+    return scene;
+}
 inline scene::Camera aboveBowl() {
     return reflections::camera({0.3F, 1.2F, 1.5F}, {0.0F, 0.2F, 0.0F});
 }

@@ -25,17 +25,19 @@ scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
 }
 
 /// The room of chapter 4's tests: a mirror for a floor and a bent column. `walk` goes sideways,
-/// `rest` nowhere, `jump` looks down on
-/// one corner of the mirror and then on others.
+/// `rest` and `still` (of no length) nowhere, `jump` looks down on one corner of the mirror and
+/// then on others; `none` has no keys.
 scene::Scene roomWithPaths() {
     scene::Scene scene = clustered_reflections::roomWithMirrors();
     const scene::Camera begin = cameraAt({0.2F, 1.2F, 1.4F}, {0, 0.35F, -0.6F});
     const scene::Camera end = cameraAt({-0.7F, 1.1F, 1.3F}, {0, 0.35F, -0.6F});
     scene.paths = {{"walk", {begin, end}},
                    {"rest", {begin}},
+                   {"still", {begin, begin, begin}},
                    {"jump",
                     {cameraAt({1.2F, 0.5F, 1.2F}, {1.1F, 0, 1.1F}),
-                     cameraAt({-1.2F, 0.5F, 1.2F}, {-1.1F, 0, 1.1F})}}};
+                     cameraAt({-1.2F, 0.5F, 1.2F}, {-1.1F, 0, 1.1F})}},
+                   {"none", {}}};
     return scene;
 }
 
@@ -98,8 +100,12 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:33: 'threshold' needs 'method: reuse' or 'method: direct'");
     EXPECT_EQ(message("{method: ray_traced, seam_px: 1}"),
               "case.yaml:1:31: 'seam_px' needs 'method: reuse' or 'method: direct'");
+    EXPECT_EQ(message("{method: ray_traced, recompute_fit: true}"),
+              "case.yaml:1:37: 'recompute_fit' needs 'method: reuse' or 'method: direct'");
     EXPECT_EQ(message("{method: direct, matching: second_order}"),
               "case.yaml:1:28: 'matching' needs 'method: reuse'");
+    EXPECT_EQ(message("{method: direct, widest_ring: 2}"),
+              "case.yaml:1:31: 'widest_ring' needs 'method: reuse'");
     EXPECT_EQ(message("{method: direct, exhaustive_samples: 9}"),
               "case.yaml:1:38: 'exhaustive_samples' needs 'method: reuse'");
     EXPECT_EQ(message("{path_frames: 50, first_frame: 50}"),
@@ -125,8 +131,9 @@ TEST_F(ReflectionReuseTest, RefusesScenesWithoutReflectorsUnknownViewsAndFramesB
               "scene 'room' has no reflectors: no material's roughness is at most 0.4 "
               "('reflector_roughness')");
     EXPECT_EQ(message("{view: run}", &room_),
-              "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'jump'; cameras: "
-              "'front', 'ceiling'");
+              "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'still', 'jump', "
+              "'none'; cameras: 'front', 'ceiling'");
+    EXPECT_EQ(message("{view: none}", &room_), "the camera path 'none' has no keys");
     EXPECT_EQ(message("{path_frames: 10, first_frame: 8}", &room_, 3),
               "frames 8 … 10 do not lie on a path of 10 ('first_frame', 'path_frames')");
 }
@@ -175,7 +182,8 @@ TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
 }
 
 TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
-    for (const char* view : {"rest", "front"}) {  // a path of one key; a camera
+    // A path of one key; one of no length; a camera.
+    for (const char* view : {"rest", "still", "front"}) {
         for (const char* method : {"reuse", "direct"}) {
             SCOPED_TRACE(fmt::format("{} {}", view, method));
             const auto frames = recorded(
@@ -299,6 +307,31 @@ TEST_F(ReflectionReuseTest, MatchesAreComparedWithTheWholeReflector) {
     // A plane has one minimum, and the column bends one way.
     EXPECT_LT(frames[2].metrics.at("wrong_minimum_pct"), 5.0);
     EXPECT_LT(frames[2].metrics.at("unmatched_pct"), 50.0);
+}
+
+// Times are not tested, but that there are as many as frames to fit a line to.
+TEST_F(ReflectionReuseTest, FitsRecomputingOnceAfterTheLastFrame) {
+    for (const char* method : {"reuse", "direct"}) {
+        SCOPED_TRACE(method);
+        const auto frames = recorded(
+            fmt::format("{{method: {}, recompute_fit: true, errors: false, path_frames: 20, "
+                        "threshold: 1}}",
+                        method),
+            &room_, 5, 2);
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_FALSE(frames[i].metrics.contains("recompute_fit_r_squared"));
+        }
+        const auto& last = frames[4].metrics;
+        EXPECT_GE(last.at("recompute_fit_r_squared"), 0.0);
+        EXPECT_LE(last.at("recompute_fit_r_squared"), 1.0);
+        EXPECT_TRUE(last.contains("recompute_fit_us_per_sample"));
+        EXPECT_TRUE(last.contains("recompute_fit_fixed_ms"));
+    }
+    // Two frames behind a key frame lie on any line.
+    const auto few = recorded("{recompute_fit: true, threshold: 1, path_frames: 20}", &room_, 3);
+    EXPECT_FALSE(few[2].metrics.contains("recompute_fit_r_squared"));
+    EXPECT_FALSE(recorded("{threshold: 1, path_frames: 20}", &room_, 5)[4].metrics.contains(
+        "recompute_fit_r_squared"));
 }
 
 TEST_F(ReflectionReuseTest, ShowsPicturesOfEveryStep) {

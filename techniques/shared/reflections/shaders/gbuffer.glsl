@@ -19,9 +19,11 @@ float glossinessOf(uint surface) {
     return float(surface >> 24) / 255.0;
 }
 
-vec3 gbufferPosition(ivec2 pixel) {
-    float depth = texelFetch(gbufferDepth, pixel, 0).r;
+vec3 gbufferPositionAt(ivec2 pixel, float depth) {
     return (gbufferWorldFromPixels * vec4((vec2(pixel) + 0.5) * depth, depth, 1.0)).xyz;
+}
+vec3 gbufferPosition(ivec2 pixel) {
+    return gbufferPositionAt(pixel, texelFetch(gbufferDepth, pixel, 0).r);
 }
 vec3 gbufferUnitNormal(ivec2 pixel) {
     return unitFromOctahedral(texelFetch(gbufferNormal, pixel, 0).rg);
