@@ -26,9 +26,7 @@ Command commandOf(const PointRange& range, bool isQuads) {
     return {{range.count, 1, range.first, range.record, 0}};
 }
 
-bool isQuads(SplatMode mode) {
-    return mode == SplatMode::FullEwa || mode == SplatMode::Reconstruction;
-}
+bool isQuads(SplatMode mode) { return mode == SplatMode::FullEwa; }
 
 gl::Buffer quadIndices() {
     std::vector<std::uint16_t> indices;
@@ -53,11 +51,21 @@ gl::Defines passDefines(const DevicePoints& points) {
 gl::Program modeProgram(const gl::ShaderLibrary& shaders, const gl::Defines& common, SplatMode mode,
                         bool isVisibility) {
     gl::Defines defines = common;
-    if (mode == SplatMode::Reconstruction) defines["RECONSTRUCTION"] = 1;
+    if (mode == SplatMode::Reconstruction) defines["DISC"] = 1;
     if (mode == SplatMode::LowPass) defines["ROUND"] = 1;
     if (isVisibility) defines["VISIBILITY"] = 1;
-    std::vector<std::string> files{isQuads(mode) ? "point_splatting/ellipse_splat.vert.glsl"
-                                                 : "point_splatting/round_splat.vert.glsl"};
+    std::vector<std::string> files;
+    switch (mode) {
+        case SplatMode::Reconstruction:
+            files.emplace_back("point_splatting/disc_splat.vert.glsl");
+            if (isVisibility) files.emplace_back("point_splatting/disc_visibility.frag.glsl");
+            break;
+        case SplatMode::LowPass:
+            files.emplace_back("point_splatting/round_splat.vert.glsl");
+            break;
+        default:
+            files.emplace_back("point_splatting/ellipse_splat.vert.glsl");
+    }
     if (!isVisibility) files.emplace_back("point_splatting/splat.frag.glsl");
     return {shaders, files, defines};
 }
