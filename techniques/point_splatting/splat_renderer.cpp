@@ -1,6 +1,7 @@
 #include "techniques/point_splatting/splat_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runner/core/error.h"
 
@@ -26,7 +27,15 @@ Command commandOf(const PointRange& range, bool isQuads) {
     return {{range.count, 1, range.first, range.record, 0}};
 }
 
-bool isQuads(SplatMode mode) { return mode == SplatMode::FullEwa; }
+bool isQuads(SplatMode mode) {
+    return mode == SplatMode::FullEwa;
+}
+
+float maxPointSizePx() {
+    std::array<GLfloat, 2> range{};
+    glGetFloatv(GL_POINT_SIZE_RANGE, range.data());
+    return range[1];
+}
 
 gl::Buffer quadIndices() {
     std::vector<std::uint16_t> indices;
@@ -110,6 +119,7 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
       quadIndices_(quadIndices()),
       drawnArray_(drawnArray(quadIndices_)) {
     settings_.lightDirectionView = glm::normalize(settings.lightDirectionView);
+    maxPointPx_ = maxPointSizePx();
     const gl::Defines defines = passDefines(points_);
     for (const SplatMode mode :
          {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass}) {
@@ -145,8 +155,28 @@ std::size_t SplatRenderer::targetBytes() const {
     return size;
 }
 
-void SplatRenderer::upload(std::span<const DrawnPatch> drawn) {
-    drawList_.assign(points_, drawn, kMaxRange, kMaxBatch);
+bool SplatRenderer::fitsGlPoints(const DrawnPatch& drawn, const PatchView& view) const {
+    const Patch& patch = points_.patches()[drawn.patch];
+    const float radius = points_.levels()[patch.firstLevel + drawn.level].maxRadius;
+    const float reach = settings_.cutoff * radius;
+    const float nearest = nearestDepth(patch.bounds, view) - reach;
+    if (nearest <= 0.0F) return false;
+    // A disc along the ray to a corner of the window's border (slopeLimit) is the widest.
+    const float slope = 1.3F * std::tan(0.5F * view.fovRad);
+    const float aspect = static_cast<float>(sizePx_.x) / static_cast<float>(sizePx_.y);
+    const float widest = std::sqrt(1.0F + slope * slope * (1.0F + aspect * aspect));
+    return 2.0F * view.focalPx * reach * widest / nearest < maxPointPx_;
+}
+
+void SplatRenderer::upload(std::span<const DrawnPatch> drawn, const PatchView& view) {
+    items_.assign(drawn.begin(), drawn.end());
+    for (DrawnPatch& item : items_) {
+        // Of so many pixels full EWA is the reconstruction filter.
+        if (item.mode == SplatMode::Reconstruction && !fitsGlPoints(item, view)) {
+            item.mode = SplatMode::FullEwa;
+        }
+    }
+    drawList_.assign(points_, items_, kMaxRange, kMaxBatch);
     if (drawList_.ranges.empty()) return;
     std::vector<Command> commands;
     commands.reserve(drawList_.ranges.size());
@@ -167,7 +197,7 @@ void SplatRenderer::render(std::span<const DrawnPatch> drawn, const PatchView& v
     const bool isSprites = !drawn.empty() && isSprite(drawn.front());
     GFXREPRO_ASSERT(std::all_of(drawn.begin(), drawn.end(),
                                 [&](const DrawnPatch& d) { return isSprite(d) == isSprites; }));
-    upload(drawn);
+    upload(drawn, view);
     glDisable(GL_CULL_FACE);
     glEnable(GL_PROGRAM_POINT_SIZE);
     glEnable(GL_DEPTH_TEST);
