@@ -14,6 +14,11 @@ constexpr std::uint32_t kMaxRange = 1U << 14;
 /// llvmpipe keeps every primitive of a draw in memory until it is flushed.
 constexpr std::uint32_t kMaxBatch = 1U << 16;
 
+/// Of the low-pass filter's radius, in the visibility pass. With all of it, surfaces would grow by
+/// the filter over what lies behind and end there at a hard edge, where their faint rims should
+/// blend; with none, discs less than a pixel wide would hide nothing.
+constexpr float kVisibleShare = 0.5F;
+
 enum VertexLocation : GLuint { kBoxMinLocation = 0, kBoxSizeLocation = 1 };
 enum TextureUnit { kNormalSumUnit = 0, kColorSumUnit = 1 };
 
@@ -241,6 +246,9 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
         if (inUse != &program) {
             setUp(program, view);
+            if (isVisibility && program.isActive("lowPassRadiusPx")) {
+                program.set("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
+            }
             inUse = &program;
         }
         issue(batch);
