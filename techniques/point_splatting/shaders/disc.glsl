@@ -1,25 +1,30 @@
 // A pixel's view ray against a splat's disc (Botsch et al. 2004): what the reconstruction filter alone
 // needs, with neither tangents nor Eq. (8), and in perspective where that is of first order.
+//
+// The ray through slope + away, where slope = o.xy / o_z is that of the centre, meets the disc's plane
+// at depth o_z / (1 + s), s = n.xy · away · o_z / (n · o): no difference of nearly equal points.
 
-flat VARYING vec4 discCentreRadius;  // eye space; w: r_k
-flat VARYING vec2 discSlant;         // n.xy · o_z / (n · o)
+flat VARYING vec3 discCentre;  // in radii, eye space
+flat VARYING vec4 discSlope;   // slope; n.xy · o_z / (n · o)
+flat VARYING vec2 discDepth;   // in the window: of the centre, and what it grows by over s
 
+#ifdef DISC_FRAGMENT
 uniform vec2 slopePerPx;  // the view ray of gl_FragCoord: (slopePerPx · xy + slopeAtZero, 1)
 uniform vec2 slopeAtZero;
 
-#ifdef DISC_FRAGMENT
 struct DiscHit {
+    bool isWithin;
     float distance2;  // from the centre, in squared radii
-    float inverseZ;   // 1 / o_z of the point hit; 0 or less: the plane is met behind the eye
+    float depth;      // in the window
 };
 
-DiscHit discHit(vec2 fragCoord) {
-    vec3 centre = discCentreRadius.xyz;
-    // With the ray through the centre plus `away`, no difference of nearly equal points is taken:
-    // the ray meets the plane at depth o_z / (1 + s).
-    vec2 away = slopePerPx * fragCoord + slopeAtZero - centre.xy / centre.z;
-    float s = dot(discSlant, away);
-    vec3 fromCentre = (vec3(centre.z * away, 0.0) - s * centre) / (1.0 + s) / discCentreRadius.w;
-    return DiscHit(dot(fromCentre, fromCentre), (1.0 + s) / centre.z);
+DiscHit discHit(vec2 fragCoord, float reach) {
+    vec2 away = slopePerPx * fragCoord + slopeAtZero - discSlope.xy;
+    float s = dot(discSlope.zw, away);
+    vec3 fromCentre = (vec3(discCentre.z * away, 0.0) - s * discCentre) / (1.0 + s);
+    float distance2 = dot(fromCentre, fromCentre);
+    // From s = −1 on the plane is met behind the eye. NaN, of planes all but edge-on, is no hit.
+    return DiscHit(distance2 <= reach * reach && s > -1.0, distance2,
+                   discDepth.x + s * discDepth.y);
 }
 #endif

@@ -41,15 +41,26 @@ void main() {
     // Edge-on it has no area.
     if (!(centre.z > nearM) || isTurnedAway(normal, centre) || towards == 0.0) return;
     float radius = point.radius * boxMinScale.w;
-    float halfSide = halfSidePx(centre, normal, cutoff * radius);
+#ifdef VISIBILITY
+    float reach = kInscribed * cutoff;
+    float depth = visibilityDepth(1.0 / centre.z, centre, radius, 0.0);
+    float depthFarAway = depthNdc(0.0) + kDepthSlack;
+#else
+    float reach = cutoff;
+    float depth = depthNdc(1.0 / centre.z);
+    float depthFarAway = depthNdc(0.0);
+#endif
+    float halfSide = halfSidePx(centre, normal, reach * radius);
     // GL drops points whose middle leaves the window: it is moved to the edge, and the square grows.
     vec2 ndc = ndcOf(centre), middle = clamp(ndc, -1.0, 1.0);
     vec2 moved = 0.5 * abs(ndc - middle) * sizePx;
     if (any(greaterThan(moved, vec2(halfSide)))) return;
     gl_Position = vec4(middle, depthNdc(1.0 / centre.z), 1.0);
     gl_PointSize = 2.0 * (halfSide + max(moved.x, moved.y));
-    discCentreRadius = vec4(centre, radius);
-    discSlant = normal.xy * (centre.z / towards);
+    discCentre = centre / radius;
+    discSlope = vec4(centre.xy, normal.xy * (centre.z * centre.z / towards)) / centre.z;
+    // 1 / o_z, and with it the depth, is linear in s; at s = −1 it is 0.
+    discDepth = vec2(0.5 * depth + 0.5, 0.5 * (depth - depthFarAway));
 #ifndef VISIBILITY
     normalViewWeight = vec4(viewOf(normal), 1.0);
 #ifdef COLORS

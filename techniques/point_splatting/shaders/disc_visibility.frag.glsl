@@ -9,10 +9,7 @@
 uniform float cutoff;
 
 void main() {
-    DiscHit hit = discHit(gl_FragCoord.xy);
-    float reach = kInscribed * cutoff;
-    // `!`: NaN, of planes all but edge-on, is no hit.
-    if (!(hit.distance2 <= reach * reach) || hit.inverseZ <= 0.0) discard;
-    gl_FragDepth =
-        0.5 * visibilityDepth(hit.inverseZ, discCentreRadius.xyz, discCentreRadius.w, 0.0) + 0.5;
+    DiscHit hit = discHit(gl_FragCoord.xy, kInscribed * cutoff);
+    if (!hit.isWithin) discard;
+    gl_FragDepth = hit.depth;
 }

@@ -7,7 +7,6 @@
 #define VARYING in
 #define DISC_FRAGMENT
 #include "point_splatting/disc.glsl"
-#include "point_splatting/splat_view.glsl"
 #endif
 
 flat in vec4 normalViewWeight;
@@ -27,11 +26,10 @@ in vec2 positionInSplat;
 
 void main() {
 #ifdef DISC
-    DiscHit hit = discHit(gl_FragCoord.xy);
+    DiscHit hit = discHit(gl_FragCoord.xy, cutoff);
+    if (!hit.isWithin) discard;
     float distance2 = hit.distance2;
-    // `!`: NaN, of planes all but edge-on, is no hit.
-    if (!(distance2 <= cutoff * cutoff) || hit.inverseZ <= 0.0) discard;
-    gl_FragDepth = 0.5 * depthNdc(hit.inverseZ) + 0.5;
+    gl_FragDepth = hit.depth;
 #else
 #ifdef ROUND
     vec2 positionInSplat = (gl_FragCoord.xy - centrePx) / lowPassRadiusPx;
