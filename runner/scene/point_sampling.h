@@ -11,7 +11,7 @@ namespace gfxrepro::scene {
 /// `count` points on the triangles of a scene: evenly by area, and within a triangle by the R₂
 /// sequence (Roberts 2018). Normals interpolated (area-weighted ones where the mesh has none: a
 /// scan is smooth), colours of material times vertex (none without either, or all white; textures
-/// are not read), radii 1.5 times those of discs that together have the surface's area: neighbours
+/// are not read), radii twice those of discs that together have the surface's area: neighbours
 /// overlap. Same input, same bytes. Throws Error for scenes without area and for no points.
 PointCloud sampledPoints(const Scene& scene, std::size_t count);
 

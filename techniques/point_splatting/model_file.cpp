@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -100,7 +101,7 @@ std::optional<Header> headerOf(std::span<const std::byte> bytes, const std::stri
         return std::nullopt;
     }
     for (const auto& section : header.sections) {
-        if (section.sizeBytes > bytes.size() ||
+        if (section.offsetBytes % kAlignment != 0 || section.sizeBytes > bytes.size() ||
             section.offsetBytes > bytes.size() - section.sizeBytes) {
             return std::nullopt;
         }
@@ -128,6 +129,42 @@ struct ModelFile::Content {
 
 namespace {
 
+/// Whether what sections say of each other is true: counts in a file may lie.
+template <class Content>
+bool isConsistent(const Content& content) {
+    const std::size_t points = content.template section<glm::vec3>(kPositions).size();
+    const auto holds = [&](std::size_t count) { return count == points; };
+    const std::size_t colors = content.template section<glm::u8vec4>(kColors).size();
+    const std::size_t radii = content.template section<float>(kTable).size();
+    if (points == 0 || !holds(content.template section<CompressedPoint>(kCompressed).size()) ||
+        !holds(content.template section<glm::vec3>(kNormals).size()) ||
+        !holds(content.template section<float>(kRadii).size()) || (colors > 0 && !holds(colors)) ||
+        radii == 0 || radii > 256) {
+        return false;
+    }
+    const auto records = content.template section<CompressedPoint>(kCompressed);
+    if (radii < 256 && !std::all_of(records.begin(), records.end(), [&](const CompressedPoint& p) {
+            return p.surface >> 24 < radii;
+        })) {
+        return false;
+    }
+    const auto levels = content.template section<Level>(kLevels);
+    std::uint64_t next = 0;  // patches lie one behind the other
+    for (const Patch& patch : content.template section<Patch>(kPatches)) {
+        if (patch.firstPoint != next || patch.levelCount == 0 || patch.levelCount > levels.size() ||
+            patch.firstLevel > levels.size() - patch.levelCount) {
+            return false;
+        }
+        const auto own = levels.subspan(patch.firstLevel, patch.levelCount);
+        if (std::any_of(own.begin(), own.end(),
+                        [&](const Level& level) { return level.count > patch.pointCount; })) {
+            return false;
+        }
+        next += patch.pointCount;
+    }
+    return holds(static_cast<std::size_t>(next));
+}
+
 /// The mapped file where it is what the key says.
 template <class Content>
 std::unique_ptr<Content> mapped(const std::filesystem::path& path, const std::string& key) {
@@ -137,7 +174,7 @@ std::unique_ptr<Content> mapped(const std::filesystem::path& path, const std::st
     const std::optional<Header> header = headerOf(content->bytes(), key);
     if (!header) return nullptr;
     content->header = *header;
-    return content;
+    return isConsistent(*content) ? std::move(content) : nullptr;
 }
 
 }  // namespace

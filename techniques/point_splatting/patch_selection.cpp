@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "techniques/point_splatting/splat_math.h"
@@ -44,27 +43,25 @@ Facing facingOf(const Patch& patch, const glm::vec3& eye) {
     const float distance = glm::length(toEye);
     const float reach = 0.5F * glm::length(patch.bounds.size());
     if (distance <= reach) return Facing::Silhouette;  // the eye is among the points
-    // The ray to any point is within `spread` of that to the centre.
-    const float spread = std::asin(reach / distance);
-    const float angle =
-        std::acos(std::clamp(glm::dot(patch.meanNormal, toEye) / distance, -1.0F, 1.0F));
-    if (angle - patch.coneRad - spread > glm::half_pi<float>()) return Facing::Away;
-    return angle + patch.coneRad + spread > glm::half_pi<float>() ? Facing::Silhouette
-                                                                  : Facing::Towards;
-}
-
-/// Distance along the view axis of the box's nearest corner, at least the near plane's.
-float nearestDepth(const scene::Box& box, const PatchView& view) {
-    const glm::vec4 row = -glm::transpose(view.viewFromModel)[2];
-    const glm::vec3 axis(row);
-    const float centre = glm::dot(axis, box.centre()) + row.w;
-    return std::max(centre - glm::dot(glm::abs(axis), 0.5F * box.size()), view.nearM);
+    // The ray to any point is within asin(sinSpread) of that to the centre: normals lie within that
+    // and the cone of an angle of cosine `facing` to it. All by sines, without arcs.
+    const float sinSpread = reach / distance;
+    const float cosSpread = std::sqrt(1.0F - sinSpread * sinSpread);
+    const float sinCone = std::sin(patch.coneRad), cosCone = std::cos(patch.coneRad);
+    if (cosCone * cosSpread - sinCone * sinSpread <= 0.0F || cosCone <= 0.0F) {
+        return Facing::Silhouette;  // together 90° or more
+    }
+    const float sinBoth = sinCone * cosSpread + cosCone * sinSpread;
+    const float facing = glm::dot(patch.meanNormal, toEye) / distance;
+    if (facing < -sinBoth) return Facing::Away;
+    return facing < sinBoth ? Facing::Silhouette : Facing::Towards;
 }
 
 std::uint32_t levelFor(const Patch& patch, std::span<const Level> levels, float depth,
                        float targetPx, const PatchView& view) {
+    const float largest = targetPx * depth / view.focalPx;
     for (std::uint32_t l = 0; l < patch.levelCount; ++l) {
-        if (levels[patch.firstLevel + l].maxRadius * view.focalPx / depth <= targetPx) return l;
+        if (levels[patch.firstLevel + l].maxRadius <= largest) return l;
     }
     return patch.levelCount - 1;
 }
@@ -85,6 +82,13 @@ SplatMode fixedMode(SplatMethod method) {
 }
 
 }  // namespace
+
+float nearestDepth(const scene::Box& box, const PatchView& view) {
+    const glm::vec4 row = -glm::transpose(view.viewFromModel)[2];
+    const glm::vec3 axis(row);
+    const float centre = glm::dot(axis, box.centre()) + row.w;
+    return std::max(centre - glm::dot(glm::abs(axis), 0.5F * box.size()), view.nearM);
+}
 
 PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx) {
     PatchView view;

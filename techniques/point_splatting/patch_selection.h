@@ -52,6 +52,9 @@ struct PatchView {
 };
 PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx);
 
+/// Distance along the view axis of the box's nearest corner, at least the near plane's.
+float nearestDepth(const scene::Box& box, const PatchView& view);
+
 struct DrawnPatch {
     std::uint32_t patch = 0;
     std::uint32_t level = 0;  // of the patch

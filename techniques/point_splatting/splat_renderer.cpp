@@ -1,6 +1,7 @@
 #include "techniques/point_splatting/splat_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runner/core/error.h"
 
@@ -12,6 +13,11 @@ namespace {
 constexpr std::uint32_t kMaxRange = 1U << 14;
 /// llvmpipe keeps every primitive of a draw in memory until it is flushed.
 constexpr std::uint32_t kMaxBatch = 1U << 16;
+
+/// Of the low-pass filter's radius, in the visibility pass. With all of it, surfaces would grow by
+/// the filter over what lies behind and end there at a hard edge, where their faint rims should
+/// blend; with none, discs less than a pixel wide would hide nothing.
+constexpr float kVisibleShare = 0.5F;
 
 enum VertexLocation : GLuint { kBoxMinLocation = 0, kBoxSizeLocation = 1 };
 enum TextureUnit { kNormalSumUnit = 0, kColorSumUnit = 1 };
@@ -27,7 +33,13 @@ Command commandOf(const PointRange& range, bool isQuads) {
 }
 
 bool isQuads(SplatMode mode) {
-    return mode == SplatMode::FullEwa || mode == SplatMode::Reconstruction;
+    return mode == SplatMode::FullEwa;
+}
+
+float maxPointSizePx() {
+    std::array<GLfloat, 2> range{};
+    glGetFloatv(GL_POINT_SIZE_RANGE, range.data());
+    return range[1];
 }
 
 gl::Buffer quadIndices() {
@@ -53,11 +65,21 @@ gl::Defines passDefines(const DevicePoints& points) {
 gl::Program modeProgram(const gl::ShaderLibrary& shaders, const gl::Defines& common, SplatMode mode,
                         bool isVisibility) {
     gl::Defines defines = common;
-    if (mode == SplatMode::Reconstruction) defines["RECONSTRUCTION"] = 1;
+    if (mode == SplatMode::Reconstruction) defines["DISC"] = 1;
     if (mode == SplatMode::LowPass) defines["ROUND"] = 1;
     if (isVisibility) defines["VISIBILITY"] = 1;
-    std::vector<std::string> files{isQuads(mode) ? "point_splatting/ellipse_splat.vert.glsl"
-                                                 : "point_splatting/round_splat.vert.glsl"};
+    std::vector<std::string> files;
+    switch (mode) {
+        case SplatMode::Reconstruction:
+            files.emplace_back("point_splatting/disc_splat.vert.glsl");
+            if (isVisibility) files.emplace_back("point_splatting/disc_visibility.frag.glsl");
+            break;
+        case SplatMode::LowPass:
+            files.emplace_back("point_splatting/round_splat.vert.glsl");
+            break;
+        default:
+            files.emplace_back("point_splatting/ellipse_splat.vert.glsl");
+    }
     if (!isVisibility) files.emplace_back("point_splatting/splat.frag.glsl");
     return {shaders, files, defines};
 }
@@ -102,6 +124,7 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
       quadIndices_(quadIndices()),
       drawnArray_(drawnArray(quadIndices_)) {
     settings_.lightDirectionView = glm::normalize(settings.lightDirectionView);
+    maxPointPx_ = maxPointSizePx();
     const gl::Defines defines = passDefines(points_);
     for (const SplatMode mode :
          {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass}) {
@@ -137,8 +160,28 @@ std::size_t SplatRenderer::targetBytes() const {
     return size;
 }
 
-void SplatRenderer::upload(std::span<const DrawnPatch> drawn) {
-    drawList_.assign(points_, drawn, kMaxRange, kMaxBatch);
+bool SplatRenderer::fitsGlPoints(const DrawnPatch& drawn, const PatchView& view) const {
+    const Patch& patch = points_.patches()[drawn.patch];
+    const float radius = points_.levels()[patch.firstLevel + drawn.level].maxRadius;
+    const float reach = settings_.cutoff * radius;
+    const float nearest = nearestDepth(patch.bounds, view) - reach;
+    if (nearest <= 0.0F) return false;
+    // A disc along the ray to a corner of the window's border (slopeLimit) is the widest.
+    const float slope = 1.3F * std::tan(0.5F * view.fovRad);
+    const float aspect = static_cast<float>(sizePx_.x) / static_cast<float>(sizePx_.y);
+    const float widest = std::sqrt(1.0F + slope * slope * (1.0F + aspect * aspect));
+    return 2.0F * view.focalPx * reach * widest / nearest < maxPointPx_;
+}
+
+void SplatRenderer::upload(std::span<const DrawnPatch> drawn, const PatchView& view) {
+    items_.assign(drawn.begin(), drawn.end());
+    for (DrawnPatch& item : items_) {
+        // Of so many pixels full EWA is the reconstruction filter.
+        if (item.mode == SplatMode::Reconstruction && !fitsGlPoints(item, view)) {
+            item.mode = SplatMode::FullEwa;
+        }
+    }
+    drawList_.assign(points_, items_, kMaxRange, kMaxBatch);
     if (drawList_.ranges.empty()) return;
     std::vector<Command> commands;
     commands.reserve(drawList_.ranges.size());
@@ -159,7 +202,7 @@ void SplatRenderer::render(std::span<const DrawnPatch> drawn, const PatchView& v
     const bool isSprites = !drawn.empty() && isSprite(drawn.front());
     GFXREPRO_ASSERT(std::all_of(drawn.begin(), drawn.end(),
                                 [&](const DrawnPatch& d) { return isSprite(d) == isSprites; }));
-    upload(drawn);
+    upload(drawn, view);
     glDisable(GL_CULL_FACE);
     glEnable(GL_PROGRAM_POINT_SIZE);
     glEnable(GL_DEPTH_TEST);
@@ -203,6 +246,9 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
         if (inUse != &program) {
             setUp(program, view);
+            if (isVisibility && program.isActive("lowPassRadiusPx")) {
+                program.set("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
+            }
             inUse = &program;
         }
         issue(batch);

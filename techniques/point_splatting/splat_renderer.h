@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "runner/gl/profiler.h"
 #include "techniques/point_splatting/device_points.h"
@@ -39,7 +40,9 @@ class SplatRenderer {
     struct ModePrograms {
         gl::Program visibility, splats;
     };
-    void upload(std::span<const DrawnPatch> drawn);
+    void upload(std::span<const DrawnPatch> drawn, const PatchView& view);
+    /// Whether the discs of a patch are GL points of a size that the device draws.
+    bool fitsGlPoints(const DrawnPatch& drawn, const PatchView& view) const;
     void drawBatches(bool isVisibility, const PatchView& view);
     void drawSprites(const PatchView& view);
     void normalize(const PatchView& view);
@@ -54,6 +57,8 @@ class SplatRenderer {
     gl::Texture normalSums_, colorSums_, depth_, output_;
     gl::Framebuffer visibilityTarget_, sumTarget_, outputTarget_, spriteTarget_;
 
+    float maxPointPx_ = 1.0F;
+    std::vector<DrawnPatch> items_;
     DrawList drawList_;
     gl::Buffer quadIndices_, records_, commands_;
     gl::VertexArray drawnArray_, noAttributes_;

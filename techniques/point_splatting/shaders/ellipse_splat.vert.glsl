@@ -1,7 +1,6 @@
 #version 450 core
-// A corner of the parallelogram around a splat's ellipse on the screen: full EWA (Eq. 3), or with
-// RECONSTRUCTION the reconstruction filter alone. Four vertices a point; the corner is the vertex's
-// number. With VISIBILITY the parallelogram within the ellipse, at the splat's depth plus ε and
+// A corner of the parallelogram around a splat's ellipse on the screen: full EWA (Eq. 3). Four
+// vertices a point; the corner is the vertex's number. With VISIBILITY the parallelogram within the ellipse, at the splat's depth plus ε and
 // without a fragment shader: where it hides what lies behind, the splat itself has weight.
 #include "point_splatting/decode_point.glsl"
 #include "point_splatting/splat_shape.glsl"
@@ -43,13 +42,8 @@ void main() {
         gl_Position = kNowhere;
         return;
     }
-#ifdef RECONSTRUCTION
-    SplatShape shape = reconstructionShape(splat);
-    float footprint = 0.0;
-#else
     SplatShape shape = fullEwaShape(splat);
     float footprint = lowPassRadiusPx * splat.centre.z / focalPx;
-#endif
 #ifdef VISIBILITY
     vec2 offsetPx = shape.axes * (cutoff * kInscribed * corner);
 #else

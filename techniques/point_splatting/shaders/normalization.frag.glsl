@@ -14,6 +14,23 @@ uniform vec2 slopeAtZero;
 
 uniform float cutoff;
 
+/// How much of the pixel the surface covers. Inside, sums follow the density of points and mean
+/// nothing; where the surface ends, a sum falls to 0 within the filter's width, and is half of its
+/// neighbours' at the outline itself.
+float coverageAt(ivec2 pixel, float weight) {
+    ivec2 last = textureSize(normalSums, 0) - 1;
+    float least = weight, most = weight;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 beside = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+        float other = texelFetch(normalSums, beside, 0).a;
+        least = min(least, other);
+        most = max(most, other);
+    }
+    if (least > 0.0) return 1.0;
+    // Splats that the filter makes larger than they are weigh less than any within a cutoff.
+    return min(weight / max(most, exp(-0.5 * cutoff * cutoff)), 1.0);
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 sum = texelFetch(normalSums, pixel, 0);
@@ -27,8 +44,6 @@ void main() {
     vec3 surface = kGrey;
 #endif
     vec3 toEye = normalize(vec3(-(slopePerPx * gl_FragCoord.xy + slopeAtZero), 1.0));
-    // The least weight within a cutoff counts as covered: what the visibility pass hides behind a
-    // splat must not show as the background's black, and below it lies the antialiased outline.
-    float coverage = min(sum.a / exp(-0.5 * cutoff * cutoff), 1.0);
+    float coverage = coverageAt(pixel, sum.a);
     color = vec4(clamp(shaded(surface, normal, toEye), 0.0, 1.0) * coverage, coverage);
 }

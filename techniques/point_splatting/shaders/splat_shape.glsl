@@ -62,24 +62,6 @@ SplatShape fullEwaShape(EyeSplat splat) {
     return SplatShape(mat2(first, h01 / first, 0.0, rootOfH / first), determinant / rootOfH);
 }
 
-// An edge-on disc is a line, and falls between the pixels' centres: silhouettes would lose them. With
-// a cutoff of 2, a half thickness of ¼ pixel makes the splat one pixel wide.
-const float kMinHalfThicknessPx = 0.25;
-
-/// H = J V^r Jᵀ: its axes as they are. No matrix is inverted, so that none can be singular.
-SplatShape reconstructionShape(EyeSplat splat) {
-    mat2 axes = projectedAxes(splat);
-    bool isFirstLonger = dot(axes[0], axes[0]) >= dot(axes[1], axes[1]);
-    vec2 longer = isFirstLonger ? axes[0] : axes[1];
-    vec2 shorter = isFirstLonger ? axes[1] : axes[0];
-    // 1e-12: discs of less than 1e-6 pixels have no direction.
-    vec2 across = vec2(-longer.y, longer.x) * inversesqrt(max(dot(longer, longer), 1e-12));
-    float thickness = dot(shorter, across);
-    float wanted = max(abs(thickness), kMinHalfThicknessPx);
-    shorter += across * ((thickness < 0.0 ? -wanted : wanted) - thickness);
-    return SplatShape(mat2(longer, shorter), 1.0);
-}
-
 /// H = V^h: the weight alone, as fullEwaShape()'s becomes for small splats. At most 1, or splats much
 /// larger than the filter would overflow the sums.
 float lowPassWeight(EyeSplat splat) {

@@ -48,6 +48,44 @@ TEST(CompressedPoint, ErrorsStayWithinTheGridsBounds) {
     EXPECT_GE(worstAngle, normalErrorBoundRad() * 0.9F);
 }
 
+TEST(CompressedPoint, TangentsLeaveThePlaneNoMoreThanTheirNormalsDo) {
+    // Which two vectors span a disc is free; that they span it is what quantization takes away.
+    Random random(8);
+    const std::vector<float> table{1.0F};
+    double worst = 0.0;
+    for (int trial = 0; trial < 20000; ++trial) {
+        const glm::vec3 normal = randomUnit(random);
+        const DecodedPoint point =
+            decoded(compressed(kBox.min, normal, 1.0F, kBox, table), kBox, table);
+        for (const glm::vec3& along : {point.tangent, point.bitangent}) {
+            const double sine = glm::dot(glm::dvec3(along), glm::dvec3(normal));
+            worst = std::max(worst, std::asin(std::abs(sine)));
+        }
+    }
+    EXPECT_LE(worst, static_cast<double>(normalErrorBoundRad()) * 1.01);
+    EXPECT_GE(worst, static_cast<double>(normalErrorBoundRad()) * 0.7);
+}
+
+TEST(CompressedPoint, RadiiAreHalfAGapOfTheTableOffAtTheMost) {
+    Random random(5);
+    std::vector<float> radii(5000);
+    for (float& radius : radii) radius = std::exp(random.uniform(-3.0F, 1.0F));
+    const std::vector<float> table = clusteredRadii(radii);
+    float worst = 0.0F;
+    for (const float radius : radii) {
+        const float found =
+            decoded(compressed(kBox.min, {0, 1, 0}, radius, kBox, table), kBox, table).radius;
+        const auto above = std::upper_bound(table.begin(), table.end(), radius);
+        // Radii beyond the table's ends belong to the end's cluster, whose middle the entry is.
+        const float bound = above == table.begin() || above == table.end()
+                                ? 0.05F * radius
+                                : 0.5F * (*above - *std::prev(above));
+        EXPECT_LE(std::abs(found - radius), bound * 1.0001F);
+        worst = std::max(worst, std::abs(found - radius) / bound);
+    }
+    EXPECT_GT(worst, 0.95F);
+}
+
 TEST(CompressedPoint, CornersOfTheBoxAndPolesSurvive) {
     const std::vector<float> table{1.0F};
     for (const glm::vec3& corner : {kBox.min, kBox.max}) {

@@ -77,6 +77,39 @@ TEST(ModelFile, IsBuiltAgainWhereCutOffOrOfAnotherVersion) {
     EXPECT_FALSE(ModelFile::openOrBuild(folder.path(), cloud(), {}).wasBuilt());
 }
 
+TEST(ModelFile, IsBuiltAgainWhereItsCountsLie) {
+    const test::TemporaryFolder folder;
+    const ModelFile first = ModelFile::openOrBuild(folder.path(), cloud(), {});
+    const auto path = folder.path() / (ModelFile::keyOf(cloud(), {}) + ".points");
+    const std::vector<CompressedPoint> points(first.compressed().begin(), first.compressed().end());
+    // Words of the file: what the header says of its sections (offset and size each), and of the
+    // first section, the patches, what they say of points and levels.
+    constexpr std::streamoff kSections = 112, kFirstPatch = 256;
+    struct Lie {
+        std::streamoff at;
+        std::uint32_t value;
+    };
+    std::vector<Lie> lies{{kFirstPatch, 7},      {kFirstPatch + 4, 0xFFFFFFFFU},
+                          {kFirstPatch + 4, 1},  {kFirstPatch + 8, 0xFFFFFFFFU},
+                          {kFirstPatch + 12, 0}, {kFirstPatch + 12, 0xFFFFFFFFU}};
+    for (std::streamoff section = 0; section < 8; ++section) {
+        lies.push_back({kSections + 16 * section, 0xFFFFFFF8U});  // offset
+        lies.push_back({kSections + 16 * section + 8, 0x7FFFFFF8U});
+        lies.push_back({kSections + 16 * section + 8, 4});
+    }
+    for (const Lie& lie : lies) {
+        SCOPED_TRACE(testing::Message() << lie.value << " at " << lie.at);
+        {
+            std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+            file.seekp(lie.at);
+            file.write(reinterpret_cast<const char*>(&lie.value), sizeof lie.value);
+        }
+        const ModelFile again = ModelFile::openOrBuild(folder.path(), cloud(), {});
+        EXPECT_TRUE(again.wasBuilt());
+        EXPECT_TRUE(std::ranges::equal(again.compressed(), points));
+    }
+}
+
 TEST(ModelFile, StaysInMemoryWhereItCannotBeWritten) {
     const test::TemporaryFolder folder;
     const auto file = folder.path() / "a file";

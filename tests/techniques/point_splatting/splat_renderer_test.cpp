@@ -3,6 +3,7 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "techniques/point_splatting/splat_math.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
 
 namespace gfxrepro::point_splatting {
@@ -111,6 +112,33 @@ TEST_F(SplatTest, FullEwaIsTheLowPassFilterForSmallSplats) {
     EXPECT_LT(meanDifference(full, renderModel(model, SplatMode::LowPass, view)), 0.6);
 }
 
+TEST_F(SplatTest, OutlinesOfFullEwaAreCoveredByTheirShare) {
+    constexpr float kDistance = 5.0F;
+    const PatchView view = viewFrom(kDistance, kSize);
+    const ModelFile model = modelOf(sphere(40000));
+    const SplatSettings settings{.lowPassRadiusPx = 0.5F, .cutoff = 1.5F};
+    const Picture picture = renderModel(model, SplatMode::FullEwa, view, settings);
+    // The unit sphere's outline is a circle, of the angle whose sine is 1 / distance.
+    const double radiusPx = static_cast<double>(view.focalPx) /
+                            std::sqrt(static_cast<double>(kDistance * kDistance) - 1.0);
+    double covered = 0.0;
+    int partly = 0;
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const double alpha = picture.at(x, y).a / 255.0;
+            covered += alpha;
+            partly += alpha > 0.05 && alpha < 0.95 ? 1 : 0;
+            const double beyond = glm::length(glm::dvec2(x + 0.5, y + 0.5) - 48.0) - radiusPx;
+            if (beyond < -1.5) ASSERT_EQ(picture.at(x, y).a, 255) << x << ", " << y;
+            if (beyond > 1.5) ASSERT_EQ(picture.at(x, y).a, 0) << x << ", " << y;
+        }
+    }
+    // A quarter pixel off all around at the most: where splats end it would be ¾ more.
+    EXPECT_NEAR(covered, glm::pi<double>() * radiusPx * radiusPx,
+                glm::two_pi<double>() * radiusPx * 0.25);
+    EXPECT_GT(partly, 100);
+}
+
 TEST_F(SplatTest, FarSheetsDoNotShineThroughAndNearOnesBlend) {
     constexpr float kRadius = 0.85F * 2.0F * 0.6F / 60.0F;
     const PatchView view = viewFrom(3.0F, kSize);
@@ -196,21 +224,98 @@ TEST_F(SplatTest, OneSpriteIsASquareAndOneSplatAnEllipse) {
                 glm::pi<double>() * 4.0 * 0.49, 4.0);
 }
 
-TEST_F(SplatTest, EdgeOnSplatsStayAPixelWide) {
+TEST_F(SplatTest, DiscsLieWhereViewRaysMeetThem) {
     const PatchView view = viewFrom(3.0F, kSize);
-    const float radius = 10.0F * 3.0F / view.focalPx;
-    const ModelFile model =
-        modelOf(onePoint({0.8F * 3.0F / view.focalPx, 0.0F, 0.0F}, {1, 0, 0}, radius));
+    constexpr double kCutoff = 2.0;
+    struct Case {
+        glm::vec3 position, normal;
+        float radius;
+    };
+    const Case cases[] = {
+        {{0.05F, -0.02F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.1F},
+        {{-0.4F, 0.3F, 0.5F}, glm::normalize(glm::vec3(0.7F, 0.2F, 0.5F)), 0.12F},
+        {{0.5F, 0.5F, -0.5F}, glm::normalize(glm::vec3(0.1F, -0.9F, 0.3F)), 0.09F},
+        // Beyond the window's edge: GL would drop a point whose middle is outside.
+        {{0.97F, 0.1F, 0.0F}, glm::normalize(glm::vec3(-0.4F, 0.0F, 1.0F)), 0.15F},
+        {{1.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, 0.12F},
+        // So near that perspective bends the ellipse.
+        {{0.0F, 0.1F, 2.2F}, glm::normalize(glm::vec3(0.0F, 1.0F, 0.8F)), 0.06F},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(testing::Message() << "at " << c.position.x << ", " << c.position.y);
+        const ModelFile model = modelOf(onePoint(c.position, c.normal, c.radius));
+        SplatRenderer renderer(
+            shaders, model,
+            {.storage = PointStorage::Uncompressed, .cutoff = static_cast<float>(kCutoff)}, kSize);
+        render(renderer, everything(model, SplatMode::Reconstruction), view);
+        const auto sums = renderer.accumulated().read<float>(GL_RGBA, GL_FLOAT, 4);
+        const glm::dvec3 eye(0.0, 0.0, 3.0), normal(c.normal),
+            toCentre = glm::dvec3(c.position) - eye;
+        int hits = 0;
+        for (int y = 0; y < kSize.y; ++y) {
+            for (int x = 0; x < kSize.x; ++x) {
+                const glm::dvec3 ray = rayOf(view, x, y);
+                const double t = glm::dot(normal, toCentre) / glm::dot(normal, ray);
+                const double away = glm::length(t * ray - toCentre) / static_cast<double>(c.radius);
+                // A hundredth of a radius about the edge is left to rounding.
+                if (std::abs(away - kCutoff) < 0.01) continue;
+                const bool isHit = t > 0.0 && away < kCutoff;
+                hits += isHit ? 1 : 0;
+                const double expected = isHit ? std::exp(-0.5 * away * away) : 0.0;
+                // Half floats have 2⁻¹¹ of a value up to 1.
+                ASSERT_NEAR(
+                    static_cast<double>(sums[static_cast<std::size_t>(4 * (y * kSize.x + x) + 3)]),
+                    expected, 0.001)
+                    << x << ", " << y;
+            }
+        }
+        EXPECT_GT(hits, 15);
+    }
+}
+
+TEST_F(SplatTest, DiscsAreTheEllipsesOfEquation8ToFirstOrder) {
+    // Seen from far, the map to the screen is linear over a disc: H = J V^r Jᵀ.
+    const PatchView view = viewFrom(40.0F, glm::ivec2(512), 20.0F);
+    const glm::vec3 position(4.0F, -3.0F, 0.0F);
+    const glm::vec3 normal = glm::normalize(glm::vec3(0.5F, 0.6F, 0.7F));
+    const glm::vec3 tangent = tangentOf(normal, tangentChoice(normal));
+    const float radius = 0.5F;
+    const ModelFile model = modelOf(onePoint(position, normal, radius));
+    SplatRenderer renderer(shaders, model, {.storage = PointStorage::Uncompressed}, view.sizePx);
+    render(renderer, everything(model, SplatMode::Reconstruction), view);
+    const auto sums = renderer.accumulated().read<float>(GL_RGBA, GL_FLOAT, 4);
+    // Eye space has z the distance along the view axis.
+    const auto toEye = [](const glm::vec3& v) { return glm::dvec3(v.x, v.y, -v.z); };
+    const EyeSplat splat{toEye(position) + glm::dvec3(0.0, 0.0, 40.0), toEye(tangent),
+                         toEye(glm::cross(normal, tangent)), static_cast<double>(radius)};
+    const auto focal = static_cast<double>(view.focalPx);
+    const glm::dmat2 h = ewaCovariance(splat, focal, 0.0);
+    const glm::dvec2 centre =
+        256.0 + focal * glm::dvec2(splat.centre.x, splat.centre.y) / splat.centre.z;
+    int compared = 0;
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            const glm::dvec2 away = glm::dvec2(x + 0.5, y + 0.5) - centre;
+            const double distance2 = glm::dot(away, glm::inverse(h) * away);
+            if (distance2 > 3.8) continue;
+            ++compared;
+            // Over the disc depths differ by 2 % of the distance, which bends the exponent as much.
+            ASSERT_NEAR(static_cast<double>(sums[static_cast<std::size_t>(4 * (y * 512 + x) + 3)]),
+                        std::exp(-0.5 * distance2), 0.04);
+        }
+    }
+    EXPECT_GT(compared, 300);
+}
+
+TEST_F(SplatTest, DiscsWiderThanGlPointsAreStillWhole) {
+    // A disc as wide as the window beside others: no device has GL points of every size.
+    const PatchView view = viewFrom(3.0F, glm::ivec2(1024));
+    const ModelFile model = modelOf(onePoint(glm::vec3(0.0F), {0.0F, 0.0F, 1.0F}, 0.4F));
     const Picture picture = renderModel(model, SplatMode::Reconstruction, view,
                                         {.storage = PointStorage::Uncompressed});
-    int rows = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        bool isCovered = false;
-        for (int x = 0; x < kSize.x; ++x) isCovered = isCovered || picture.at(x, y).a > 0;
-        rows += isCovered ? 1 : 0;
-    }
-    // 0.3 pixels from their centres: reached by 32 of the ellipse's 40 rows.
-    EXPECT_NEAR(rows, 32, 2);
+    const double radiusPx = 2.0 * 0.4 * static_cast<double>(view.focalPx) / 3.0;
+    EXPECT_GT(radiusPx, 400.0);
+    EXPECT_NEAR(coveredPixels(picture), glm::pi<double>() * radiusPx * radiusPx, 4000.0);
 }
 
 TEST_F(SplatTest, NothingDegenerateBreaksASum) {

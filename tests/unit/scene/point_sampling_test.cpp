@@ -47,7 +47,7 @@ TEST(SampledPoints, AreSpreadByArea) {
     }
     EXPECT_GE(*std::min_element(cells.begin(), cells.end()), 6);
     EXPECT_LE(*std::max_element(cells.begin(), cells.end()), 14);
-    EXPECT_NEAR(points.radii[0], 1.5 * std::sqrt(4.0 / 4000 / glm::pi<double>()), 1e-6);
+    EXPECT_NEAR(points.radii[0], 2.0 * std::sqrt(4.0 / 4000 / glm::pi<double>()), 1e-6);
     EXPECT_EQ(points.normals[7], glm::vec3(0, 0, 1));
     EXPECT_NEAR(points.colors[7].x, 0.4F, 1e-6F);  // default grey times vertex colour
 }
