@@ -9,6 +9,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/terrain_tessellation/terrain_measures.h"
 #include "techniques/terrain_tessellation/terrain_renderer.h"
+#include "techniques/terrain_tessellation/terrain_views.h"
 #include "techniques/terrain_tessellation/tile_selection.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -33,7 +34,7 @@ struct TerrainTessellationParams {
     MetadataSettings metadata;
     float maxTileErrorPx = 4.0F;  // τ
     float finestRangeM = 0.0F;    // of CDLOD; 0: where a cell is ΔS pixels wide
-    HeightFormat heightFormat = HeightFormat::Float32;
+    HeightPageSettings heights;
     std::string view = "valley";
     bool keepsMetadata = true;
     bool measuresErrors = false;
@@ -91,6 +92,7 @@ class TerrainTessellation final : public technique::Technique {
     gl::Device* device_ = nullptr;
     std::optional<TerrainMetadata> metadata_;
     std::optional<TileTree> tree_;
+    std::optional<TerrainView> camera_;
     std::optional<DeviceTerrain> terrain_;
     std::optional<TerrainRenderer> renderer_;
     std::optional<Target> target_;
@@ -99,7 +101,8 @@ class TerrainTessellation final : public technique::Technique {
     TileView tileView_;
     TileSelection selection_;
     DrawCounts counts_;
-    double drawS_ = 0.0;  // wall clock, until the device is done
+    double drawS_ = 0.0;             // wall clock, until the device is done
+    std::uint64_t loadedTiles_ = 0;  // for the last frame
 };
 
 extern const technique::TechniqueInfo kTerrainTessellation;

@@ -7,7 +7,6 @@
 #include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "techniques/terrain_tessellation/terrain_tessellation.h"
-#include "techniques/terrain_tessellation/terrain_views.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -54,6 +53,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     for (const Tile& tile : selection_.tiles) errorPx = std::max(errorPx, tile.screenErrorPx);
     count("tile_error_px", errorPx, "pixel");
     count("preprocess_ms", preprocessMs_, "ms");
+    count("loaded_tiles", static_cast<double>(loadedTiles_), "tile");
     count("memory_bytes", static_cast<double>(terrain_->sizeBytes()), "byte");
     const bool hasPatches = params_.method == Method::Adaptive || params_.method == Method::Patches;
     if (!hasPatches) return;

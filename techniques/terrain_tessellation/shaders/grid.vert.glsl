@@ -4,7 +4,6 @@
 #include "terrain_tessellation/terrain.glsl"
 
 uniform int tileIndex;
-uniform int cellsPerSide;
 out vec3 surfaceNormal;
 out float surfaceHeight;
 out float isSkirt;
@@ -17,20 +16,19 @@ const ivec2 kCorners[6] = ivec2[6](ivec2(0, 0), ivec2(0, 1), ivec2(1, 0),  //
                                    ivec2(1, 0), ivec2(0, 1), ivec2(1, 1));
 
 void main() {
+    const int cells = PATCHES_PER_TILE_SIDE * BLOCKS_PER_PATCH * BLOCK_SEGMENTS;  // a side
     ivec4 tile = tiles[tileIndex];
     int cell = gl_VertexID / 6;
-    ivec2 corner = ivec2(cell % cellsPerSide, cell / cellsPerSide) + kCorners[gl_VertexID % 6];
-    vec2 at = vec2(tile.xy + corner * tile.w);
-    float height = heightAt(at, tile.w);
-    int normalStep = tile.w;
+    ivec2 corner = ivec2(cell % cells, cell / cells) + kCorners[gl_VertexID % 6];
+    vec2 at = vec2(tile.xy + corner * (1 << tile.z));
 #if MORPH
-    float away = distance(eye, worldOf(at, height));
+    float away = distance(eye, worldOf(at, heightAt(tile, at)));
     float morph = clamp((away - morphRange.x) / (morphRange.y - morphRange.x), 0.0, 1.0);
-    at -= vec2(corner & 1) * float(tile.w) * morph;
-    height = heightAt(at, tile.w);
+    at -= vec2(corner & 1) * float(1 << tile.z) * morph;
 #endif
-    surfaceNormal = normalAt(at, normalStep);
-    surfaceHeight = height;
+    Ground ground = groundAt(tile, at);
+    surfaceNormal = ground.normal;
+    surfaceHeight = ground.height;
     isSkirt = 0.0;
-    gl_Position = clipFromWorld * vec4(worldOf(at, height), 1.0);
+    gl_Position = clipFromWorld * vec4(worldOf(at, ground.height), 1.0);
 }

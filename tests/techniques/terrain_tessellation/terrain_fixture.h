@@ -55,7 +55,7 @@ class TerrainTest : public test::GlTest {
     RenderSettings settings() const {
         RenderSettings result;
         result.factors.tile = tile;
-        result.splitPrimitives = splitPrimitivesFor(true);
+        result.batches.emplace();
         return result;
     }
     std::vector<Tile> tilesOf(int level) const {

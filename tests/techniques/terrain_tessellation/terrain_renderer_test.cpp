@@ -156,7 +156,8 @@ TEST_F(TerrainTest, SplittingChangesNoPixel) {
     std::vector<std::vector<glm::vec4>> pictures;
     std::vector<DrawCounts> counts;
     for (const int limit : {0, 1500}) {
-        set.splitPrimitives = limit;
+        set.batches.reset();
+        if (limit > 0) set.batches = BatchLimits{limit, limit / 2};
         TerrainRenderer renderer(shaders, *terrain, set);
         pictures.push_back(picture(kSize, [&](const gl::Framebuffer& target) {
             counts.push_back(renderer.drawTessellated(tilesOf(0), view, target));
