@@ -105,7 +105,7 @@ class PatchCosts {
         const glm::vec3 a = corner(low, range.minM), b = corner(high, range.maxM);
         PatchCost cost;
         cost.distanceM = glm::distance(view_.eyeWorld, glm::clamp(view_.eyeWorld, a, b));
-        cost.mayBeClipped = !isWithinGuardBand(a, b);
+        cost.mayBeClipped = !isWithinFrustum(a, b);
         cost.triangles = isCulled(0.5F * (a + b), 0.5F * glm::distance(a, b)) ? 0.0 : 1.0;
         return cost;
     }
@@ -117,13 +117,13 @@ class PatchCosts {
                });
     }
 
-    /// Mesa's draw module clips at twice the window in x and y, at the window in z.
-    bool isWithinGuardBand(const glm::vec3& a, const glm::vec3& b) const {
+    /// Strictly inside the frustum, where no vertex is clipped.
+    bool isWithinFrustum(const glm::vec3& a, const glm::vec3& b) const {
         for (int i = 0; i < 8; ++i) {
             const glm::vec4 corner((i & 1) != 0 ? b.x : a.x, (i & 2) != 0 ? b.y : a.y,
                                    (i & 4) != 0 ? b.z : a.z, 1.0F);
             const glm::vec4 clip = corner * rows_;
-            if (std::abs(clip.x) >= 2.0F * clip.w || std::abs(clip.y) >= 2.0F * clip.w ||
+            if (std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w ||
                 std::abs(clip.z) >= clip.w) {
                 return false;
             }

@@ -73,7 +73,7 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
     EXPECT_EQ(m.at("crack_pixels/background"), 0.0);
     EXPECT_EQ(m.at("flip_mean"), 0.0);
     EXPECT_EQ(m.at("channel_error"), 0.0);
-    EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "draw"}));
+    EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "load_tiles", "draw"}));
 }
 
 TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
