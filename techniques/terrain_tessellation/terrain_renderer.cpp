@@ -122,7 +122,9 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
-    glDisable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
+    settings_.showsUnderside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
     if (program.isActive("heightExtent")) {
@@ -145,6 +147,7 @@ DrawCounts TerrainRenderer::drawInTurns(std::span<const Tile> tiles, const Draw&
         counts.add(drawn);
     }
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glDisable(GL_CULL_FACE);
     return counts;
 }
 

@@ -27,6 +27,7 @@ struct RenderSettings {
     bool hasSkirts = true;
     bool isWireframe = false;
     Shading shading = Shading::SlopeAltitude;
+    bool showsUnderside = false;  // of terrain, with an alpha of 0; to find cracks
     /// For a software rasterizer; without, one call draws all.
     std::optional<BatchLimits> batches;
 };
@@ -74,6 +75,7 @@ class TerrainRenderer {
                            const depth_images::View& view, const gl::Framebuffer& target);
 
     const RenderSettings& settings() const { return settings_; }
+    void setShowsUnderside(bool isShown) { settings_.showsUnderside = isShown; }
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:

@@ -77,7 +77,9 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
     // Lengths in pixels are `scale` times as large: the factors stay as they were.
     const float segmentPx = params_.render.factors.segmentPx;
     renderer_->setSegmentPx(static_cast<float>(scale) * segmentPx);
+    renderer_->setShowsUnderside(true);
     draw(method, selection, view, target);
+    renderer_->setShowsUnderside(false);
     renderer_->setSegmentPx(segmentPx);
     Drawn drawn{target.colour.readImage(3), readDepths(target.depth, view), {}, 0};
     drawn.upperDepths = drawn.depths;

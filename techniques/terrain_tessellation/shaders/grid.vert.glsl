@@ -6,7 +6,6 @@
 uniform int tileIndex;
 out vec3 surfaceNormal;
 out float surfaceHeight;
-out float isSkirt;
 #if MORPH
 uniform vec3 eye;
 uniform vec2 morphRange;  // metres: where it begins, where it is done
@@ -29,6 +28,5 @@ void main() {
     Ground ground = groundAt(tile, at);
     surfaceNormal = ground.normal;
     surfaceHeight = ground.height;
-    isSkirt = 0.0;
     gl_Position = clipFromWorld * vec4(worldOf(at, ground.height), 1.0);
 }

@@ -10,7 +10,6 @@ patch in ivec4 drawnTile;
 patch in int drawnRim;
 out vec3 surfaceNormal;
 out float surfaceHeight;
-out float isSkirt;
 
 void main() {
     // Bilinear over a square along the axes. `precise`: both patches of an edge, and the skirt,
@@ -19,8 +18,9 @@ void main() {
     float down = 0.0;
     if (drawnRim != kSurface) {
         bool isAlongZ = (drawnRim & 1) == 0;
-        down = isAlongZ ? uv.x : uv.y;
         float far = (drawnRim & 2) != 0 ? 1.0 : 0.0;
+        // The western and the northern skirt run upwards, so that all turn their front outwards.
+        down = abs((isAlongZ ? uv.x : uv.y) - (1.0 - far));
         uv = isAlongZ ? vec2(far, uv.y) : vec2(uv.x, far);
     }
     precise vec2 at = cornerSamples[0] + uv * (cornerSamples[3] - cornerSamples[0]);
@@ -29,7 +29,6 @@ void main() {
     precise float height = down > 0.0 ? mix(top, skirtFoot, down) : top;
     surfaceNormal = ground.normal;
     surfaceHeight = top;
-    isSkirt = drawnRim != kSurface ? 1.0 : 0.0;
     precise vec4 position = clipFromWorld * vec4(worldOf(at, height), 1.0);
     gl_Position = position;
 }
