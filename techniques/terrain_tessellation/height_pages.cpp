@@ -27,7 +27,7 @@ int pageCount(std::size_t budgetBytes, std::size_t pageBytes, int side, int tile
         throw Error(fmt::format(
             "{:.2f} MiB for heights hold no tile of {} × {}; allowed: {:.2f} MiB or more",
             static_cast<double>(budgetBytes) / (1 << 20), side, side,
-            static_cast<double>(pageBytes) / (1 << 20)));
+            std::ceil(100.0 * static_cast<double>(pageBytes) / (1 << 20)) / 100.0));
     }
     GLint mostLayers = 1;
     glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &mostLayers);

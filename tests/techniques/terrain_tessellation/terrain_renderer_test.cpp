@@ -167,6 +167,16 @@ TEST_F(TerrainTest, SplittingChangesNoPixel) {
     EXPECT_EQ(counts[0].triangles, counts[1].triangles);
     EXPECT_EQ(counts[0].drawCalls, 1);
     EXPECT_GT(counts[1].drawCalls, 10);
+    // What batches expect is no less than what is drawn.
+    const std::vector<Tile> tiles = tilesOf(0);
+    double bound = 0.0;
+    for (const PatchBatch& batch :
+         batchPatches(*metadata, set.factors, view, {tiles, true, -1.0F, true}, {1500, 750})
+             .batches) {
+        bound += batch.triangles;
+    }
+    EXPECT_GE(bound, static_cast<double>(counts[1].triangles));
+    EXPECT_LT(bound, 2.0 * static_cast<double>(counts[1].triangles));
 }
 
 TEST_F(TerrainTest, RefusesAMapThatTheMetadataIsNotOf) {
