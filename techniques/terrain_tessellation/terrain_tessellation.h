@@ -82,6 +82,7 @@ class TerrainTessellation final : public technique::Technique {
     Drawn drawnAgain(Method method, const TileSelection& selection);
 
     void recordDrawn(technique::Recorder& recorder);
+    void recordCulling(technique::Recorder& recorder);
     void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Drawn& truth);
 
     TerrainTessellationParams params_;

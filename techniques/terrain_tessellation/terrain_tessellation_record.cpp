@@ -5,6 +5,7 @@
 
 #include "runner/metrics/flip.h"
 #include "techniques/shared/reflections/displayed_errors.h"
+#include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "techniques/terrain_tessellation/terrain_tessellation.h"
 
@@ -32,6 +33,7 @@ void TerrainTessellation::record(technique::Recorder& recorder) {
     const Drawn drawn = drawnAgain(params_.method, selection_);
     if (params_.showsPictures) {
         recorder.image("image", averaged(drawn.picture, params_.supersampling));
+        if (params_.method == Method::Adaptive) recordCulling(recorder);
     }
     if (params_.measuresErrors) {
         recordErrors(recorder, drawn, drawnAgain(Method::UniformGrid, selectAll()));
@@ -68,6 +70,14 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     count("factor_mismatches", agreement.unequalEdges, "edge");
 }
 
+void TerrainTessellation::recordCulling(technique::Recorder& recorder) {
+    const std::vector<Tile> tiles = tree_->select(tileView_, params_.maxTileErrorPx, false).tiles;
+    FactorReplay replay(*shaders_, *terrain_, renderer_->settings());
+    recorder.image("culling", cullingPicture(*scene_->heights, tiles, params_.render.factors.tile,
+                                             replay.run(tiles, view_), tileView_.clipFromWorld,
+                                             params_.culling != Culling::None, sizePx_.y));
+}
+
 TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
                                                            const TileSelection& selection) {
     const int scale = params_.supersampling;
@@ -77,7 +87,7 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
     // Lengths in pixels are `scale` times as large: the factors stay as they were.
     const float segmentPx = params_.render.factors.segmentPx;
     renderer_->setSegmentPx(static_cast<float>(scale) * segmentPx);
-    renderer_->setShowsUnderside(true);
+    renderer_->setShowsUnderside(params_.measuresErrors);
     draw(method, selection, view, target);
     renderer_->setShowsUnderside(false);
     renderer_->setSegmentPx(segmentPx);
