@@ -78,8 +78,8 @@ class TerrainTessellation final : public technique::Technique {
     DrawCounts draw(Method method, const TileSelection& selection, const depth_images::View& view,
                     const Target& target);
     /// The frame again, `params_.supersampling` times as large, with the tiles and the factors that
-    /// it was drawn with.
-    Drawn drawnAgain(Method method, const TileSelection& selection);
+    /// it was drawn with; with the underside of terrain, which frames cull, or without.
+    Drawn drawnAgain(Method method, const TileSelection& selection, bool showsUnderside);
 
     void recordDrawn(technique::Recorder& recorder);
     void recordCulling(technique::Recorder& recorder);
