@@ -107,15 +107,15 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
 void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Drawn& drawn,
                                        const Drawn& truth) {
     const scene::HeightMap& map = *scene_->heights;
+    // As frames are drawn: what shows the underside above may show the background here.
+    const Drawn framed = drawnAgain(params_.method, selection_, false);
     const HeightErrors height =
-        heightErrors(drawn.depths, [&](float x, float z) { return heightAt(map, x, z); });
+        heightErrors(framed.depths, [&](float x, float z) { return heightAt(map, x, z); });
     recorder.metric("height_error_m", height.meanM, "m", "mean");
     recorder.metric("height_error_m", height.maxM, "m", "max");
     recorder.metric("height_error_px", height.meanPx / params_.supersampling, "pixel", "mean");
     recorder.metric("height_error_px", height.maxPx / params_.supersampling, "pixel", "max");
     const std::vector<std::uint8_t> cracks = crackMarks(drawn.upperDepths, truth.upperDepths);
-    // As frames are drawn: what shows the underside above may show the background here.
-    const Drawn framed = drawnAgain(params_.method, selection_, false);
     const std::size_t background = markedCount(crackMarks(framed.depths, truth.depths));
     recorder.metric("crack_pixels", static_cast<double>(background), "pixel", "background");
     recorder.metric("crack_pixels", static_cast<double>(markedCount(cracks)), "pixel", "underside");
