@@ -224,10 +224,11 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     program.set("tileIndex", tile);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
-    const int cells = side * side, step = kGridTrianglesPerDraw / 2;
+    const int step = std::max(1, kGridTrianglesPerDraw / (2 * side));
     int draws = 0;
-    for (int first = 0; first < cells; first += step, ++draws) {
-        glDrawArrays(GL_TRIANGLES, 6 * first, 6 * std::min(step, cells - first));
+    for (int first = 0; first < side; first += step, ++draws) {
+        program.set("firstRow", first);
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (side + 1), std::min(step, side - first));
         if (settings_.batches) glFlush();
     }
     return draws;
