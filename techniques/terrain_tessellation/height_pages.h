@@ -1,4 +1,4 @@
-// The heights of the tiles in view: [zhang2012] Sec. 2.1 fetches a height texture a tile.
+// The heights of the tiles in view: in [zhang2012] every tile has a height texture of its own.
 #pragma once
 
 #include <cstddef>
