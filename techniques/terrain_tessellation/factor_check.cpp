@@ -19,7 +19,8 @@ std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles,
     const auto count = tiles.size() * static_cast<std::size_t>(side * side);
     if (count == 0) return {};
     program_.use();
-    const gl::Buffer records = bindTiles(tiles, 0);
+    const std::vector<int> noLayers(tiles.size(), 0);  // heights are not read
+    const gl::Buffer records = bindTiles(tiles, noLayers);
     bindTerrain(program_, *terrain_, view);
     bindFactors(program_, *terrain_, settings_, view);
     program_.set("patchCount", static_cast<int>(count));

@@ -1,29 +1,26 @@
-// The terrain on the device: heights as one texture, and the bounds that the control stage reads.
+// The terrain on the device: heights of the tiles in view, and the bounds that the control stage
+// reads.
 #pragma once
 
 #include <glm/glm.hpp>
 
 #include "runner/gl/objects.h"
+#include "techniques/terrain_tessellation/height_pages.h"
 #include "techniques/terrain_tessellation/terrain_metadata.h"
 
 namespace gfxrepro::terrain_tessellation {
 
-enum class HeightFormat {
-    Float32,  // exact
-    Unorm16,  // half the memory; steps of (highest − lowest) / 65535
-};
-
-/// The map must be the one that the metadata was built from; it is not kept, `metadata` must
-/// outlive this.
+/// The map must be the one that the metadata was built from; both must outlive this.
 class DeviceTerrain {
   public:
     /// Throws UnsupportedError beyond the device's texture or buffer size, Error for a map whose
-    /// size is not the metadata's.
+    /// size is not the metadata's or a budget that holds no tile.
     DeviceTerrain(const scene::HeightMap& map, const TerrainMetadata& metadata,
-                  HeightFormat format = HeightFormat::Float32);
+                  const HeightPageSettings& settings = {});
 
     const TerrainMetadata& metadata() const { return *metadata_; }
-    const gl::Texture& heights() const { return heights_; }
+    HeightPages& pages() { return pages_; }
+    const HeightPages& pages() const { return pages_; }
     const gl::Buffer& blocks() const { return blocks_; }
     const gl::Buffer& firstBlocks() const { return firstBlocks_; }  // by level
     /// A texel t is the height x + y·t.
@@ -34,10 +31,10 @@ class DeviceTerrain {
 
   private:
     const TerrainMetadata* metadata_;
-    gl::Texture heights_;
+    float lowestM_, highestM_;
+    glm::vec2 heightOfTexel_;
+    HeightPages pages_;
     gl::Buffer blocks_, firstBlocks_;
-    glm::vec2 heightOfTexel_{0.0F, 1.0F};
-    float lowestM_ = 0.0F, highestM_ = 0.0F;
 };
 
 }  // namespace gfxrepro::terrain_tessellation

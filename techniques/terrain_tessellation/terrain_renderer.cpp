@@ -19,36 +19,14 @@ const char* spacingName(Spacing spacing) {
     return spacing == Spacing::FractionalOdd ? "fractional_odd_spacing" : "equal_spacing";
 }
 
-/// Hand-outs of whole patches, each of about `limit` triangles at most (a single patch may have
-/// more); `flush` draws the pending ones.
-class PatchRuns {
-  public:
-    PatchRuns(int limit) : limit_(limit) {}
-    void add(int count, double triangles) {
-        if (pending_ > 0 && limit_ > 0 && triangles_ + triangles > limit_) flush();
-        pending_ += count;
-        triangles_ += triangles;
-    }
-    void flush() {
-        if (pending_ == 0) return;
-        glDrawArrays(GL_PATCHES, 4 * first_, 4 * pending_);
-        if (limit_ > 0) glFlush();
-        first_ += pending_;
-        pending_ = 0;
-        triangles_ = 0.0;
-        ++draws_;
-    }
-    int draws() const { return draws_; }
-
-  private:
-    int limit_, first_ = 0, pending_ = 0, draws_ = 0;
-    double triangles_ = 0.0;
-};
-
 }  // namespace
 
-int splitPrimitivesFor(bool isSoftwareDevice) {
-    return isSoftwareDevice ? 1 << 14 : 0;
+void DrawCounts::add(const DrawCounts& other) {
+    triangles += other.triangles;
+    tiles += other.tiles;
+    patches += other.patches;
+    culledPatches += other.culledPatches;
+    drawCalls += other.drawCalls;
 }
 
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings) {
@@ -58,6 +36,7 @@ gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& s
             {"FIRST_BLOCK_BINDING", int(kFirstBlockBinding)},
             {"COUNTER_BINDING", int(kCounterBinding)},
             {"HEIGHT_UNIT", int(kHeightUnit)},
+            {"PAGE_BORDER", HeightPages::kBorder},
             {"PATCHES_PER_TILE_SIDE", factors.tile.patchesPerTile},
             {"BLOCKS_PER_PATCH", factors.tile.blocksPerPatch},
             {"BLOCK_SEGMENTS", terrain.metadata().settings().blockSegments},
@@ -69,12 +48,12 @@ gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& s
             {"SHADING", static_cast<int>(settings.shading)}};
 }
 
-gl::Buffer bindTiles(std::span<const Tile> tiles, int stepSamples) {
+gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers) {
+    GFXREPRO_ASSERT_EQ(tiles.size(), layers.size());
     std::vector<glm::ivec4> values;
     values.reserve(tiles.size());
-    for (const Tile& tile : tiles) {
-        values.emplace_back(tile.originSample, tile.level,
-                            stepSamples > 0 ? stepSamples : 1 << tile.level);
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        values.emplace_back(tiles[i].originSample, tiles[i].level, layers[i]);
     }
     gl::Buffer buffer = gl::Buffer::of(values);
     buffer.bindStorage(kTileBinding);
@@ -86,7 +65,7 @@ void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
     const auto setIfRead = [&](const char* name, const auto& value) {
         if (program.isActive(name)) program.set(name, value);
     };
-    terrain.heights().bind(kHeightUnit);
+    terrain.pages().texture().bind(kHeightUnit);
     setIfRead("heightOfTexel", terrain.heightOfTexel());
     setIfRead("spacing", terrain.metadata().spacingM());
     setIfRead("clipFromWorld", view.clipFromWorld());
@@ -117,7 +96,7 @@ void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
     }
 }
 
-TerrainRenderer::TerrainRenderer(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
+TerrainRenderer::TerrainRenderer(const gl::ShaderLibrary& shaders, DeviceTerrain& terrain,
                                  const RenderSettings& settings)
     : terrain_(&terrain), settings_(settings) {
     const TileSettings& tile = settings.factors.tile;
@@ -143,7 +122,9 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
-    glDisable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
+    settings_.showsUnderside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
     if (program.isActive("heightExtent")) {
@@ -151,140 +132,140 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     }
 }
 
-std::array<double, 4> TerrainRenderer::outerFactors(const Patch& patch,
-                                                    const depth_images::View& view,
-                                                    const glm::dmat4& clipFromWorld) const {
-    std::array<double, 4> outer;
-    for (const Edge edge : {kWest, kNorth, kEast, kSouth}) {
-        outer[edge] =
-            edgeFactor(terrain_->metadata(), settings_.factors, view, clipFromWorld, patch, edge);
-    }
-    if (settings_.factors.edges == EdgeRule::OwnPatch) {
-        outer.fill(0.25 * (outer[0] + outer[1] + outer[2] + outer[3]));
-    }
-    return outer;
-}
-
-int TerrainRenderer::drawPatches(std::span<const Tile> tiles, const depth_images::View& view,
-                                 int patchesPerTile) const {
-    PatchRuns runs(settings_.splitPrimitives);
-    const int m = settings_.factors.tile.patchesPerTile;
-    const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
-    for (const Tile& tile : tiles) {
-        if (settings_.splitPrimitives == 0) {
-            runs.add(patchesPerTile, 0.0);
-            continue;
-        }
-        for (int i = 0; i < m * m; ++i) {
-            const Patch patch = patchOf(tile, settings_.factors.tile, i);
-            runs.add(1, triangleBound(outerFactors(patch, view, clipFromWorld),
-                                      settings_.factors.inner));
-        }
-        for (int i = m * m; i < patchesPerTile; ++i) {
-            const int rim = (i - m * m) / m, along = (i - m * m) % m;
-            const int far = rim == kEast || rim == kSouth ? m - 1 : 0;
-            const bool isAlongZ = rim == kWest || rim == kEast;
-            const Patch patch =
-                patchOf(tile, settings_.factors.tile, isAlongZ ? along * m + far : far * m + along);
-            const double factor =
-                outerFactors(patch, view, clipFromWorld)[static_cast<std::size_t>(rim)];
-            // Two segments downwards at most, of two triangles each.
-            runs.add(1, 4.0 * (factor + 2.0));
-        }
-    }
-    runs.flush();
-    return runs.draws();
-}
-
-DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
-                                            const depth_images::View& view,
-                                            const gl::Framebuffer& target) {
+template <class Draw>
+DrawCounts TerrainRenderer::drawInTurns(std::span<const Tile> tiles, const Draw& draw) {
     DrawCounts counts;
-    if (tiles.empty()) return counts;
+    const auto turn = static_cast<std::size_t>(terrain_->pages().capacity());
+    for (std::size_t first = 0; first < tiles.size(); first += turn) {
+        const auto some = tiles.subspan(first, std::min(turn, tiles.size() - first));
+        const std::vector<int> layers = terrain_->pages().load(some);
+        primitives_.begin();
+        DrawCounts drawn = draw(some, layers);
+        primitives_.end();
+        drawn.triangles = primitives_.result();
+        drawn.tiles = static_cast<int>(some.size());
+        counts.add(drawn);
+    }
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glDisable(GL_CULL_FACE);
+    return counts;
+}
+
+int TerrainRenderer::drawBatches(const PatchBatches& patches) const {
+    std::vector<std::uint32_t> vertices;
+    vertices.reserve(4 * patches.order.size());
+    for (const std::uint32_t patch : patches.order) {
+        for (std::uint32_t corner = 0; corner < 4; ++corner) vertices.push_back(4 * patch + corner);
+    }
+    const gl::Buffer indices = gl::Buffer::of(vertices);
+    gl::VertexArray array;
+    array.setIndices(indices);
+    array.bind();
+    std::size_t first = 0;
+    double pending = 0.0;
+    for (const PatchBatch& batch : patches.batches) {
+        glDrawElements(GL_PATCHES, static_cast<GLsizei>(4 * batch.count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(4 * sizeof(std::uint32_t) * first));
+        first += batch.count;
+        pending += batch.triangles;
+        if (pending < settings_.batches->triangles) continue;
+        glFlush();
+        pending = 0.0;
+    }
+    noAttributes_.bind();
+    return static_cast<int>(patches.batches.size());
+}
+
+DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
+                                        const depth_images::View& view) const {
     const int m = settings_.factors.tile.patchesPerTile;
     const int patchesPerTile = m * m + (settings_.hasSkirts ? 4 * m : 0);
     // Skirts end below the lowest sample, by more than depth's rounding.
     const float relief = terrain_->highestM() - terrain_->lowestM();
     const float foot =
         terrain_->lowestM() - std::max(0.01F * relief, terrain_->metadata().spacingM());
-    target.bind();
-    bindShading(tessellated_);
-    const gl::Buffer records = bindTiles(tiles, 0);
-    bindTerrain(tessellated_, *terrain_, view);
-    bindFactors(tessellated_, *terrain_, settings_, view);
+    const gl::Buffer records = bindTiles(tiles, layers);
     tessellated_.set("patchesPerTile", patchesPerTile);
     tessellated_.set("skirtFoot", foot);
+    DrawCounts counts;
+    const int tileCount = static_cast<int>(tiles.size());
+    if (settings_.batches) {
+        counts.drawCalls = drawBatches(batchPatches(
+            terrain_->metadata(), settings_.factors, view,
+            {tiles, settings_.hasSkirts, foot, settings_.cullsPatches}, *settings_.batches));
+    } else {
+        glDrawArrays(GL_PATCHES, 0, 4 * patchesPerTile * tileCount);
+        counts.drawCalls = 1;
+    }
+    counts.patches = m * m * tileCount;
+    return counts;
+}
+
+DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
+                                            const depth_images::View& view,
+                                            const gl::Framebuffer& target) {
+    target.bind();
+    bindShading(tessellated_);
+    bindTerrain(tessellated_, *terrain_, view);
+    bindFactors(tessellated_, *terrain_, settings_, view);
     counters_.clear();
     counters_.bindStorage(kCounterBinding);
     glPatchParameteri(GL_PATCH_VERTICES, 4);
-    primitives_.begin();
-    counts.drawCalls = drawPatches(tiles, view, patchesPerTile);
-    primitives_.end();
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    counts.triangles = primitives_.result();
-    counts.tiles = static_cast<int>(tiles.size());
-    counts.patches = counts.tiles * m * m;
+    DrawCounts counts =
+        drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
+            return drawPatches(some, layers, view);
+        });
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     counts.culledPatches = static_cast<int>(counters_.read<std::uint32_t>(1).front());
     return counts;
 }
 
-int TerrainRenderer::drawGridTile(const gl::Program& program, int tile, int cellsPerSide) const {
+int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     program.set("tileIndex", tile);
-    program.set("cellsPerSide", cellsPerSide);
-    const int cells = cellsPerSide * cellsPerSide, step = kGridTrianglesPerDraw / 2;
+    const int side =
+        settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
+    const int step = std::max(1, kGridTrianglesPerDraw / (2 * side));
     int draws = 0;
-    for (int first = 0; first < cells; first += step, ++draws) {
-        glDrawArrays(GL_TRIANGLES, 6 * first, 6 * std::min(step, cells - first));
-        if (settings_.splitPrimitives > 0) glFlush();
+    for (int first = 0; first < side; first += step, ++draws) {
+        program.set("firstRow", first);
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (side + 1), std::min(step, side - first));
+        if (settings_.batches) glFlush();
     }
     return draws;
 }
 
-DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, int stepSamples,
-                                     const depth_images::View& view,
+DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const depth_images::View& view,
                                      const gl::Framebuffer& target) {
-    GFXREPRO_ASSERT(stepSamples > 0);
-    DrawCounts counts;
-    if (tiles.empty()) return counts;
     target.bind();
     bindShading(grid_);
-    const gl::Buffer records = bindTiles(tiles, stepSamples);
     bindTerrain(grid_, *terrain_, view);
-    primitives_.begin();
-    for (int i = 0; i < static_cast<int>(tiles.size()); ++i) {
-        const int span = tiles[static_cast<std::size_t>(i)].sizeSamples;
-        counts.drawCalls += drawGridTile(grid_, i, std::max(1, span / stepSamples));
-    }
-    primitives_.end();
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    counts.triangles = primitives_.result();
-    counts.tiles = static_cast<int>(tiles.size());
-    return counts;
+    return drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
+        const gl::Buffer records = bindTiles(some, layers);
+        DrawCounts counts;
+        for (int i = 0; i < static_cast<int>(some.size()); ++i) {
+            counts.drawCalls += drawGridTile(grid_, i);
+        }
+        return counts;
+    });
 }
 
 DrawCounts TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
                                         const depth_images::View& view,
                                         const gl::Framebuffer& target) {
-    DrawCounts counts;
-    if (tiles.empty()) return counts;
     target.bind();
     bindShading(morphed_);
-    const gl::Buffer records = bindTiles(tiles, 0);
     bindTerrain(morphed_, *terrain_, view);
     morphed_.set("eye", view.eyeWorld);
-    primitives_.begin();
-    for (int i = 0; i < static_cast<int>(tiles.size()); ++i) {
-        const Tile& tile = tiles[static_cast<std::size_t>(i)];
-        const float range = ranges.rangesM.at(static_cast<std::size_t>(tile.level));
-        morphed_.set("morphRange", glm::vec2(ranges.startShare, 1.0F) * range);
-        counts.drawCalls += drawGridTile(morphed_, i, tile.sizeSamples >> tile.level);
-    }
-    primitives_.end();
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    counts.triangles = primitives_.result();
-    counts.tiles = static_cast<int>(tiles.size());
-    return counts;
+    return drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
+        const gl::Buffer records = bindTiles(some, layers);
+        DrawCounts counts;
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const float range = ranges.rangesM.at(static_cast<std::size_t>(some[i].level));
+            morphed_.set("morphRange", glm::vec2(ranges.startShare, 1.0F) * range);
+            counts.drawCalls += drawGridTile(morphed_, static_cast<int>(i));
+        }
+        return counts;
+    });
 }
 
 }  // namespace gfxrepro::terrain_tessellation

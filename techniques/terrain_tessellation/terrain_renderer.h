@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "runner/gl/program.h"
 #include "techniques/terrain_tessellation/edge_factors.h"
 #include "techniques/terrain_tessellation/height_textures.h"
+#include "techniques/terrain_tessellation/patch_batches.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -25,13 +27,10 @@ struct RenderSettings {
     bool hasSkirts = true;
     bool isWireframe = false;
     Shading shading = Shading::SlopeAltitude;
-    /// One draw call generates no more than about this; 0: no limit. See splitPrimitivesFor().
-    int splitPrimitives = 0;
+    bool showsUnderside = false;  // of terrain, with an alpha of 0; to find cracks
+    /// For a software rasterizer; without, one call draws all.
+    std::optional<BatchLimits> batches;
 };
-
-/// llvmpipe's tessellated draws take a time that grows with the square of what one generates.
-/// Calls of 2^14 triangles were 2.5 times as fast as of 2^16, at ΔS = 1 on two cores.
-int splitPrimitivesFor(bool isSoftwareDevice);
 
 struct DrawCounts {
     std::uint64_t triangles = 0;  // GL_PRIMITIVES_GENERATED, skirts included
@@ -39,6 +38,8 @@ struct DrawCounts {
     int patches = 0;        // given to the control stage, without skirts
     int culledPatches = 0;  // of these, dropped by it
     int drawCalls = 0;
+
+    void add(const DrawCounts& other);
 };
 
 /// Sets of the morphing grid: level l is drawn unmorphed up to rangesM[l]·startShare from the eye
@@ -49,7 +50,7 @@ struct MorphRanges {
 };
 
 /// Sets up what terrain.glsl and factors.glsl read; the buffers must live until the draw is done.
-gl::Buffer bindTiles(std::span<const Tile> tiles, int stepSamples);
+gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers);
 void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
                  const depth_images::View& view);
 void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
@@ -57,34 +58,37 @@ void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings);
 constexpr unsigned kCounterBinding = 3;
 
-/// `terrain` must outlive it. Draws go into `target`, which the caller has cleared.
+/// `terrain` must outlive it. Draws go into `target`, which the caller has cleared. Heights that
+/// are not on the device are loaded; more tiles than there are pages are drawn in turns.
 class TerrainRenderer {
   public:
-    TerrainRenderer(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
+    TerrainRenderer(const gl::ShaderLibrary& shaders, DeviceTerrain& terrain,
                     const RenderSettings& settings);
 
     /// [zhang2012] Sec. 2.2 to 2.4.
     DrawCounts drawTessellated(std::span<const Tile> tiles, const depth_images::View& view,
                                const gl::Framebuffer& target);
-    /// Every tile as a grid of `stepSamples`: 1 is the full resolution (the truth); a patch's span
-    /// is what is drawn without tessellation.
-    DrawCounts drawGrid(std::span<const Tile> tiles, int stepSamples,
-                        const depth_images::View& view, const gl::Framebuffer& target);
+    /// Every sample of each tile's level: of level 0, the full resolution (the truth).
+    DrawCounts drawGrid(std::span<const Tile> tiles, const depth_images::View& view,
+                        const gl::Framebuffer& target);
     DrawCounts drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
                            const depth_images::View& view, const gl::Framebuffer& target);
 
     const RenderSettings& settings() const { return settings_; }
+    void setShowsUnderside(bool isShown) { settings_.showsUnderside = isShown; }
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
-    std::array<double, 4> outerFactors(const Patch& patch, const depth_images::View& view,
-                                       const glm::dmat4& clipFromWorld) const;
-    int drawPatches(std::span<const Tile> tiles, const depth_images::View& view,
-                    int patchesPerTile) const;
-    int drawGridTile(const gl::Program& program, int tile, int cellsPerSide) const;
+    /// draw(tiles, layers) of as many tiles as there are pages at a time.
+    template <class Draw>
+    DrawCounts drawInTurns(std::span<const Tile> tiles, const Draw& draw);
+    DrawCounts drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
+                           const depth_images::View& view) const;
+    int drawBatches(const PatchBatches& patches) const;
+    int drawGridTile(const gl::Program& program, int tile) const;
     void bindShading(const gl::Program& program) const;
 
-    const DeviceTerrain* terrain_;
+    DeviceTerrain* terrain_;
     RenderSettings settings_;
     gl::Program tessellated_, grid_, morphed_;
     gl::Buffer counters_;

@@ -8,7 +8,6 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/gl.h"
-#include "techniques/terrain_tessellation/terrain_views.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -28,7 +27,7 @@ TileView tileViewOf(const depth_images::View& view) {
 /// Adaptive where it tessellates; patches as they come take one segment an edge.
 RenderSettings rendererSettings(const TerrainTessellationParams& params, bool isSoftwareDevice) {
     RenderSettings settings = params.render;
-    settings.splitPrimitives = splitPrimitivesFor(isSoftwareDevice);
+    if (isSoftwareDevice) settings.batches.emplace();
     if (params.method == Method::Patches) {
         settings.factors.smallest = settings.factors.greatest = 1.0F;
         settings.spacing = Spacing::Equal;
@@ -70,7 +69,8 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
                     : TerrainMetadata::build(map, params_.metadata);
     preprocessMs_ = 1000.0 * secondsSince(begin);
     tree_.emplace(*metadata_, params_.render.factors.tile);
-    terrain_.emplace(map, *metadata_, params_.heightFormat);
+    terrain_.emplace(map, *metadata_, params_.heights);
+    camera_.emplace(*scene_, params_.view);
     renderer_.emplace(context.shaders, *terrain_,
                       rendererSettings(params_, context.device.info().isSoftware));
     target_.emplace(sizePx_);
@@ -117,7 +117,7 @@ DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selecti
     target.clear();
     switch (method) {
         case Method::UniformGrid:
-            return renderer_->drawGrid(selection.tiles, 1, view, target.framebuffer);
+            return renderer_->drawGrid(selection.tiles, view, target.framebuffer);
         case Method::Cdlod:
             return renderer_->drawMorphed(selection.tiles, morphRanges(), view, target.framebuffer);
         case Method::Adaptive:
@@ -130,14 +130,20 @@ DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selecti
 void TerrainTessellation::render(technique::FrameContext& context) {
     const glm::vec2 size(sizePx_);
     view_ = depth_images::viewOf(
-        terrainCamera(*scene_, params_.view, context.frame, context.frameCount, size.x / size.y),
-        sizePx_);
+        camera_->camera(context.frame, context.frameCount, size.x / size.y), sizePx_);
     tileView_ = tileViewOf(view_);
     {
         const gl::CpuScope scope(context.profiler, "tile_walk");
         selection_ = selectTiles();
     }
-    device_->finish("drawing terrain");  // nothing of before is timed
+    const std::uint64_t loadedBefore = terrain_->pages().loadedCount();
+    {
+        // More tiles than there are pages are loaded in turns as they are drawn.
+        const gl::CpuScope scope(context.profiler, "load_tiles");
+        const auto pages = static_cast<std::size_t>(terrain_->pages().capacity());
+        if (selection_.tiles.size() <= pages) terrain_->pages().load(selection_.tiles);
+        device_->finish("loading heights");  // nothing of before is timed
+    }
     const Clock::time_point begin = Clock::now();
     {
         const gl::GpuScope scope(context.profiler, "draw");
@@ -145,6 +151,7 @@ void TerrainTessellation::render(technique::FrameContext& context) {
     }
     device_->finish("drawing terrain");
     drawS_ = secondsSince(begin);
+    loadedTiles_ = terrain_->pages().loadedCount() - loadedBefore;
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/terrain_tessellation/terrain_measures.h"
 #include "techniques/terrain_tessellation/terrain_renderer.h"
+#include "techniques/terrain_tessellation/terrain_views.h"
 #include "techniques/terrain_tessellation/tile_selection.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -33,7 +34,7 @@ struct TerrainTessellationParams {
     MetadataSettings metadata;
     float maxTileErrorPx = 4.0F;  // τ
     float finestRangeM = 0.0F;    // of CDLOD; 0: where a cell is ΔS pixels wide
-    HeightFormat heightFormat = HeightFormat::Float32;
+    HeightPageSettings heights;
     std::string view = "valley";
     bool keepsMetadata = true;
     bool measuresErrors = false;
@@ -78,10 +79,11 @@ class TerrainTessellation final : public technique::Technique {
     DrawCounts draw(Method method, const TileSelection& selection, const depth_images::View& view,
                     const Target& target);
     /// The frame again, `params_.supersampling` times as large, with the tiles and the factors that
-    /// it was drawn with.
-    Drawn drawnAgain(Method method, const TileSelection& selection);
+    /// it was drawn with; with the underside of terrain, which frames cull, or without.
+    Drawn drawnAgain(Method method, const TileSelection& selection, bool showsUnderside);
 
     void recordDrawn(technique::Recorder& recorder);
+    void recordCulling(technique::Recorder& recorder);
     void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Drawn& truth);
 
     TerrainTessellationParams params_;
@@ -92,6 +94,7 @@ class TerrainTessellation final : public technique::Technique {
     gl::Device* device_ = nullptr;
     std::optional<TerrainMetadata> metadata_;
     std::optional<TileTree> tree_;
+    std::optional<TerrainView> camera_;
     std::optional<DeviceTerrain> terrain_;
     std::optional<TerrainRenderer> renderer_;
     std::optional<Target> target_;
@@ -100,7 +103,8 @@ class TerrainTessellation final : public technique::Technique {
     TileView tileView_;
     TileSelection selection_;
     DrawCounts counts_;
-    double drawS_ = 0.0;  // wall clock, until the device is done
+    double drawS_ = 0.0;             // wall clock, until the device is done
+    std::uint64_t loadedTiles_ = 0;  // for the last frame
 };
 
 extern const technique::TechniqueInfo kTerrainTessellation;

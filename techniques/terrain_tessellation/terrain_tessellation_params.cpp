@@ -99,8 +99,14 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
     finestRangeM = static_cast<float>(params.getDouble(
         "finest_range", 0.0,
         {"to where cdlod draws every sample; 0: to where a cell is delta_s wide", "m", 0.0, 1e9}));
-    heightFormat = params.getEnum("height_format", HeightFormat::Float32, kHeightFormats,
-                                  {"of the height texture"});
+    heights.format = params.getEnum("height_format", HeightFormat::Float32, kHeightFormats,
+                                    {"of the tiles' height textures"});
+    heights.budgetBytes = static_cast<std::size_t>(
+        params.getDouble("height_memory_mib", 256.0,
+                         {"for the heights of tiles on the device; tiles are loaded when they come "
+                          "into view, in the place of those longest out of it",
+                          "MiB", 0.001, 65536.0}) *
+        (1 << 20));
     view = params.getText("view", "valley",
                           {"a camera or path of the scene, or overview, valley or round_flight"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});

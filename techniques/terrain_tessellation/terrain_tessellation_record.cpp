@@ -5,9 +5,9 @@
 
 #include "runner/metrics/flip.h"
 #include "techniques/shared/reflections/displayed_errors.h"
+#include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "techniques/terrain_tessellation/terrain_tessellation.h"
-#include "techniques/terrain_tessellation/terrain_views.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -30,12 +30,13 @@ DepthMap readDepths(const gl::Texture& depth, const depth_images::View& view) {
 void TerrainTessellation::record(technique::Recorder& recorder) {
     recordDrawn(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
-    const Drawn drawn = drawnAgain(params_.method, selection_);
+    const Drawn drawn = drawnAgain(params_.method, selection_, params_.measuresErrors);
     if (params_.showsPictures) {
         recorder.image("image", averaged(drawn.picture, params_.supersampling));
+        if (params_.method == Method::Adaptive) recordCulling(recorder);
     }
     if (params_.measuresErrors) {
-        recordErrors(recorder, drawn, drawnAgain(Method::UniformGrid, selectAll()));
+        recordErrors(recorder, drawn, drawnAgain(Method::UniformGrid, selectAll(), true));
     }
 }
 
@@ -54,6 +55,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     for (const Tile& tile : selection_.tiles) errorPx = std::max(errorPx, tile.screenErrorPx);
     count("tile_error_px", errorPx, "pixel");
     count("preprocess_ms", preprocessMs_, "ms");
+    count("loaded_tiles", static_cast<double>(loadedTiles_), "tile");
     count("memory_bytes", static_cast<double>(terrain_->sizeBytes()), "byte");
     const bool hasPatches = params_.method == Method::Adaptive || params_.method == Method::Patches;
     if (!hasPatches) return;
@@ -68,8 +70,17 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     count("factor_mismatches", agreement.unequalEdges, "edge");
 }
 
+void TerrainTessellation::recordCulling(technique::Recorder& recorder) {
+    const std::vector<Tile> tiles = tree_->select(tileView_, params_.maxTileErrorPx, false).tiles;
+    FactorReplay replay(*shaders_, *terrain_, renderer_->settings());
+    recorder.image("culling", cullingPicture(*scene_->heights, tiles, params_.render.factors.tile,
+                                             replay.run(tiles, view_), tileView_.clipFromWorld,
+                                             params_.culling != Culling::None, sizePx_.y));
+}
+
 TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
-                                                           const TileSelection& selection) {
+                                                           const TileSelection& selection,
+                                                           bool showsUnderside) {
     const int scale = params_.supersampling;
     depth_images::View view = view_;
     view.sizePx *= scale;
@@ -77,7 +88,9 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
     // Lengths in pixels are `scale` times as large: the factors stay as they were.
     const float segmentPx = params_.render.factors.segmentPx;
     renderer_->setSegmentPx(static_cast<float>(scale) * segmentPx);
+    renderer_->setShowsUnderside(showsUnderside);
     draw(method, selection, view, target);
+    renderer_->setShowsUnderside(false);
     renderer_->setSegmentPx(segmentPx);
     Drawn drawn{target.colour.readImage(3), readDepths(target.depth, view), {}, 0};
     drawn.upperDepths = drawn.depths;
@@ -94,14 +107,16 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
 void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Drawn& drawn,
                                        const Drawn& truth) {
     const scene::HeightMap& map = *scene_->heights;
+    // As frames are drawn: what shows the underside above may show the background here.
+    const Drawn framed = drawnAgain(params_.method, selection_, false);
     const HeightErrors height =
-        heightErrors(drawn.depths, [&](float x, float z) { return heightAt(map, x, z); });
+        heightErrors(framed.depths, [&](float x, float z) { return heightAt(map, x, z); });
     recorder.metric("height_error_m", height.meanM, "m", "mean");
     recorder.metric("height_error_m", height.maxM, "m", "max");
     recorder.metric("height_error_px", height.meanPx / params_.supersampling, "pixel", "mean");
     recorder.metric("height_error_px", height.maxPx / params_.supersampling, "pixel", "max");
     const std::vector<std::uint8_t> cracks = crackMarks(drawn.upperDepths, truth.upperDepths);
-    const std::size_t background = markedCount(crackMarks(drawn.depths, truth.depths));
+    const std::size_t background = markedCount(crackMarks(framed.depths, truth.depths));
     recorder.metric("crack_pixels", static_cast<double>(background), "pixel", "background");
     recorder.metric("crack_pixels", static_cast<double>(markedCount(cracks)), "pixel", "underside");
     // Edge-on triangles may turn over when the device rounds their corners: the truth's, too.

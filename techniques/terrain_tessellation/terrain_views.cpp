@@ -123,21 +123,28 @@ float heightAt(const scene::HeightMap& map, float x, float z) {
     return glm::mix(north, south, inside.y);
 }
 
-scene::Camera terrainCamera(const scene::Scene& scene, const std::string& view, int frame,
-                            int frameCount, float aspect) {
-    if (isThere(scene.paths, view) || isThere(scene.cameras, view)) {
-        return reflections::cameraFor(scene, view, frame, frameCount, aspect);
-    }
+TerrainView::TerrainView(const scene::Scene& scene, const std::string& name)
+    : scene_(&scene), name_(name) {
+    if (isThere(scene.paths, name) || isThere(scene.cameras, name)) return;
     const scene::HeightMap& map = *scene.heights;
-    if (view == "overview") return overview(map);
-    if (view == "valley") return valley(map);
-    if (view == "round_flight") {
-        return scene::cameraAt(flight(map), reflections::frameTime(frame, frameCount));
+    if (name == "overview") {
+        still_ = overview(map);
+    } else if (name == "valley") {
+        still_ = valley(map);
+    } else if (name == "round_flight") {
+        flight_ = flight(map);
+    } else {
+        throw Error(
+            fmt::format("the scene has no path or camera '{}', and it is none of overview, "
+                        "valley, round_flight",
+                        name));
     }
-    throw Error(
-        fmt::format("the scene has no path or camera '{}', and it is none of overview, "
-                    "valley, round_flight",
-                    view));
+}
+
+scene::Camera TerrainView::camera(int frame, int frameCount, float aspect) const {
+    if (still_) return *still_;
+    if (flight_) return scene::cameraAt(*flight_, reflections::frameTime(frame, frameCount));
+    return reflections::cameraFor(*scene_, name_, frame, frameCount, aspect);
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -1,5 +1,6 @@
 #include "techniques/terrain_tessellation/tile_selection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,6 +27,14 @@ bool mayBeVisible(const scene::Box& box, const glm::mat4& clipFromWorld) {
     }
     return !glm::any(isAllBelow) && !glm::any(isAllAbove);
 }
+
+namespace {
+/// The nearest first: hidden fragments fail the depth test before they are shaded.
+void sortByDistance(std::vector<Tile>& tiles) {
+    std::stable_sort(tiles.begin(), tiles.end(),
+                     [](const Tile& a, const Tile& b) { return a.distanceM < b.distanceM; });
+}
+}  // namespace
 
 TileTree::TileTree(const TerrainMetadata& metadata, const TileSettings& settings)
     : settings_(settings),
@@ -104,6 +113,7 @@ TileSelection TileTree::select(const TileView& view, float maxErrorPx, bool isCu
     walk(
         levelCount() - 1, {0, 0}, view, isCulling,
         [&](const Tile& tile) { return tile.screenErrorPx < maxErrorPx; }, selection);
+    sortByDistance(selection.tiles);
     return selection;
 }
 
@@ -116,6 +126,7 @@ TileSelection TileTree::selectByDistance(const TileView& view, float finestRange
             return tile.distanceM >= std::ldexp(finestRangeM, tile.level - 1);
         },
         selection);
+    sortByDistance(selection.tiles);
     return selection;
 }
 

@@ -58,7 +58,7 @@ class TileTree {
 
     /// [zhang2012] Sec. 3.1: from the root down until ρ < τ or the finest level is reached. The
     /// frustum test comes first, in the same walk. The tiles cover the map (what of it is visible)
-    /// without overlap.
+    /// without overlap; the nearest come first.
     TileSelection select(const TileView& view, float maxErrorPx, bool isCulling = true) const;
     /// For comparison, as CDLOD (Strugar 2010): a tile of level l > 0 is divided where the eye is
     /// nearer than finestRangeM · 2^(l − 1), whatever its error.

@@ -13,7 +13,8 @@ uniform float skirtFoot;
 in int patchIndex[];
 in vec2 controlPoint[];
 out vec2 cornerSamples[];
-patch out int drawnPatch;
+patch out ivec4 drawnTile;
+patch out int drawnRim;
 
 float innerOf(float a, float b) {
 #if INNER == 0
@@ -59,8 +60,9 @@ void setSkirtFactors(Patch p) {
 void main() {
     cornerSamples[gl_InvocationID] = controlPoint[gl_InvocationID];
     if (gl_InvocationID != 0) return;
-    drawnPatch = patchIndex[0];
     Patch p = patchOfIndex(patchIndex[0], patchesPerTile);
+    drawnTile = tiles[patchIndex[0] / patchesPerTile];
+    drawnRim = p.rim;
     if (isPatchCulled(p, skirtFoot)) {
         if (p.rim == kSurface) atomicAdd(culledPatches, 1u);
         setFactors(vec4(-1.0), vec2(-1.0));

@@ -1,14 +1,14 @@
 #version 450 core
 // Shades by slope and altitude, lit from the west and above; or writes the height itself. Alpha is
-// 0 where the surface is seen from below, which from above the ground happens through cracks only.
+// 0 where the surface is seen from below or a skirt from inside, which from above the ground happens
+// through cracks only, and is drawn only where cracks are counted.
 in vec3 surfaceNormal;
 in float surfaceHeight;
-in float isSkirt;  // 1 or 0; has two fronts
 uniform vec2 heightExtent;  // lowest, highest
 layout(location = 0) out vec4 colour;
 
 void main() {
-    float coverage = gl_FrontFacing || isSkirt > 0.5 ? 1.0 : 0.0;
+    float coverage = gl_FrontFacing ? 1.0 : 0.0;
 #if SHADING == 1
     colour = vec4(surfaceHeight, 0.0, 0.0, coverage);
 #else

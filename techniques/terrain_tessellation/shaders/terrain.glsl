@@ -1,36 +1,67 @@
 // The terrain as all its passes see it: tiles, heights, and the way into the image. Samples count
 // columns (east, x) and rows (south, z) of the full-resolution height map.
 layout(std430, binding = TILE_BINDING) readonly buffer Tiles {
-    ivec4 tiles[];  // origin in samples, level, step of a plain grid in samples
+    ivec4 tiles[];  // origin in samples, level, layer of its heights
 };
-layout(binding = HEIGHT_UNIT) uniform sampler2D heightMap;
+// A layer has every 2^level-th sample of a tile and a border: HeightPages.
+layout(binding = HEIGHT_UNIT) uniform sampler2DArray heightPages;
 uniform vec2 heightOfTexel;  // height = x + y · texel
 uniform float spacing;       // metres between samples
 uniform mat4 clipFromWorld;
 
-float heightOfSample(ivec2 at) {
-    // Tiles may reach beyond the map: the border's heights go on.
-    ivec2 inside = clamp(at, ivec2(0), textureSize(heightMap, 0) - 1);
-    return heightOfTexel.x + heightOfTexel.y * texelFetch(heightMap, inside, 0).r;
+struct Ground {
+    float height;
+    vec3 normal;
+};
+
+float heightOfPage(ivec2 at, int layer) {
+    return heightOfTexel.x + heightOfTexel.y * texelFetch(heightPages, ivec3(at, layer), 0).r;
 }
 
-// Bilinear between every `stepSamples`-th sample. Not the sampler's filter, whose weights have
+// Where a place lies in the page of its tile, in texels. Exact: a power of two divides.
+vec2 pagePlace(ivec4 tile, vec2 at) {
+    precise vec2 place = (at - vec2(tile.xy)) / float(1 << tile.z) + float(PAGE_BORDER);
+    return place;
+}
+
+// Bilinear between the samples of the tile's level. Not the sampler's filter, whose weights have
 // 8 bits on many devices: a step of 1/256 between samples shows as terraces.
-float heightAt(vec2 at, int stepSamples) {
-    vec2 place = at / float(stepSamples);
+float heightAt(ivec4 tile, vec2 at) {
+    vec2 place = pagePlace(tile, at);
     ivec2 cell = ivec2(floor(place));
     vec2 part = place - vec2(cell);
-    ivec2 low = cell * stepSamples, high = low + stepSamples;
-    return mix(mix(heightOfSample(low), heightOfSample(ivec2(high.x, low.y)), part.x),
-               mix(heightOfSample(ivec2(low.x, high.y)), heightOfSample(high), part.x), part.y);
+    precise float height =
+        mix(mix(heightOfPage(cell, tile.w), heightOfPage(cell + ivec2(1, 0), tile.w), part.x),
+            mix(heightOfPage(cell + ivec2(0, 1), tile.w), heightOfPage(cell + 1, tile.w), part.x),
+            part.y);
+    return height;
 }
 
-// From central differences over one step.
-vec3 normalAt(vec2 at, int stepSamples) {
-    float s = float(stepSamples);
-    float east = heightAt(at + vec2(s, 0), stepSamples) - heightAt(at - vec2(s, 0), stepSamples);
-    float south = heightAt(at + vec2(0, s), stepSamples) - heightAt(at - vec2(0, s), stepSamples);
-    return normalize(vec3(-east, 2.0 * s * spacing, -south));
+// The same height, and the normal from its central differences over one step: bilinear means of
+// the differences at the four samples around, which have twelve samples between them.
+//        n0  n1
+//    w0  a   b   e0
+//    w1  c   d   e1
+//        s0  s1
+Ground groundAt(ivec4 tile, vec2 at) {
+    vec2 place = pagePlace(tile, at);
+    ivec2 cell = ivec2(floor(place));
+    vec2 part = place - vec2(cell);
+    int layer = tile.w;
+    float a = heightOfPage(cell, layer), b = heightOfPage(cell + ivec2(1, 0), layer);
+    float c = heightOfPage(cell + ivec2(0, 1), layer), d = heightOfPage(cell + 1, layer);
+    float n0 = heightOfPage(cell + ivec2(0, -1), layer), n1 = heightOfPage(cell + ivec2(1, -1), layer);
+    float s0 = heightOfPage(cell + ivec2(0, 2), layer), s1 = heightOfPage(cell + ivec2(1, 2), layer);
+    float w0 = heightOfPage(cell + ivec2(-1, 0), layer), w1 = heightOfPage(cell + ivec2(-1, 1), layer);
+    float e0 = heightOfPage(cell + ivec2(2, 0), layer), e1 = heightOfPage(cell + ivec2(2, 1), layer);
+    Ground ground;
+    precise float height = mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
+    ground.height = height;
+    float east = mix(mix(b - w0, e0 - a, part.x), mix(d - w1, e1 - c, part.x), part.y);
+    float south = mix(mix(c - n0, d - n1, part.x), mix(s0 - a, s1 - b, part.x), part.y);
+    float across = 2.0 * spacing * float(1 << tile.z);
+    ground.normal = normalize(vec3(-east, across, -south));
+    return ground;
 }
 
 vec3 worldOf(vec2 at, float height) {

@@ -11,37 +11,9 @@
 #include "runner/core/files.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/techniques/terrain_tessellation/terrain_views_fixture.h"
 
 namespace gfxrepro::terrain_tessellation {
-
-/// Sums of sines with rough detail: neither flat nor periodic in the tiles.
-inline scene::HeightMap roughMap(int side, float reliefM) {
-    scene::HeightMap map;
-    map.sizeSamples = {side, side};
-    map.spacingM = 1.0F;
-    std::mt19937 random(7);
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            const float x = static_cast<float>(column), z = static_cast<float>(row);
-            const float noise = static_cast<float>(random() % 1024U) / 1024.0F;
-            map.heightsM.push_back(reliefM *
-                                   (0.5F + 0.3F * std::sin(0.031F * x) * std::cos(0.043F * z) +
-                                    0.1F * std::sin(0.17F * x + 0.11F * z) + 0.05F * noise));
-        }
-    }
-    return map;
-}
-
-inline depth_images::View viewAt(glm::vec3 eye, glm::vec3 target, glm::ivec2 sizePx = {160, 100}) {
-    scene::Camera camera;
-    camera.position = eye;
-    camera.target = target;
-    camera.up = {0.0F, 1.0F, 0.0F};
-    camera.verticalFovRad = 0.9F;
-    camera.nearM = 0.5F;
-    camera.farM = 2000.0F;
-    return depth_images::viewOf(camera, sizePx);
-}
 
 class TerrainTest : public test::GlTest {
   protected:
@@ -55,7 +27,7 @@ class TerrainTest : public test::GlTest {
     RenderSettings settings() const {
         RenderSettings result;
         result.factors.tile = tile;
-        result.splitPrimitives = splitPrimitivesFor(true);
+        result.batches.emplace();
         return result;
     }
     std::vector<Tile> tilesOf(int level) const {

@@ -122,8 +122,9 @@ TEST(TerrainViewsTest, HeightsAreBilinearAndGoOnBeyondTheBorder) {
 
 TEST(TerrainViewsTest, FliesAboveTheGround) {
     const scene::Scene scene = terrainScene();
+    const TerrainView view(scene, "round_flight");
     for (int frame = 0; frame < 100; ++frame) {
-        const scene::Camera camera = terrainCamera(scene, "round_flight", frame, 100, 1.6F);
+        const scene::Camera camera = view.camera(frame, 100, 1.6F);
         EXPECT_GT(camera.position.y,
                   heightAt(*scene.heights, camera.position.x, camera.position.z) + camera.nearM);
     }
@@ -135,9 +136,9 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     camera.name = "valley";
     camera.position = {1.0F, 2.0F, 3.0F};
     scene.cameras.push_back(camera);
-    EXPECT_EQ(terrainCamera(scene, "valley", 0, 1, 1.0F).position, camera.position);
+    EXPECT_EQ(TerrainView(scene, "valley").camera(0, 1, 1.0F).position, camera.position);
     EXPECT_EQ(
-        test::errorText([&] { terrainCamera(scene, "moon", 0, 1, 1.0F); }),
+        test::errorText([&] { TerrainView(scene, "moon"); }),
         "the scene has no path or camera 'moon', and it is none of overview, valley, round_flight");
 }
 

@@ -156,7 +156,8 @@ TEST_F(TerrainTest, SplittingChangesNoPixel) {
     std::vector<std::vector<glm::vec4>> pictures;
     std::vector<DrawCounts> counts;
     for (const int limit : {0, 1500}) {
-        set.splitPrimitives = limit;
+        set.batches.reset();
+        if (limit > 0) set.batches = BatchLimits{limit, limit / 2};
         TerrainRenderer renderer(shaders, *terrain, set);
         pictures.push_back(picture(kSize, [&](const gl::Framebuffer& target) {
             counts.push_back(renderer.drawTessellated(tilesOf(0), view, target));
@@ -166,6 +167,16 @@ TEST_F(TerrainTest, SplittingChangesNoPixel) {
     EXPECT_EQ(counts[0].triangles, counts[1].triangles);
     EXPECT_EQ(counts[0].drawCalls, 1);
     EXPECT_GT(counts[1].drawCalls, 10);
+    // What batches expect is no less than what is drawn.
+    const std::vector<Tile> tiles = tilesOf(0);
+    double bound = 0.0;
+    for (const PatchBatch& batch :
+         batchPatches(*metadata, set.factors, view, {tiles, true, -1.0F, true}, {1500, 750})
+             .batches) {
+        bound += batch.triangles;
+    }
+    EXPECT_GE(bound, static_cast<double>(counts[1].triangles));
+    EXPECT_LT(bound, 3.0 * static_cast<double>(counts[1].triangles));
 }
 
 TEST_F(TerrainTest, RefusesAMapThatTheMetadataIsNotOf) {

@@ -73,7 +73,7 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
     EXPECT_EQ(m.at("crack_pixels/background"), 0.0);
     EXPECT_EQ(m.at("flip_mean"), 0.0);
     EXPECT_EQ(m.at("channel_error"), 0.0);
-    EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "draw"}));
+    EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "load_tiles", "draw"}));
 }
 
 TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
@@ -112,6 +112,59 @@ TEST_F(TerrainTessellationTest, CullingLeavesThePictureAsItIs) {
     EXPECT_EQ(tile.metrics.at("culled_patches"), 0.0);
     EXPECT_TRUE(none.images.at("image") == tile.images.at("image"));
     EXPECT_TRUE(none.images.at("image") == patch.images.at("image"));
+}
+
+TEST_F(TerrainTessellationTest, TheMapOfCulledPatchesCountsThem) {
+    // 256 cells and 256 pixels: each patch of 16 cells has pixels inside of its borders.
+    outputSizePx_ = {256, 256};
+    const scene::Scene scene = terrain({257, 257});
+    const auto areas = [&](const std::string& culling) {
+        const auto recorder = recorded(
+            "{cache: false, pictures: true, tau: 0, block: 8, culling: " + culling + "}", &scene);
+        const image::ImageF& map = recorder.images.at("culling");
+        EXPECT_EQ(map.width(), 256);
+        EXPECT_EQ(map.height(), 256);
+        // By hue at each patch's centre: green is drawn, orange a culled patch, grey a culled tile.
+        glm::ivec3 found(0);
+        for (int y = 8; y < 256; y += 16) {
+            for (int x = 8; x < 256; x += 16) {
+                const float red = map.at(x, y, 0), green = map.at(x, y, 1), blue = map.at(x, y, 2);
+                ++found[blue > red ? 2 : red > green ? 1 : 0];
+            }
+        }
+        EXPECT_EQ(found.x + found.y, recorder.metrics.at("patches"));
+        EXPECT_EQ(found.y, recorder.metrics.at("culled_patches"));
+        return found;
+    };
+    EXPECT_EQ(areas("none"), glm::ivec3(256, 0, 0));
+    const glm::ivec3 tile = areas("tile"), patch = areas("tile_and_patch");
+    EXPECT_EQ(tile.y, 0);
+    EXPECT_GT(tile.z, 0);
+    EXPECT_EQ(patch.z, tile.z);
+    EXPECT_GT(patch.y, 0);
+}
+
+TEST_F(TerrainTessellationTest, HeightsOf16BitsAreOffByHalfAStep) {
+    const scene::Scene scene = terrain({257, 257});
+    const std::string yaml = "method: uniform_grid, errors: true, height_format: ";
+    const auto exact = measured(yaml + "float32", scene),
+               rounded = measured(yaml + "unorm16", scene);
+    const double stepM = scene.heights->bounds().size().y / 65535.0;
+    EXPECT_NE(rounded.at("height_error_m/mean"), exact.at("height_error_m/mean"));
+    EXPECT_NEAR(rounded.at("height_error_m/mean"), exact.at("height_error_m/mean"), 0.5 * stepM);
+    EXPECT_LT(rounded.at("memory_bytes"), exact.at("memory_bytes"));
+}
+
+TEST_F(TerrainTessellationTest, ASmallBudgetLoadsTilesAgain) {
+    const scene::Scene scene = terrain({257, 257});
+    const std::string yaml = "tau: 0, tile_patches: 2, patch_blocks: 1, height_memory_mib: ";
+    const auto all = measured(yaml + "16", scene), few = measured(yaml + "0.05", scene);
+    EXPECT_EQ(all.at("loaded_tiles"), 0.0);  // the first of the two frames loaded them
+    EXPECT_EQ(few.at("loaded_tiles"), few.at("tiles"));
+    EXPECT_EQ(few.at("drawn_triangles"), all.at("drawn_triangles"));
+    EXPECT_EQ(few.at("culled_patches"), all.at("culled_patches"));
+    EXPECT_EQ(errorText([&] { measured(yaml + "0.01", scene); }),
+              "0.01 MiB for heights hold no tile of 68 × 68; allowed: 0.02 MiB or more");
 }
 
 TEST_F(TerrainTessellationTest, UntessellatedPatchesAreTwoTriangles) {

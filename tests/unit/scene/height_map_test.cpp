@@ -149,6 +149,81 @@ TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
     EXPECT_EQ(messageOf(path), sidecar.string() + ":1:29: type is 'f64'; allowed: u16 | i16 | f32");
 }
 
+/// `value` in four bytes at `at`, the first the highest.
+void setBigEndian(std::string& bytes, std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        bytes[at + i] = static_cast<char>((value >> (24 - 8 * i)) & 255U);
+    }
+}
+
+TEST(HeightMap, RefusesPngsCutShortAndOfHugeHeaders) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.png";
+    image::Image16 noise(17, 9, 1);
+    for (std::size_t i = 0; i < noise.values().size(); ++i) {
+        noise.values()[i] = static_cast<std::uint16_t>(i * i * 977U);
+    }
+    image::writePng(path, noise);
+    const std::string whole = readFile(path);
+    for (std::size_t size = 0; size + 13 < whole.size(); size += 5) {  // less the closing chunk
+        writeFileAtomic(path, whole.substr(0, size));
+        EXPECT_NE(messageOf(path).find("a.png: "), std::string::npos) << size;
+    }
+    // Width and height behind a signature of 8, a length of 4 and "IHDR"; then their checksum.
+    const auto messageWithSide = [&](std::uint32_t side) {
+        std::string huge = whole;
+        setBigEndian(huge, 16, side);
+        setBigEndian(huge, 20, side);
+        std::uint32_t crc = 0xFFFFFFFFU;
+        for (std::size_t i = 12; i < 29; ++i) {
+            crc ^= static_cast<unsigned char>(huge[i]);
+            for (int bit = 0; bit < 8; ++bit) {
+                crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+            }
+        }
+        setBigEndian(huge, 29, ~crc);
+        writeFileAtomic(path, huge);
+        return messageOf(path);
+    };
+    EXPECT_EQ(messageWithSide(0x7FFFFFFF), path.string() + ": Invalid IHDR data");
+    EXPECT_EQ(messageWithSide(60000),
+              path.string() +
+                  ": the header declares 60000 x 60000 pixels; 1 to 32768 a side are allowed");
+}
+
+TEST(HeightMap, RefusesTiffsOfHugeHeaders) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.tif";
+    const std::uint16_t values[] = {1, 2, 3, 4, 5, 6};
+    writeTiff(path, values, 16, SAMPLEFORMAT_UINT);
+    std::string bytes = readFile(path);
+    // Entries of the directory: tag, type (4: 32 bits), count, value; little endian.
+    for (const char* entry :
+         {"\x00\x01\x03\x00\x01\x00\x00\x00", "\x01\x01\x03\x00\x01\x00\x00\x00"}) {
+        const std::size_t at = bytes.find(std::string(entry, 8));
+        ASSERT_NE(at, std::string::npos);
+        bytes.replace(at + 2, 1, "\x04");
+        bytes.replace(at + 8, 4, std::string("\x00\x00\x00\x40", 4));  // 2^30
+    }
+    writeFileAtomic(path, bytes);
+    EXPECT_EQ(messageOf(path), path.string() + ": Incorrect count for \"StripOffsets\"");
+}
+
+TEST(HeightMap, OneSampleAndNonSquareFilesAreServed) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.png";
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), {1, 7}, {9, 2}}) {
+        image::Image16 image(size.x, size.y, 1);
+        for (std::size_t i = 0; i < image.values().size(); ++i) {
+            image.values()[i] = static_cast<std::uint16_t>(300 + i);
+        }
+        image::writePng(path, image);
+        const HeightMap map = loadHeightMap(path, {});
+        EXPECT_EQ(map.sizeSamples, size);
+        EXPECT_EQ(map.heightsM.back(), static_cast<float>(299 + size.x * size.y));
+    }
+}
+
 TEST(HeightMap, RefusesOtherFiles) {
     const test::TemporaryFolder folder;
     EXPECT_EQ(messageOf("a.asc"),

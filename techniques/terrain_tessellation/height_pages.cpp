@@ -1,0 +1,111 @@
+#include "techniques/terrain_tessellation/height_pages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/core/error.h"
+#include "runner/gl/gl.h"
+
+namespace gfxrepro::terrain_tessellation {
+
+namespace {
+
+std::vector<std::uint16_t> asUnorm16(const std::vector<float>& heightsM, glm::vec2 heightOfTexel) {
+    std::vector<std::uint16_t> texels(heightsM.size());
+    const float scale = heightOfTexel.y > 0.0F ? 65535.0F / heightOfTexel.y : 0.0F;
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        const float value = std::clamp((heightsM[i] - heightOfTexel.x) * scale, 0.0F, 65535.0F);
+        texels[i] = static_cast<std::uint16_t>(std::lround(value));
+    }
+    return texels;
+}
+
+int pageCount(std::size_t budgetBytes, std::size_t pageBytes, int side, int tileCount) {
+    if (budgetBytes < pageBytes) {
+        throw Error(fmt::format(
+            "{:.2f} MiB for heights hold no tile of {} × {}; allowed: {:.2f} MiB or more",
+            static_cast<double>(budgetBytes) / (1 << 20), side, side,
+            std::ceil(100.0 * static_cast<double>(pageBytes) / (1 << 20)) / 100.0));
+    }
+    GLint mostLayers = 1;
+    glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &mostLayers);
+    const std::size_t pages = budgetBytes / pageBytes;
+    return static_cast<int>(std::min(
+        pages, static_cast<std::size_t>(std::min(std::max(1, tileCount), int{mostLayers}))));
+}
+
+}  // namespace
+
+HeightPages::HeightPages(const scene::HeightMap& map, const HeightPageSettings& settings,
+                         glm::vec2 heightOfTexel, int tileSegments, int tileCount)
+    : map_(&map), format_(settings.format), heightOfTexel_(heightOfTexel) {
+    const bool isFloat = format_ == HeightFormat::Float32;
+    const int side = tileSegments + kMoreTexels;
+    const std::size_t pageBytes = static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
+                                  (isFloat ? sizeof(float) : sizeof(std::uint16_t));
+    const int count = pageCount(settings.budgetBytes, pageBytes, side, tileCount);
+    texture_ = gl::Texture::make2DArray(isFloat ? GL_R32F : GL_R16, glm::ivec2(side), count);
+    keys_.resize(static_cast<std::size_t>(count));
+    lastUse_.resize(keys_.size(), 0);
+}
+
+int HeightPages::leastRecentlyUsed() const {
+    return static_cast<int>(std::min_element(lastUse_.begin(), lastUse_.end()) - lastUse_.begin());
+}
+
+std::vector<int> HeightPages::load(std::span<const Tile> tiles) {
+    GFXREPRO_ASSERT(tiles.size() <= keys_.size());
+    ++clock_;
+    const auto keyOf = [](const Tile& tile) {
+        return Key(tile.level, tile.originSample.x, tile.originSample.y);
+    };
+    // First those that are there: they must not make room for the others.
+    for (const Tile& tile : tiles) {
+        const auto found = layers_.find(keyOf(tile));
+        if (found != layers_.end()) lastUse_[static_cast<std::size_t>(found->second)] = clock_;
+    }
+    std::vector<int> result;
+    for (const Tile& tile : tiles) {
+        const Key key = keyOf(tile);
+        auto found = layers_.find(key);
+        if (found == layers_.end()) {
+            const int layer = leastRecentlyUsed();
+            const auto index = static_cast<std::size_t>(layer);
+            if (lastUse_[index] != 0) layers_.erase(keys_[index]);
+            fill(layer, tile);
+            keys_[index] = key;
+            lastUse_[index] = clock_;
+            found = layers_.emplace(key, layer).first;
+        }
+        result.push_back(found->second);
+    }
+    return result;
+}
+
+void HeightPages::fill(int layer, const Tile& tile) {
+    const int side = texture_.size().x;
+    std::vector<float> heightsM;
+    heightsM.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    const int step = 1 << tile.level;
+    for (int j = 0; j < side; ++j) {
+        for (int i = 0; i < side; ++i) {
+            const glm::ivec2 at = tile.originSample + (glm::ivec2(i, j) - kBorder) * step;
+            heightsM.push_back(map_->clampedHeightM(at.x, at.y));
+        }
+    }
+    const bool isFloat = format_ == HeightFormat::Float32;
+    const std::vector<std::uint16_t> texels =
+        isFloat ? std::vector<std::uint16_t>() : asUnorm16(heightsM, heightOfTexel_);
+    // Rows of an odd count of 16-bit samples are not whole words.
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
+    glTextureSubImage3D(texture_.id(), 0, 0, 0, layer, side, side, 1, GL_RED,
+                        isFloat ? GL_FLOAT : GL_UNSIGNED_SHORT,
+                        isFloat ? static_cast<const void*>(heightsM.data())
+                                : static_cast<const void*>(texels.data()));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    ++loadedCount_;
+}
+
+}  // namespace gfxrepro::terrain_tessellation

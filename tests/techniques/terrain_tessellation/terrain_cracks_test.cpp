@@ -1,0 +1,84 @@
+// No background shows through terrain from anywhere.
+#include "techniques/terrain_tessellation/terrain_measures.h"
+#include "tests/techniques/terrain_tessellation/terrain_fixture.h"
+
+namespace gfxrepro::terrain_tessellation {
+namespace {
+
+constexpr glm::ivec2 kSize{96, 60};
+constexpr int kViews = 200;
+
+class TerrainCracksTest : public TerrainTest {
+  protected:
+    TerrainCracksTest() { makeTerrain(roughMap(257, 60.0F)); }
+
+    /// From 8 to 80 m above the ground or beside the map, in any direction but upwards.
+    depth_images::View randomView(std::mt19937& random) const {
+        glm::vec3 eye(anywhere(random, -60, 316), 0.0F, anywhere(random, -60, 316));
+        float ground = 0.0F;
+        for (int i = -8; i <= 8; ++i) {
+            for (int j = -8; j <= 8; ++j) {
+                ground = std::max(ground, map.clampedHeightM(static_cast<int>(eye.x) + i,
+                                                             static_cast<int>(eye.z) + j));
+            }
+        }
+        eye.y = ground + anywhere(random, 8, 80);
+        const float turn = anywhere(random, 0.0F, 6.2832F);
+        const glm::vec3 ahead(std::cos(turn), anywhere(random, -2.0F, 0.1F), std::sin(turn));
+        return viewAt(eye, eye + ahead, kSize);
+    }
+    template <class Draw>
+    DepthMap coverage(const depth_images::View& view, const Draw& draw) {
+        DepthMap result{view, {}};
+        for (const glm::vec4& pixel : picture(kSize, draw)) result.depthM.push_back(pixel.a);
+        return result;
+    }
+    struct Found {
+        std::size_t crackPixels = 0;
+        int viewsOfSeveralLevels = 0;
+        std::size_t covered = 0;
+    };
+    Found cracksOver(int views, bool hasSkirts, EdgeRule edges) {
+        const TileTree tree(*metadata, tile);
+        RenderSettings set = settings();
+        set.hasSkirts = hasSkirts;
+        set.factors.edges = edges;
+        set.factors.segmentPx = 4.0F;
+        TerrainRenderer renderer(shaders, *terrain, set);
+        std::mt19937 random(21);
+        Found found;
+        for (int i = 0; i < views; ++i) {
+            const depth_images::View view = randomView(random);
+            const TileView tileView{view.eyeWorld, view.clipFromWorld(), 62.0F};
+            const std::vector<Tile> tiles = tree.select(tileView, 2.0F).tiles;
+            const std::vector<Tile> finest = tree.select(tileView, 0.0F).tiles;
+            found.viewsOfSeveralLevels +=
+                std::any_of(tiles.begin(), tiles.end(),
+                            [&](const Tile& t) { return t.level != tiles[0].level; });
+            const DepthMap drawn = coverage(view, [&](const gl::Framebuffer& target) {
+                renderer.drawTessellated(tiles, view, target);
+            });
+            const DepthMap truth = coverage(view, [&](const gl::Framebuffer& target) {
+                renderer.drawGrid(finest, view, target);
+            });
+            found.crackPixels += markedCount(crackMarks(drawn, truth));
+            for (const float alpha : truth.depthM) found.covered += alpha > 0.0F;
+        }
+        return found;
+    }
+};
+
+TEST_F(TerrainCracksTest, NoBackgroundShowsFrom200Places) {
+    const Found found = cracksOver(kViews, true, EdgeRule::Shared);
+    EXPECT_EQ(found.crackPixels, 0U);
+    EXPECT_GT(found.viewsOfSeveralLevels, kViews / 4);
+    EXPECT_GT(found.covered, 200U * 96U * 60U / 4U);
+}
+
+TEST_F(TerrainCracksTest, TheyAreSeenWithoutSkirtsAndWithFactorsOfThePatch) {
+    EXPECT_GT(cracksOver(kViews / 4, false, EdgeRule::Shared).crackPixels, 0U);
+    EXPECT_GT(cracksOver(kViews / 4, false, EdgeRule::OwnPatch).crackPixels, 0U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::terrain_tessellation
