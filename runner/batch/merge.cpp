@@ -173,7 +173,7 @@ std::vector<std::string> missingUnits(const StoredRun& run) {
     for (const report::Record& row : run.records) recorded.emplace(row.caseId, row.process);
     std::vector<std::string> missing;
     for (const Unit& unit : unitsOf(run.plan)) {
-        if (unit.isControl() || recorded.contains({unit.item->id, unit.process})) continue;
+        if (recorded.contains({unit.item->id, unit.process})) continue;
         missing.push_back(unit.item->title());
         if (unit.item->measure.processes > 1) {
             missing.back() += " process " + std::to_string(unit.process + 1);

@@ -111,7 +111,6 @@ Completeness completeness(const StoredRun& run) {
     const std::map<UnitKey, bool> recorded = recordedUnits(run.records);
     Completeness counts;
     for (const Unit& unit : unitsOf(run.plan)) {
-        if (unit.isControl()) continue;
         const auto found = recorded.find({unit.item->id, unit.process});
         if (found == recorded.end()) {
             ++counts.missing;

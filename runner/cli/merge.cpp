@@ -66,7 +66,7 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
     }
     const std::vector<std::string> missing = batch::missingUnits(merged);
     const batch::Completeness counts = batch::completeness(merged);
-    const int unitCount = batch::measuredCount(batch::unitsOf(merged.plan));
+    const auto unitCount = static_cast<int>(batch::unitsOf(merged.plan).size());
     printMissing(runs, missing);
     fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing\n", runs.size(),
                runs.size() == 1 ? "" : "s", out, unitCount - counts.missing - counts.failed,

@@ -49,8 +49,8 @@ TEST(Merge, KeepsThePairOfEveryShard) {
     std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1, 6}),
                                            makeShard(plan, 2, 2, {2, 3, 4, 5}, "GPU B")};
     for (batch::ShardRun& shard : shards) {
-        const std::vector<batch::Unit> units = batch::unitsOf(shard.run.plan);
-        ASSERT_TRUE(units[0].isControl() && units[1].isControl());
+        const std::vector<batch::Unit> units = batch::controlUnitsOf(shard.run.plan);
+        ASSERT_EQ(units.size(), 2U);
         for (int i = 0; i < 2; ++i) {
             shard.run.records.push_back(makeRow(*units[i].item, -1.0, units[i].process));
         }
