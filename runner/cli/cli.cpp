@@ -61,6 +61,7 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--shard", options.shard,
                     "k/n: measure one of n parts; each with the same --from");
     addFrom(app, options.from);
+    app->add_option("--budget", options.budget, "20m: the tables that decide most claims in it");
     app->add_option("--jobs", options.jobs, "quality cases at once")->check(CLI::Range(1, 256));
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }

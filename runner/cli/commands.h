@@ -36,6 +36,7 @@ struct Selection {
 
 struct RunOptions {
     Selection selection;
+    std::string budget;  // "20m": only the tables that decide most claims in this time
     std::string out;
     std::string resume;
     std::string shard;              // "k/n"; empty: everything

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "runner/batch/budget.h"
 #include "runner/batch/shards.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
@@ -38,6 +39,34 @@ std::string deviceClassOf(const gl::DeviceInfo& device) {
     return device.isSoftware ? "software" : "gpu";
 }
 
+/// Leaves the tables alone that decide most claims in `budgetS`, as earlier runs predict their
+/// times; says which are left out.
+batch::Request withinBudget(const batch::Plan& plan, const batch::Request& request,
+                            const std::vector<std::string>& from, double budgetS) {
+    const History history = openHistory(from, plan.deviceClass);
+    const std::vector<double> timesS = batch::caseTimesS(plan, history.predictor);
+    std::vector<batch::BudgetItem> items(plan.experiments.size());
+    for (std::size_t e = 0; e < items.size(); ++e) {
+        items[e].claimCount = plan.experiments[e].claims.size();
+        for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+            if (plan.cases[i].experiment == plan.experiments[e].id) items[e].timeS += timesS[i];
+        }
+    }
+    const std::vector<std::size_t> chosen = batch::withinBudget(items, budgetS);
+    if (chosen.empty()) throw Error("--budget: no table with a claim fits into it");
+    batch::Request result = request;
+    result.configs.clear();
+    for (std::size_t e = 0; e < items.size(); ++e) {
+        if (std::ranges::binary_search(chosen, e)) {
+            result.configs.push_back(request.configs[e]);
+            continue;
+        }
+        fmt::print(stderr, "left out: {} ({}, {} claims)\n", plan.experiments[e].id,
+                   durationText(items[e].timeS), items[e].claimCount);
+    }
+    return result;
+}
+
 Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
@@ -48,6 +77,12 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     batch::Plan plan =
         planFor(context, request, selection.profile, scheduler.assetsFolder, deviceClassOf(device));
+    if (!options.budget.empty()) {
+        const batch::Request affordable =
+            withinBudget(plan, request, options.from, batch::parseBudgetS(options.budget));
+        plan = planFor(context, affordable, selection.profile, scheduler.assetsFolder,
+                       deviceClassOf(device));
+    }
     if (!options.shard.empty()) {
         // By what was named alone: whatever else lies here may differ between the shards.
         const auto predictor = batch::Predictor::from({options.from.begin(), options.from.end()});
@@ -189,6 +224,7 @@ void requireUsable(const RunOptions& options) {
         throw UsageError("--out and --resume exclude each other: both name the folder");
     }
     if (!options.shard.empty()) batch::parseShard(options.shard);
+    if (!options.budget.empty()) batch::parseBudgetS(options.budget);
 }
 
 }  // namespace

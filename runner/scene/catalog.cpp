@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "runner/core/hash.h"
+#include "runner/image/png_io.h"
 #include "runner/core/text.h"
 #include "runner/scene/generators.h"
 #include "runner/scene/generators_terrain.h"
@@ -82,8 +83,8 @@ float readPositive(const Node& node, const std::string& key) {
 
 SceneSource readHeightMapSource(const Node& node) {
     requireKeys(node, "source",
-                {"detail_m", "height_map", "height_scale_m", "no_data", "resample_to", "seed",
-                 "spacing_m"});
+                {"colour_map", "detail_m", "height_map", "height_scale_m", "no_data", "resample_to",
+                 "seed", "spacing_m"});
     SceneSource source;
     const Node& file = required(node, "source", "height_map");
     source.file = file.text();
@@ -117,6 +118,15 @@ SceneSource readHeightMapSource(const Node& node) {
     }
     if (const Node* seed = node.find("seed")) {
         source.seed = static_cast<std::uint64_t>(seed->asInteger());
+    }
+    if (const Node* colours = node.find("colour_map")) {
+        map.colourMap = colours->text();
+        if (map.colourMap.empty() || fs::path(map.colourMap).is_absolute()) {
+            throw Error(colours->location(),
+                        fmt::format("colour_map is '{}', but must be a path within the assets "
+                                    "folder",
+                                    map.colourMap));
+        }
     }
     source.heightMap = map;
     return source;
@@ -240,22 +250,43 @@ void turnIntoPoints(Scene& scene, const SceneSource& source) {
     scene.instances.clear();
 }
 
-Scene loadTerrain(const fs::path& path, const SceneSource& source) {
+/// RGB, whatever the PNG has.
+image::Image8 rgbOf(const image::Image8& image) {
+    image::Image8 rgb(image.width(), image.height(), 3);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < 3; ++c) {
+                rgb.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
+            }
+        }
+    }
+    return rgb;
+}
+
+Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     const HeightMapSource& how = *source.heightMap;
     Scene scene;
-    scene.heights = loadHeightMap(path, how.units);
+    scene.heights = loadHeightMap(assetsFolder / source.file, how.units);
     if (how.resampleTo) {
         scene.heights = resampled(*scene.heights, *how.resampleTo, how.detailM, source.seed);
+    }
+    if (!how.colourMap.empty()) {
+        scene.textures.push_back(rgbOf(image::readPng8(assetsFolder / how.colourMap)));
+        Material ground;
+        ground.baseColorTexture = 0;
+        scene.materials.push_back(ground);
     }
     addTerrainCameras(scene);
     return scene;
 }
 
-std::string heightMapKey(const SceneSource& source) {
+std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source) {
     const HeightMapSource& how = *source.heightMap;
-    return fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM, how.units.heightScaleM,
-                       how.units.noData.value_or(0.0F), how.resampleTo.value_or(0), how.detailM,
-                       source.seed);
+    const std::string colours =
+        how.colourMap.empty() ? "" : " colours " + sha256OfFile(assetsFolder / how.colourMap);
+    return colours + fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM,
+                                 how.units.heightScaleM, how.units.noData.value_or(0.0F),
+                                 how.resampleTo.value_or(0), how.detailM, source.seed);
 }
 
 bool isUserFile(const std::string& reference) {
@@ -334,7 +365,7 @@ std::string Catalog::contentKey(const Node& reference) const {
     return sha256("file " + digest.sha256 + ' ' +
                   (source.refineTo ? std::to_string(*source.refineTo) : "as it is") +
                   (source.isZUp ? " z up" : "") + points +
-                  (source.heightMap ? heightMapKey(source) : ""));
+                  (source.heightMap ? heightMapKey(assetsFolder_, source) : ""));
 }
 
 Scene Catalog::load(const Node& reference) const {
@@ -342,7 +373,7 @@ Scene Catalog::load(const Node& reference) const {
     Scene scene;
     std::string sha256;
     if (source.heightMap) {
-        scene = loadTerrain(assetsFolder_ / source.file, source);
+        scene = loadTerrain(assetsFolder_, source);
         sha256 = sha256OfFile(assetsFolder_ / source.file);
     } else if (source.generator.empty()) {
         scene = loadScene(assetsFolder_ / source.file);

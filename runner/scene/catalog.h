@@ -19,6 +19,9 @@ struct HeightMapSource {
     HeightMapUnits units;
     std::optional<int> resampleTo;  // samples on the longer side
     float detailM = 0.0F;           // of noise between the file's samples, when resampled
+    /// PNG of the ground's colours over the whole map, north on top, below the assets folder; may
+    /// be empty. It becomes the scene's first material.
+    std::string colourMap = {};
 };
 
 /// One way to get a scene: a file of the assets folder, possibly refined to a triangle count, or a

@@ -9,7 +9,7 @@ namespace gfxrepro::terrain_tessellation {
 
 namespace {
 
-constexpr unsigned kHeightUnit = 0;
+constexpr unsigned kHeightUnit = 0, kColourUnit = 1;
 constexpr unsigned kTileBinding = 0, kBlockBinding = 1, kFirstBlockBinding = 2;
 // llvmpipe keeps a draw's triangles in memory until it is flushed.
 constexpr int kGridTrianglesPerDraw = 1 << 16;
@@ -36,6 +36,7 @@ gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& s
             {"FIRST_BLOCK_BINDING", int(kFirstBlockBinding)},
             {"COUNTER_BINDING", int(kCounterBinding)},
             {"HEIGHT_UNIT", int(kHeightUnit)},
+            {"COLOUR_UNIT", int(kColourUnit)},
             {"PAGE_BORDER", HeightPages::kBorder},
             {"PATCHES_PER_TILE_SIDE", factors.tile.patchesPerTile},
             {"BLOCKS_PER_PATCH", factors.tile.blocksPerPatch},
@@ -127,6 +128,10 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     settings_.showsUnderside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
+    if (settings_.shading == Shading::ColourMap) settings_.colourMap->bind(kColourUnit);
+    if (program.isActive("lastSample")) {
+        program.set("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
+    }
     if (program.isActive("heightExtent")) {
         program.set("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
     }

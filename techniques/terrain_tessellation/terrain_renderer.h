@@ -17,7 +17,8 @@ namespace gfxrepro::terrain_tessellation {
 enum class Spacing { FractionalEven, FractionalOdd, Equal };
 enum class Shading {
     SlopeAltitude,
-    Height,  // the height in metres as drawn, in red: for tests and errors
+    Height,     // the height in metres as drawn, in red: for tests and errors
+    ColourMap,  // RenderSettings::colourMap, lit likewise
 };
 
 struct RenderSettings {
@@ -27,6 +28,8 @@ struct RenderSettings {
     bool hasSkirts = true;
     bool isWireframe = false;
     Shading shading = Shading::SlopeAltitude;
+    /// Over the whole height map, north at v = 0; outlives the renderer. Of Shading::ColourMap.
+    const gl::Texture* colourMap = nullptr;
     bool showsUnderside = false;  // of terrain, with an alpha of 0; to find cracks
     /// For a software rasterizer; without, one call draws all.
     std::optional<BatchLimits> batches;

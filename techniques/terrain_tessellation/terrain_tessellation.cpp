@@ -24,6 +24,21 @@ TileView tileViewOf(const depth_images::View& view) {
             0.5F * static_cast<float>(view.sizePx.x) * view.clipFromView[0].x};
 }
 
+/// The picture of the ground: the colours of the scene's first material.
+gl::Texture colourMapOf(const scene::Scene& scene) {
+    const int index = scene.materials.empty() ? -1 : scene.materials.front().baseColorTexture;
+    if (index < 0) {
+        throw Error(
+            "'shading: colour_map' needs a scene with a colour map; sources of height maps take "
+            "one as 'colour_map'");
+    }
+    constexpr bool kIsSrgb = true;
+    gl::Texture texture =
+        gl::Texture::fromImage(scene.textures[static_cast<std::size_t>(index)], kIsSrgb);
+    texture.setWrap(GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
 /// Adaptive where it tessellates; patches as they come take one segment an edge.
 RenderSettings rendererSettings(const TerrainTessellationParams& params, bool isSoftwareDevice) {
     RenderSettings settings = params.render;
@@ -71,8 +86,12 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
     tree_.emplace(*metadata_, params_.render.factors.tile);
     terrain_.emplace(map, *metadata_, params_.heights);
     camera_.emplace(*scene_, params_.view);
-    renderer_.emplace(context.shaders, *terrain_,
-                      rendererSettings(params_, context.device.info().isSoftware));
+    RenderSettings settings = rendererSettings(params_, context.device.info().isSoftware);
+    if (settings.shading == Shading::ColourMap) {
+        colourMap_ = colourMapOf(*scene_);
+        settings.colourMap = &colourMap_;
+    }
+    renderer_.emplace(context.shaders, *terrain_, settings);
     target_.emplace(sizePx_);
 }
 

@@ -96,6 +96,7 @@ class TerrainTessellation final : public technique::Technique {
     std::optional<TileTree> tree_;
     std::optional<TerrainView> camera_;
     std::optional<DeviceTerrain> terrain_;
+    gl::Texture colourMap_;  // of `shading: colour_map`
     std::optional<TerrainRenderer> renderer_;
     std::optional<Target> target_;
 

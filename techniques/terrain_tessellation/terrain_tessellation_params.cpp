@@ -16,6 +16,10 @@ constexpr config::Choice<Culling> kCullings[] = {
     {Culling::Tile, "tile", "tiles outside the frustum are dropped on the CPU"},
     {Culling::TileAndPatch, "tile_and_patch", "patches, too, in the control stage"},
 };
+constexpr config::Choice<Shading> kShadings[] = {
+    {Shading::SlopeAltitude, "slope_altitude", "grass, rock and snow"},
+    {Shading::ColourMap, "colour_map", "the scene's picture of the ground"},
+};
 constexpr config::Choice<Segment> kSegments[] = {
     {Segment::Vertical, "vertical", "along the world's up, as printed"},
     {Segment::ViewFacing, "view_facing", "parallel to the picture"},
@@ -92,6 +96,8 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
     render.spacing = params.getEnum("partitioning", Spacing::FractionalEven, kSpacings,
                                     {"where the vertices of an edge lie"});
     render.hasSkirts = params.getBool("skirts", true, {"walls below the rims of tiles"});
+    render.shading = params.getEnum("shading", Shading::SlopeAltitude, kShadings,
+                                    {"what the colours of the ground are from"});
     render.isWireframe = params.getBool("wireframe", false, {"draws the triangles' edges"});
     render.cullsPatches = culling == Culling::TileAndPatch;
     maxTileErrorPx = static_cast<float>(params.getDouble(

@@ -7,6 +7,9 @@ uniform int tileIndex;
 uniform int firstRow;
 out vec3 surfaceNormal;
 out float surfaceHeight;
+#if SHADING == 2
+out vec2 surfaceSample;
+#endif
 #if MORPH
 uniform vec3 eye;
 uniform vec2 morphRange;  // metres: where it begins, where it is done
@@ -24,5 +27,8 @@ void main() {
     Ground ground = groundAt(tile, at);
     surfaceNormal = ground.normal;
     surfaceHeight = ground.height;
+#if SHADING == 2
+    surfaceSample = at;
+#endif
     gl_Position = clipFromWorld * vec4(worldOf(at, ground.height), 1.0);
 }

@@ -10,6 +10,9 @@ patch in ivec4 drawnTile;
 patch in int drawnRim;
 out vec3 surfaceNormal;
 out float surfaceHeight;
+#if SHADING == 2
+out vec2 surfaceSample;
+#endif
 
 void main() {
     // Bilinear over a square along the axes. `precise`: both patches of an edge, and the skirt,
@@ -29,6 +32,9 @@ void main() {
     precise float height = down > 0.0 ? mix(top, skirtFoot, down) : top;
     surfaceNormal = ground.normal;
     surfaceHeight = top;
+#if SHADING == 2
+    surfaceSample = at;
+#endif
     precise vec4 position = clipFromWorld * vec4(worldOf(at, height), 1.0);
     gl_Position = position;
 }

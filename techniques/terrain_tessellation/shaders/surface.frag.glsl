@@ -1,10 +1,16 @@
 #version 450 core
-// Shades by slope and altitude, lit from the west and above; or writes the height itself. Alpha is
+// Shades by slope and altitude or by a colour map, lit from the west and above; or writes the height. Alpha is
 // 0 where the surface is seen from below or a skirt from inside, which from above the ground happens
 // through cracks only, and is drawn only where cracks are counted.
 in vec3 surfaceNormal;
 in float surfaceHeight;
+#if SHADING == 2
+in vec2 surfaceSample;
+uniform vec2 lastSample;  // the south-eastern one
+layout(binding = COLOUR_UNIT) uniform sampler2D colourMap;
+#else
 uniform vec2 heightExtent;  // lowest, highest
+#endif
 layout(location = 0) out vec4 colour;
 
 void main() {
@@ -13,11 +19,15 @@ void main() {
     colour = vec4(surfaceHeight, 0.0, 0.0, coverage);
 #else
     vec3 n = normalize(surfaceNormal);
+#if SHADING == 2
+    vec3 ground = texture(colourMap, surfaceSample / lastSample).rgb;
+#else
     // A flat terrain has no altitudes: 1e-6 m keeps the division finite.
     float altitude = (surfaceHeight - heightExtent.x) / max(heightExtent.y - heightExtent.x, 1e-6);
     vec3 ground = mix(vec3(0.16, 0.27, 0.09), vec3(0.42, 0.36, 0.24), smoothstep(0.1, 0.5, altitude));
     ground = mix(ground, vec3(0.85, 0.88, 0.92), smoothstep(0.6, 0.85, altitude));
     ground = mix(vec3(0.33, 0.30, 0.27), ground, smoothstep(0.55, 0.85, n.y));  // bare rock
+#endif
     const vec3 light = normalize(vec3(-0.6, 0.7, 0.35));
     colour = vec4(ground * (0.25 + 0.95 * max(dot(n, light), 0.0)), coverage);
 #endif

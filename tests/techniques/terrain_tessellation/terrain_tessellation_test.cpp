@@ -76,6 +76,47 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
     EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "load_tiles", "draw"}));
 }
 
+TEST_F(TerrainTessellationTest, AColourMapLiesOverTheMapNorthOnTop) {
+    scene::Scene scene = terrain({129, 129}, 0.0F);  // flat: one light for all
+    EXPECT_EQ(
+        errorText([&] { measured("shading: colour_map", scene); }),
+        "'shading: colour_map' needs a scene with a colour map; sources of height maps take one "
+        "as 'colour_map'");
+    // Red in the north-west, green in the north-east, blue in the south.
+    image::Image8 map(2, 2, 3);
+    map.at(0, 0, 0) = map.at(1, 0, 1) = map.at(0, 1, 2) = map.at(1, 1, 2) = 255;
+    scene.textures.push_back(map);
+    scene.materials.emplace_back().baseColorTexture = 0;
+    scene::Camera above;
+    above.name = "above";
+    above.position = {640.0F, 2000.0F, 641.0F};
+    above.target = {640.0F, 0.0F, 640.0F};
+    above.verticalFovRad = 0.6F;
+    above.nearM = 1.0F;
+    above.farM = 5000.0F;
+    scene.cameras = {above};
+    for (const char* method : {"adaptive", "uniform_grid", "cdlod"}) {
+        const auto recordedImages =
+            recorded(fmt::format("{{cache: false, method: {}, shading: colour_map, view: above, "
+                                 "pictures: true}}",
+                                 method),
+                     &scene)
+                .images;
+        const image::ImageF& picture = recordedImages.at("image");
+        const auto strongest = [&](int x, int y) {
+            int best = 0;
+            for (int c = 1; c < 3; ++c) {
+                if (picture.at(x, y, c) > picture.at(x, y, best)) best = c;
+            }
+            return best;
+        };
+        EXPECT_EQ(strongest(34, 16), 0) << method;
+        EXPECT_EQ(strongest(62, 16), 1) << method;
+        EXPECT_EQ(strongest(34, 48), 2) << method;
+        EXPECT_EQ(strongest(62, 48), 2) << method;
+    }
+}
+
 TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
     const scene::Scene scene = terrain({257, 257});
     double triangles = 1e12, error = -1.0;
