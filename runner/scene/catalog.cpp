@@ -6,8 +6,8 @@
 #include <initializer_list>
 
 #include "runner/core/hash.h"
-#include "runner/image/png_io.h"
 #include "runner/core/text.h"
+#include "runner/image/png_io.h"
 #include "runner/scene/generators.h"
 #include "runner/scene/generators_terrain.h"
 #include "runner/scene/load.h"
