@@ -108,13 +108,14 @@ bool holds(const Outcome& outcome, std::size_t claim) {
     return outcome.claims[claim].verdict == Verdict::Holds;
 }
 
-/// "bias is 0.0005 or 0.003 (flips between 0.003 and 0.03, near 0.012)".
+/// "bias is 0.03 or 0.1 (flips between 0.003 and 0.03, near 0.012)": the values under which the
+/// claim holds, or those under which it does not.
 std::string condition(const std::string& assumption, std::vector<const Outcome*> outcomes,
-                      std::size_t claim) {
-    std::vector<std::string> good;
+                      std::size_t claim, bool whereItHolds) {
+    std::vector<std::string> values;
     std::string flips;
     for (const Outcome* outcome : outcomes) {
-        if (holds(*outcome, claim)) good.push_back(outcome->variation.value);
+        if (holds(*outcome, claim) == whereItHolds) values.push_back(outcome->variation.value);
     }
     std::erase_if(outcomes, [](const Outcome* outcome) { return !outcome->variation.number; });
     std::ranges::sort(outcomes, {},
@@ -126,8 +127,8 @@ std::string condition(const std::string& assumption, std::vector<const Outcome*>
                              a.variation.value, b.variation.value);
         if (const auto at = flipBetween(a, b, claim)) flips += fmt::format(", near {:.3g}", *at);
     }
-    const std::string is = good.empty() ? "is none of those tried" : "is " + joined(good, " or ");
-    return assumption + " " + is + (flips.empty() ? "" : " (" + flips + ")");
+    return fmt::format("{} is {}{}", assumption, joined(values, " or "),
+                       flips.empty() ? "" : " (" + flips + ")");
 }
 
 }  // namespace
@@ -175,10 +176,12 @@ std::string dependence(const std::vector<Outcome>& outcomes, std::size_t claim) 
         const bool decides = std::ranges::any_of(byAssumption[name], [&](const Outcome* o) {
             return holds(*o, claim) != holdsAsConfigured;
         });
-        if (decides) conditions.push_back(condition(name, byAssumption[name], claim));
+        if (decides) {
+            conditions.push_back(condition(name, byAssumption[name], claim, !holdsAsConfigured));
+        }
     }
-    return fmt::format("holds {}only if {}", holdsAsConfigured ? "as configured, else " : "",
-                       joined(conditions, holdsAsConfigured ? " and " : " or "));
+    return fmt::format("holds {} {}", holdsAsConfigured ? "unless" : "only if",
+                       joined(conditions, ", or "));
 }
 
 std::string sensitivityMarkdown(const config::Experiment& experiment,

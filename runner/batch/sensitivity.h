@@ -39,8 +39,9 @@ struct Outcome {
     std::vector<report::ClaimResult> claims;
 };
 
-/// "holds under all 7", "holds under none of 7", or "holds only if …" with the values of each
-/// assumption that decides, and between which the verdict flips (by the margins, linearly).
+/// "holds under all 7", "holds under none of 7", or "holds unless …" (where it holds as configured)
+/// or "holds only if …" with the values of each assumption that decides, and between which the
+/// verdict flips (by the margins, linearly).
 /// `claim` counts in the order of the config.
 std::string dependence(const std::vector<Outcome>& outcomes, std::size_t claim);
 

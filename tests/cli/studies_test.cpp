@@ -28,8 +28,8 @@ TEST(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     const ProcessResult run = mockGfxrepro(command);
     EXPECT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out,
-              "sweep/mock small: holds as configured, else only if number is 0 or 5 (flips between "
-              "5 and 10, near 6)\nsweep/mock any: holds under all 4\n" +
+              "sweep/mock small: holds unless number is 10 (flips between 5 and 10, near "
+              "6)\nsweep/mock any: holds under all 4\n" +
                   out + "/sweep-mock/sensitivity.md\n");
     EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.csv"),
                 HasSubstr("number,10,small,fails,10,"));
