@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "runner/gl/gl.h"
+#include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
 #include "runner/metrics/image_error.h"
 #include "runner/metrics/statistics.h"
@@ -16,20 +17,6 @@ namespace {
 
 /// Samples a pixel along each axis of the reference.
 constexpr int kSupersampling = 4;
-
-/// Blocks of `factor`² pixels averaged.
-image::ImageF averaged(const image::ImageF& image, int factor) {
-    image::ImageF result(image.width() / factor, image.height() / factor, image.channels());
-    const float weight = 1.0F / static_cast<float>(factor * factor);
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            for (int c = 0; c < image.channels(); ++c) {
-                result.at(x / factor, y / factor, c) += weight * image.at(x, y, c);
-            }
-        }
-    }
-    return result;
-}
 
 /// As a display shows it: sRGB of 8 bits, in [0, 1].
 image::ImageF shown(const image::ImageF& linear) {
@@ -210,7 +197,8 @@ void PointSplatting::recordErrors(technique::Recorder& recorder,
     all.method = SplatMethod::FullEwa;
     all.choosesLevels = false;
     all.prefixShare = 1.0F;
-    compare(averaged(drawnWith(splats, all, kSupersampling), kSupersampling), "supersampled");
+    compare(image::averaged(drawnWith(splats, all, kSupersampling), kSupersampling),
+            "supersampled");
 
     // The same levels and bytes by full EWA.
     if (params_.method != Method::FullEwa) {

@@ -71,20 +71,6 @@ std::size_t markedCount(const std::vector<std::uint8_t>& marks) {
     return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), std::uint8_t{1}));
 }
 
-image::ImageF averaged(const image::ImageF& image, int factor) {
-    GFXREPRO_ASSERT(image.width() % factor == 0 && image.height() % factor == 0);
-    image::ImageF result(image.width() / factor, image.height() / factor, image.channels());
-    const float weight = 1.0F / static_cast<float>(factor * factor);
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            for (int c = 0; c < image.channels(); ++c) {
-                result.at(x / factor, y / factor, c) += weight * image.at(x, y, c);
-            }
-        }
-    }
-    return result;
-}
-
 image::ImageF withMarks(const image::ImageF& picture, const std::vector<std::uint8_t>& marks) {
     image::ImageF marked = picture;
     for (int y = 0; y < marked.height(); ++y) {

@@ -41,9 +41,6 @@ HeightErrors heightErrors(const DepthMap& drawn,
 std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth);
 std::size_t markedCount(const std::vector<std::uint8_t>& marks);
 
-/// Blocks of factor² pixels averaged.
-image::ImageF averaged(const image::ImageF& image, int factor);
-
 /// `picture` a little darker, marked pixels red. `marks` has rows from the bottom.
 image::ImageF withMarks(const image::ImageF& picture, const std::vector<std::uint8_t>& marks);
 

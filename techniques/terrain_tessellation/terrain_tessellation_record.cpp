@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
@@ -32,7 +33,7 @@ void TerrainTessellation::record(technique::Recorder& recorder) {
     if (!params_.measuresErrors && !params_.showsPictures) return;
     const Drawn drawn = drawnAgain(params_.method, selection_, params_.measuresErrors);
     if (params_.showsPictures) {
-        recorder.image("image", averaged(drawn.picture, params_.supersampling));
+        recorder.image("image", image::averaged(drawn.picture, params_.supersampling));
         if (params_.method == Method::Adaptive) recordCulling(recorder);
     }
     if (params_.measuresErrors) {
@@ -122,8 +123,8 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     // Edge-on triangles may turn over when the device rounds their corners: the truth's, too.
     recorder.metric("truth_underside_pixels", static_cast<double>(truth.undersidePixels), "pixel");
 
-    const image::ImageF picture = averaged(drawn.picture, params_.supersampling);
-    const image::ImageF truthPicture = averaged(truth.picture, params_.supersampling);
+    const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
+    const image::ImageF truthPicture = image::averaged(truth.picture, params_.supersampling);
     const glm::dvec3 channels = reflections::channelErrors(picture, truthPicture, nullptr);
     recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "1");
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truthPicture), "dB");

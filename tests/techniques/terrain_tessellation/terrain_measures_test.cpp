@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "runner/image/resample.h"
 #include "techniques/terrain_tessellation/terrain_views.h"
 #include "tests/support/support.h"
 
@@ -93,7 +94,7 @@ TEST(TerrainMeasuresTest, AveragesBlocks) {
     image::ImageF image(4, 2, 1);
     image.at(0, 0) = 4.0F;
     image.at(3, 1) = 2.0F;
-    const image::ImageF small = averaged(image, 2);
+    const image::ImageF small = image::averaged(image, 2);
     EXPECT_EQ(small.width(), 2);
     EXPECT_EQ(small.at(0, 0), 1.0F);
     EXPECT_EQ(small.at(1, 0), 0.5F);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/unit/regression/nights.h"
+#include "tests/unit/regression/recorded.h"
 
 namespace gfxrepro::regression {
 namespace {
@@ -45,6 +46,43 @@ TEST(Comparison, FindsTenPercentSlower) {
         for (const Difference& difference : differences) {
             EXPECT_NEAR(difference.ratio, 1.1, 0.08);
         }
+    }
+}
+
+/// Recorded times as a night of alternating runs, the second build's `change` times as long.
+std::vector<Difference> recordedNight(int index, int rounds, double change) {
+    const int nights = static_cast<int>(test::kRecordedMs.size()) / (2 * rounds);
+    const auto measuredOnce = [&](int night) {
+        Series before, after;
+        for (int round = 0; round < rounds; ++round) {
+            const auto first = static_cast<std::size_t>(2 * (night % nights * rounds + round));
+            const std::size_t old = first + static_cast<std::size_t>(round % 2);
+            before.push_back(test::kRecordedMs.at(old));
+            after.push_back(change * test::kRecordedMs.at(2 * first + 1 - old));
+        }
+        const SeriesKey key = test::timeOf("recorded");
+        return compare({{key, before}}, {{key, after}}, Pairing::ByTurns);
+    };
+    std::vector<Difference> differences = measuredOnce(index);
+    confirm(differences, measuredOnce(index + 1));
+    return differences;
+}
+
+TEST(Comparison, TwentyRecordedNightsOfTheSameBuildGiveAtMostOneAlarm) {
+    static_assert(test::kRecordedMs.size() == 2 * kNights * kRounds);
+    std::ptrdiff_t count = 0;
+    for (int i = 0; i < kNights; ++i) count += alarms(recordedNight(i, kRounds, 1.0));
+    EXPECT_LE(count, 1);
+}
+
+TEST(Comparison, FindsTenPercentInRecordedTimesWithEnoughRounds) {
+    // Neighbours differ by 16 %: ten rounds tell a third, ten percent take a hundred.
+    std::ptrdiff_t found = 0;
+    for (int i = 0; i < kNights; ++i) found += alarms(recordedNight(i, kRounds, 1.35));
+    EXPECT_GE(found, kNights - 4);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(alarms(recordedNight(i, 10 * kRounds, 1.1)), 1);
+        EXPECT_EQ(alarms(recordedNight(i, 10 * kRounds, 1.0)), 0);
     }
 }
 
