@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runner/batch/predictions.h"
+#include "runner/batch/submission.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
 #include "runner/report/markup.h"
@@ -78,12 +79,6 @@ std::string assetsText(const Json& manifest, const scene::Catalog& catalog) {
     return text;
 }
 
-std::string quoted(const std::string& word) {
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
-
 /// configs/<folder>/<file> of an experiment.
 fs::path configPlace(const config::Experiment& experiment) {
     return fs::path("configs") / experiment.file.parent_path().filename() /
@@ -91,10 +86,11 @@ fs::path configPlace(const config::Experiment& experiment) {
 }
 
 std::string scriptText(const Plan& plan, const config::Experiment& experiment) {
-    std::string command = "reproduce " + quoted(configPlace(experiment).string()) + " --profile " +
-                          plan.profile + " --device " + plan.request.device;
-    for (const std::string& set : plan.request.sets) command += " --set " + quoted(set);
-    for (const std::string& sweep : plan.request.sweeps) command += " --sweep " + quoted(sweep);
+    std::string command = "reproduce " + shellQuoted(configPlace(experiment).string()) +
+                          " --profile " + plan.profile + " --device " + plan.request.device;
+    for (const std::string& set : plan.request.sets) command += " --set " + shellQuoted(set);
+    for (const std::string& sweep : plan.request.sweeps)
+        command += " --sweep " + shellQuoted(sweep);
     return fmt::format(
         "#!/bin/sh\n# {}: {}\nset -e\ncd \"$(dirname \"$0\")/..\"\n"
         "exec \"${{GFXREPRO:-gfxrepro}}\" {} --out again/{}\n",

@@ -1,23 +1,22 @@
 #include "runner/batch/budget.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <numeric>
 
 #include "runner/core/error.h"
+#include "runner/core/text.h"
 
 namespace gfxrepro::batch {
 
 double parseBudgetS(const std::string& text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const std::string unit(end, text.data() + text.size());
-    const double seconds = unit == "s" ? 1.0 : unit == "m" ? 60.0 : unit == "h" ? 3600.0 : 0.0;
-    if (error != std::errc() || seconds == 0.0 || !(value > 0.0) || !std::isfinite(value)) {
+    const char unit = text.empty() ? ' ' : text.back();
+    const double seconds = unit == 's' ? 1.0 : unit == 'm' ? 60.0 : unit == 'h' ? 3600.0 : 0.0;
+    const std::optional<double> value =
+        parseDouble(std::string_view(text).substr(0, text.empty() ? 0 : text.size() - 1));
+    if (!value || *value <= 0.0 || seconds == 0.0) {
         throw UsageError("--budget is '" + text + "'; allowed: a time such as 90s, 20m or 1.5h");
     }
-    return value * seconds;
+    return *value * seconds;
 }
 
 std::vector<std::size_t> withinBudget(const std::vector<BudgetItem>& items, double budgetS) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -88,11 +87,9 @@ std::vector<Variation> variationsOf(const config::Assumption& assumption, const 
     return variations;
 }
 
+/// "8.7 %" is 8.7.
 std::optional<double> numberIn(const std::string& text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end == text.data()) return std::nullopt;
-    return value;
+    return parseDouble(text.substr(0, text.find(' ')));
 }
 
 /// Where the margin of a claim passes 0 between two values; nothing where the margins do not tell.
