@@ -153,6 +153,7 @@ Json Plan::toJson() const {
                   {{"configs", request.configs},
                    {"sets", request.sets},
                    {"sweeps", request.sweeps},
+                   {"only", request.only},
                    {"device", request.device}}},
                  {"scenes", Json::object()},
                  {"experiments", Json::array()},
@@ -183,8 +184,12 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     plan.deviceClass = required(node, "device_class").text();
     plan.seed = std::stoull(required(node, "seed").text());
     const config::Node& request = required(node, "request");
-    plan.request = {textsFrom(required(request, "configs")), textsFrom(required(request, "sets")),
-                    textsFrom(required(request, "sweeps")), required(request, "device").text()};
+    plan.request = {textsFrom(required(request, "configs")),
+                    textsFrom(required(request, "sets")),
+                    textsFrom(required(request, "sweeps")),
+                    {},
+                    required(request, "device").text()};
+    if (const config::Node* only = request.find("only")) plan.request.only = textsFrom(*only);
     for (const auto& [reference, key] : required(node, "scenes").entries()) {
         plan.sceneKeys[reference] = key.text();
     }

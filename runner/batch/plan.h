@@ -42,6 +42,7 @@ struct Request {
     std::vector<std::string> configs;  // absolute paths
     std::vector<std::string> sets;     // --set, as written
     std::vector<std::string> sweeps;   // --sweep, as written
+    std::vector<std::string> only;     // --only, as written
     std::string device = "auto";
 };
 

@@ -24,8 +24,8 @@ struct Options {
     SubmitOptions submit;
     SensitivityOptions sensitivity;
     batch::WorkerOptions worker;
-    std::string name;  // of list and describe; a run directory
-    std::vector<std::string> shards;
+    std::string name;                 // of list and describe; a run directory
+    std::vector<std::string> shards;  // run directories of merge and report
     std::string imageA, imageB, imageOut;
     std::string out;  // of export
     std::string lane = "quality";
@@ -48,6 +48,11 @@ void addSelection(CLI::App* app, Selection& selection) {
     addAssets(app, selection.assets);
 }
 
+void addOnly(CLI::App* app, std::vector<std::string>& only) {
+    app->add_option("--only", only, "key=value: only the cases that have it")
+        ->allow_extra_args(false);
+}
+
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
     app->add_option("--from", from, "run to predict times from (default: the newest in runs/)")
         ->allow_extra_args(false);
@@ -55,6 +60,7 @@ void addFrom(CLI::App* app, std::vector<std::string>& from) {
 
 void addRunOptions(CLI::App* app, RunOptions& options) {
     addSelection(app, options.selection);
+    addOnly(app, options.selection.only);
     app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)");
     app->add_option("--resume", options.resume,
                     "continue this run; begin it where configs are given too");
@@ -97,6 +103,7 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
         app.add_subcommand("plan", "list the cases of configs with their time and memory");
     planApp->add_option("configs", o.selection.names, "config files")->required();
     addSelection(planApp, o.selection);
+    addOnly(planApp, o.selection.only);
     addFrom(planApp, o.run.from);
     planApp->add_flag("--json", o.asJson, "the plan as it would be frozen");
     planApp->callback(
@@ -125,7 +132,12 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     };
     addResult("table", "make a run's tables again from its records", table);
     addResult("claims", "judge a run's claims again", claims);
-    addResult("report", "make a run's report.html again", report);
+    CLI::App* reportApp =
+        app.add_subcommand("report", "make a run's report.html again, or one of several runs");
+    reportApp->add_option("dirs", o.shards, "run directories, or kept results")->required();
+    reportApp->add_option("--out", o.out,
+                          "file (default DIR/report.html; of several: report.html)");
+    reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out); }; });
 
     CLI::App* exportApp =
         app.add_subcommand("export", "a run as an artifact: results, scripts, licences, checksums");
@@ -147,6 +159,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
         app.add_subcommand("submit", "shards on other machines: a Slurm array, or commands");
     submitApp->add_option("configs", s.selection.names, "config files, papers or tables");
     addSelection(submitApp, s.selection);
+    addOnly(submitApp, s.selection.only);
     submitApp->add_option("--out", s.out, "folder of the shards and of the merged run");
     submitApp->add_option("--engine", s.engine, "slurm | commands")
         ->check(CLI::IsMember({"slurm", "commands"}));
