@@ -76,8 +76,7 @@ struct Gathered {
     Status worst = Status::Ok;
     std::string message;
     std::set<std::string> units;
-    std::size_t caseCount = 0;
-    bool hasMatch = false;  // of a case, whether or not it has the metric
+    std::vector<std::string> caseIds;
 
     void note(Status status, const std::string& why) {
         if (status > worst) {
@@ -132,7 +131,7 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
     int unitCount = 0;
     for (const CaseRecords& run : cases.run) {
         if (!matches(run.axes, cases, query.where, false)) continue;
-        ++gathered.caseCount;
+        gathered.caseIds.push_back(run.id);
         std::map<int, int> unitOfFrame;
         takeCase(run, query, unitOfFrame, unitCount, gathered);
     }
@@ -236,11 +235,12 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
-    if (gathered.caseCount == 0) {
+    const std::size_t taken = gathered.caseIds.size();
+    if (taken == 0) {
         cell.isPlanned = planned > 0;
         gathered.note(Status::Missing, "not run");
-    } else if (isPlanComplete(query, cases) && planned > gathered.caseCount) {
-        gathered.note(Status::Missing, std::to_string(planned - gathered.caseCount) + " of " +
+    } else if (isPlanComplete(query, cases) && planned > taken) {
+        gathered.note(Status::Missing, std::to_string(planned - taken) + " of " +
                                            std::to_string(planned) + " cases were not run");
     }
     if (!hasSamples && gathered.worst == Status::Ok) {
@@ -248,6 +248,7 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;
+    cell.caseIds = std::move(gathered.caseIds);
     if (gathered.units.size() == 1 && !query.isScaled) built.unit = *gathered.units.begin();
     if (hasSamples) fillValues(query, gathered.samples, seed, cell);
     const std::string word(statusName(cell.status));

@@ -31,6 +31,7 @@ struct Cell {
     std::string low, high;            // the interval's ends, formatted likewise; empty without one
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
+    std::vector<std::string> caseIds;                  // whose records it takes
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
