@@ -6,6 +6,7 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/clustered_reflections/reflection_pictures.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -37,7 +38,10 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 
     const image::ImageF picture = composite_->read();
     if (params_.showsPictures) {
-        recorder.image("result", picture);
+        depth_images::ImageLayers layers =
+            reflections::surfaceLayers(gbuffer, params_.supersampling);
+        if (params_.measuresErrors) layers.errors(picture, truthOf(gbuffer).picture);
+        recorder.image("result", picture, layers.options());
         recorder.image("reflectors",
                        numbersPicture(gbuffer, reflectorNumbers(gbuffer), params_.supersampling));
         composite_->render(*gbuffer_, *target_, true);
@@ -121,7 +125,9 @@ void ClusteredReflections::recordErrors(technique::Recorder& recorder, const Hos
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
-    recorder.image("truth", truth);
+    recorder.image(
+        "truth", truth,
+        depth_images::ImageLayers(gbuffer.view, params_.supersampling).options("result"));
     recorder.image("error", reflections::errorPicture(picture, truth, 1));
     recorder.image("error_50", reflections::errorPicture(picture, truth, 50));
 }

@@ -11,6 +11,7 @@
 #include "runner/metrics/statistics.h"
 #include "techniques/point_splatting/compression_errors.h"
 #include "techniques/point_splatting/point_splatting.h"
+#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -51,7 +52,10 @@ void PointSplatting::record(technique::Recorder& recorder) {
     if (params_.measuresSpeed) recordSpeed(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
     const image::ImageF picture = output().readImage(3);
-    if (params_.showsPictures) recorder.image("image", picture);
+    if (params_.showsPictures) {
+        recorder.image("image", picture,
+                       depth_images::ImageLayers(depth_images::viewOf(camera_, sizePx_)).options());
+    }
     if (params_.measuresErrors) recordErrors(recorder, picture);
 }
 
@@ -187,7 +191,8 @@ void PointSplatting::recordErrors(technique::Recorder& recorder,
     const auto compare = [&](const image::ImageF& truth, const char* name) {
         recordDifference(recorder, truth, picture, name);
         if (!params_.showsPictures) return;
-        recorder.image(name, truth);
+        depth_images::ImageLayers layers(depth_images::viewOf(camera_, sizePx_));
+        recorder.image(name, truth, layers.errors(picture, truth, name).options("image"));
         recorder.image(fmt::format("flip_{}", name), metrics::flipMap(truth, picture));
     };
     // All points, uncompressed, by full EWA at 4 × 4 samples a pixel.

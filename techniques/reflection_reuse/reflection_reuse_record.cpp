@@ -9,6 +9,7 @@
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -95,8 +96,9 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
     if (renderer_) recordReuse(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
     const image::ImageF picture = composite_->read();
-    if (params_.measuresErrors) recordErrors(recorder, host, picture);
-    if (params_.showsPictures) recordPictures(recorder, host, picture);
+    const image::ImageF truth = params_.measuresErrors ? truthOf(host) : image::ImageF();
+    if (params_.measuresErrors) recordErrors(recorder, host, picture, truth);
+    if (params_.showsPictures) recordPictures(recorder, host, picture, truth);
 }
 
 void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
@@ -168,8 +170,7 @@ image::ImageF ReflectionReuse::truthOf(const HostGBuffer& host) {
 }
 
 void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuffer& host,
-                                   const image::ImageF& picture) {
-    const image::ImageF truth = truthOf(host);
+                                   const image::ImageF& picture, const image::ImageF& truth) {
     const std::vector<std::uint8_t> reflective =
         reflections::reflectivePixels(host, params_.supersampling);
     recorder.metric("channel_error",
@@ -180,7 +181,8 @@ void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuf
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (renderer_) recordUndetected(recorder, host, picture, truth);
     if (!params_.showsPictures) return;
-    recorder.image("truth", truth);
+    recorder.image("truth", truth,
+                   depth_images::ImageLayers(host.view, params_.supersampling).options("result"));
     recorder.image("error", reflections::errorPicture(picture, truth, 1));
     recorder.image("error_60", reflections::errorPicture(picture, truth, 60));
 }
@@ -198,8 +200,10 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
 }
 
 void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGBuffer& host,
-                                     const image::ImageF& picture) {
-    recorder.image("result", picture);
+                                     const image::ImageF& picture, const image::ImageF& truth) {
+    depth_images::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
+    if (!truth.empty()) layers.errors(picture, truth);
+    recorder.image("result", picture, layers.options());
     composite_->render(gbuffer(), reflection(), true);
     recorder.image("reflection", composite_->read());
     if (!renderer_) return;

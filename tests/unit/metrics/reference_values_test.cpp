@@ -65,7 +65,7 @@ TEST(ReferenceValues, HdrFlip) {
     EXPECT_NEAR(hdrFlip(reference, blurred(reference)), 0.063445, kFourDecimals);
 }
 
-/// Values up to 976 against their blurred and their shifted selves, and a photograph that is mostly
+/// Values up to 976 against their blurred and their shifted selves, and an image that is mostly
 /// dark: exr/ of the assets, from OpenEXR's collection of images.
 TEST(ReferenceValues, HdrFlipOfRealImages) {
     const std::filesystem::path folder = assetsFolder() / "exr";
