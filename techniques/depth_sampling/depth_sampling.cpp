@@ -169,7 +169,7 @@ void DepthSampling::recordPictures(technique::Recorder& recorder) const {
         recorder.image(imageName(i), depth_images::shadingPicture(marked.image),
                        depth_images::layersOf(marked.image).options());
         recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks),
-                       depth_images::ImageLayers(marked.image.view).options());
+                       depth_images::seenFrom(marked.image.view));
     }
     const MarkedImage frame =
         experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);

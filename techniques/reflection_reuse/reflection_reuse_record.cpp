@@ -14,6 +14,7 @@
 
 namespace gfxrepro::reflection_reuse {
 
+using depth_images::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
@@ -181,10 +182,9 @@ void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuf
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (renderer_) recordUndetected(recorder, host, picture, truth);
     if (!params_.showsPictures) return;
-    recorder.image("truth", truth,
-                   depth_images::ImageLayers(host.view, params_.supersampling).options("result"));
-    recorder.image("error", reflections::errorPicture(picture, truth, 1));
-    recorder.image("error_60", reflections::errorPicture(picture, truth, 60));
+    recorder.image("truth", truth, seenFrom(host.view, "result"));
+    recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(host.view));
+    recorder.image("error_60", reflections::errorPicture(picture, truth, 60), seenFrom(host.view));
 }
 
 void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const HostGBuffer& host,
@@ -196,7 +196,8 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
                     "%");
     if (!params_.showsPictures) return;
     recorder.image("undetected",
-                   reflections::markedPicture(picture, marks, host, params_.supersampling));
+                   reflections::markedPicture(picture, marks, host, params_.supersampling),
+                   seenFrom(host.view));
 }
 
 void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGBuffer& host,
@@ -205,20 +206,26 @@ void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGB
     if (!truth.empty()) layers.errors(picture, truth);
     recorder.image("result", picture, layers.options());
     composite_->render(gbuffer(), reflection(), true);
-    recorder.image("reflection", composite_->read());
+    recorder.image("reflection", composite_->read(), seenFrom(host.view));
     if (!renderer_) return;
-    recorder.image("recomputed", reflections::markedPicture(picture, readRecomputed(*renderer_),
-                                                            host, params_.supersampling));
+    recorder.image("recomputed",
+                   reflections::markedPicture(picture, readRecomputed(*renderer_), host,
+                                              params_.supersampling),
+                   seenFrom(host.view));
     if (renderer_->counts().isKeyFrame) return;
     const ReflectionDepthImage& key = renderer_->keyFrame();
     composite_->render(key.gbuffer, key.reflection);
-    recorder.image("key_frame", composite_->read());
+    recorder.image("key_frame", composite_->read(), seenFrom(key.gbuffer.view));
     if (params_.method != Method::Reuse) return;
     const HostGBuffer hostKey = reflections::readGBuffer(key.gbuffer);
-    recorder.image("offsets", offsetsPicture(hostKey, readOffsets(renderer_->offsets()),
-                                             params_.supersampling));
-    recorder.image("shifted", shiftedPicture(hostKey, readRadiance(renderer_->shifted().radiance),
-                                             params_.supersampling));
+    recorder.image(
+        "offsets",
+        offsetsPicture(hostKey, readOffsets(renderer_->offsets()), params_.supersampling),
+        seenFrom(hostKey.view));
+    recorder.image(
+        "shifted",
+        shiftedPicture(hostKey, readRadiance(renderer_->shifted().radiance), params_.supersampling),
+        seenFrom(hostKey.view));
 }
 
 }  // namespace gfxrepro::reflection_reuse

@@ -124,9 +124,9 @@ void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImag
         const std::string truthName = fmt::format("truth_{}", i);
         recorder.image(name, picture,
                        layersOf(image).errors(picture, truthPicture, truthName).options());
-        recorder.image(truthName, truthPicture,
-                       depth_images::ImageLayers(image.view).options(name));
-        recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx));
+        recorder.image(truthName, truthPicture, depth_images::seenFrom(image.view, name));
+        recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
+                       depth_images::seenFrom(image.view));
     }
     recorder.metric("compared_points", static_cast<double>(compared), "pixel");
     recorder.metric("wrong_pct", percent(edge + acne + leak, compared), "%");

@@ -9,8 +9,10 @@ namespace gfxrepro::depth_images {
 using image::ExrPixelType;
 using image::ImageF;
 
-technique::ImageCamera cameraOf(const View& view) {
-    return {view.viewFromWorld, view.clipFromView, view.nearM, view.farM};
+technique::ImageOptions seenFrom(const View& view, const std::string& truthOf) {
+    return {.truthOf = truthOf,
+            .camera = technique::ImageCamera{view.viewFromWorld, view.clipFromView, view.nearM,
+                                             view.farM}};
 }
 
 ImageLayers::ImageLayers(const View& view, int supersampling)
@@ -107,7 +109,9 @@ ImageLayers layersOf(const HostDepthImage& image) {
 }
 
 technique::ImageOptions ImageLayers::options(const std::string& truthOf) const {
-    return {truthOf, cameraOf(view_), layers_};
+    technique::ImageOptions options = seenFrom(view_, truthOf);
+    options.layers = layers_;
+    return options;
 }
 
 }  // namespace gfxrepro::depth_images

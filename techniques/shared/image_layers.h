@@ -10,7 +10,8 @@
 
 namespace gfxrepro::depth_images {
 
-technique::ImageCamera cameraOf(const View& view);
+/// For an image that a view shows, without further channels.
+technique::ImageOptions seenFrom(const View& view, const std::string& truthOf = "");
 
 /// Collects channels of one image. Samples come as the device has them, rows from the bottom, one a
 /// pixel of `view`. With supersampling the image has one of each block of samples: the one right

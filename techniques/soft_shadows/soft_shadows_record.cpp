@@ -159,10 +159,11 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
     }
     if (params_.showsPictures) {
         recorder.image(fmt::format("error_{}", truthName),
-                       errorPicture(hostReceivers_, errors.signedIntensity));
+                       errorPicture(hostReceivers_, errors.signedIntensity),
+                       depth_images::seenFrom(receivers_.view));
         recorder.image(fmt::format("truth_{}", truthName),
                        shadowPicture(hostReceivers_, litShares(truth)),
-                       depth_images::ImageLayers(receivers_.view).options("shadow"));
+                       depth_images::seenFrom(receivers_.view, "shadow"));
     }
 }
 

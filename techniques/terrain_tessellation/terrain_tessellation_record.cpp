@@ -141,8 +141,9 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
                    depth_images::ImageLayers(truth.depths.view, params_.supersampling)
                        .depths(truth.depths.depthM)
                        .options("image"));
-    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8));
-    recorder.image("cracks", withMarks(drawn.picture, cracks));
+    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8),
+                   depth_images::seenFrom(view_));
+    recorder.image("cracks", withMarks(drawn.picture, cracks), depth_images::seenFrom(view_));
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -65,8 +65,8 @@ TEST(ReferenceValues, HdrFlip) {
     EXPECT_NEAR(hdrFlip(reference, blurred(reference)), 0.063445, kFourDecimals);
 }
 
-/// Values up to 976 against their blurred and their shifted selves, and an image that is mostly
-/// dark: exr/ of the assets, from OpenEXR's collection of images.
+/// Values up to 976 against their blurred and their shifted selves, and one that is mostly
+/// blue: exr/ of the assets, from OpenEXR's collection of images.
 TEST(ReferenceValues, HdrFlipOfRealImages) {
     const std::filesystem::path folder = assetsFolder() / "exr";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no images in " << folder;
