@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "runner/core/error.h"
@@ -40,28 +41,27 @@ Image8 contactSheet(std::span<const Image8> images, const SheetLayout& layout) {
                                 layout.columns, layout.cellWidthPx));
     }
     const auto columns = std::min(static_cast<std::size_t>(layout.columns), images.size());
-    std::vector<Image8> cells;
-    std::vector<int> rowHeights;
+    std::vector<std::int64_t> rowHeights;
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (images[i].empty()) throw Error(fmt::format("image {} is empty", i + 1));
-        cells.push_back(resizedTo(images[i], layout.cellWidthPx));
         if (i % columns == 0) rowHeights.push_back(0);
-        rowHeights.back() = std::max(rowHeights.back(), cells.back().height());
+        rowHeights.back() = std::max(rowHeights.back(), heightAt(images[i], layout.cellWidthPx));
     }
-    const std::int64_t width =
-        static_cast<std::int64_t>(columns) * (layout.cellWidthPx + layout.gapPx) + layout.gapPx;
+    const std::int64_t pitch = std::int64_t{layout.cellWidthPx} + layout.gapPx;
+    const std::int64_t width = static_cast<std::int64_t>(columns) * pitch + layout.gapPx;
     std::int64_t height = layout.gapPx;
-    for (const int rowHeight : rowHeights) height += rowHeight + layout.gapPx;
+    for (const std::int64_t rowHeight : rowHeights) height += rowHeight + layout.gapPx;
     if (width > kMaxSidePx || height > kMaxSidePx) {
         throw Error(fmt::format("the sheet would have {}x{} pixels; {} a side are allowed", width,
                                 height, kMaxSidePx));
     }
     Image8 sheet(static_cast<int>(width), static_cast<int>(height), 3, kGround);
-    int top = layout.gapPx;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const auto column = static_cast<int>(i % columns);
+    std::int64_t top = layout.gapPx;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const auto column = static_cast<std::int64_t>(i % columns);
         if (i > 0 && column == 0) top += rowHeights[i / columns - 1] + layout.gapPx;
-        paste(cells[i], layout.gapPx + column * (layout.cellWidthPx + layout.gapPx), top, sheet);
+        paste(resizedTo(images[i], layout.cellWidthPx),
+              static_cast<int>(layout.gapPx + column * pitch), static_cast<int>(top), sheet);
     }
     return sheet;
 }

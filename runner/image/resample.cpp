@@ -109,11 +109,19 @@ ExrImage cropped(const ExrImage& image, const Rectangle& part, int scale) {
     return result;
 }
 
+std::int64_t heightAt(const Image8& image, int width) {
+    const double height = static_cast<double>(image.height()) * width / image.width();
+    return std::max<std::int64_t>(1, std::llround(height));
+}
+
 Image8 resizedTo(const Image8& image, int width) {
     GFXREPRO_ASSERT(!image.empty() && width >= 1);
-    const int height =
-        std::max(1, static_cast<int>(std::lround(static_cast<double>(image.height()) * width /
-                                                 static_cast<double>(image.width()))));
+    if (width > kMaxSidePx || heightAt(image, width) > kMaxSidePx) {
+        throw Error(fmt::format("an image of {}x{} would have {}x{} pixels; {} a side are allowed",
+                                image.width(), image.height(), width, heightAt(image, width),
+                                kMaxSidePx));
+    }
+    const auto height = static_cast<int>(heightAt(image, width));
     const std::array<float, 256> linear = srgbDecoding();
     const auto lightOf = [&](std::uint8_t value, int channel) {
         return channel == 3 ? static_cast<float>(value) / 255.0F : linear[value];

@@ -1,6 +1,8 @@
 // Images of other sizes: means, parts, magnifications.
 #pragma once
 
+#include <cstdint>
+
 #include "runner/image/exr_io.h"
 #include "runner/image/image.h"
 
@@ -25,8 +27,10 @@ ImageF cropped(const ImageF& image, const Rectangle& part, int scale = 1);
 /// All channels and attributes; worldToNDC becomes that of the part.
 ExrImage cropped(const ExrImage& image, const Rectangle& part, int scale = 1);
 
+/// How high an image of that width is; at least 1.
+std::int64_t heightAt(const Image8& image, int width);
 /// As wide as that, and as high as its shape asks for: each pixel the mean of the light that falls
-/// on it. Of the sRGB values; a fourth channel is alpha.
+/// on it. Of sRGB values; a fourth channel is alpha. Throws Error beyond 32768 pixels a side.
 Image8 resizedTo(const Image8& image, int width);
 
 }  // namespace gfxrepro::image
