@@ -103,6 +103,17 @@ std::string Case::slug() const {
     return slug;
 }
 
+std::string Case::method() const {
+    const config::Node* method = params.find("method");
+    return method ? method->text() : "";
+}
+
+Json Case::recordedParams() const {
+    Json json = params.toJson();
+    json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
+    return json;
+}
+
 Json Case::toJson() const {
     return {{"id", id},
             {"experiment", experiment},

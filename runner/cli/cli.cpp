@@ -8,6 +8,7 @@
 #include "runner/batch/manifest.h"
 #include "runner/batch/worker.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/image_commands.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 
@@ -26,7 +27,7 @@ struct Options {
     batch::WorkerOptions worker;
     std::string name;                 // of list and describe; a run directory
     std::vector<std::string> shards;  // run directories of merge and report
-    std::string imageA, imageB, imageOut;
+    ImageCommandOptions image;
     std::string out;  // of export
     std::string lane = "quality";
     bool asJson = false;
@@ -211,14 +212,7 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
 }
 
 void addTools(CLI::App& app, const Context& context, Options& o) {
-    CLI::App* imageApp = app.add_subcommand("image", "diff A B: MSE, PSNR, SSIM, maximum");
-    imageApp->require_subcommand(1);
-    CLI::App* diffApp = imageApp->add_subcommand("diff", "compare two EXR or two PNG files");
-    diffApp->add_option("a", o.imageA, "image")->required();
-    diffApp->add_option("b", o.imageB, "image")->required();
-    diffApp->add_option("--out", o.imageOut, "write the absolute difference (.exr or .png)");
-    diffApp->callback(
-        [&] { o.command = [&] { return imageDiff(o.imageA, o.imageB, o.imageOut); }; });
+    addImageCommands(app, o.image, o.command);
 
     CLI::App* sceneApp = app.add_subcommand("scene", "look at a scene, or export it");
     sceneApp->add_option("name", o.scene.name, "catalogue name or file")->required();
@@ -237,6 +231,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
     workerApp->add_option("--assets", o.worker.assetsFolder);
     workerApp->add_option("--lane", o.lane);
     workerApp->add_option("--run", o.worker.runDir);
+    workerApp->add_option("--command", o.worker.command);
     workerApp->callback([&] {
         o.command = [&] {
             o.worker.lane =

@@ -106,7 +106,6 @@ int compare(const CompareOptions& options);
 int sensitivity(const Context& context, const SensitivityOptions& options);
 /// To `out`, or DIR-artifact.
 int exportRun(const std::string& runDir, const std::string& out, const std::string& assets);
-int imageDiff(const std::string& a, const std::string& b, const std::string& out);
 int scene(const SceneOptions& options);
 
 }  // namespace gfxrepro::cli

@@ -70,8 +70,11 @@ batch::Request withinBudget(const batch::Plan& plan, const batch::Request& reque
 Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
-    const batch::SchedulerOptions scheduler{
-        request.device, fs::absolute(assetsFolder(selection.assets)), jobsOf(options), {}};
+    const batch::SchedulerOptions scheduler{request.device,
+                                            fs::absolute(assetsFolder(selection.assets)),
+                                            jobsOf(options),
+                                            {},
+                                            context.commandLine};
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
@@ -141,7 +144,8 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     const batch::SchedulerOptions scheduler{stored.plan.request.device,
                                             fs::absolute(assetsFolder(options.selection.assets)),
                                             jobsOf(options),
-                                            {}};
+                                            {},
+                                            context.commandLine};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     const batch::Plan now = planFor(context, stored.plan.request, stored.plan.profile,
                                     scheduler.assetsFolder, deviceClassOf(device));

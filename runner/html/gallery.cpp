@@ -72,12 +72,14 @@ fs::path besides(const std::string& png, const fs::path& folder, const std::stri
 /// small.
 std::string thumbnailOf(const fs::path& runDir, const std::string& png,
                         const image::Image8& image) {
-    const int factor = (std::max(image.width(), image.height()) + kThumbnailPx - 1) / kThumbnailPx;
-    if (factor <= 1) return png;
+    const int longerPx = std::max(image.width(), image.height());
+    if (longerPx <= kThumbnailPx) return png;
     const fs::path place = besides(png, "thumbnails", "");
     if (!isCurrent(runDir / place, runDir / png)) {
         fs::create_directories((runDir / place).parent_path());
-        image::writePng(runDir / place, image::reduced(image, factor));
+        image::writePng(
+            runDir / place,
+            image::resizedTo(image, std::max(1, kThumbnailPx * image.width() / longerPx)));
     }
     return place.generic_string();
 }

@@ -36,6 +36,7 @@ TEST(ColourMap, EndsMiddleAndBeyond) {
     EXPECT_EQ(colourOf(ColourMap::Magma, infinity), colourOf(ColourMap::Magma, 1.0F));
     EXPECT_EQ(colourOf(ColourMap::CoolWarm, 0.5F), (Colour{221, 221, 221}));
     EXPECT_EQ(colourOf(ColourMap::CoolWarm, std::nanf("")), (Colour{0, 255, 0}));
+    EXPECT_EQ(colourOf(ColourMap::Grey, 0.2F), (Colour{51, 51, 51}));
 }
 
 /// The order of magnitudes survives in print: magma's lightness only grows.
