@@ -31,9 +31,10 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
     for (TableRow& row : table.rows) {
         row.source = sceneSourceOf(layout, row.labels, cases);
         for (std::size_t i = 0; i < columns.size(); ++i) {
-            BuiltCell built = buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed);
-            row.cells.push_back(std::move(built.cell));
-            if (!built.unit.empty()) units[i].insert(built.unit);
+            row.cells.push_back(
+                buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed));
+            const std::string& unit = row.cells.back().unit;
+            if (!unit.empty()) units[i].insert(unit);
         }
     }
     for (std::size_t i = 0; i < columns.size(); ++i) {

@@ -18,6 +18,8 @@ struct Measured {
     double value = 0.0;
     metrics::Interval interval;  // 95 %
     std::vector<double> draws;   // resampled values; empty when there is one sample
+    std::string text;            // as the format writes the value
+    std::string low, high;       // and the interval's ends; empty without one
 };
 
 /// What stands at a row and a column.
@@ -31,6 +33,8 @@ struct Cell {
     std::string low, high;            // the interval's ends, formatted likewise; empty without one
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
+    std::string metric;  // what it shows; empty, as its unit, where it is scaled
+    std::string unit;    // of the records, if they agree
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
