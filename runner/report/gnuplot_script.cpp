@@ -1,0 +1,327 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runner/core/text.h"
+#include "runner/report/csv.h"
+#include "runner/report/gnuplot.h"
+#include "runner/report/gnuplot_axis.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+/// A colour and a shape a curve. The colours keep a contrast of 3 to white and to near-black and
+/// stay apart for colour-blind readers (after Okabe and Ito, darker where theirs are too light).
+struct CurveStyle {
+    std::string_view colour;
+    int filled, hollow;  // gnuplot's point types
+};
+constexpr std::array<CurveStyle, 7> kStyles = {{{"#1f77c9", 7, 6},
+                                                {"#d55e00", 5, 4},
+                                                {"#009e73", 9, 8},
+                                                {"#c4609a", 13, 12},
+                                                {"#a67c00", 11, 10},
+                                                {"#7f7f7f", 15, 14},
+                                                {"#7a5ccb", 7, 6}}};
+
+// Everything in pixels; the page gives the width.
+constexpr double kWidth = 640;
+constexpr double kLegendLine = 18;
+constexpr double kNoteLine = 16;
+constexpr double kTitle = 22;
+constexpr double kTicLabels = 26;
+constexpr double kXLabel = 20;
+constexpr double kYLabel = 20;
+constexpr double kTicWidth = 48;
+constexpr double kEdge = 14;
+
+std::string number(double value) {
+    return std::isfinite(value) ? shortestText(value) : "NaN";
+}
+
+/// For comments: one line.
+std::string oneLine(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    return text;
+}
+
+std::size_t letters(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    }));
+}
+
+/// Writes the script of one figure.
+class ScriptWriter {
+  public:
+    explicit ScriptWriter(const Figure& figure) : figure_(figure) {
+        for (const FigurePanel& panel : figure.panels) {
+            for (const FigureCurve& curve : panel.curves) {
+                hasPrinted_ = hasPrinted_ || !curve.printed.empty();
+                for (const FigurePoint& point : curve.points) {
+                    hasIntervals_ = hasIntervals_ || point.hasInterval;
+                }
+            }
+        }
+        listEntries();
+        const auto count = figure.panels.size();
+        panelColumns_ = count > 1 ? 2 : 1;
+        panelRows_ = (count + panelColumns_ - 1) / panelColumns_;
+        plotHeight_ = count > 1 ? 150 : 270;
+        top_ = kEdge + kLegendLine * static_cast<double>(legendLines_);
+        bottom_ = kXLabel + 4 + kNoteLine * static_cast<double>(figure.notes.size());
+        height_ = top_ + bottom_ + static_cast<double>(panelRows_) * rowHeight();
+    }
+
+    std::string write(const std::string& name, const std::string& source) {
+        text_ = fmt::format(
+            "# {}\n# Made by gfxrepro. To draw it: gnuplot FILE.gp > FILE.svg (gnuplot 5.4 or "
+            "later)\n"
+            "set terminal svg size {},{} fixed noenhanced font 'sans-serif,12' name {}\n"
+            "set encoding utf8\n\n",
+            oneLine(source), kWidth, height_, gnuplotQuoted(name));
+        for (std::size_t i = 0; i < figure_.panels.size(); ++i) writeData(i);
+        text_ += "set multiplot\n";
+        writeLegend();
+        writeNotes();
+        text_ +=
+            "set border 3 linewidth 0.8\nset tics nomirror out scale 0.6\nset errorbars small\n"
+            "set grid ytics linetype 1 linewidth 0.6 linecolor rgb '#b0808080'\nunset key\n";
+        if (figure_.isLogX) text_ += "set logscale x\n";
+        if (figure_.isLogY) text_ += "set logscale y\n";
+        for (std::size_t i = 0; i < figure_.panels.size(); ++i) writePanel(i);
+        return std::move(text_) + "unset multiplot\n";
+    }
+
+  private:
+    double rowHeight() const {
+        return plotHeight_ + kTicLabels + (figure_.panels.size() > 1 ? kTitle : 0.0);
+    }
+
+    static const CurveStyle& styleOf(std::size_t curve) { return kStyles[curve % kStyles.size()]; }
+
+    static std::string block(std::size_t panel, std::size_t curve, bool isPrinted) {
+        return fmt::format("$panel{}_curve{}{}", panel + 1, curve + 1, isPrinted ? "_printed" : "");
+    }
+
+    /// A line alone needs no name: its axis has it.
+    void listEntries() {
+        if (figure_.curveNames.size() > 1) {
+            for (std::size_t i = 0; i < figure_.curveNames.size(); ++i) {
+                const CurveStyle& style = styleOf(i);
+                entries_.push_back(fmt::format(
+                    "keyentry with linespoints linecolor rgb '{}' linewidth 1.8 pointtype {} "
+                    "pointsize 0.6 title {}",
+                    style.colour, style.filled, gnuplotQuoted(figure_.curveNames[i])));
+                longest_ = std::max(longest_, letters(figure_.curveNames[i]));
+            }
+        }
+        if (hasPrinted_) {
+            entries_.emplace_back(
+                "keyentry with points linecolor black pointtype 7 pointsize 0.6 title 'measured'");
+            entries_.emplace_back(
+                "keyentry with points linecolor black linewidth 1.4 pointtype 6 pointsize 1.0 "
+                "title "
+                "'printed'");
+        }
+        if (hasIntervals_) {
+            entries_.emplace_back(
+                "keyentry with yerrorbars linecolor black pointtype 0 title '95 % interval'");
+        }
+        longest_ = std::max<std::size_t>(longest_, 13);
+        constexpr double kLetter = 6.6, kSample = 52;
+        const double entry = kSample + kLetter * static_cast<double>(longest_);
+        legendColumns_ = std::clamp<std::size_t>(static_cast<std::size_t>((kWidth - 20) / entry), 1,
+                                                 std::max<std::size_t>(entries_.size(), 1));
+        legendLines_ = (entries_.size() + legendColumns_ - 1) / legendColumns_;
+    }
+
+    void writeData(std::size_t panelIndex) {
+        const FigurePanel& panel = figure_.panels[panelIndex];
+        for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+            const FigureCurve& curve = panel.curves[i];
+            if (!curve.points.empty()) {
+                text_ +=
+                    fmt::format("# {}{}{}: x, measured, ends of its 95 % interval\n{} << EOD\n",
+                                oneLine(panel.title), panel.title.empty() ? "" : ", ",
+                                oneLine(curve.name), block(panelIndex, i, false));
+                for (const FigurePoint& point : curve.points) writePoint(point);
+                text_ += "EOD\n";
+            }
+            if (!curve.printed.empty()) {
+                text_ += fmt::format("# likewise as printed: x, y\n{} << EOD\n",
+                                     block(panelIndex, i, true));
+                for (const FigurePoint& point : curve.printed) {
+                    text_ += fmt::format("{} {}\n", number(point.x), number(*point.y));
+                }
+                text_ += "EOD\n";
+            }
+        }
+        text_ += "\n";
+    }
+
+    void writePoint(const FigurePoint& point) {
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        text_ += fmt::format("{} {} {} {}{}\n", number(point.x), number(point.y.value_or(kNone)),
+                             number(point.hasInterval ? point.interval.low : kNone),
+                             number(point.hasInterval ? point.interval.high : kNone),
+                             point.remark.empty() ? "" : "  # " + oneLine(point.remark));
+    }
+
+    /// A plot of its own across the top, so that no panel gives room for it.
+    void writeLegend() {
+        if (entries_.empty()) return;
+        text_ += fmt::format(
+            "unset border; unset tics; set xrange [0:1]; set yrange [0:1]\n"
+            "set key at screen 0.5,{:.5f} top center horizontal maxcols {} Left reverse samplen 2\n"
+            "plot NaN notitle, \\\n     {}\n",
+            1.0 - 4.0 / height_, legendColumns_, joined(entries_, ", \\\n     "));
+    }
+
+    void writeNotes() {
+        if (figure_.notes.empty()) return;
+        // They are written with the first panel, and not again with the others.
+        for (std::size_t i = 0; i < figure_.notes.size(); ++i) {
+            const double y = kNoteLine * (static_cast<double>(figure_.notes.size() - i) - 0.5);
+            text_ += fmt::format("set label {} {} at screen {:.5f},{:.5f} left font ',11'\n", i + 1,
+                                 gnuplotQuoted(figure_.notes[i]), kEdge / kWidth, y / height_);
+        }
+    }
+
+    /// All values of a panel that its axes have to hold.
+    void gather(const FigurePanel& panel, std::vector<double>& x, std::vector<double>& y) const {
+        for (const FigureCurve& curve : panel.curves) {
+            for (const auto* points : {&curve.points, &curve.printed}) {
+                for (const FigurePoint& point : *points) {
+                    x.push_back(point.x);
+                    if (point.y) y.push_back(*point.y);
+                    if (!point.hasInterval) continue;
+                    y.push_back(point.interval.high);
+                    if (!figure_.isLogY || point.interval.low > 0) y.push_back(point.interval.low);
+                }
+            }
+        }
+    }
+
+    void writeTics(char axis, const Tics& tics) {
+        if (tics.empty()) {
+            text_ += fmt::format("set {}tics autofreq; set format {} '%.10g'\n", axis, axis);
+            return;
+        }
+        std::vector<std::string> places;
+        for (const auto& [value, label] : tics) {
+            // The 1 makes a tic without a text a small one.
+            places.push_back(
+                fmt::format("'{}' {}{}", label, number(value), label.empty() ? " 1" : ""));
+        }
+        text_ += fmt::format("set {}tics ({})\n", axis, joined(places));
+    }
+
+    void writeAxes(const FigurePanel& panel) {
+        std::vector<double> x, y;
+        gather(panel, x, y);
+        const AxisRange xRange = rangeOf(x, figure_.isLogX, false);
+        const AxisRange yRange = rangeOf(y, figure_.isLogY, true);
+        text_ += fmt::format("set xrange [{}:{}]; set yrange [{}:{}]\n", number(xRange.low),
+                             number(xRange.high), number(yRange.low), number(yRange.high));
+        Tics tics = ticsAt(x, xRange, figure_.isLogX);
+        if (tics.empty() && figure_.isLogX) tics = logarithmicTics(xRange);
+        writeTics('x', tics);
+        writeTics('y', figure_.isLogY ? logarithmicTics(yRange) : Tics{});
+    }
+
+    void writePlace(std::size_t index) {
+        const std::size_t column = index % panelColumns_;
+        const std::size_t row = index / panelColumns_;
+        const double width = kWidth / static_cast<double>(panelColumns_);
+        const double left = width * static_cast<double>(column);
+        const double end = top_ + rowHeight() * static_cast<double>(row + 1) - kTicLabels;
+        text_ += fmt::format(
+            "set lmargin at screen {:.5f}; set rmargin at screen {:.5f}\n"
+            "set tmargin at screen {:.5f}; set bmargin at screen {:.5f}\n",
+            (left + kYLabel + kTicWidth) / kWidth, (left + width - kEdge) / kWidth,
+            1.0 - (end - plotHeight_) / height_, 1.0 - end / height_);
+    }
+
+    void writePanel(std::size_t index) {
+        const FigurePanel& panel = figure_.panels[index];
+        text_ += fmt::format("\n# {}\n", panel.title.empty() ? "the axes" : oneLine(panel.title));
+        writePlace(index);
+        writeAxes(panel);
+        const bool isLowest = index + panelColumns_ >= figure_.panels.size();
+        text_ +=
+            fmt::format("set title {} offset 0,-0.5\nset xlabel {}\nset ylabel {}\n",
+                        gnuplotQuoted(panel.title), gnuplotQuoted(isLowest ? figure_.xLabel : ""),
+                        gnuplotQuoted(panel.yLabel));
+        std::vector<std::string> parts;
+        for (std::size_t i = 0; i < panel.curves.size(); ++i) addParts(index, i, parts);
+        text_ += "plot " + joined(parts, ", \\\n     ") + "\n";
+        if (index == 0) {
+            for (std::size_t i = 0; i < figure_.notes.size(); ++i) {
+                text_ += fmt::format("unset label {}\n", i + 1);
+            }
+        }
+    }
+
+    void addParts(std::size_t panel, std::size_t index, std::vector<std::string>& parts) const {
+        const FigureCurve& curve = figure_.panels[panel].curves[index];
+        const CurveStyle& style = styleOf(index);
+        const std::string data = block(panel, index, false);
+        if (!curve.points.empty()) {
+            parts.push_back(fmt::format(
+                "{} using 1:2 with linespoints linecolor rgb '{}' linewidth 1.8 pointtype {} "
+                "pointsize 0.6 title {}",
+                data, style.colour, style.filled, gnuplotQuoted(curve.name)));
+        }
+        if (std::any_of(curve.points.begin(), curve.points.end(),
+                        [](const FigurePoint& point) { return point.hasInterval; })) {
+            parts.push_back(
+                fmt::format("{} using 1:2:3:4 with yerrorbars linecolor rgb '{}' linewidth 1.2 "
+                            "pointtype 0 title {}",
+                            data, style.colour, gnuplotQuoted(curve.name + ", 95 % interval")));
+        }
+        if (!curve.printed.empty()) {
+            parts.push_back(fmt::format(
+                "{} using 1:2 with points linecolor rgb '{}' linewidth 1.4 pointtype {} "
+                "pointsize 1.0 title {}",
+                block(panel, index, true), style.colour, style.hollow,
+                gnuplotQuoted(curve.name + ", printed")));
+        }
+    }
+
+    const Figure& figure_;
+    std::vector<std::string> entries_;  // of the legend
+    std::size_t longest_ = 0;           // name, in letters
+    std::size_t legendColumns_ = 1;
+    std::size_t legendLines_ = 0;
+    std::size_t panelColumns_ = 1;
+    std::size_t panelRows_ = 1;
+    double plotHeight_ = 0;
+    double top_ = 0;
+    double bottom_ = 0;
+    double height_ = 0;
+    bool hasPrinted_ = false;
+    bool hasIntervals_ = false;
+    std::string text_;
+};
+
+}  // namespace
+
+std::string gnuplotQuoted(const std::string& text) {
+    std::string quoted = "'";
+    for (const char c : text) {
+        if (c == '\'') quoted += '\'';
+        quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    return quoted + "'";
+}
+
+std::string gnuplotScript(const Figure& figure, const std::string& name,
+                          const std::string& source) {
+    return ScriptWriter(figure).write(name, source);
+}
+
+}  // namespace gfxrepro::report
