@@ -40,7 +40,23 @@ std::string withoutSuffix(std::string_view name) {
     return words(name.substr(0, name.size() - (suffix ? suffix->name.size() : 0)));
 }
 
-/// Of names that all end with one unit this is left away: it stands at the axis.
+/// What all names begin with, up to a blank: "intensity mean ".
+std::string sharedHead(const std::vector<std::string>& names) {
+    std::string head = names[0].substr(0, names[0].rfind(' ') + 1);
+    while (!head.empty()) {
+        const bool isShared = std::all_of(names.begin(), names.end(), [&](const auto& name) {
+            return name.starts_with(head) && name.size() > head.size() &&
+                   !parseDouble(name.substr(head.size()));
+        });
+        if (isShared) return head;
+        head.pop_back();
+        head.erase(head.rfind(' ') + 1);
+    }
+    return head;
+}
+
+/// Without what they share: the unit that all end with stands at the axis, and words that all
+/// begin with tell none from another.
 std::vector<std::string> columnNames(const std::vector<std::string>& columns) {
     std::set<const Suffix*> suffixes;
     for (const std::string& column : columns) suffixes.insert(suffixOf(column));
@@ -48,12 +64,15 @@ std::vector<std::string> columnNames(const std::vector<std::string>& columns) {
     for (const std::string& column : columns) {
         names.push_back(suffixes.size() == 1 ? withoutSuffix(column) : words(column));
     }
+    const std::string head = names.size() > 1 ? sharedHead(names) : "";
+    for (std::string& name : names) name.erase(0, head.size());
     return names;
 }
 
-/// "outdoor/city", "reference size 512": a number alone would not say of what.
+/// "outdoor/bird_nest", "near mirror", "reference size 512": a number alone would not say of what.
 std::string valueName(const std::string& axis, const std::string& value) {
-    return parseDouble(value) ? words(axis) + " " + value : words(value);
+    if (parseDouble(value)) return words(axis) + " " + value;
+    return value.find('/') == std::string::npos ? words(value) : value;
 }
 
 /// Makes the figure of one table row by row.

@@ -30,12 +30,13 @@ constexpr std::array<CurveStyle, 7> kStyles = {{{"#1f77c9", 7, 6},
 constexpr double kWidth = 640;
 constexpr double kLegendLine = 18;
 constexpr double kNoteLine = 16;
-constexpr double kTitle = 22;
-constexpr double kTicLabels = 26;
-constexpr double kXLabel = 20;
-constexpr double kYLabel = 20;
+constexpr double kTitle = 28;
+constexpr double kTicLabels = 28;
+constexpr double kXLabel = 22;
+constexpr double kYLabel = 22;
 constexpr double kTicWidth = 48;
 constexpr double kEdge = 14;
+constexpr double kLine = 18;  // what gnuplot counts as a character's height, in offsets
 
 std::string number(double value) {
     return std::isfinite(value) ? shortestText(value) : "NaN";
@@ -71,8 +72,11 @@ class ScriptWriter {
         panelColumns_ = count > 1 ? 2 : 1;
         panelRows_ = (count + panelColumns_ - 1) / panelColumns_;
         plotHeight_ = count > 1 ? 150 : 270;
-        top_ = kEdge + kLegendLine * static_cast<double>(legendLines_);
-        bottom_ = kXLabel + 4 + kNoteLine * static_cast<double>(figure.notes.size());
+        top_ = kEdge + (entries_.empty() ? 0 : 6) + kLegendLine * static_cast<double>(legendLines_);
+        bottom_ = kXLabel + kNoteLine * static_cast<double>(figure.notes.size());
+        hasOneYLabel_ = std::all_of(
+            figure.panels.begin(), figure.panels.end(),
+            [&](const FigurePanel& panel) { return panel.yLabel == figure.panels[0].yLabel; });
         height_ = top_ + bottom_ + static_cast<double>(panelRows_) * rowHeight();
     }
 
@@ -86,9 +90,9 @@ class ScriptWriter {
         for (std::size_t i = 0; i < figure_.panels.size(); ++i) writeData(i);
         text_ += "set multiplot\n";
         writeLegend();
-        writeNotes();
+        writeLabels();
         text_ +=
-            "set border 3 linewidth 0.8\nset tics nomirror out scale 0.6\nset errorbars small\n"
+            "set border 3 linewidth 0.8\nset tics out scale 0.6\nset errorbars small\n"
             "set grid ytics linetype 1 linewidth 0.6 linecolor rgb '#b0808080'\nunset key\n";
         if (figure_.isLogX) text_ += "set logscale x\n";
         if (figure_.isLogY) text_ += "set logscale y\n";
@@ -97,9 +101,8 @@ class ScriptWriter {
     }
 
   private:
-    double rowHeight() const {
-        return plotHeight_ + kTicLabels + (figure_.panels.size() > 1 ? kTitle : 0.0);
-    }
+    double rowHeight() const { return titleHeight() + plotHeight_ + kTicLabels; }
+    double titleHeight() const { return figure_.panels.size() > 1 ? kTitle : 0.0; }
 
     static const CurveStyle& styleOf(std::size_t curve) { return kStyles[curve % kStyles.size()]; }
 
@@ -181,12 +184,18 @@ class ScriptWriter {
             1.0 - 4.0 / height_, legendColumns_, joined(entries_, ", \\\n     "));
     }
 
-    void writeNotes() {
-        if (figure_.notes.empty()) return;
-        // They are written with the first panel, and not again with the others.
+    /// What stands outside of the panels. It is written with the first, and not again.
+    void writeLabels() {
+        const double panels = static_cast<double>(panelRows_) * rowHeight();
+        if (hasOneYLabel_) {
+            text_ +=
+                fmt::format("set label 1 {} at screen {:.5f},{:.5f} center rotate by 90\n",
+                            gnuplotQuoted(figure_.panels[0].yLabel), 0.5 * kYLabel / kWidth,
+                            1.0 - (top_ + 0.5 * (panels - kTicLabels + titleHeight())) / height_);
+        }
         for (std::size_t i = 0; i < figure_.notes.size(); ++i) {
             const double y = kNoteLine * (static_cast<double>(figure_.notes.size() - i) - 0.5);
-            text_ += fmt::format("set label {} {} at screen {:.5f},{:.5f} left font ',11'\n", i + 1,
+            text_ += fmt::format("set label {} {} at screen {:.5f},{:.5f} left font ',11'\n", i + 2,
                                  gnuplotQuoted(figure_.notes[i]), kEdge / kWidth, y / height_);
         }
     }
@@ -207,8 +216,10 @@ class ScriptWriter {
     }
 
     void writeTics(char axis, const Tics& tics) {
+        const char* offset = axis == 'x' ? " offset 0,0.3" : "";
         if (tics.empty()) {
-            text_ += fmt::format("set {}tics autofreq; set format {} '%.10g'\n", axis, axis);
+            text_ += fmt::format("set {}tics nomirror autofreq{}; set format {} '%.10g'\n", axis,
+                                 offset, axis);
             return;
         }
         std::vector<std::string> places;
@@ -217,7 +228,7 @@ class ScriptWriter {
             places.push_back(
                 fmt::format("'{}' {}{}", label, number(value), label.empty() ? " 1" : ""));
         }
-        text_ += fmt::format("set {}tics ({})\n", axis, joined(places));
+        text_ += fmt::format("set {}tics nomirror ({}){}\n", axis, joined(places), offset);
     }
 
     void writeAxes(const FigurePanel& panel) {
@@ -234,16 +245,19 @@ class ScriptWriter {
     }
 
     void writePlace(std::size_t index) {
-        const std::size_t column = index % panelColumns_;
         const std::size_t row = index / panelColumns_;
-        const double width = kWidth / static_cast<double>(panelColumns_);
-        const double left = width * static_cast<double>(column);
+        // Room for labels of the y axis is kept once if it says the same everywhere.
+        const double labels = kYLabel * (hasOneYLabel_ ? 1.0 : static_cast<double>(panelColumns_));
+        const double tics = kTicWidth + kEdge;
+        const double width = (kWidth - labels) / static_cast<double>(panelColumns_) - tics;
+        const double column = static_cast<double>(index % panelColumns_);
+        const double left = kYLabel + kTicWidth + column * (width + tics + labels - kYLabel);
         const double end = top_ + rowHeight() * static_cast<double>(row + 1) - kTicLabels;
         text_ += fmt::format(
             "set lmargin at screen {:.5f}; set rmargin at screen {:.5f}\n"
             "set tmargin at screen {:.5f}; set bmargin at screen {:.5f}\n",
-            (left + kYLabel + kTicWidth) / kWidth, (left + width - kEdge) / kWidth,
-            1.0 - (end - plotHeight_) / height_, 1.0 - end / height_);
+            left / kWidth, (left + width) / kWidth, 1.0 - (end - plotHeight_) / height_,
+            1.0 - end / height_);
     }
 
     void writePanel(std::size_t index) {
@@ -252,18 +266,14 @@ class ScriptWriter {
         writePlace(index);
         writeAxes(panel);
         const bool isLowest = index + panelColumns_ >= figure_.panels.size();
-        text_ +=
-            fmt::format("set title {} offset 0,-0.5\nset xlabel {}\nset ylabel {}\n",
-                        gnuplotQuoted(panel.title), gnuplotQuoted(isLowest ? figure_.xLabel : ""),
-                        gnuplotQuoted(panel.yLabel));
+        text_ += fmt::format(
+            "set title {} offset 0,-0.5\nset xlabel {} offset 0,{:.2f}\nset ylabel {}\n",
+            gnuplotQuoted(panel.title), gnuplotQuoted(isLowest ? figure_.xLabel : ""), 12.0 / kLine,
+            gnuplotQuoted(hasOneYLabel_ ? "" : panel.yLabel));
         std::vector<std::string> parts;
         for (std::size_t i = 0; i < panel.curves.size(); ++i) addParts(index, i, parts);
         text_ += "plot " + joined(parts, ", \\\n     ") + "\n";
-        if (index == 0) {
-            for (std::size_t i = 0; i < figure_.notes.size(); ++i) {
-                text_ += fmt::format("unset label {}\n", i + 1);
-            }
-        }
+        if (index == 0) text_ += "unset label\n";
     }
 
     void addParts(std::size_t panel, std::size_t index, std::vector<std::string>& parts) const {
@@ -303,6 +313,7 @@ class ScriptWriter {
     double top_ = 0;
     double bottom_ = 0;
     double height_ = 0;
+    bool hasOneYLabel_ = true;  // for all panels
     bool hasPrinted_ = false;
     bool hasIntervals_ = false;
     std::string text_;
