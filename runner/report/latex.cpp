@@ -12,11 +12,14 @@ namespace gfxrepro::report {
 namespace {
 
 /// TeX's own names hold letters only; \csname takes the keys as they are. A key that is not there
-/// is an error, where \csname alone would make an empty macro of it.
+/// is an error, where \csname alone would make an empty macro of it. Global, because the file is
+/// read within a table.
 constexpr std::string_view kMacros =
-    "\\providecommand{\\gfxreproset}[2]{\\expandafter\\gdef\\csname gfxrepro/#1\\endcsname{#2}}\n"
-    "\\providecommand{\\gfxrepro}[1]{\\ifcsname gfxrepro/#1\\endcsname"
-    "\\csname gfxrepro/#1\\endcsname\\else\\errmessage{gfxrepro: no number #1}\\fi}\n";
+    "\\ifdefined\\gfxrepro\\else\n"
+    "\\gdef\\gfxreproset#1#2{\\expandafter\\gdef\\csname gfxrepro/#1\\endcsname{#2}}\n"
+    "\\gdef\\gfxrepro#1{\\ifcsname gfxrepro/#1\\endcsname"
+    "\\csname gfxrepro/#1\\endcsname\\else\\errmessage{gfxrepro: no number #1}\\fi}\n"
+    "\\fi\n";
 
 std::string oneLine(std::string text) {
     std::replace_if(
