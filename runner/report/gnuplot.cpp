@@ -120,13 +120,12 @@ std::string adaptedSvg(const std::string& svg, const std::string& name) {
             continue;
         }
         result += std::exchange(group, "");
-        const std::size_t text = std::min(line.find("<text>"), line.find("<title>"));
+        const std::size_t text = line.find("<text>");
         std::string own = text == std::string::npos ? "" : line.substr(text);
         replaceAll(own, "]]>", "]]&gt;");
-        // Parts without a name of ours are given their id as title, which says nothing to anyone.
-        if (own == fmt::format("<title>{}</title>", name)) own.clear();
-        if (own.starts_with(fmt::format("<title>{}_plot_", name))) own.clear();
-        result += adaptedLine(line.substr(0, text), name) + own + "\n";
+        // Titles are what gnuplot calls a part, which says nothing to anyone who hovers over it.
+        result += adaptedLine(line.substr(0, std::min(text, line.find("<title>"))), name);
+        result += own + "\n";
     }
     return result;
 }

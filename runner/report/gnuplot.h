@@ -24,7 +24,7 @@ struct Drawn {
 Drawn runGnuplot(const std::filesystem::path& script);
 
 /// gnuplot's SVG made fit to stand in a page beside others: text and axes in the colour of the
-/// text around, every id begun by `name`, curves named on hovering, and no XML head.
+/// text around, every id begun by `name`, no titles of parts and no XML head.
 std::string adaptedSvg(const std::string& svg, const std::string& name);
 
 }  // namespace gfxrepro::report

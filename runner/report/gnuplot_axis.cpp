@@ -5,8 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "runner/report/csv.h"
-
 namespace gfxrepro::report {
 
 namespace {
@@ -16,7 +14,7 @@ constexpr double kRoom = 0.05;  // on each side, of the axis
 /// "10⁻⁷", "2·10⁶"; as it is written between 0.0001 and 999,999.
 std::string ticText(double value) {
     const double size = std::abs(value);
-    if (size == 0.0 || (size >= 1e-4 && size < 1e6)) return shortestText(value);
+    if (size == 0.0 || (size >= 1e-4 && size < 1e6)) return fmt::format("{:.6g}", value);
     static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-9));
     std::string power = exponent < 0 ? "10⁻" : "10";
@@ -47,7 +45,7 @@ Tics logarithmicTics(const AxisRange& range) {
     const std::set<int> labelled = decades < 0.8   ? std::set<int>{1, 2, 3, 4, 5, 6, 8}
                                    : decades < 2.2 ? std::set<int>{1, 2, 5}
                                                    : std::set<int>{1};
-    const int step = decades > 7.0 ? 2 : 1;
+    const int step = decades > 8.0 ? 2 : 1;
     const int first = static_cast<int>(std::floor(std::log10(range.low)));
     const int last = static_cast<int>(std::ceil(std::log10(range.high)));
     Tics tics;
