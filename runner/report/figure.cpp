@@ -16,11 +16,19 @@ namespace {
 struct Suffix {
     std::string_view name;
     std::string_view unit;
+    std::string_view quantity;  // that is measured in it; empty where it may be anything
 };
 /// The units that names of configs end with.
-constexpr Suffix kSuffixes[] = {{"_ms", "ms"},       {"_us", "µs"}, {"_s", "s"},   {"_pct", "%"},
-                                {"_px", "px"},       {"_db", "dB"}, {"_mb", "MB"}, {"_fps", "fps"},
-                                {"_bytes", "bytes"}, {"_deg", "°"}};
+constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
+                                {"_us", "µs", "time"},
+                                {"_s", "s", "time"},
+                                {"_pct", "%", ""},
+                                {"_px", "px", ""},
+                                {"_db", "dB", ""},
+                                {"_mb", "MB", "memory"},
+                                {"_bytes", "bytes", "memory"},
+                                {"_fps", "fps", "frame rate"},
+                                {"_deg", "°", "angle"}};
 
 const Suffix* suffixOf(std::string_view name) {
     for (const Suffix& suffix : kSuffixes) {
@@ -248,7 +256,9 @@ class FigureMaker {
         std::set<const Suffix*> suffixes;
         for (const std::string& column : plot_.y) suffixes.insert(suffixOf(column));
         const Suffix* suffix = *suffixes.begin();
-        return suffixes.size() == 1 && suffix ? std::string(suffix->unit) : "";
+        if (suffixes.size() > 1 || !suffix) return "";
+        return suffix->quantity.empty() ? std::string(suffix->unit)
+                                        : fmt::format("{} ({})", suffix->quantity, suffix->unit);
     }
 
     void finish() {

@@ -73,7 +73,6 @@ std::string adaptedLine(std::string line, const std::string& name) {
     for (const char* quote : {"'", "\""}) {
         // A group's colour would hide that of the page; what is drawn in it is written so itself.
         replaceAll(line, fmt::format(" color={0}black{0}", quote), "");
-        replaceAll(line, fmt::format(" color={0}white{0}", quote), "");
         for (const char* key : {"fill", "stroke"}) {
             replaceAll(line, fmt::format("{0}={1}black{1}", key, quote),
                        fmt::format("{0}={1}currentColor{1}", key, quote));

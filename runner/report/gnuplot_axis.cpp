@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kRoom = 0.05;  // on each side, of the axis
 
-/// "10⁻⁷", "2·10⁶"; as it is written between 0.0001 and 999,999.
-std::string ticText(double value) {
+/// "2·10⁶" beyond `plain`, "10⁻⁷" below a thousandth; else as it is.
+std::string ticText(double value, double plain) {
     const double size = std::abs(value);
-    if (size == 0.0 || (size >= 1e-4 && size < 1e6)) return fmt::format("{:.6g}", value);
+    if (size == 0.0 || (size >= 1e-3 && size < plain)) return fmt::format("{:.6g}", value);
     static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-9));
     std::string power = exponent < 0 ? "10⁻" : "10";
@@ -57,10 +57,19 @@ Tics logarithmicTics(const AxisRange& range) {
             if (value < range.low || value > range.high) continue;
             const bool isLabelled = labelled.contains(mantissa) && exponent % step == 0;
             if (isLabelled || decades < 4.5)
-                tics.emplace_back(value, isLabelled ? ticText(value) : "");
+                tics.emplace_back(value, isLabelled ? ticText(value, 1e4) : "");
         }
     }
     return tics;
+}
+
+double linearStep(const AxisRange& range, int count) {
+    const double least = (range.high - range.low) / count;
+    const double power = std::pow(10.0, std::floor(std::log10(least)));
+    for (const double factor : {1.0, 2.0, 5.0}) {
+        if (factor * power >= least) return factor * power;
+    }
+    return 10.0 * power;
 }
 
 Tics ticsAt(const std::vector<double>& values, const AxisRange& range, bool isLog) {
@@ -74,7 +83,7 @@ Tics ticsAt(const std::vector<double>& values, const AxisRange& range, bool isLo
     Tics tics;
     double end = -1.0;  // of the text before, on an axis of length 1
     for (const double value : distinct) {
-        const std::string text = ticText(value);
+        const std::string text = ticText(value, 1e6);
         constexpr double kLetter = 0.032;  // of half a page's width
         const double half = 0.5 * kLetter * static_cast<double>(text.size());
         if (place(value) - half < end) return {};

@@ -38,6 +38,8 @@ constexpr double kTicWidth = 48;
 constexpr double kEdge = 14;
 constexpr double kLine = 18;  // what gnuplot counts as a character's height, in offsets
 
+constexpr std::string_view kInterval = "heads size screen 0.004,90 fixed linewidth 1.2";
+
 std::string number(double value) {
     return std::isfinite(value) ? shortestText(value) : "NaN";
 }
@@ -92,7 +94,7 @@ class ScriptWriter {
         writeLegend();
         writeLabels();
         text_ +=
-            "set border 3 linewidth 0.8\nset tics out scale 0.6\nset errorbars small\n"
+            "set border 3 linewidth 0.8\nset tics out scale 0.6\n"
             "set grid ytics linetype 1 linewidth 0.6 linecolor rgb '#b0808080'\nunset key\n";
         if (figure_.isLogX) text_ += "set logscale x\n";
         if (figure_.isLogY) text_ += "set logscale y\n";
@@ -122,17 +124,20 @@ class ScriptWriter {
                 longest_ = std::max(longest_, letters(figure_.curveNames[i]));
             }
         }
+        const std::string colour =
+            figure_.curveNames.size() > 1 ? "black" : fmt::format("rgb '{}'", styleOf(0).colour);
         if (hasPrinted_) {
-            entries_.emplace_back(
-                "keyentry with points linecolor black pointtype 7 pointsize 0.6 title 'measured'");
-            entries_.emplace_back(
-                "keyentry with points linecolor black linewidth 1.4 pointtype 6 pointsize 1.0 "
-                "title "
-                "'printed'");
+            entries_.push_back(fmt::format(
+                "keyentry with points linecolor {} pointtype 7 pointsize 0.6 title 'measured'",
+                colour));
+            entries_.push_back(
+                fmt::format("keyentry with points linecolor {} linewidth 1.4 pointtype 6 pointsize "
+                            "1.0 title 'printed'",
+                            colour));
         }
         if (hasIntervals_) {
-            entries_.emplace_back(
-                "keyentry with yerrorbars linecolor black pointtype 0 title '95 % interval'");
+            entries_.push_back(fmt::format(
+                "keyentry with vectors {} linecolor {} title '95 % interval'", kInterval, colour));
         }
         longest_ = std::max<std::size_t>(longest_, 13);
         constexpr double kLetter = 6.6, kSample = 52;
@@ -215,11 +220,12 @@ class ScriptWriter {
         }
     }
 
-    void writeTics(char axis, const Tics& tics) {
+    void writeTics(char axis, const AxisRange& range, const Tics& tics) {
         const char* offset = axis == 'x' ? " offset 0,0.3" : "";
         if (tics.empty()) {
-            text_ += fmt::format("set {}tics nomirror autofreq{}; set format {} '%.10g'\n", axis,
-                                 offset, axis);
+            const double step = linearStep(range, axis == 'y' && plotHeight_ < 200 ? 4 : 6);
+            text_ += fmt::format("set {}tics nomirror {}{}; set format {} '%.10g'\n", axis,
+                                 number(step), offset, axis);
             return;
         }
         std::vector<std::string> places;
@@ -231,7 +237,8 @@ class ScriptWriter {
         text_ += fmt::format("set {}tics nomirror ({}){}\n", axis, joined(places), offset);
     }
 
-    void writeAxes(const FigurePanel& panel) {
+    /// Returns where the y axis begins.
+    double writeAxes(const FigurePanel& panel) {
         std::vector<double> x, y;
         gather(panel, x, y);
         const AxisRange xRange = rangeOf(x, figure_.isLogX, false);
@@ -240,8 +247,9 @@ class ScriptWriter {
                              number(xRange.high), number(yRange.low), number(yRange.high));
         Tics tics = ticsAt(x, xRange, figure_.isLogX);
         if (tics.empty() && figure_.isLogX) tics = logarithmicTics(xRange);
-        writeTics('x', tics);
-        writeTics('y', figure_.isLogY ? logarithmicTics(yRange) : Tics{});
+        writeTics('x', xRange, tics);
+        writeTics('y', yRange, figure_.isLogY ? logarithmicTics(yRange) : Tics{});
+        return yRange.low;
     }
 
     void writePlace(std::size_t index) {
@@ -264,19 +272,20 @@ class ScriptWriter {
         const FigurePanel& panel = figure_.panels[index];
         text_ += fmt::format("\n# {}\n", panel.title.empty() ? "the axes" : oneLine(panel.title));
         writePlace(index);
-        writeAxes(panel);
+        const double yLow = writeAxes(panel);
         const bool isLowest = index + panelColumns_ >= figure_.panels.size();
         text_ += fmt::format(
             "set title {} offset 0,-0.5\nset xlabel {} offset 0,{:.2f}\nset ylabel {}\n",
             gnuplotQuoted(panel.title), gnuplotQuoted(isLowest ? figure_.xLabel : ""), 12.0 / kLine,
             gnuplotQuoted(hasOneYLabel_ ? "" : panel.yLabel));
         std::vector<std::string> parts;
-        for (std::size_t i = 0; i < panel.curves.size(); ++i) addParts(index, i, parts);
+        for (std::size_t i = 0; i < panel.curves.size(); ++i) addParts(index, i, yLow, parts);
         text_ += "plot " + joined(parts, ", \\\n     ") + "\n";
         if (index == 0) text_ += "unset label\n";
     }
 
-    void addParts(std::size_t panel, std::size_t index, std::vector<std::string>& parts) const {
+    void addParts(std::size_t panel, std::size_t index, double yLow,
+                  std::vector<std::string>& parts) const {
         const FigureCurve& curve = figure_.panels[panel].curves[index];
         const CurveStyle& style = styleOf(index);
         const std::string data = block(panel, index, false);
@@ -288,10 +297,13 @@ class ScriptWriter {
         }
         if (std::any_of(curve.points.begin(), curve.points.end(),
                         [](const FigurePoint& point) { return point.hasInterval; })) {
-            parts.push_back(
-                fmt::format("{} using 1:2:3:4 with yerrorbars linecolor rgb '{}' linewidth 1.2 "
-                            "pointtype 0 title {}",
-                            data, style.colour, gnuplotQuoted(curve.name + ", 95 % interval")));
+            // Arrows with flat heads, for below error bars gnuplot clears the ground in white. On a
+            // logarithmic axis an interval may reach down to where nothing is.
+            const std::string low =
+                figure_.isLogY ? fmt::format("($3 > {0} ? $3 : {0})", number(yLow)) : "$3";
+            parts.push_back(fmt::format(
+                "{} using 1:({}):(0):($4 - {}) with vectors {} linecolor rgb '{}' title {}", data,
+                low, low, kInterval, style.colour, gnuplotQuoted(curve.name + ", 95 % interval")));
         }
         if (!curve.printed.empty()) {
             parts.push_back(fmt::format(

@@ -114,7 +114,7 @@ TEST(Figure, CurvesAreColumnsOfEachValue) {
     const Figure figure =
         figureOf(sized("[{x: size, y: [draw_ms, load_ms], by: scene}]"), sizedRecords());
     EXPECT_THAT(figure.curveNames, ElementsAre("a, draw", "a, load", "b, draw", "b, load"));
-    EXPECT_EQ(figure.panels.at(0).yLabel, "ms");  // two metrics, one unit
+    EXPECT_EQ(figure.panels.at(0).yLabel, "time (ms)");  // two metrics, one unit
     EXPECT_TRUE(figure.panels[0].curves[2].points[0].remark == "missing");
     const Figure sizes =
         figureOf(sized("[{x: count, y: draw_ms, by: size, at: {scene: a}}]"), sizedRecords());
@@ -152,10 +152,15 @@ TEST(Figure, Tics) {
         return texts;
     };
     EXPECT_THAT(labels(logarithmicTics({0.5, 2e7})),
-                ElementsAre("1", "10", "100", "1000", "10000", "100000", "10⁶", "10⁷"));
+                ElementsAre("1", "10", "100", "1000", "10⁴", "10⁵", "10⁶", "10⁷"));
     EXPECT_THAT(labels(logarithmicTics({0.04, 3.0})),
                 ElementsAre("0.05", "0.1", "0.2", "0.5", "1", "2"));
     EXPECT_THAT(labels(logarithmicTics({1e-9, 1e-6})), ElementsAre("10⁻⁹", "10⁻⁸", "10⁻⁷", "10⁻⁶"));
+    EXPECT_THAT(labels(logarithmicTics({9000, 60000})), ElementsAre("10⁴", "2·10⁴", "5·10⁴"));
+    EXPECT_EQ(linearStep({0.0, 1.1}, 6), 0.2);
+    EXPECT_EQ(linearStep({0.0, 18.0}, 4), 5.0);
+    EXPECT_EQ(linearStep({3.0, 3.0 + 6e-5}, 6), 1e-5);
+    EXPECT_EQ(linearStep({0.0, 2.1e6}, 4), 1e6);
     EXPECT_TRUE(logarithmicTics({10.0, 11.0}).empty());  // gnuplot's own do better
     EXPECT_THAT(labels(ticsAt({512, 64, 128, 256, 64}, {60, 540}, true)),
                 ElementsAre("64", "128", "256", "512"));

@@ -86,6 +86,8 @@ TEST(GnuplotScript, HoldsItsData) {
     EXPECT_THAT(script, HasSubstr("title '95 % interval'"));
     EXPECT_THAT(script, HasSubstr("set xlabel 'size'"));
     EXPECT_THAT(script, HasSubstr("'left out: 1 of 4 values (1 crash)'"));
+    EXPECT_THAT(script, HasSubstr("$panel1_curve1 using 1:($3):(0):($4 - $3) with vectors"));
+    EXPECT_THAT(script, Not(HasSubstr("$panel1_curve2 using 1:($3)")));  // one sample each
     EXPECT_THAT(script, Not(HasSubstr("logscale")));
 }
 
@@ -131,7 +133,8 @@ TEST_F(Drawing, IsWellFormedAndSafe) {
 TEST_F(Drawing, TakesTheColourOfThePage) {
     const std::string svg = svgOf(twoCurves(), "p");
     EXPECT_THAT(svg, HasSubstr("fill=\"currentColor\""));
-    for (const char* fixed : {"\"black\"", "'black'", "\"white\"", "rgb(  0,   0,   0)"}) {
+    for (const char* fixed :
+         {"\"black\"", "'black'", "\"white\"", " color='white'", "rgb(  0,   0,   0)"}) {
         EXPECT_THAT(svg, Not(HasSubstr(fixed)));
     }
     EXPECT_THAT(svg, HasSubstr("fill=\"none\"/>"));  // the ground
