@@ -21,7 +21,6 @@ struct Suffix {
 /// The units that names of configs end with.
 constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
                                 {"_us", "µs", "time"},
-                                {"_s", "s", "time"},
                                 {"_pct", "%", ""},
                                 {"_px", "px", ""},
                                 {"_db", "dB", ""},
@@ -336,6 +335,12 @@ std::string quantityLabel(const std::string& name, const std::string& unit) {
     // The two axes that the runner itself has.
     if (name == "output.width") return "width of the image (px)";
     if (name == "output.height") return "height of the image (px)";
+    for (const Suffix& suffix : kSuffixes) {
+        if (suffix.quantity.empty()) continue;
+        if (name == suffix.name.substr(1)) {
+            return fmt::format("{} ({})", suffix.quantity, suffix.unit);
+        }
+    }
     if (const Suffix* suffix = suffixOf(name)) {
         return fmt::format("{} ({})", withoutSuffix(name), suffix->unit);
     }

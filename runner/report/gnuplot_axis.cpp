@@ -41,14 +41,21 @@ AxisRange rangeOf(const std::vector<double>& values, bool isLog, bool includesZe
 
 Tics logarithmicTics(const AxisRange& range) {
     const double decades = std::log10(range.high / range.low);
-    if (decades < 0.25) return {};
+    Tics tics;
+    if (decades < 0.25) {
+        const double step = linearStep(range, 4);
+        const double last = std::floor(range.high / step);
+        for (double n = std::ceil(range.low / step); n <= last; ++n) {
+            tics.emplace_back(n * step, ticText(n * step, 1e6));
+        }
+        return tics;
+    }
     const std::set<int> labelled = decades < 0.8   ? std::set<int>{1, 2, 3, 4, 5, 6, 8}
                                    : decades < 2.2 ? std::set<int>{1, 2, 5}
                                                    : std::set<int>{1};
     const int step = decades > 8.0 ? 2 : 1;
     const int first = static_cast<int>(std::floor(std::log10(range.low)));
     const int last = static_cast<int>(std::ceil(std::log10(range.high)));
-    Tics tics;
     for (int exponent = first; exponent <= last; ++exponent) {
         for (int mantissa = 1; mantissa <= 9; ++mantissa) {
             // Division is exact where a product with 0.1 is not.

@@ -104,7 +104,12 @@ class ScriptWriter {
 
   private:
     double rowHeight() const { return titleHeight() + plotHeight_ + kTicLabels; }
-    double titleHeight() const { return figure_.panels.size() > 1 ? kTitle : 0.0; }
+    double titleHeight() const {
+        return std::all_of(figure_.panels.begin(), figure_.panels.end(),
+                           [](const FigurePanel& panel) { return panel.title.empty(); })
+                   ? 0.0
+                   : kTitle;
+    }
 
     static const CurveStyle& styleOf(std::size_t curve) { return kStyles[curve % kStyles.size()]; }
 
@@ -223,7 +228,7 @@ class ScriptWriter {
     void writeTics(char axis, const AxisRange& range, const Tics& tics) {
         const char* offset = axis == 'x' ? " offset 0,0.3" : "";
         if (tics.empty()) {
-            const double step = linearStep(range, axis == 'y' && plotHeight_ < 200 ? 4 : 6);
+            const double step = linearStep(range, axis == 'y' && plotHeight_ < 200 ? 5 : 6);
             text_ += fmt::format("set {}tics nomirror {}{}; set format {} '%.10g'\n", axis,
                                  number(step), offset, axis);
             return;
