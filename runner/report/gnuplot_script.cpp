@@ -12,8 +12,10 @@ namespace gfxrepro::report {
 
 namespace {
 
-/// A colour and a shape a curve. The colours keep a contrast of 3 to white and to near-black and
-/// stay apart for colour-blind readers (after Okabe and Ito, darker where theirs are too light).
+/// A colour and a shape a curve. The first colours are after Okabe and Ito, the others were found
+/// by a search: all have a contrast of 3 to white and to near-black, and a distance of 18 in CIELAB
+/// to each other for readers with any kind of colour blindness (as simulated by Machado et al.
+/// 2009).
 struct CurveStyle {
     std::string_view colour;
     int filled, hollow;  // gnuplot's point types
@@ -21,10 +23,10 @@ struct CurveStyle {
 constexpr std::array<CurveStyle, 7> kStyles = {{{"#1f77c9", 7, 6},
                                                 {"#d55e00", 5, 4},
                                                 {"#009e73", 9, 8},
-                                                {"#c4609a", 13, 12},
-                                                {"#a67c00", 11, 10},
-                                                {"#7f7f7f", 15, 14},
-                                                {"#7a5ccb", 7, 6}}};
+                                                {"#666688", 13, 12},
+                                                {"#ee0044", 11, 10},
+                                                {"#aa00ee", 15, 14},
+                                                {"#ee44ee", 7, 6}}};
 
 // Everything in pixels; the page gives the width.
 constexpr double kWidth = 640;

@@ -161,7 +161,7 @@ TEST(Figure, Tics) {
     EXPECT_THAT(labels(logarithmicTics({9000, 60000})), ElementsAre("10⁴", "2·10⁴", "5·10⁴"));
     EXPECT_EQ(linearStep({0.0, 1.1}, 6), 0.2);
     EXPECT_EQ(linearStep({0.0, 18.0}, 4), 5.0);
-    EXPECT_EQ(linearStep({3.0, 3.0 + 6e-5}, 6), 1e-5);
+    EXPECT_DOUBLE_EQ(linearStep({3.0, 3.0 + 5e-5}, 6), 1e-5);
     EXPECT_EQ(linearStep({0.0, 2.1e6}, 4), 1e6);
     EXPECT_THAT(labels(logarithmicTics({9.9, 11.1})), ElementsAre("10", "10.5", "11"));
     EXPECT_THAT(labels(ticsAt({512, 64, 128, 256, 64}, {60, 540}, true)),

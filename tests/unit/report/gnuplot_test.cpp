@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <set>
 
@@ -99,6 +101,39 @@ TEST(GnuplotScript, NamesOnlyWhatIsThere) {
     const std::string script = gnuplotScript(figure, "p", "s");
     EXPECT_THAT(script, Not(HasSubstr("keyentry")));  // a line alone is named by its axis
     EXPECT_THAT(script, HasSubstr("set logscale x\nset logscale y\n"));
+}
+
+/// Of two luminances, as WCAG 2 has it; 3 is asked of graphics.
+double contrast(double a, double b) {
+    return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);
+}
+
+double luminance(const std::string& hex) {
+    constexpr double kWeights[] = {0.2126, 0.7152, 0.0722};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double c = std::stoi(hex.substr(2 * i, 2), nullptr, 16) / 255.0;
+        sum += kWeights[i] * (c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    return sum;
+}
+
+TEST(GnuplotScript, ColoursStandOutFromLightAndDark) {
+    Figure figure = twoCurves();
+    figure.panels[0].curves.assign(7, {"c", {point(1, 10)}, {}});
+    figure.curveNames.assign(7, "c");
+    const std::string script = gnuplotScript(figure, "p", "s");
+    std::set<std::string> colours;
+    const std::string head = "linespoints linecolor rgb '#";
+    for (std::size_t at = script.find(head); at != std::string::npos;
+         at = script.find(head, at + 1)) {
+        colours.insert(script.substr(at + head.size(), 6));
+    }
+    EXPECT_EQ(colours.size(), 7U);
+    for (const std::string& colour : colours) {
+        EXPECT_GE(contrast(luminance(colour), luminance("ffffff")), 3.0) << colour;
+        EXPECT_GE(contrast(luminance(colour), luminance("15181c")), 3.0) << colour;
+    }
 }
 
 TEST(GnuplotScript, Quotes) {
