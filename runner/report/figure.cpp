@@ -95,9 +95,10 @@ class FigureMaker {
     Figure make() {
         figure_.isLogX = plot_.isLogX;
         figure_.isLogY = plot_.isLogY;
-        const std::vector<std::size_t> rows = readRows();
+        const std::vector<const TableRow*> rows = readRows(table_.rows);
         nameCurves(rows);
-        for (const std::size_t row : rows) addRow(row);
+        for (const TableRow* row : rows) addRow(*row);
+        for (const TableRow* row : readRows(table_.printedRows)) addPrintedRow(*row);
         finish();
         return std::move(figure_);
     }
@@ -119,31 +120,31 @@ class FigureMaker {
                     fmt::format("plot: unknown column '{}'; allowed: {}", name, joined(known)));
     }
 
-    std::vector<std::size_t> readRows() const {
-        std::vector<std::size_t> rows;
-        for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+    std::vector<const TableRow*> readRows(const std::vector<TableRow>& all) const {
+        std::vector<const TableRow*> rows;
+        for (const TableRow& row : all) {
             bool isRead = true;
             for (const auto& [name, values] : plot_.at) {
                 const auto axis = axisOf(name);
                 isRead = isRead && axis &&
                          std::any_of(values.begin(), values.end(), [&](const auto& value) {
-                             return canonicalText(value) == table_.rows[row].labels[*axis];
+                             return canonicalText(value) == row.labels[*axis];
                          });
             }
-            if (isRead) rows.push_back(row);
+            if (isRead) rows.push_back(&row);
         }
         return rows;
     }
 
     /// The curves are the columns, of each value of `by` in turn.
-    void nameCurves(const std::vector<std::size_t>& rows) {
+    void nameCurves(const std::vector<const TableRow*>& rows) {
         const std::vector<std::string> names = columnNames(plot_.y);
         if (!byAxis_) {
             figure_.curveNames = names;
             return;
         }
-        for (const std::size_t row : rows) {
-            const std::string& value = table_.rows[row].labels[*byAxis_];
+        for (const TableRow* row : rows) {
+            const std::string& value = row->labels[*byAxis_];
             const auto [place, isNew] = firstCurve_.try_emplace(value, figure_.curveNames.size());
             if (!isNew) continue;
             for (const std::string& name : names) {
@@ -154,21 +155,31 @@ class FigureMaker {
         }
     }
 
-    FigurePanel& panelOf(const TableRow& row) {
+    std::string panelTitle(const TableRow& row) const {
         std::vector<std::string> parts;
         for (const std::string& axis : plot_.panels) {
             if (const auto at = axisOf(axis)) parts.push_back(valueName(axis, row.labels[*at]));
         }
-        const std::string title = joined(parts, ", ");
+        return joined(parts);
+    }
+
+    /// The place of the panel of that title; one past the last if there is none.
+    std::size_t findPanel(const std::string& title) const {
         const auto found = std::find_if(figure_.panels.begin(), figure_.panels.end(),
                                         [&](const auto& panel) { return panel.title == title; });
-        if (found != figure_.panels.end()) return *found;
+        return static_cast<std::size_t>(found - figure_.panels.begin());
+    }
+
+    std::size_t panelOf(const TableRow& row) {
+        const std::string title = panelTitle(row);
+        const std::size_t place = findPanel(title);
+        if (place < figure_.panels.size()) return place;
         FigurePanel panel;
         panel.title = title;
         for (const std::string& name : figure_.curveNames) panel.curves.push_back({name, {}, {}});
         figure_.panels.push_back(std::move(panel));
         quantities_.emplace_back();
-        return figure_.panels.back();
+        return place;
     }
 
     /// The x of a row as measured; of a cell that is not ok, none.
@@ -198,17 +209,26 @@ class FigureMaker {
         return true;
     }
 
-    void addRow(std::size_t index) {
-        const TableRow& row = table_.rows[index];
-        FigurePanel& panel = panelOf(row);
-        auto& quantities = quantities_[static_cast<std::size_t>(&panel - figure_.panels.data())];
+    void addRow(const TableRow& row) {
+        const std::size_t panel = panelOf(row);
         const std::size_t first = byAxis_ ? firstCurve_.at(row.labels[*byAxis_]) : 0;
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const Cell& cell = row.cells[columns_[i]];
-            FigureCurve& curve = panel.curves[first + i];
+            FigureCurve& curve = figure_.panels[panel].curves[first + i];
             addMeasured(row, cell, curve);
             addPrinted(row, cell, curve);
-            if (cell.isPlanned) quantities.insert({cell.metric, cell.unit});
+            if (cell.isPlanned) quantities_[panel].insert({cell.metric, cell.unit});
+        }
+    }
+
+    /// What was printed beyond this run is drawn beside what was measured, not apart from it.
+    void addPrintedRow(const TableRow& row) {
+        const std::size_t panel = findPanel(panelTitle(row));
+        const auto first = byAxis_ ? firstCurve_.find(row.labels[*byAxis_]) : firstCurve_.end();
+        if (panel == figure_.panels.size() || (byAxis_ && first == firstCurve_.end())) return;
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const std::size_t curve = (byAxis_ ? first->second : 0) + i;
+            addPrinted(row, row.cells[columns_[i]], figure_.panels[panel].curves[curve]);
         }
     }
 

@@ -44,8 +44,9 @@ struct Figure {
 };
 
 /// Values that are not ok, and on logarithmic axes those that are not positive, are left out and
-/// counted in the notes. Printed values are taken where the table has them, over the printed x
-/// where there is one. Throws Error at the plot's place for columns that the table has not.
+/// counted in the notes. Printed values stand over the printed x where there is one, and beside the
+/// curves of this run also those that were not measured. Throws Error at the plot's place for
+/// columns that the table has not.
 Figure makeFigure(const config::PlotSpec& plot, const Table& table);
 
 /// A name of a config, as an axis is labelled: "gpu_time_ms" → "gpu time (ms)". `unit` is used

@@ -69,7 +69,8 @@ struct Table {
     std::vector<std::string> rowAxes;
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;
-    std::vector<std::string> notes;  // printed rows that found no place, and the like
+    std::vector<TableRow> printedRows;  // printed, but not part of this run; no cell is planned
+    std::vector<std::string> notes;     // printed rows that found no place, and the like
 
     bool hasSources() const;
     /// "scene=models/duck, step=1"; "" for a table of one row.

@@ -96,10 +96,14 @@ TEST(Figure, PrintedStandsOverThePrintedX) {
     a,2,25,1000
     a,4,,2000
     a,8,99,4000
+    c,8,77,4000
 )";
     const Figure over =
         figureOf(sized("[{x: size, y: draw_ms, by: scene}]", printed), sizedRecords());
-    ASSERT_EQ(over.panels.at(0).curves.at(0).printed.size(), 1U);
+    EXPECT_EQ(over.curveNames.size(), 2U);  // scene c is not part of the run, size 8 is not of a's
+    ASSERT_EQ(over.panels.at(0).curves.at(0).printed.size(), 2U);
+    EXPECT_EQ(over.panels[0].curves[0].printed[1].x, 8.0);
+    EXPECT_EQ(over.panels[0].curves[0].printed[1].y, 99.0);
     EXPECT_EQ(over.panels[0].curves[0].printed[0].x, 2.0);
     EXPECT_EQ(over.panels[0].curves[0].printed[0].y, 25.0);
     const Figure column =
