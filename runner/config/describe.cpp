@@ -103,6 +103,19 @@ std::vector<Line> claimLines() {
     };
 }
 
+std::vector<Line> plotLines() {
+    return {
+        {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals"},
+        {"plot.x", "row axis | column", "required", "a row axis has to be of numbers"},
+        {"plot.y", "column | [columns]", "required", "a curve each; the first statistic of a cell"},
+        {"plot.by", "row axis", "none", "of each y a curve a value"},
+        {"plot.panels", "row axis | [axes]", "none", "a panel for each combination of values"},
+        {"plot.at", "{row axis: value | [values]}", "all rows", "rows that are read"},
+        {"plot.log", "[x, y]", "[]", "axes that are logarithmic"},
+        {"plot.title", "line", "the file's", "above the curves"},
+    };
+}
+
 /// Columns on a screen: `…` is one of them and three bytes.
 std::size_t widthOf(const std::string& text) {
     std::size_t width = 0;
@@ -127,6 +140,7 @@ std::string describeConfig() {
     add(lines, layoutLines());
     add(lines, printedLines());
     add(lines, claimLines());
+    add(lines, plotLines());
 
     lines.insert(lines.begin(), {"key", "type", "default", "meaning"});
     std::size_t key = 0, type = 0, fallback = 0;

@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "runner/core/files.h"
+#include "runner/report/plot.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::html {
@@ -65,6 +67,8 @@ Page& pageOf(const std::string& id, Model& model) {
 void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) {
     const ReportRun& run = model.runs[index];
     const std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
+    const std::vector<report::PlotFile> plots =
+        report::writePlots(run.folder, tables, run.experiments);
     const std::vector<Shot> shots = gatherShots(run.folder, file, embeds);
     for (std::size_t i = 0; i < run.experiments.size(); ++i) {
         const config::Experiment& experiment = run.experiments[i];
@@ -78,6 +82,12 @@ void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) 
         part.failures = failuresOf(experiment.id, run.records);
         std::ranges::copy_if(shots, std::back_inserter(part.shots),
                              [&](const Shot& shot) { return shot.table == experiment.id; });
+        for (const report::PlotFile& plot : plots) {
+            if (plot.table != experiment.id) continue;
+            part.curves.push_back({plot.title,
+                                   plot.svg.empty() ? "" : readFile(run.folder / plot.svg),
+                                   plot.problem, plot.script});
+        }
         for (const ReportCase& item : run.cases) {
             if (item.table == experiment.id) part.cases.push_back(&item);
         }

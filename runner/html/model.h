@@ -20,13 +20,21 @@ struct Failure {
     std::string message;
 };
 
+/// A figure of a table.
+struct Curve {
+    std::string title;
+    std::string svg;      // empty when it could not be drawn
+    std::string problem;  // why not
+    std::string script;   // for gnuplot, relative to the run's folder
+};
+
 /// What one run has of a table.
 struct RunPart {
     const config::Experiment* experiment = nullptr;  // null: the run has only its verdicts, if any
     report::Table table;
     std::vector<report::ClaimResult> claims;
     std::vector<Shot> shots;
-    std::vector<std::string> curves;  // SVG
+    std::vector<Curve> curves;
     std::vector<Failure> failures;
     std::vector<const ReportCase*> cases;
 };

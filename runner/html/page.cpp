@@ -80,12 +80,14 @@ std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions) 
 std::string curvesHtml(const Page& page, const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        for (const std::string& svg : page.parts[run].curves) {
+        for (const Curve& curve : page.parts[run].curves) {
             const std::string caption =
-                model.isComparison()
-                    ? fmt::format("<figcaption>{}</figcaption>", Model::letter(run))
-                    : "";
-            html += fmt::format("<figure class=\"curve\">{}{}</figure>\n", svg, caption);
+                fmt::format("{}{} <span class=\"soft\">{}{}</span>",
+                            model.isComparison() ? Model::letter(run) + ": " : "",
+                            escapeXml(curve.title), escapeXml(curve.script),
+                            curve.problem.empty() ? "" : ": " + escapeXml(curve.problem));
+            html += fmt::format("<figure class=\"curve\">{}<figcaption>{}</figcaption></figure>\n",
+                                curve.svg, caption);
         }
     }
     return html.empty() ? "" : "<h3>Curves</h3>\n<div class=\"curves\">\n" + html + "</div>\n";

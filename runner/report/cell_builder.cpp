@@ -194,7 +194,12 @@ void fillValues(const CellQuery& query, const Samples& samples, std::uint64_t se
         measured.statistic = query.format.placeholders()[i].name;
         measured.value = summarize(samples, statistics[i]);
         measured.interval = {measured.value, measured.value};
-        if (!draws[i].empty()) measured.interval = metrics::centralInterval(draws[i]);
+        measured.text = query.format.formatOne(i, measured.value);
+        if (!draws[i].empty()) {
+            measured.interval = metrics::centralInterval(draws[i]);
+            measured.low = query.format.formatOne(i, measured.interval.low);
+            measured.high = query.format.formatOne(i, measured.interval.high);
+        }
         measured.draws = std::move(draws[i]);
         values.push_back(measured.value);
         lows.push_back(measured.interval.low);
@@ -229,9 +234,8 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
             std::move(where)};
 }
 
-BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
-    BuiltCell built;
-    Cell& cell = built.cell;
+Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
+    Cell cell;
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
@@ -249,7 +253,10 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     cell.status = gathered.worst;
     cell.message = gathered.message;
     cell.caseIds = std::move(gathered.caseIds);
-    if (gathered.units.size() == 1 && !query.isScaled) built.unit = *gathered.units.begin();
+    if (!query.isScaled) {
+        cell.metric = query.metric;
+        if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
+    }
     if (hasSamples) fillValues(query, gathered.samples, seed, cell);
     const std::string word(statusName(cell.status));
     const bool isFlaky = hasSamples && cell.status == Status::Flaky;
@@ -257,7 +264,7 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     if (isFlaky) cell.measured += " (flaky)";
     if (cell.isPartial) cell.measured += " (partial: " + word + ")";
     if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
-    return built;
+    return cell;
 }
 
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases) {

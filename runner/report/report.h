@@ -17,7 +17,7 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
                                const std::vector<Record>& records);
 
 /// tables/<slug>.csv (every column printed, measured, low, high, status at full precision), .md
-/// (printed beside measured) and .tex (booktabs) for each.
+/// (printed beside measured) and .tex (booktabs, a macro a number) for each.
 void writeTables(const std::filesystem::path& runDir, const std::vector<Table>& tables);
 
 /// The claims of all experiments, in order; `tables` lies beside `experiments`. Throws Error as the

@@ -267,6 +267,9 @@ TEST(DescribeConfig, NamesEveryKeyOnALine) {
                             "claims.ID.across ",
                             "claims.ID.order ",
                             "claims.ID.crossover ",
+                            "plots ",
+                            "plot.x ",
+                            "plot.panels ",
                             "assumptions.NAME "}) {
         EXPECT_THAT("\n" + text, HasSubstr("\n" + std::string(key))) << key;
     }
