@@ -39,6 +39,20 @@ void recordDifference(technique::Recorder& recorder, const image::ImageF& truth,
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1", truthName);
 }
 
+/// Unit, world space; 0 where no splat is.
+std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const PatchView& view) {
+    const glm::mat3 modelFromView = glm::transpose(glm::mat3(view.viewFromModel));
+    const std::vector<float> sums = accumulated.read<float>(GL_RGBA, GL_FLOAT, 4);
+    std::vector<glm::vec3> normals;
+    normals.reserve(sums.size() / 4);
+    for (std::size_t i = 0; i < sums.size(); i += 4) {
+        const glm::vec3 sum(sums[i], sums[i + 1], sums[i + 2]);
+        const float length = glm::length(sum);
+        normals.push_back(length > 0.0F ? modelFromView * (sum / length) : glm::vec3(0.0F));
+    }
+    return normals;
+}
+
 double percent(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
@@ -56,6 +70,8 @@ void PointSplatting::record(technique::Recorder& recorder) {
     if (params_.measuresErrors) truth = supersampledTruth();
     if (params_.showsPictures) {
         depth_images::ImageLayers layers(depth_images::viewOf(camera_, sizePx_));
+        const bool hasNormals = renderer_ && params_.method != Method::Sprites;
+        if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
         if (truth) layers.errors(picture, *truth, "supersampled");
         recorder.image("image", picture, layers.options());
     }

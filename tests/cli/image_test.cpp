@@ -8,6 +8,7 @@
 #include "runner/image/png_io.h"
 #include "runner/metrics/flip.h"
 #include "runner/metrics/hdr_flip.h"
+#include "runner/report/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -71,6 +72,28 @@ class ImageCommands : public ::testing::Test {
 
     TemporaryFolder folder_;
 };
+
+/// From the technique through the worker and the runner into the files.
+TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
+    const std::string config = writeMockConfig(folder_, "params: {number: 7}\n").string();
+    const std::string run = at("run");
+    const ProcessResult result =
+        gfxrepro({"run", config, "--device", "software", "--quiet", "--out", run});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const std::vector<report::ImageEntry> images = report::readImages(run);
+    ASSERT_EQ(images.size(), 2U);
+    EXPECT_EQ(images[0].name, "flat");
+    EXPECT_EQ(images[0].truthOf, "");
+    EXPECT_EQ(images[1].name, "truth");
+    EXPECT_EQ(images[1].truthOf, "flat");
+    const auto attributes = image::readExr(std::filesystem::path(run) / images[1].exr).attributes;
+    EXPECT_EQ(attributes.at("command"),
+              "gfxrepro run " + config + " --device software --quiet --out " + run);
+    EXPECT_EQ(attributes.at("case"), images[1].caseId);
+    EXPECT_EQ(attributes.at("technique"), "mock");
+    EXPECT_EQ(nlohmann::json::parse(attributes.at("params")).at("number"), 7);
+    EXPECT_FALSE(attributes.at("commit").empty());
+}
 
 TEST_F(ImageCommands, DiffPrintsTheMetrics) {
     const ExrImage a = gbuffer(0.75F), b = gbuffer(0.5F);
