@@ -79,13 +79,17 @@ class LatexWriter {
             "% {}\n"
             "% Made by gfxrepro. Needs \\usepackage{{booktabs}}; \\input of this file sets the "
             "table.\n"
-            "% Each number is a macro, for the text below the \\input:\n"
-            "%   {}  as measured\n"
-            "%   likewise {}/low and /high, the ends of its 95 % interval, and /printed, as "
-            "printed\n"
-            "% A key is table/row/column; of several statistics in a cell each has a key below "
-            "it.\n",
-            oneLine(fmt::format("{}. {}", table_.label, table_.title)), cite(example), example);
+            "% Each number is a macro, for the text below the \\input; keys are "
+            "table/row/column:\n",
+            oneLine(fmt::format("{}. {}", table_.label, table_.title)));
+        if (!table_.isOnlyPrinted) {
+            text_ += fmt::format(
+                "%   {}  as measured\n"
+                "%   likewise {}/low and /high, the ends of its 95 % interval,\n"
+                "%   and, of several statistics in a cell, each below the cell's key\n",
+                cite(example), example);
+        }
+        text_ += fmt::format("%   {}  as printed\n", cite(example + "/printed"));
         text_ += kMacros;
     }
 
