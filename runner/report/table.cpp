@@ -7,6 +7,7 @@
 #include "runner/core/text.h"
 #include "runner/report/cell_builder.h"
 #include "runner/report/csv.h"
+#include "runner/report/default_layout.h"
 
 namespace gfxrepro::report {
 
@@ -208,7 +209,11 @@ Table transposed(const Table& table, std::size_t rowAxis) {
     return result;
 }
 
-Table buildTable(const config::Experiment& experiment, const std::vector<Record>& records) {
+Table buildTable(const config::Experiment& given, const std::vector<Record>& records) {
+    config::Experiment experiment = given;
+    if (!given.layout.isGiven && given.kind == config::Experiment::Kind::Sweep) {
+        experiment.layout = defaultLayout(given, records);
+    }
     Table table;
     table.id = experiment.id;
     table.slug = experiment.slug();

@@ -90,6 +90,8 @@ Table transposed(const Table& table, std::size_t rowAxis);
 /// format's statistics are taken over frames. With a single frame they are taken over the repeats.
 /// Intervals are from a bootstrap over processes, then repeats.
 ///
+/// An experiment of one's own without a layout gets the default one (default_layout.h).
+///
 /// Of an experiment without a technique the table is what was printed: the first column for the
 /// rows, no cell planned.
 ///
