@@ -5,6 +5,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/schema.h"
 #include "runner/core/text.h"
 #include "runner/scene/generators.h"
 
@@ -79,13 +80,44 @@ auto findNamed(const Infos& infos, const std::string& name) {
                         [&](const auto& info) { return info.name == name; });
 }
 
+config::SchemaNames schemaNames(const Context& context) {
+    config::SchemaNames names;
+    for (const technique::TechniqueInfo& info : context.techniques) {
+        config::Params params({}, "technique '" + std::string(info.name) + "'");
+        info.create(params);
+        names.techniques.push_back(
+            {std::string(info.name), std::string(info.summary), params.declared()});
+    }
+    for (const scene::GeneratorInfo& info : scene::generators()) {
+        names.generators.emplace_back(info.name);
+    }
+    return names;
+}
+
+/// The keys of configs, for people or for editors.
+bool describeSchema(const Context& context, const DescribeOptions& options) {
+    if (options.asJsonSchema) {
+        const std::string kind = options.name.empty() ? "experiment" : options.name;
+        fmt::print("{}", config::jsonSchema(kind, schemaNames(context)));
+    } else if (options.asMarkdown) {
+        if (!options.name.empty() && options.name != "config") {
+            throw UsageError("describe: --markdown is for 'config' alone");
+        }
+        fmt::print("{}", config::describeConfigInMarkdown());
+    } else if (options.name == "config") {
+        fmt::print("{}", config::describeConfig());
+    } else {
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
-int describe(const Context& context, const std::string& name, const std::string& assets) {
-    if (name == "config") {
-        fmt::print("{}", config::describeConfig());
-        return kExitOk;
-    }
+int describe(const Context& context, const DescribeOptions& options) {
+    if (describeSchema(context, options)) return kExitOk;
+    const std::string& name = options.name;
+    if (name.empty()) throw UsageError("describe: say what; see 'gfxrepro describe --help'");
     std::vector<std::string> known = {"config"};
     const auto technique = findNamed(context.techniques, name);
     if (technique != context.techniques.end()) {
@@ -98,7 +130,7 @@ int describe(const Context& context, const std::string& name, const std::string&
         describeGenerator(*generator);
         return kExitOk;
     }
-    const scene::Catalog catalog = openCatalog(assets);
+    const scene::Catalog catalog = openCatalog(options.assets);
     const auto entry = catalog.entries().find(name);
     if (entry != catalog.entries().end()) {
         describeScene(entry->second, catalog);
