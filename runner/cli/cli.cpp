@@ -374,6 +374,7 @@ int runCommand(int argc, const char* const* argv,
     for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
+    app.require_subcommand(0, 1);  // what follows a command is no other one: describe scene
     app.set_help_flag("-h,--help", "this text");
     app.set_version_flag("--version", "gfxrepro " + batch::programCommit());
     addQueries(app, context, options);

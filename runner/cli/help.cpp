@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
 
 #include "runner/core/text.h"
@@ -85,7 +86,11 @@ bool isChoice(const std::string& value) {
 /// "CONFIG…"; of a choice its own name, as the choices would be too long.
 std::string argumentName(const CLI::Option& argument) {
     std::string name = valueName(argument);
-    if (isChoice(name)) name = CLI::detail::to_upper(argument.get_name());
+    if (isChoice(name)) {
+        name = argument.get_name();
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    }
     return argument.get_expected_max() > 1 ? name + "…" : name;
 }
 

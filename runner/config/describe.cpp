@@ -38,7 +38,8 @@ std::string code(const std::string& text) {
 
 std::string tableOf(const SchemaSection& section) {
     std::string text = "\n";
-    if (!section.path.empty()) text += fmt::format("**`{}`** ", section.path);
+    if (!section.path.empty()) text += fmt::format("**`{}`**", section.path);
+    if (!section.path.empty() && !section.doc.empty()) text += " ";
     text += section.doc;
     if (text != "\n") text += "\n\n";
     text += "| key | type | default | meaning |\n| --- | --- | --- | --- |\n";

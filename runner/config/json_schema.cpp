@@ -203,16 +203,15 @@ Json numberType(const char* type, const ParamInfo& info) {
 
 /// On one line what fits there: people read it, and the differences between two versions.
 std::string dumped(const Json& json, std::size_t indent) {
-    constexpr std::size_t kMaxColumns = 100;
+    constexpr std::size_t kMaxColumns = 200;
     const std::string flat = json.dump();
     if (!json.is_structured() || indent + flat.size() <= kMaxColumns) return flat;
-    std::string text;
+    std::vector<std::string> lines;
     for (const auto& [key, value] : json.items()) {
-        text += (text.empty() ? "\n" : ",\n") + std::string(indent + 1, ' ');
-        if (json.is_object()) text += Json(key).dump() + ": ";
-        text += dumped(value, indent + 1);
+        const std::string name = json.is_object() ? Json(key).dump() + ": " : "";
+        lines.push_back(fmt::format("{:{}}{}{}", "", indent + 1, name, dumped(value, indent + 1)));
     }
-    text += "\n" + std::string(indent, ' ');
+    const std::string text = fmt::format("\n{}\n{:{}}", fmt::join(lines, ",\n"), "", indent);
     return json.is_object() ? fmt::format("{{{}}}", text) : fmt::format("[{}]", text);
 }
 
