@@ -23,6 +23,7 @@ struct MachineFacts {
     std::vector<DeviceFacts> devices;
     std::string cpuIsa = "AVX2";  // "SSE", "AVX", "AVX2", "AVX-512"
     std::string assetsFolder;
+    std::string fetchScript = "scripts/fetch-assets";
     bool hasAssets = true;
     int standInCount = 0;       // scenes whose real model is not there
     int missingSceneCount = 0;  // scenes without any source at hand

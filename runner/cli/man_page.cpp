@@ -49,8 +49,8 @@ std::string examples(const CLI::App& app) {
     std::string text = ".SH EXAMPLES\n";
     for (const CLI::App* command : visibleCommands(app)) {
         if (command->get_footer().empty()) continue;
-        text += fmt::format(".PP\n{}:\n.PP\n.RS 4\n.nf\n{}\n.fi\n.RE\n",
-                            roff(command->get_description()), roff(command->get_footer()));
+        text += fmt::format(".TP\n.B {}\n{}\n", roff(command->get_footer()),
+                            roff(command->get_description()));
     }
     return text;
 }
