@@ -95,16 +95,18 @@ void addSceneFindings(const MachineFacts& facts, Findings& findings) {
                             fmt::format("The folder of real models, {}, is not there: stand-ins "
                                         "are measured, and marked.",
                                         facts.assetsFolder),
-                            "Run scripts/fetch-assets, or name a folder with --assets or "
-                            "GFXREPRO_ASSETS."});
+                            fmt::format("Run {}, or name a folder with --assets or "
+                                        "GFXREPRO_ASSETS.",
+                                        facts.fetchScript)});
     } else if (facts.standInCount + facts.missingSceneCount > 0) {
         findings.push_back(
             {"stand_ins", Severity::Result,
              fmt::format("The real models of {} scenes are not in {}: stand-ins "
                          "are measured, and marked.",
                          facts.standInCount + facts.missingSceneCount, facts.assetsFolder),
-             "Run scripts/fetch-assets; `gfxrepro describe SCENE` says where those "
-             "come from that it cannot get."});
+             fmt::format("Run {}; `gfxrepro describe SCENE` says where those come from "
+                         "that it cannot get.",
+                         facts.fetchScript)});
     }
     if (facts.missingSceneCount > 0) {
         findings.push_back({"missing_scenes", Severity::Result,
@@ -193,9 +195,9 @@ const char* severityName(Finding::Severity severity) {
         case Severity::Fatal:
             return "fatal";
         case Severity::Result:
-            return "result";
+            return "results";
         case Severity::Timing:
-            return "timing";
+            return "times";
     }
     return "";
 }

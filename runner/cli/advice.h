@@ -52,7 +52,7 @@ struct Finding {
 /// The worst first.
 std::vector<Finding> findingsOf(const MachineFacts& facts);
 
-/// "fatal", "result", "timing".
+/// "fatal", "results", "times": what suffers.
 const char* severityName(Finding::Severity severity);
 
 }  // namespace gfxrepro::cli

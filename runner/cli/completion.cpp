@@ -73,7 +73,9 @@ Words paths(const std::string& prefix, const std::function<bool(const fs::path&)
         std::error_code error;
         for (const auto& entry :
              fs::directory_iterator(stem.empty() ? fs::path(".") : fs::path(stem), error)) {
-            const std::string name = stem + entry.path().filename().string();
+            const std::string file = entry.path().filename().string();
+            const std::string name = stem + file;
+            if (file.starts_with(".") && !prefix.starts_with(stem + ".")) continue;
             if (isWanted(entry.path())) {
                 found.push_back(name);
             } else if (entry.is_directory(error)) {

@@ -119,6 +119,8 @@ MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
     facts.devices = deviceFacts(reports);
     facts.cpuIsa = embreeIsa();
     facts.assetsFolder = catalog.assetsFolder().string();
+    facts.fetchScript =
+        (dataFolder("configs").parent_path() / "scripts/fetch-assets").lexically_normal().string();
     facts.hasAssets = fs::is_directory(catalog.assetsFolder());
     for (const auto& [name, entry] : catalog.entries()) {
         const std::string state = sceneState(catalog, name);

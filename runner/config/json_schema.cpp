@@ -74,6 +74,30 @@ Json claimType(const SchemaFile& file) {
     return {{"oneOf", std::move(types)}};
 }
 
+/// What a file may say that extends one which says the rest.
+Json partOf(const std::vector<const SchemaSection*>& sections) {
+    Json part = mapOfSections(sections);
+    for (const char* key : {"required", "anyOf"}) part.erase(key);
+    return part;
+}
+
+void addParts(const SchemaFile& file, Json& definitions) {
+    std::vector<const SchemaSection*> claims;
+    for (const SchemaSection& section : file.sections) {
+        if (section.name == "claim" || isClaimType(section)) claims.push_back(&section);
+    }
+    definitions["claim_part"] = partOf(claims);
+    definitions["assumption_part"] = partOf({&schemaSection("assumption")});
+}
+
+/// Where nothing is extended, everything must be there.
+Json wholeUnlessExtended() {
+    return {{"if", {{"required", Json::array({"extends"})}}},
+            {"else",
+             {{"properties",
+               {{"claims", mapOf(refTo("claim"))}, {"assumptions", mapOf(refTo("assumption"))}}}}}};
+}
+
 Json definitionsOf(const SchemaFile& file) {
     Json definitions = Json::object();
     for (const SchemaSection& section : file.sections) {
@@ -81,6 +105,7 @@ Json definitionsOf(const SchemaFile& file) {
         definitions[section.name] =
             section.name == "claim" ? claimType(file) : mapOfSections({&section});
     }
+    if (file.name == "experiment") addParts(file, definitions);
     return definitions;
 }
 
@@ -94,6 +119,7 @@ Json axisOf(const std::string& technique, const std::string& param) {
 void defineTechnique(const SchemaNames::Technique& technique, Json& definitions) {
     Json params = Json::object();
     Json axes = Json::object();
+    for (const std::string& key : keysOf("sweep")) axes[key] = anything();  // `sweep` says more
     for (const ParamInfo& info : technique.params) {
         Json param = orNull(jsonTypeOf(info));
         param["description"] = info.unit.empty() ? info.doc : info.doc + " [" + info.unit + "]";
@@ -104,13 +130,9 @@ void defineTechnique(const SchemaNames::Technique& technique, Json& definitions)
     definitions["params_" + technique.name] = {{"type", {"object", "null"}},
                                                {"properties", std::move(params)},
                                                {"additionalProperties", false}};
-    // `sweep` says what the other keys are; here are all names that are allowed.
-    Json names = Json::array();
-    for (const std::string& key : keysOf("sweep")) names.push_back(key);
-    for (const ParamInfo& info : technique.params) names.push_back(info.name);
     definitions["sweep_" + technique.name] = {{"type", {"object", "null"}},
                                               {"properties", std::move(axes)},
-                                              {"propertyNames", {{"enum", std::move(names)}}}};
+                                              {"additionalProperties", false}};
 }
 
 /// `params` and `sweep` hold what the technique declares, in profiles too.
@@ -129,11 +151,10 @@ Json conditionOf(const SchemaNames::Technique& technique) {
 void addNames(const SchemaNames& names, Json& root) {
     if (names.techniques.empty()) return;
     Json& definitions = root["definitions"];
-    Json conditions = Json::array();
     Json techniques = Json::array();
     for (const SchemaNames::Technique& technique : names.techniques) {
         defineTechnique(technique, definitions);
-        conditions.push_back(conditionOf(technique));
+        root["allOf"].push_back(conditionOf(technique));
         techniques.push_back(technique.name);
     }
     for (Json* map : {&root, &definitions["content"]}) {
@@ -142,7 +163,6 @@ void addNames(const SchemaNames& names, Json& root) {
         technique["enum"] = techniques;
         technique["enum"].push_back(nullptr);
     }
-    root["allOf"] = std::move(conditions);
 }
 
 Json experimentOrPreset(bool isPreset, const SchemaNames& names) {
@@ -160,6 +180,8 @@ Json experimentOrPreset(bool isPreset, const SchemaNames& names) {
         root.update(needsOneOf({{"title", "technique"}, {"title", "printed"}, {"extends"}}));
     }
     root["definitions"] = definitionsOf(file);
+    root["allOf"] = Json::array();
+    if (!isPreset) root["allOf"].push_back(wholeUnlessExtended());
     addNames(names, root);
     return root;
 }

@@ -58,7 +58,6 @@ std::vector<std::string> keysOf(std::string_view section);
 struct SchemaNames {
     struct Technique {
         std::string name;
-        std::string summary;
         std::vector<ParamInfo> params;
     };
     std::vector<Technique> techniques;

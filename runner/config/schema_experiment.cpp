@@ -63,10 +63,10 @@ SchemaSection content() {
          {"printed", "map", "none", "what the paper printed; never reaches a worker",
           refTo("printed")},
          {"claims", "{ID: claim}", "{}", "what must follow from the numbers",
-          mapOf(refTo("claim"))},
+          mapOf(refTo("claim_part"))},
          {"assumptions", "{NAME: assumption}", "{}",
           "what the paper left open: a parameter, `scene`, or free text",
-          mapOf(refTo("assumption"))}}};
+          mapOf(refTo("assumption_part"))}}};
 }
 
 SchemaSection profiles() {
