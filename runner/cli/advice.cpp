@@ -120,7 +120,7 @@ void addSceneFindings(const MachineFacts& facts, Findings& findings) {
 void addDiskFindings(const MachineFacts& facts, Findings& findings) {
     if (!facts.isRunsWritable) {
         findings.push_back(
-            {"runs_not_writable", Severity::Fatal,
+            {"runs_not_writable", Severity::Result,
              fmt::format("{} cannot be written: no run can be kept there.", facts.runsFolder),
              "Go to a folder of your own, or name one with --out."});
     }
