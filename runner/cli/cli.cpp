@@ -11,8 +11,8 @@
 #include "runner/cli/completion.h"
 #include "runner/cli/help.h"
 #include "runner/cli/man_page.h"
+#include "runner/cli/parse.h"
 #include "runner/core/files.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::cli {
 
@@ -311,61 +311,6 @@ void addShell(CLI::App& app, Options& o) {
             return kExitOk;
         };
     });
-}
-
-/// The innermost command that was named.
-const CLI::App* chosenCommand(const CLI::App& app) {
-    const auto chosen = app.get_subcommands();
-    return chosen.empty() ? &app : chosenCommand(*chosen.front());
-}
-
-std::vector<std::string> optionNames(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-    return names;
-}
-
-std::vector<std::string> commandNames(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands({})) {
-        if (!command->get_group().empty()) names.push_back(command->get_name());
-    }
-    return names;
-}
-
-/// One clear message for what the parser did not take.
-UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
-    const CLI::App& command = *chosenCommand(app);
-    const std::string name = command.get_name();
-    const std::vector<std::string> extras = app.remaining(true);
-    if (!extras.empty()) {
-        const std::string& extra = extras.front();
-        if (extra.starts_with("-")) {
-            const std::string option = extra.substr(0, extra.find('='));
-            return UsageError(name + ": unknown option '" + option + "'" +
-                              suggestion(option, optionNames(command)) + "; see '" + name +
-                              " --help'");
-        }
-        if (&command == &app) {
-            return UsageError("unknown command '" + extra + "'" +
-                              suggestion(extra, commandNames(app)) + "; see 'gfxrepro --help'");
-        }
-        return UsageError(name + ": unexpected argument '" + extra + "'");
-    }
-    return UsageError(name + ": " + problem.what());
-}
-
-/// Parses; empty command: help or version was printed.
-void parse(CLI::App& app, int argc, const char* const* argv) {
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help) {  // --help, --version: CLI11 answers them by throwing
-        app.exit(help);
-    } catch (const CLI::ParseError& problem) {
-        throw usageError(app, problem);
-    }
 }
 
 int runCommand(int argc, const char* const* argv,

@@ -163,21 +163,10 @@ const CLI::Option* argumentAt(const CLI::App& command, std::size_t index) {
     return last;
 }
 
-Words optionNames(const CLI::App& command) {
-    Words names;
-    for (const CLI::Option* option : command.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-    return names;
-}
-
 Words candidates(const Typed& typed, const Context& context, const std::string& prefix) {
     if (typed.pending) return valuesOf(valueName(*typed.pending), context, prefix);
     if (prefix.starts_with("-")) return optionNames(*typed.command);
-    Words names;
-    for (const CLI::App* command : visibleCommands(*typed.command)) {
-        names.push_back(command->get_name());
-    }
+    const Words names = commandNames(*typed.command);
     if (!names.empty()) return names;
     const CLI::Option* argument = argumentAt(*typed.command, typed.arguments);
     return argument ? valuesOf(valueName(*argument), context, prefix) : Words{};
@@ -204,7 +193,7 @@ if [ "$funcstack[1]" = _gfxrepro ]; then _gfxrepro "$@"; else compdef _gfxrepro 
 )sh";
 
 constexpr const char* kFish = R"sh(# gfxrepro for fish: gfxrepro completion fish | source
-complete -c gfxrepro -f -a '(set -l words (commandline -opc); $words[1] complete $words[2..-1] (commandline -ct | string collect -a) 2>/dev/null)'
+complete -c gfxrepro -f -a '(set -l words (commandline -opc) (commandline -ct); $words[1] complete $words[2..-1] 2>/dev/null)'
 )sh";
 
 }  // namespace

@@ -24,7 +24,7 @@ struct Place {
 constexpr Place kPlaces[] = {
     {"doctor", "look", "gfxrepro doctor"},
     {"list", "look", "gfxrepro list tables"},
-    {"describe", "look", "gfxrepro describe voxelization"},
+    {"describe", "look", "gfxrepro describe models/bunny"},
     {"check", "look", "gfxrepro check my-scene.yaml"},
     {"scene", "look", "gfxrepro scene models/bunny --render bunny.png"},
     {"plan", "measure", "gfxrepro plan my-scene.yaml --profile quick"},
@@ -164,6 +164,20 @@ std::vector<const CLI::App*> visibleCommands(const CLI::App& app) {
     std::stable_sort(commands.begin(), commands.end(),
                      [](const auto* a, const auto* b) { return placeOf(*a) < placeOf(*b); });
     return commands;
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : visibleCommands(app)) names.push_back(command->get_name());
+    return names;
+}
+
+std::vector<std::string> optionNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
 }
 
 std::vector<HelpEntry> helpEntries(const CLI::App& app) {

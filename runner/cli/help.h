@@ -18,6 +18,12 @@ std::string valueName(const CLI::Option& option);
 /// The commands that people see, in the order of the help; those below `app` alone.
 std::vector<const CLI::App*> visibleCommands(const CLI::App& app);
 
+/// Their names.
+std::vector<std::string> commandNames(const CLI::App& app);
+
+/// "--profile", …
+std::vector<std::string> optionNames(const CLI::App& app);
+
 struct HelpEntry {
     std::string name;  // "-h, --help", "--profile quick|full|paper", "CONFIG…"
     std::string doc;

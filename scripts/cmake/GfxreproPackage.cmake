@@ -43,12 +43,10 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # GLVND finds its drivers at run time, and the report starts gnuplot: no library says so. A GPU's own
 # driver serves instead of Mesa's.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, gnuplot-nox")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"measures the tables of rendering papers again
- Experiments are YAML files: a published table, figure or section each, with its
- printed numbers, what is measured for it, and the claims that must follow. They
- run headless through EGL and OpenGL 4.5, on a GPU or on Mesa's software device;
- what comes out is tables, verdicts and a report.")
+set(CPACK_PACKAGE_DESCRIPTION
+"Experiments are YAML files: a published table, figure or section each, with
+its printed numbers, what is measured for it, and the claims that must
+follow. They run headless through EGL and OpenGL 4.5, on a GPU or on Mesa's
+software device; what comes out is tables, verdicts and a report.")
 include(CPack)
