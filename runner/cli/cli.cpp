@@ -43,8 +43,7 @@ void addAssets(CLI::App* app, std::string& assets) {
 
 void addProfile(CLI::App* app, std::string& profile) {
     app->add_option("--profile", profile, "how much is measured")
-        ->check(CLI::IsMember({"quick", "full", "paper"}))
-        ->option_text("quick|full|paper");
+        ->check(CLI::IsMember({"quick", "full", "paper"}));
 }
 
 void addDevice(CLI::App* app, std::string& device) {
@@ -190,8 +189,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
     submitApp->add_option("--out", s.out, "folder of the shards and of the merged run")
         ->option_text("DIR");
     submitApp->add_option("--engine", s.engine, "who starts the shards")
-        ->check(CLI::IsMember({"slurm", "commands"}))
-        ->option_text("slurm|commands");
+        ->check(CLI::IsMember({"slurm", "commands"}));
     submitApp->add_option("--shards", s.shardCount, "default: one a predicted half hour")
         ->check(CLI::Range(1, 10000))
         ->option_text("N");
@@ -295,8 +293,7 @@ void addShell(CLI::App& app, Options& o) {
         app.add_subcommand("completion", "a script that teaches a shell to complete");
     completionApp->add_option("shell", o.name, "which shell")
         ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}))
-        ->option_text("bash|zsh|fish");
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
     completionApp->callback([&] {
         o.command = [&] {
             fmt::print("{}", completionScript(o.name));

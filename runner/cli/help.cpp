@@ -83,14 +83,16 @@ bool isChoice(const std::string& value) {
     return value.find('|') != std::string::npos;
 }
 
+std::string inCapitals(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return name;
+}
+
 /// "CONFIG…"; of a choice its own name, as the choices would be too long.
 std::string argumentName(const CLI::Option& argument) {
     std::string name = valueName(argument);
-    if (isChoice(name)) {
-        name = argument.get_name();
-        std::transform(name.begin(), name.end(), name.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    }
+    if (isChoice(name)) name = inCapitals(argument.get_name());
     return argument.get_expected_max() > 1 ? name + "…" : name;
 }
 
@@ -155,7 +157,15 @@ void arrangeHelp(CLI::App& app) {
 
 std::string valueName(const CLI::Option& option) {
     if (option.get_items_expected_max() == 0) return "";
-    return option.get_option_text().empty() ? "VALUE" : option.get_option_text();
+    if (!option.get_option_text().empty()) return option.get_option_text();
+    // Of the values that are checked for CLI11 says "TEXT:{quick,full,paper}".
+    const std::string type = option.get_type_name();
+    const std::size_t first = type.find('{');
+    const std::size_t last = type.find('}');
+    if (first != std::string::npos && last != std::string::npos && first < last) {
+        return joined(split(type.substr(first + 1, last - first - 1), ','), "|");
+    }
+    return option.get_positional() ? inCapitals(option.get_name()) : "VALUE";
 }
 
 std::vector<const CLI::App*> visibleCommands(const CLI::App& app) {

@@ -12,7 +12,7 @@ namespace gfxrepro::cli {
 /// Sets the groups, examples and formatter of all commands.
 void arrangeHelp(CLI::App& app);
 
-/// `RUN`, `quick|full|paper`; empty for a flag.
+/// `RUN`, or what is allowed, `quick|full|paper`; empty for a flag.
 std::string valueName(const CLI::Option& option);
 
 /// The commands that people see, in the order of the help; those below `app` alone.
