@@ -8,9 +8,12 @@
 #include "runner/batch/manifest.h"
 #include "runner/batch/worker.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/completion.h"
+#include "runner/cli/help.h"
 #include "runner/cli/image_commands.h"
+#include "runner/cli/man_page.h"
+#include "runner/cli/parse.h"
 #include "runner/core/files.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::cli {
 
@@ -24,8 +27,9 @@ struct Options {
     CompareOptions compare;
     SubmitOptions submit;
     SensitivityOptions sensitivity;
+    DescribeOptions describe;
     batch::WorkerOptions worker;
-    std::string name;                 // of list and describe; a run directory
+    std::string name;                 // of list; a run directory; a shell
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
     std::string out;  // of export
@@ -35,41 +39,73 @@ struct Options {
 };
 
 void addAssets(CLI::App* app, std::string& assets) {
-    app->add_option("--assets", assets, "folder of real models");
+    app->add_option("--assets", assets, "folder of real models")->option_text("DIR");
+}
+
+void addProfile(CLI::App* app, std::string& profile) {
+    app->add_option("--profile", profile, "how much is measured")
+        ->check(CLI::IsMember({"quick", "full", "paper"}));
+}
+
+void addDevice(CLI::App* app, std::string& device) {
+    app->add_option("--device", device, "where; N is a number from doctor")
+        ->option_text("auto|software|N");
+}
+
+CLI::Option* addRunDirectory(CLI::App* app, std::string& dir) {
+    return app->add_option("dir", dir, "run directory")->required()->option_text("RUN");
+}
+
+CLI::Option* addConfigs(CLI::App* app, std::vector<std::string>& names) {
+    return app->add_option("configs", names, "config files")->option_text("CONFIG");
+}
+
+CLI::Option* addTables(CLI::App* app, std::vector<std::string>& names) {
+    return app->add_option("tables", names, "PAPER, PAPER/TABLE or config files")
+        ->option_text("TABLE");
 }
 
 void addSelection(CLI::App* app, Selection& selection) {
-    app->add_option("--profile", selection.profile, "quick | full | paper")
-        ->check(CLI::IsMember({"quick", "full", "paper"}));
-    app->add_option("--set", selection.sets, "key=value laid over every config")
-        ->allow_extra_args(false);
-    app->add_option("--sweep", selection.sweeps, "axis=a,b replaces or adds an axis")
-        ->allow_extra_args(false);
-    app->add_option("--device", selection.device, "auto | software | number from doctor");
+    addProfile(app, selection.profile);
+    app->add_option("--set", selection.sets, "laid over every config")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+    app->add_option("--sweep", selection.sweeps, "replaces or adds an axis")
+        ->allow_extra_args(false)
+        ->option_text("AXIS=A,B");
+    addDevice(app, selection.device);
     addAssets(app, selection.assets);
 }
 
 void addOnly(CLI::App* app, std::vector<std::string>& only) {
-    app->add_option("--only", only, "key=value: only the cases that have it")
-        ->allow_extra_args(false);
+    app->add_option("--only", only, "only the cases that have it")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
 }
 
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
     app->add_option("--from", from, "run to predict times from (default: the newest in runs/)")
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->option_text("RUN");
 }
 
 void addRunOptions(CLI::App* app, RunOptions& options) {
     addSelection(app, options.selection);
     addOnly(app, options.selection.only);
-    app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)");
+    app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)")
+        ->option_text("DIR");
     app->add_option("--resume", options.resume,
-                    "continue this run; begin it where configs are given too");
+                    "continue this run; begin it where configs are given too")
+        ->option_text("RUN");
     app->add_option("--shard", options.shard,
-                    "k/n: measure one of n parts; each with the same --from");
+                    "measure the Kth of N parts; each with the same --from")
+        ->option_text("K/N");
     addFrom(app, options.from);
-    app->add_option("--budget", options.budget, "20m: the tables that decide most claims in it");
-    app->add_option("--jobs", options.jobs, "quality cases at once")->check(CLI::Range(1, 256));
+    app->add_option("--budget", options.budget, "the tables that decide most claims in it")
+        ->option_text("TIME");
+    app->add_option("--jobs", options.jobs, "quality cases at once")
+        ->check(CLI::Range(1, 256))
+        ->option_text("N");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 
@@ -80,29 +116,33 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
     doctorApp->callback(
         [&] { o.command = [&] { return doctor(context, o.selection.assets, o.asJson); }; });
 
-    CLI::App* listApp =
-        app.add_subcommand("list", "tables | techniques | scenes | configs | generators");
-    listApp->add_option("what", o.name, "what to list")->required();
+    CLI::App* listApp = app.add_subcommand("list", "what there is: tables, techniques, scenes, …");
+    listApp->add_option("what", o.name, "what to list")->required()->option_text(kListed);
     listApp->add_flag("--json", o.asJson, "machine-readable");
     addAssets(listApp, o.selection.assets);
     listApp->callback(
         [&] { o.command = [&] { return list(context, o.name, o.selection.assets, o.asJson); }; });
 
     CLI::App* describeApp = app.add_subcommand(
-        "describe", "a technique, scene, generator, table or config file; 'config': the schema");
-    describeApp->add_option("name", o.name, "what to describe")->required();
-    addAssets(describeApp, o.selection.assets);
-    describeApp->callback(
-        [&] { o.command = [&] { return describe(context, o.name, o.selection.assets); }; });
+        "describe", "a technique, scene, generator, table or config; the schema");
+    describeApp
+        ->add_option("name", o.describe.name, "what to describe; 'config' is the keys of configs")
+        ->option_text("NAME");
+    describeApp->add_flag("--json-schema", o.describe.asJsonSchema,
+                          "the schema for editors; NAME: experiment (the default), preset, scene, "
+                          "expectations");
+    describeApp->add_flag("--markdown", o.describe.asMarkdown, "the keys of all files as tables");
+    addAssets(describeApp, o.describe.assets);
+    describeApp->callback([&] { o.command = [&] { return describe(context, o.describe); }; });
 
     CLI::App* checkApp = app.add_subcommand("check", "validate configs; needs no device");
-    checkApp->add_option("configs", o.selection.names, "config files")->required();
+    addConfigs(checkApp, o.selection.names)->required();
     addSelection(checkApp, o.selection);
     checkApp->callback([&] { o.command = [&] { return check(context, o.selection); }; });
 
     CLI::App* planApp =
         app.add_subcommand("plan", "list the cases of configs with their time and memory");
-    planApp->add_option("configs", o.selection.names, "config files")->required();
+    addTables(planApp, o.selection.names)->required();
     addSelection(planApp, o.selection);
     addOnly(planApp, o.selection.only);
     addFrom(planApp, o.run.from);
@@ -113,21 +153,21 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
 
 void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs: records.csv");
-    runApp->add_option("configs", o.run.selection.names, "config files");
+    addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =
         app.add_subcommand("reproduce", "run + tables + claims + report of papers or tables");
-    reproduceApp->add_option("names", o.run.selection.names,
-                             "PAPER, PAPER/TABLE or a config file; none: all papers");
+    addTables(reproduceApp, o.run.selection.names)
+        ->description("PAPER, PAPER/TABLE or config files; none: all papers");
     addRunOptions(reproduceApp, o.run);
     reproduceApp->callback([&] { o.command = [&] { return reproduce(context, o.run); }; });
 
     const auto addResult = [&](const char* name, const char* doc,
                                int (*function)(const std::string&)) {
         CLI::App* result = app.add_subcommand(name, doc);
-        result->add_option("dir", o.name, "run directory")->required();
+        addRunDirectory(result, o.name);
         result->callback(
             [&o, function] { o.command = [&o, function] { return function(o.name); }; });
     };
@@ -135,15 +175,17 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     addResult("claims", "judge a run's claims again", claims);
     CLI::App* reportApp =
         app.add_subcommand("report", "make a run's report.html again, or one of several runs");
-    reportApp->add_option("dirs", o.shards, "run directories, or kept results")->required();
-    reportApp->add_option("--out", o.out,
-                          "file (default DIR/report.html; of several: report.html)");
+    reportApp->add_option("runs", o.shards, "run directories, or kept results")
+        ->required()
+        ->option_text("RUN");
+    reportApp->add_option("--out", o.out, "default RUN/report.html; of several: report.html")
+        ->option_text("FILE");
     reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out); }; });
 
     CLI::App* exportApp =
-        app.add_subcommand("export", "a run as an artifact: results, scripts, licences, checksums");
-    exportApp->add_option("dir", o.name, "run directory")->required();
-    exportApp->add_option("--out", o.out, "folder (default DIR-artifact)");
+        app.add_subcommand("export", "a run as an artifact: results, licences, checksums");
+    addRunDirectory(exportApp, o.name);
+    exportApp->add_option("--out", o.out, "folder (default RUN-artifact)")->option_text("DIR");
     addAssets(exportApp, o.selection.assets);
     exportApp->callback(
         [&o] { o.command = [&o] { return exportRun(o.name, o.out, o.selection.assets); }; });
@@ -151,28 +193,34 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
 
 void addCluster(CLI::App& app, const Context& context, Options& o) {
     CLI::App* mergeApp = app.add_subcommand("merge", "shards into one run; names what is missing");
-    mergeApp->add_option("out", o.name, "folder of the whole run")->required();
-    mergeApp->add_option("shards", o.shards, "run directories of the shards")->required();
+    mergeApp->add_option("out", o.name, "folder of the whole run")->required()->option_text("DIR");
+    mergeApp->add_option("shards", o.shards, "run directories of the shards")
+        ->required()
+        ->option_text("RUN");
     mergeApp->callback([&] { o.command = [&] { return merge(context, o.name, o.shards); }; });
 
     SubmitOptions& s = o.submit;
     CLI::App* submitApp =
         app.add_subcommand("submit", "shards on other machines: a Slurm array, or commands");
-    submitApp->add_option("configs", s.selection.names, "config files, papers or tables");
+    addTables(submitApp, s.selection.names);
     addSelection(submitApp, s.selection);
     addOnly(submitApp, s.selection.only);
-    submitApp->add_option("--out", s.out, "folder of the shards and of the merged run");
-    submitApp->add_option("--engine", s.engine, "slurm | commands")
+    submitApp->add_option("--out", s.out, "folder of the shards and of the merged run")
+        ->option_text("DIR");
+    submitApp->add_option("--engine", s.engine, "who starts the shards")
         ->check(CLI::IsMember({"slurm", "commands"}));
     submitApp->add_option("--shards", s.shardCount, "default: one a predicted half hour")
-        ->check(CLI::Range(1, 10000));
+        ->check(CLI::Range(1, 10000))
+        ->option_text("N");
     addFrom(submitApp, s.from);
     submitApp->add_option("--jobs", s.jobs, "quality cases at once, a shard")
-        ->check(CLI::Range(1, 256));
-    submitApp->add_option("--partition", s.partition, "sbatch's");
-    submitApp->add_option("--gres", s.gres, "sbatch's: gpu:1");
+        ->check(CLI::Range(1, 256))
+        ->option_text("N");
+    submitApp->add_option("--partition", s.partition, "sbatch's")->option_text("PARTITION");
+    submitApp->add_option("--gres", s.gres, "sbatch's: gpu:1")->option_text("LIST");
     submitApp->add_option("--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x")
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->option_text("FLAG");
     submitApp->add_flag("--dry-run", s.isDryRun, "print scripts and commands only");
     submitApp->add_flag("--status", s.isStatus, "of the submission in this folder");
     submitApp->callback([&] { o.command = [&] { return submit(context, o.submit); }; });
@@ -182,16 +230,19 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
     CLI::App* compareApp =
         app.add_subcommand("compare", "regressions between two runs, or two builds by turns");
     compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… with --binaries")
-        ->required();
+        ->required()
+        ->option_text("RUN");
     compareApp->add_flag("--binaries", options.areBinaries,
                          "OLD and NEW are programs; they measure the configs by turns");
     compareApp->add_option("--rounds", options.rounds, "of each program")
-        ->check(CLI::Range(2, 1000));
-    compareApp->add_option("--profile", options.profile, "quick | full | paper")
-        ->check(CLI::IsMember({"quick", "full", "paper"}));
-    compareApp->add_option("--device", options.device, "auto | software | number from doctor");
-    compareApp->add_option("--out", options.out, "folder (default runs/<time>-compare)");
-    compareApp->add_option("--history", options.history, "append to this CSV; say its steps");
+        ->check(CLI::Range(2, 1000))
+        ->option_text("N");
+    addProfile(compareApp, options.profile);
+    addDevice(compareApp, options.device);
+    compareApp->add_option("--out", options.out, "folder (default runs/<time>-compare)")
+        ->option_text("DIR");
+    compareApp->add_option("--history", options.history, "append to this CSV; say its steps")
+        ->option_text("FILE");
     addAssets(compareApp, options.assets);
     compareApp->callback([&] { command = [&] { return compare(options); }; });
 }
@@ -201,12 +252,15 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
     CLI::App* sensitivityApp =
         app.add_subcommand("sensitivity", "how claims depend on what the paper left open");
     sensitivityApp->add_option("names", s.selection.names, "PAPER/TABLE or config files")
-        ->required();
+        ->required()
+        ->option_text("TABLE");
     addSelection(sensitivityApp, s.selection);
     s.selection.profile = "quick";
     sensitivityApp->add_option("--points", s.points, "values of a range of numbers (default 3)")
-        ->check(CLI::Range(2, 100));
-    sensitivityApp->add_option("--out", s.out, "folder (default runs/<time>-sensitivity)");
+        ->check(CLI::Range(2, 100))
+        ->option_text("N");
+    sensitivityApp->add_option("--out", s.out, "folder (default runs/<time>-sensitivity)")
+        ->option_text("DIR");
     sensitivityApp->callback(
         [&] { o.command = [&] { return sensitivity(context, o.sensitivity); }; });
 }
@@ -215,13 +269,17 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
     addImageCommands(app, o.image, o.command);
 
     CLI::App* sceneApp = app.add_subcommand("scene", "look at a scene, or export it");
-    sceneApp->add_option("name", o.scene.name, "catalogue name or file")->required();
-    sceneApp->add_option("--export", o.scene.exportFile, "write .glb or .ply");
-    sceneApp->add_option("--render", o.scene.renderFile,
-                         "write f.png (rasterized) and f-raytraced.png");
+    sceneApp->add_option("name", o.scene.name, "catalogue name or file")
+        ->required()
+        ->option_text("SCENE");
+    sceneApp->add_option("--export", o.scene.exportFile, "write .glb or .ply")->option_text("FILE");
+    sceneApp
+        ->add_option("--render", o.scene.renderFile, "write f.png (rasterized) and f-raytraced.png")
+        ->option_text("FILE");
     sceneApp->add_option("--size", o.scene.sizePx, "pixels along each side of the render")
-        ->check(CLI::Range(16, 8192));
-    sceneApp->add_option("--device", o.scene.device, "auto | software | number from doctor");
+        ->check(CLI::Range(16, 8192))
+        ->option_text("N");
+    addDevice(sceneApp, o.scene.device);
     addAssets(sceneApp, o.scene.assets);
     sceneApp->callback([&] { o.command = [&] { return scene(o.scene); }; });
 
@@ -242,59 +300,27 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
     });
 }
 
-/// The innermost command that was named.
-const CLI::App* chosenCommand(const CLI::App& app) {
-    const auto chosen = app.get_subcommands();
-    return chosen.empty() ? &app : chosenCommand(*chosen.front());
-}
+/// What a shell wants to know: the commands as they are defined above.
+void addShell(CLI::App& app, Options& o) {
+    CLI::App* completionApp =
+        app.add_subcommand("completion", "a script that teaches a shell to complete");
+    completionApp->add_option("shell", o.name, "which shell")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    completionApp->callback([&] {
+        o.command = [&] {
+            fmt::print("{}", completionScript(o.name));
+            return kExitOk;
+        };
+    });
 
-std::vector<std::string> optionNames(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-    return names;
-}
-
-std::vector<std::string> commandNames(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands({})) {
-        if (!command->get_group().empty()) names.push_back(command->get_name());
-    }
-    return names;
-}
-
-/// One clear message for what the parser did not take.
-UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
-    const CLI::App& command = *chosenCommand(app);
-    const std::string name = command.get_name();
-    const std::vector<std::string> extras = app.remaining(true);
-    if (!extras.empty()) {
-        const std::string& extra = extras.front();
-        if (extra.starts_with("-")) {
-            const std::string option = extra.substr(0, extra.find('='));
-            return UsageError(name + ": unknown option '" + option + "'" +
-                              suggestion(option, optionNames(command)) + "; see '" + name +
-                              " --help'");
-        }
-        if (&command == &app) {
-            return UsageError("unknown command '" + extra + "'" +
-                              suggestion(extra, commandNames(app)) + "; see 'gfxrepro --help'");
-        }
-        return UsageError(name + ": unexpected argument '" + extra + "'");
-    }
-    return UsageError(name + ": " + problem.what());
-}
-
-/// Parses; empty command: help or version was printed.
-void parse(CLI::App& app, int argc, const char* const* argv) {
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help) {  // --help, --version: CLI11 answers them by throwing
-        app.exit(help);
-    } catch (const CLI::ParseError& problem) {
-        throw usageError(app, problem);
-    }
+    CLI::App* manApp = app.add_subcommand("man", "")->group("");
+    manApp->callback([&] {
+        o.command = [&] {
+            fmt::print("{}", manPage(app));
+            return kExitOk;
+        };
+    });
 }
 
 int runCommand(int argc, const char* const* argv,
@@ -303,7 +329,8 @@ int runCommand(int argc, const char* const* argv,
     for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
-    app.get_formatter()->column_width(36);  // an option and its doc on one line
+    app.require_subcommand(0, 1);  // what follows a command is no other one: describe scene
+    app.set_help_flag("-h,--help", "this text");
     app.set_version_flag("--version", "gfxrepro " + batch::programCommit());
     addQueries(app, context, options);
     addRuns(app, context, options);
@@ -311,7 +338,15 @@ int runCommand(int argc, const char* const* argv,
     addSensitivity(app, context, options);
     addTools(app, context, options);
     addCompare(app, options.compare, options.command);
+    addShell(app, options);
+    arrangeHelp(app);
     if (argc < 2) throw UsageError("no command; see 'gfxrepro --help'");
+    if (std::string_view(argv[1]) == "complete") {  // ahead of the parser: the words are unfinished
+        for (const std::string& word : completions(app, context, {argv + 2, argv + argc})) {
+            fmt::print("{}\n", word);
+        }
+        return kExitOk;
+    }
     parse(app, argc, argv);
     return options.command ? options.command() : kExitOk;
 }

@@ -69,6 +69,14 @@ struct SceneOptions {
     std::string device = "auto";
 };
 
+/// A name; or the schema of the files that people write.
+struct DescribeOptions {
+    std::string name;
+    bool asJsonSchema = false;
+    bool asMarkdown = false;
+    std::string assets;
+};
+
 /// Two run directories; or two programs and the configs that they measure by turns.
 struct CompareOptions {
     std::vector<std::string> inputs;
@@ -88,9 +96,12 @@ struct SensitivityOptions {
     std::string out;  // folder of the summaries and of the runs
 };
 
+/// What `list` lists, as its help has it.
+inline constexpr const char* kListed = "tables|techniques|scenes|configs|generators";
+
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
-int describe(const Context& context, const std::string& name, const std::string& assets);
+int describe(const Context& context, const DescribeOptions& options);
 int check(const Context& context, const Selection& selection);
 int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
          bool asJson);

@@ -5,6 +5,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/schema.h"
 #include "runner/core/text.h"
 #include "runner/scene/generators.h"
 
@@ -12,27 +13,57 @@ namespace gfxrepro::cli {
 
 namespace {
 
-void printParams(const config::Params& params) {
+void printParams(const std::vector<config::ParamInfo>& params) {
     std::vector<std::vector<std::string>> rows = {
         {"parameter", "type", "default", "range", "unit", "meaning"}};
-    for (const config::ParamInfo& info : params.declared()) {
+    for (const config::ParamInfo& info : params) {
         rows.push_back({info.name, info.type, info.defaultValue, info.range, info.unit, info.doc});
     }
     fmt::print("\n{}", alignedColumns(rows));
 }
 
+using ParamInfos = std::vector<config::ParamInfo>;
+
+ParamInfos paramsGiven(const technique::TechniqueInfo& info, config::Node values) {
+    config::Params params(std::move(values), "technique '" + std::string(info.name) + "'");
+    // A choice may ask for others beside it: what was declared until then counts. So this catches.
+    try {
+        info.create(params);
+    } catch (const Error&) {
+    }
+    return params.declared();
+}
+
+/// All parameters of a technique: those of its defaults, then those that single choices bring.
+ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
+    const ParamInfos usual = paramsGiven(technique, {});
+    ParamInfos all = usual;
+    for (const config::ParamInfo& param : usual) {
+        for (const std::string& choice : param.choices) {
+            const auto value = config::Node::scalar(choice, {}, true);
+            for (config::ParamInfo& info :
+                 paramsGiven(technique, config::Node::map({{param.name, value}}))) {
+                const bool isKnown = std::ranges::any_of(
+                    all, [&](const auto& known) { return known.name == info.name; });
+                if (isKnown) continue;
+                info.doc += fmt::format("; with {}: {}", param.name, choice);
+                all.push_back(std::move(info));
+            }
+        }
+    }
+    return all;
+}
+
 void describeTechnique(const technique::TechniqueInfo& info) {
     fmt::print("technique {}: {}\n", info.name, info.summary);
-    config::Params params({}, "technique '" + std::string(info.name) + "'");
-    info.create(params);
-    printParams(params);
+    printParams(paramsOf(info));
 }
 
 void describeGenerator(const scene::GeneratorInfo& info) {
     fmt::print("generator {}: {}\n", info.name, info.summary);
     config::Params params({}, "generator '" + std::string(info.name) + "'");
     info.generate(params, 1);
-    printParams(params);
+    printParams(params.declared());
 }
 
 void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
@@ -79,13 +110,41 @@ auto findNamed(const Infos& infos, const std::string& name) {
                         [&](const auto& info) { return info.name == name; });
 }
 
+config::SchemaNames schemaNames(const Context& context) {
+    config::SchemaNames names;
+    for (const technique::TechniqueInfo& info : context.techniques) {
+        names.techniques.push_back({std::string(info.name), paramsOf(info)});
+    }
+    for (const scene::GeneratorInfo& info : scene::generators()) {
+        names.generators.emplace_back(info.name);
+    }
+    return names;
+}
+
+/// The keys of configs, for people or for editors.
+bool describeSchema(const Context& context, const DescribeOptions& options) {
+    if (options.asJsonSchema) {
+        const std::string kind = options.name.empty() ? "experiment" : options.name;
+        fmt::print("{}", config::jsonSchema(kind, schemaNames(context)));
+    } else if (options.asMarkdown) {
+        if (!options.name.empty() && options.name != "config") {
+            throw UsageError("describe: --markdown is for 'config' alone");
+        }
+        fmt::print("{}", config::describeConfigInMarkdown());
+    } else if (options.name == "config") {
+        fmt::print("{}", config::describeConfig());
+    } else {
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
-int describe(const Context& context, const std::string& name, const std::string& assets) {
-    if (name == "config") {
-        fmt::print("{}", config::describeConfig());
-        return kExitOk;
-    }
+int describe(const Context& context, const DescribeOptions& options) {
+    if (describeSchema(context, options)) return kExitOk;
+    const std::string& name = options.name;
+    if (name.empty()) throw UsageError("describe: say what; see 'gfxrepro describe --help'");
     std::vector<std::string> known = {"config"};
     const auto technique = findNamed(context.techniques, name);
     if (technique != context.techniques.end()) {
@@ -98,7 +157,7 @@ int describe(const Context& context, const std::string& name, const std::string&
         describeGenerator(*generator);
         return kExitOk;
     }
-    const scene::Catalog catalog = openCatalog(assets);
+    const scene::Catalog catalog = openCatalog(options.assets);
     const auto entry = catalog.entries().find(name);
     if (entry != catalog.entries().end()) {
         describeScene(entry->second, catalog);

@@ -1,14 +1,24 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
+#include <thread>
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/protocol.h"
+#include "runner/cli/advice.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "runner/gl/device.h"
 
 namespace gfxrepro::cli {
@@ -20,9 +30,9 @@ namespace {
 
 constexpr double kBytesPerGib = 1024.0 * 1024.0 * 1024.0;
 
-Json devicesJson() {
+Json devicesJson(const std::vector<gl::DeviceReport>& reports) {
     Json devices = Json::array();
-    for (const gl::DeviceReport& report : gl::listDevices()) {
+    for (const gl::DeviceReport& report : reports) {
         Json device = batch::toJson(report.info);
         device["problem"] = report.problem;
         const gl::DeviceLimits& limits = report.limits;
@@ -65,18 +75,99 @@ std::string sceneState(const scene::Catalog& catalog, const std::string& name) {
     return "missing";
 }
 
-Json gather(const scene::Catalog& catalog) {
+std::vector<DeviceFacts> deviceFacts(const std::vector<gl::DeviceReport>& reports) {
+    std::vector<DeviceFacts> devices;
+    for (const gl::DeviceReport& report : reports) {
+        devices.push_back({report.info.index, report.info.renderer, report.problem,
+                           report.info.isSoftware, report.info.timerResolutionNs,
+                           report.limits.maxTextureSizePx, report.limits.max3dTextureSizePx,
+                           report.limits.maxStorageBlockBytes});
+    }
+    return devices;
+}
+
+/// The first line of a file of the kernel; empty when there is none.
+std::string firstLineOf(const char* path) {
+    std::ifstream file(path);
+    std::string line;
+    std::getline(file, line);
+    return line;
+}
+
+/// Of all ticks since boot, those that the host of a virtual machine gave to others.
+double stolenFraction() {
+    std::istringstream line(firstLineOf("/proc/stat"));  // cpu user nice … steal guest guest_nice
+    std::string name;
+    line >> name;
+    std::array<double, 8> ticks = {};
+    for (double& tick : ticks) line >> tick;
+    const double sum = std::accumulate(ticks.begin(), ticks.end(), 0.0);
+    return sum > 0.0 ? ticks.back() / sum : 0.0;
+}
+
+bool isOnPath(const std::string& program) {
+    const char* path = std::getenv("PATH");
+    for (const std::string& folder : split(path ? path : "", ':')) {
+        if (::access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
+    }
+    return false;
+}
+
+MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
+                         const scene::Catalog& catalog) {
+    MachineFacts facts;
+    facts.devices = deviceFacts(reports);
+    facts.cpuIsa = embreeIsa();
+    facts.assetsFolder = catalog.assetsFolder().string();
+    facts.fetchScript =
+        (dataFolder("configs").parent_path() / "scripts/fetch-assets").lexically_normal().string();
+    facts.hasAssets = fs::is_directory(catalog.assetsFolder());
+    for (const auto& [name, entry] : catalog.entries()) {
+        const std::string state = sceneState(catalog, name);
+        facts.standInCount += state == "stand-in";
+        facts.missingSceneCount += state == "missing";
+    }
+    facts.freeDiskBytes = static_cast<double>(fs::space(fs::current_path()).available);
+    facts.runsFolder = fs::absolute("runs").string();
+    const fs::path writable = fs::is_directory("runs") ? "runs" : ".";
+    facts.isRunsWritable = ::access(writable.c_str(), W_OK | X_OK) == 0;
+    facts.hasGnuplot = isOnPath("gnuplot");
+    facts.cpuGovernor = firstLineOf("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+    facts.load = parseDouble(split(firstLineOf("/proc/loadavg"), ' ').front()).value_or(0.0);
+    facts.coreCount = static_cast<int>(std::thread::hardware_concurrency());
+    facts.stolenFraction = stolenFraction();
+    return facts;
+}
+
+Json findingsJson(const std::vector<Finding>& findings) {
+    Json list = Json::array();
+    for (const Finding& finding : findings) {
+        list.push_back({{"id", finding.id},
+                        {"severity", severityName(finding.severity)},
+                        {"problem", finding.problem},
+                        {"advice", finding.advice}});
+    }
+    return list;
+}
+
+Json gather(const std::vector<gl::DeviceReport>& reports, const scene::Catalog& catalog,
+            const MachineFacts& facts) {
     Json scenes = Json::object();
     for (const auto& [name, entry] : catalog.entries()) scenes[name] = sceneState(catalog, name);
     return {{"commit", batch::programCommit()},
             {"build", batch::programBuild()},
-            {"devices", devicesJson()},
-            {"embree", {{"version", embreeVersion()}, {"cpu_isa", embreeIsa()}}},
-            {"assets",
-             {{"folder", catalog.assetsFolder().string()},
-              {"exists", fs::is_directory(catalog.assetsFolder())}}},
+            {"devices", devicesJson(reports)},
+            {"embree", {{"version", embreeVersion()}, {"cpu_isa", facts.cpuIsa}}},
+            {"assets", {{"folder", facts.assetsFolder}, {"exists", facts.hasAssets}}},
             {"scenes", scenes},
-            {"free_disk_bytes", fs::space(fs::current_path()).available}};
+            {"free_disk_bytes", facts.freeDiskBytes},
+            {"gnuplot", facts.hasGnuplot},
+            {"runs", {{"folder", facts.runsFolder}, {"writable", facts.isRunsWritable}}},
+            {"cpu",
+             {{"cores", facts.coreCount},
+              {"governor", facts.cpuGovernor},
+              {"load", facts.load},
+              {"stolen_fraction", facts.stolenFraction}}}};
 }
 
 void printDevice(const Json& device) {
@@ -108,28 +199,6 @@ std::vector<std::string> namesInState(const Json& scenes, const std::string& sta
     return names;
 }
 
-/// What to do, in plain words; empty when there is nothing.
-std::vector<std::string> advice(const Json& found, bool anyServes) {
-    std::vector<std::string> lines;
-    if (!anyServes) {
-        lines.push_back(
-            "no device can make an OpenGL 4.5 context; install libgl1-mesa-dri and "
-            "libegl-mesa0 for the software one, or a GPU driver with EGL");
-    }
-    if (!found["assets"]["exists"].get<bool>()) {
-        lines.push_back(
-            "the assets folder is not there: stand-ins are used for scanned models; "
-            "scripts/fetch-assets fills it, --assets DIR names another");
-    } else if (!namesInState(found["scenes"], "stand-in").empty() ||
-               !namesInState(found["scenes"], "missing").empty()) {
-        lines.push_back("some scenes are not the real ones; scripts/fetch-assets gets them");
-    }
-    if (found["free_disk_bytes"].get<double>() < kBytesPerGib) {
-        lines.push_back("less than 1 GiB is free here; a full run writes images");
-    }
-    return lines;
-}
-
 void print(const Json& found) {
     fmt::print("program    {}, {}\n", found["commit"].get<std::string>(),
                found["build"].get<std::string>());
@@ -149,19 +218,24 @@ void print(const Json& found) {
 }  // namespace
 
 int doctor(const Context&, const std::string& assets, bool asJson) {
-    const Json found = gather(openCatalog(assets));
-    bool anyServes = false;
-    for (const Json& device : found["devices"]) {
-        anyServes = anyServes || device["problem"].get<std::string>().empty();
-    }
+    const scene::Catalog catalog = openCatalog(assets);
+    const std::vector<gl::DeviceReport> reports = gl::listDevices();
+    const MachineFacts facts = gatherFacts(reports, catalog);
+    const std::vector<Finding> findings = findingsOf(facts);
+    Json found = gather(reports, catalog, facts);
     if (asJson) {
+        found["findings"] = findingsJson(findings);
         fmt::print("{}\n", found.dump(2));
     } else {
         print(found);
-        const std::vector<std::string> lines = advice(found, anyServes);
-        for (const std::string& line : lines) fmt::print("to do      {}\n", line);
-        if (lines.empty()) fmt::print("all well\n");
+        for (const Finding& finding : findings) {
+            fmt::print("\n{:<10} {}\n{:<10} {}\n", severityName(finding.severity), finding.problem,
+                       "  to do", finding.advice);
+        }
+        if (findings.empty()) fmt::print("all well\n");
     }
+    const bool anyServes = std::any_of(reports.begin(), reports.end(),
+                                       [](const auto& report) { return report.problem.empty(); });
     return anyServes ? kExitOk : kExitNoDevice;
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kSeed = 1;
 
 bool isPaperFolder(const fs::path& folder) {
-    static const std::set<std::string> kOthers = {"scenes", "presets", "sweeps", "smoke"};
+    static const std::set<std::string> kOthers = {"presets", "scenes", "schema", "smoke", "sweeps"};
     return fs::is_directory(folder) && !kOthers.contains(folder.filename().string());
 }
 
@@ -63,16 +63,21 @@ std::vector<fs::path> paperConfigs() {
     return files;
 }
 
+std::vector<std::string> paperNames() {
+    std::vector<std::string> names;
+    for (const fs::path& file : paperConfigs()) {
+        const std::string stem = file.stem().string();
+        if (names.empty() || !names.back().starts_with(paperOf(file) + "/")) {
+            names.push_back(paperOf(file));
+        }
+        names.push_back(paperOf(file) + "/" + stem.substr(stem.find('-') + 1));
+    }
+    return names;
+}
+
 std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names) {
     const std::vector<fs::path> all = paperConfigs();
-    std::vector<std::string> known;
-    for (const fs::path& file : all) {
-        const std::string stem = file.stem().string();
-        if (known.empty() || !known.back().starts_with(paperOf(file) + "/")) {
-            known.push_back(paperOf(file));
-        }
-        known.push_back(paperOf(file) + "/" + stem.substr(stem.find('-') + 1));
-    }
+    const std::vector<std::string> known = paperNames();
     std::vector<std::string> found;
     for (const std::string& name : names) {
         if (fs::path(name).extension() == ".yaml") {  // a config of the user's own

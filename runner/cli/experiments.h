@@ -15,6 +15,9 @@ namespace gfxrepro::cli {
 /// presets, sweeps, smoke) are left out.
 std::vector<std::filesystem::path> paperConfigs();
 
+/// Each "PAPER" and its "PAPER/TABLE"s.
+std::vector<std::string> paperNames();
+
 /// The config files behind "PAPER" and "PAPER/TABLE" (all papers for no name), as absolute paths;
 /// a name that ends in .yaml is a config itself.
 /// Throws UsageError for names that are none, with the nearest.

@@ -2,7 +2,10 @@
 #include <array>
 #include <cctype>
 
+#include <fmt/format.h>
+
 #include "runner/config/checks.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -13,21 +16,20 @@ namespace {
 using Names = std::vector<std::string>;
 using Type = ClaimSpec::Type;
 
-/// A kind of claim: the key that names it, and the keys that say more.
+/// A kind of claim, and the key that names it; the schema has the keys that say more.
 struct Kind {
     std::string_view key;
     Type type;
-    std::array<std::string_view, 4> further;
 };
 constexpr std::array<Kind, 8> kKinds = {{
-    {"order", Type::Order, {}},
-    {"ratio", Type::Ratio, {"at_least", "at_most", "between"}},
-    {"trend", Type::Trend, {"over", "exponent", "direction", "strictly"}},
-    {"independent", Type::Independent, {"of", "within"}},
-    {"bound", Type::Bound, {"above", "below"}},
-    {"exact", Type::Exact, {"equals"}},
-    {"tolerance", Type::Tolerance, {"within"}},
-    {"crossover", Type::Crossover, {"over", "between"}},
+    {"order", Type::Order},
+    {"ratio", Type::Ratio},
+    {"trend", Type::Trend},
+    {"independent", Type::Independent},
+    {"bound", Type::Bound},
+    {"exact", Type::Exact},
+    {"tolerance", Type::Tolerance},
+    {"crossover", Type::Crossover},
 }};
 
 std::string kindNames() {
@@ -64,10 +66,9 @@ class ClaimReader {
 
     ClaimSpec read() {
         const Kind& kind = kindOf(node_, what_, claim_.location);
-        Names allowed = {"says", "at", "across", "statistic", "device", "profile"};
-        allowed.emplace_back(kind.key);
-        for (const std::string_view key : kind.further) {
-            if (!key.empty()) allowed.emplace_back(key);
+        Names allowed = keysOf("claim");
+        for (std::string& key : keysOf(fmt::format("claim.{}", kind.key))) {
+            allowed.push_back(std::move(key));
         }
         requireKeys(node_, what_, allowed);
         claim_.type = kind.type;

@@ -8,6 +8,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/params.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -120,7 +121,7 @@ std::vector<Assumption> readAssumptions(const Node& node) {
     std::vector<Assumption> assumptions;
     for (const auto& [name, entry] : node.entries()) {
         const std::string what = "assumption '" + name + "'";
-        requireKeys(entry, what, Names{"value", "range", "unit", "why"});
+        requireKeys(entry, what, keysOf("assumption"));
         const Node* why = entry.find("why");
         if (!why) throw Error(node.keyLocation(name), what + " needs 'why'");
         Assumption assumption{name, {}, {}, {}, lineOf(*why, what + ": why")};
@@ -193,14 +194,12 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
 }  // namespace
 
 const Names& identityKeys() {
-    static const Names keys = {"table", "figure", "section", "sweep_of"};
+    static const Names keys = keysOf("identity");
     return keys;
 }
 
 const Names& sectionKeys() {
-    static const Names keys = {"title",   "technique", "scene",   "params",
-                               "output",  "sweep",     "measure", "layout",
-                               "printed", "claims",    "plots",   "assumptions"};
+    static const Names keys = keysOf("content");
     return keys;
 }
 

@@ -192,9 +192,6 @@ Experiment loadExperiment(const std::filesystem::path& file, const ExperimentOpt
 /// be printed and claimed.
 Experiment experimentFromDocument(const Node& document, const std::filesystem::path& file);
 
-/// The schema in words: every key, type, default and meaning (`gfxrepro describe config`).
-std::string describeConfig();
-
 /// One case before the technique's defaults are filled in.
 struct CaseSpec {
     AxisPoint axes;

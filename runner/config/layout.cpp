@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
 #include "runner/config/checks.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -27,7 +27,7 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         selection.metric = lineOf(node, "metric");
         return selection;
     }
-    requireKeys(node, "a cell's selection", Names{"metric", "pass", "format", "scale", "where"});
+    requireKeys(node, "a cell's selection", keysOf("selection"));
     if (const Node* metric = node.find("metric")) selection.metric = lineOf(*metric, "metric");
     if (const Node* pass = node.find("pass")) selection.pass = lineOf(*pass, "pass");
     if (const Node* format = node.find("format")) {
@@ -158,7 +158,7 @@ Names Vocabulary::axisNames() const {
 }
 
 Layout readLayout(const Node& node, const Vocabulary& vocabulary) {
-    requireKeys(node, "layout", Names{"axes", "rows", "columns", "cell"});
+    requireKeys(node, "layout", keysOf("layout"));
     Layout layout;
     layout.isGiven = true;
     layout.cell.location = node.location();
@@ -226,11 +226,9 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 }
 
 void requireStatistic(const Node& name) {
-    static constexpr std::array<std::string_view, 6> kStatistics = {"median", "mean", "min",
-                                                                    "max",    "sum",  "count"};
     if (std::find(kStatistics.begin(), kStatistics.end(), lineOf(name, "statistic")) ==
         kStatistics.end()) {
-        throwNotAllowed(name, "statistic", "median, mean, min, max, sum, count");
+        throwNotAllowed(name, "statistic", fmt::format("{}", fmt::join(kStatistics, ", ")));
     }
 }
 

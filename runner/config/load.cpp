@@ -5,6 +5,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -79,7 +80,7 @@ class Reader {
     void requireFileKeys(const Node& whole) const {
         Names allowed = sectionKeys();
         allowed.insert(allowed.end(), identityKeys().begin(), identityKeys().end());
-        allowed.insert(allowed.end(), {"extends", "profiles"});
+        for (std::string& key : keysOf("composition")) allowed.push_back(std::move(key));
         requireKeys(whole, "config", allowed);
         if (open_.empty()) return;
         for (const std::string& key : identityKeys()) {
@@ -111,7 +112,7 @@ class Reader {
     static void addProfiles(const Node& whole, Merged& result) {
         const Node* profiles = whole.find("profiles");
         if (!profiles) return;
-        requireKeys(*profiles, "profiles", Names{"quick", "paper"});
+        requireKeys(*profiles, "profiles", keysOf("profiles"));
         for (const auto& [name, overlay] : profiles->entries()) {
             if (!overlay.isNull()) {
                 requireKeys(overlay, "profile '" + name + "'", sectionKeys());

@@ -36,8 +36,22 @@ bool isInRange(double value, const ParamSpec& spec) {
 
 ParamInfo describeParam(std::string_view name, std::string type, const Node& fallback,
                         std::string range, const ParamSpec& spec) {
-    return {std::string(name),      std::move(type),  fallback.toFlowText(),
-            std::string(spec.unit), std::move(range), std::string(spec.doc)};
+    return {std::string(name),
+            std::move(type),
+            fallback.toFlowText(),
+            std::string(spec.unit),
+            std::move(range),
+            std::string(spec.doc),
+            spec.min,
+            spec.max};
+}
+
+ParamInfo describeVector(std::string_view name, std::size_t count, const Node& fallback,
+                         const ParamSpec& spec) {
+    ParamInfo info =
+        describeParam(name, fmt::format("vector{}", count), fallback, rangeText(spec), spec);
+    info.count = count;
+    return info;
 }
 
 [[noreturn]] void throwBadValue(const std::string& owner, std::string_view name, const Node& found,
@@ -162,9 +176,8 @@ std::string Params::getText(std::string_view name, std::string_view fallback,
 std::vector<double> Params::getVector(std::string_view name, std::span<const double> fallback,
                                       const ParamSpec& spec) {
     for (const double value : fallback) GFXREPRO_ASSERT(isInRange(value, spec));
-    const std::string type = "vector" + std::to_string(fallback.size());
     const Node* given =
-        declare(name, describeParam(name, type, listNode(fallback), rangeText(spec), spec));
+        declare(name, describeVector(name, fallback.size(), listNode(fallback), spec));
     std::vector<double> values(fallback.begin(), fallback.end());
     if (given) values = readVector(owner_, name, *given, fallback.size(), spec);
     resolved_.set(std::string(name),
@@ -175,8 +188,7 @@ std::vector<double> Params::getVector(std::string_view name, std::span<const dou
 std::optional<std::vector<double>> Params::getOptionalVector(std::string_view name,
                                                              std::size_t count,
                                                              const ParamSpec& spec) {
-    const std::string type = "vector" + std::to_string(count);
-    const Node* given = declare(name, describeParam(name, type, Node(), rangeText(spec), spec));
+    const Node* given = declare(name, describeVector(name, count, Node(), spec));
     if (!given || given->isNull()) {
         resolved_.set(std::string(name), Node());
         return std::nullopt;
@@ -203,6 +215,7 @@ std::size_t Params::getChoice(std::string_view name, std::size_t fallback,
     const Node fallbackNode = Node::scalar(std::string(names[fallback]), {}, true);
     ParamInfo info = describeParam(name, "choice", fallbackNode, allowed, spec);
     info.doc = doc;
+    info.choices.assign(names.begin(), names.end());
     const Node* given = declare(name, std::move(info));
     std::size_t chosen = fallback;
     if (given) {

@@ -30,14 +30,18 @@ struct Choice {
     std::string_view doc = "";
 };
 
-/// One declared parameter, as `describe` prints it.
+/// One declared parameter, as `describe` prints it and as the JSON schema needs it.
 struct ParamInfo {
     std::string name;
-    std::string type;  // "integer", "number", "boolean", "text", "choice", "vector3", "list", …
+    std::string type;          // "integer", "number", "boolean", "text", "choice", "vector3", …
     std::string defaultValue;  // as it would be written in YAML
     std::string unit;
     std::string range;  // "64 … 1024", "a | b | c", ""
     std::string doc;
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
+    std::vector<std::string> choices = {};
+    std::size_t count = 0;  // of a vector's numbers
 };
 
 /// A map of values that are read by declaration. Errors carry the value's file:line:column.

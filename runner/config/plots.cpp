@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/config/checks.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -33,7 +34,7 @@ class PlotReader {
         : node_(node), names_(names), what_(fmt::format("plot {}", number)) {}
 
     PlotSpec read() {
-        requireKeys(node_, what_, Names{"x", "y", "by", "panels", "at", "log", "title"});
+        requireKeys(node_, what_, keysOf("plot"));
         plot_.location = node_.location();
         if (const Node* title = node_.find("title"))
             plot_.title = lineOf(*title, what_ + ": title");

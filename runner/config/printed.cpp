@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runner/config/checks.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -75,7 +76,7 @@ void requireLabels(const std::vector<std::string>& row, const std::vector<std::s
 }  // namespace
 
 Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names) {
-    requireKeys(node, "printed", std::vector<std::string>{"hardware", "remark", "values"});
+    requireKeys(node, "printed", keysOf("printed"));
     Printed printed;
     printed.location = node.location();
     if (const Node* hardware = node.find("hardware")) printed.hardware = hardware->text();

@@ -64,7 +64,7 @@ const std::vector<std::string>& identityKeys();
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 
-/// The `measure` and `output` sections; the declarations feed describeConfig.
+/// The `measure` and `output` sections; their declarations are part of the schema.
 Measure readMeasure(Params& params);
 std::pair<int, int> readOutput(Params& params);
 

@@ -104,8 +104,9 @@ fs::path dataFolder(std::string_view name) {
     if (const std::string data = environment("GFXREPRO_DATA"); !data.empty()) {
         candidates.push_back(fs::path(data) / name);
     }
-    // <build>/shaders; <source>/configs with <source>/build/<preset>/gfxrepro; an installed prefix.
-    for (const char* up : {".", "..", "../..", "../../..", "../../../..", "../share/gfxrepro"}) {
+    // An installed prefix, wherever it is; <build>/shaders; <source>/configs with
+    // <source>/build/<preset>/gfxrepro.
+    for (const char* up : {"../share/gfxrepro", ".", "..", "../..", "../../..", "../../../.."}) {
         candidates.push_back((program / up / name).lexically_normal());
     }
     std::string tried;

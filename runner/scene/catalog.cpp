@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 
+#include "runner/config/schema.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
 #include "runner/image/png_io.h"
@@ -21,12 +21,11 @@ using config::Node;
 
 namespace {
 
-void requireKeys(const Node& map, const std::string& what,
-                 std::initializer_list<std::string> allowed) {
+void requireKeys(const Node& map, const std::string& what, std::string_view section) {
     if (!map.isMap()) {
         throw Error(map.location(), what + " is " + map.kindName() + ", but must be a map");
     }
-    const std::vector<std::string> names(allowed);
+    const std::vector<std::string> names = config::keysOf(section);
     for (const auto& [key, value] : map.entries()) {
         if (std::find(names.begin(), names.end(), key) != names.end()) continue;
         throw Error(map.keyLocation(key), what + ": unknown key '" + key + "'" +
@@ -54,7 +53,7 @@ std::optional<long long> readCount(const Node& source, const std::string& key,
 }
 
 SceneSource readFileSource(const Node& node) {
-    requireKeys(node, "source", {"file", "points", "refine_to", "up"});
+    requireKeys(node, "source", "file_source");
     SceneSource source;
     const Node& file = required(node, "source", "file");
     source.file = file.text();
@@ -82,9 +81,7 @@ float readPositive(const Node& node, const std::string& key) {
 }
 
 SceneSource readHeightMapSource(const Node& node) {
-    requireKeys(node, "source",
-                {"colour_map", "detail_m", "height_map", "height_scale_m", "no_data", "resample_to",
-                 "seed", "spacing_m"});
+    requireKeys(node, "source", "height_map_source");
     SceneSource source;
     const Node& file = required(node, "source", "height_map");
     source.file = file.text();
@@ -133,7 +130,7 @@ SceneSource readHeightMapSource(const Node& node) {
 }
 
 SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
-    requireKeys(node, "source", {"generator", "params", "points", "seed"});
+    requireKeys(node, "source", "generator_source");
     SceneSource source;
     const Node& generator = required(node, "source", "generator");
     source.generator = findGenerator(generator.text(), generator.location()).name;
@@ -171,8 +168,7 @@ SceneSource readSource(const Node& node, bool isGenerated) {
 
 SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
     const Node root = config::parseYamlFile(path);
-    requireKeys(root, "scene entry",
-                {"scene", "doc", "canonical", "licence", "generated", "sources"});
+    requireKeys(root, "scene entry", "scene");
     SceneEntry entry;
     entry.path = path;
     const Node& name = required(root, "scene entry", "scene");

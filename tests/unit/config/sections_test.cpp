@@ -8,7 +8,6 @@ namespace gfxrepro::config {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("titl: u"),
@@ -228,52 +227,6 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
               head + "46: claim 'C': at: unknown key 'e'; allowed: scene, column");
     EXPECT_EQ(error("across: e, order: p < q, at: {column: p}}"),
               head + "54: claim 'C': at.column is p; allowed: aa | bb");
-}
-
-TEST(DescribeConfig, NamesEveryKeyOnALine) {
-    const std::string text = describeConfig();
-    for (const char* key : {"table ",
-                            "figure ",
-                            "section ",
-                            "sweep_of ",
-                            "title ",
-                            "extends ",
-                            "technique ",
-                            "scene ",
-                            "params ",
-                            "sweep ",
-                            "sweep.zip ",
-                            "sweep.list ",
-                            "sweep.exclude ",
-                            "sweep.when ",
-                            "output.width ",
-                            "output.height ",
-                            "measure.lane ",
-                            "measure.warmup ",
-                            "measure.repeats ",
-                            "measure.processes ",
-                            "measure.frames ",
-                            "measure.time_limit_s ",
-                            "measure.memory_limit_bytes ",
-                            "profiles.quick ",
-                            "profiles.paper ",
-                            "layout.axes ",
-                            "layout.rows ",
-                            "layout.columns ",
-                            "layout.cell ",
-                            "printed.values ",
-                            "printed.hardware ",
-                            "printed.remark ",
-                            "claims.ID.across ",
-                            "claims.ID.order ",
-                            "claims.ID.crossover ",
-                            "plots ",
-                            "plot.x ",
-                            "plot.panels ",
-                            "assumptions.NAME "}) {
-        EXPECT_THAT("\n" + text, HasSubstr("\n" + std::string(key))) << key;
-    }
-    EXPECT_THAT(text, HasSubstr("1 … 16384 pixels"));
 }
 
 }  // namespace

@@ -1,0 +1,226 @@
+#include "runner/cli/help.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::cli {
+
+namespace {
+
+constexpr std::size_t kScreenWidth = 80;
+constexpr std::size_t kMaxNameWidth = 30;
+
+/// A command's place in the help, and an example.
+struct Place {
+    std::string_view command;
+    std::string_view group;
+    std::string_view example;
+};
+constexpr Place kPlaces[] = {
+    {"doctor", "look", "gfxrepro doctor"},
+    {"list", "look", "gfxrepro list tables"},
+    {"describe", "look", "gfxrepro describe models/bunny"},
+    {"check", "look", "gfxrepro check my-scene.yaml"},
+    {"scene", "look", "gfxrepro scene models/bunny --render bunny.png"},
+    {"plan", "measure", "gfxrepro plan my-scene.yaml --profile quick"},
+    {"run", "measure", "gfxrepro run my-scene.yaml --set resolution=64 --out my-run"},
+    {"reproduce", "measure", "gfxrepro reproduce zju2005/2.1 --profile quick"},
+    {"table", "results", "gfxrepro table runs/my-run"},
+    {"claims", "results", "gfxrepro claims runs/my-run"},
+    {"report", "results", "gfxrepro report runs/my-run"},
+    {"export", "results", "gfxrepro export runs/my-run --out artifact"},
+    {"compare", "compare", "gfxrepro compare runs/before runs/after"},
+    {"sensitivity", "compare", "gfxrepro sensitivity zju2005/2.1"},
+    {"image", "compare", "gfxrepro image diff a.exr b.exr"},
+    {"submit", "cluster", "gfxrepro submit zju2005 --shards 8 --gres gpu:1 --out whole"},
+    {"merge", "cluster", "gfxrepro merge whole shard-1 shard-2"},
+    {"completion", "shell", "source <(gfxrepro completion bash)"},
+};
+
+std::size_t placeOf(const CLI::App& command) {
+    const auto* found = std::find_if(std::begin(kPlaces), std::end(kPlaces), [&](const Place& p) {
+        return p.command == command.get_name();
+    });
+    return static_cast<std::size_t>(found - std::begin(kPlaces));
+}
+
+/// Columns on a screen: `…` is one of them and three bytes.
+std::size_t widthOf(std::string_view text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    }));
+}
+
+/// `name`, and `doc` wrapped beside it from `column` on.
+std::string entryLines(const std::string& name, const std::string& doc, std::size_t column) {
+    std::string text;
+    std::string line = name;
+    if (widthOf(line) + 2 > column) {
+        text = line + "\n";
+        line.clear();
+    }
+    line.append(column - widthOf(line), ' ');
+    for (const std::string& word : split(doc, ' ')) {
+        const bool isFirst = line.find_last_not_of(' ') == std::string::npos || line.back() == ' ';
+        if (!isFirst && widthOf(line) + 1 + widthOf(word) > kScreenWidth) {
+            text += line + "\n";
+            line = std::string(column, ' ');
+        } else if (!isFirst) {
+            line += ' ';
+        }
+        line += word;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    return text + line + "\n";
+}
+
+bool isChoice(const std::string& value) {
+    return value.find('|') != std::string::npos;
+}
+
+std::string inCapitals(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return name;
+}
+
+/// "CONFIG…"; of a choice its own name, as the choices would be too long.
+std::string argumentName(const CLI::Option& argument) {
+    std::string name = valueName(argument);
+    if (isChoice(name)) name = inCapitals(argument.get_name());
+    return argument.get_expected_max() > 1 ? name + "…" : name;
+}
+
+std::string commandLines(const CLI::App& app) {
+    const std::vector<const CLI::App*> commands = visibleCommands(app);
+    std::size_t groupWidth = 0, nameWidth = 0;
+    for (const CLI::App* command : commands) {
+        groupWidth = std::max(groupWidth, command->get_group().size());
+        nameWidth = std::max(nameWidth, command->get_name().size());
+    }
+    std::string text, last;
+    for (const CLI::App* command : commands) {
+        const std::string group = command->get_group() == last ? "" : command->get_group();
+        last = command->get_group();
+        const std::string name =
+            fmt::format("{:<{}}  {:<{}}", group, groupWidth, command->get_name(), nameWidth);
+        text += entryLines(name, command->get_description(), groupWidth + nameWidth + 4);
+    }
+    return text;
+}
+
+/// CLI11's own does not wrap, and spends a line on each group.
+class ScreenFormatter : public CLI::FormatterBase {
+  public:
+    std::string make_help(const CLI::App* app, std::string name,
+                          CLI::AppFormatMode) const override {
+        std::string text = app->get_description() + "\nUsage: " + usageLine(*app, name) + "\n\n";
+        if (!visibleCommands(*app).empty()) {
+            text += commandLines(*app);
+            return text + "'" + name + " COMMAND --help' says more.\n";
+        }
+        const std::vector<HelpEntry> entries = helpEntries(*app);
+        std::size_t column = 0;
+        for (const HelpEntry& entry : entries) {
+            const std::size_t width = widthOf(entry.name);
+            if (width <= kMaxNameWidth) column = std::max(column, width + 4);
+        }
+        for (const HelpEntry& entry : entries) {
+            text += entryLines("  " + entry.name, entry.doc, column);
+        }
+        const std::string example = app->get_footer();
+        return example.empty() ? text : text + "\nExample: " + example + "\n";
+    }
+};
+
+void setFormatter(CLI::App& app, const std::shared_ptr<CLI::FormatterBase>& formatter) {
+    app.formatter(formatter);
+    for (CLI::App* command : app.get_subcommands({})) setFormatter(*command, formatter);
+}
+
+}  // namespace
+
+void arrangeHelp(CLI::App& app) {
+    for (CLI::App* command : app.get_subcommands({})) {
+        const std::size_t place = placeOf(*command);
+        if (place == std::size(kPlaces)) continue;
+        command->group(std::string(kPlaces[place].group));
+        command->footer(std::string(kPlaces[place].example));
+    }
+    setFormatter(app, std::make_shared<ScreenFormatter>());  // CLI11 wants it shared
+}
+
+std::string valueName(const CLI::Option& option) {
+    if (option.get_items_expected_max() == 0) return "";
+    if (!option.get_option_text().empty()) return option.get_option_text();
+    // Of the values that are checked for CLI11 says "TEXT:{quick,full,paper}".
+    const std::string type = option.get_type_name();
+    const std::size_t first = type.find('{');
+    const std::size_t last = type.find('}');
+    if (first != std::string::npos && last != std::string::npos && first < last) {
+        return joined(split(type.substr(first + 1, last - first - 1), ','), "|");
+    }
+    return option.get_positional() ? inCapitals(option.get_name()) : "VALUE";
+}
+
+std::vector<const CLI::App*> visibleCommands(const CLI::App& app) {
+    std::vector<const CLI::App*> commands =
+        app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+    std::stable_sort(commands.begin(), commands.end(),
+                     [](const auto* a, const auto* b) { return placeOf(*a) < placeOf(*b); });
+    return commands;
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : visibleCommands(app)) names.push_back(command->get_name());
+    return names;
+}
+
+std::vector<std::string> optionNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+}
+
+std::vector<HelpEntry> helpEntries(const CLI::App& app) {
+    std::vector<HelpEntry> arguments, options;
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_group().empty()) continue;
+        const std::string value = valueName(*option);
+        if (option->get_positional()) {
+            std::string doc = option->get_description();
+            if (isChoice(value)) doc += fmt::format(": {}", joined(split(value, '|'), " | "));
+            arguments.push_back({argumentName(*option), doc});
+            continue;
+        }
+        std::string name;
+        for (const std::string& letter : option->get_snames()) name += "-" + letter + ", ";
+        name += "--" + option->get_lnames().front();
+        if (!value.empty()) name += " " + value;
+        options.push_back({name, option->get_description()});
+    }
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
+}
+
+std::string usageLine(const CLI::App& app, const std::string& name) {
+    std::string line = name;
+    if (!visibleCommands(app).empty()) return line + " COMMAND [OPTION…]";
+    line += " [OPTION…]";
+    for (const CLI::Option* option : app.get_options()) {
+        if (!option->get_positional()) continue;
+        const std::string value = argumentName(*option);
+        line += option->get_required() ? " " + value : " [" + value + "]";
+    }
+    return line;
+}
+
+}  // namespace gfxrepro::cli

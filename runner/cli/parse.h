@@ -1,0 +1,12 @@
+// A command line taken apart by CLI11, with our words for what it does not take.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace gfxrepro::cli {
+
+/// Runs the callbacks of the commands that were named; none where help or version was printed.
+/// Throws UsageError, with the nearest name, for what is unknown.
+void parse(CLI::App& app, int argc, const char* const* argv);
+
+}  // namespace gfxrepro::cli

@@ -1,0 +1,261 @@
+// The schema for editors: JSON Schema, draft 7, which YAML language servers understand.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "runner/config/node.h"
+#include "runner/config/schema_files.h"
+#include "runner/config/schema_types.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using namespace types;
+
+constexpr std::array<std::string_view, 4> kKinds = {"experiment", "preset", "scene",
+                                                    "expectations"};
+
+/// A reference swallows what stands beside it in draft 7.
+Json beside(Json type) {
+    if (!type.contains("$ref")) return type;
+    return {{"allOf", Json::array({std::move(type)})}};
+}
+
+std::string descriptionOf(const SchemaKey& key) {
+    std::string text = key.doc;
+    if (!text.empty()) text += "\n";
+    text += key.type;
+    if (!key.absent.empty()) text += key.isRequired() ? "; required" : "; default: " + key.absent;
+    return text;
+}
+
+Json propertyOf(const SchemaKey& key, bool isRemovable) {
+    Json property = isRemovable ? orNull(key.json) : beside(key.json);
+    property["description"] = descriptionOf(key);
+    return property;
+}
+
+/// A map with the keys of these sections; the first says what else holds.
+Json mapOfSections(const std::vector<const SchemaSection*>& sections) {
+    Json properties = Json::object();
+    Json required = Json::array();
+    for (const SchemaSection* section : sections) {
+        for (const SchemaKey& key : section->keys) {
+            properties[key.name] = propertyOf(key, section->isRemovable);
+            // What is required may come from a file that is extended.
+            if (key.isRequired() && !section->isRemovable) required.push_back(key.name);
+        }
+    }
+    Json map = {{"type", "object"}, {"properties", std::move(properties)}};
+    const Json& others = sections.front()->others;
+    map["additionalProperties"] = others.is_null() ? Json(false) : orNull(others);
+    if (!required.empty()) map["required"] = std::move(required);
+    for (const SchemaSection* section : sections) {
+        if (section->conditions.is_object()) map.update(section->conditions);
+    }
+    return map;
+}
+
+bool isClaimType(const SchemaSection& section) {
+    return section.name.starts_with("claim.");
+}
+
+/// One of the types, each with what all claims have.
+Json claimType(const SchemaFile& file) {
+    Json types = Json::array();
+    for (const SchemaSection& section : file.sections) {
+        if (!isClaimType(section)) continue;
+        Json type = mapOfSections({&section, &schemaSection("claim")});
+        type["title"] = section.keys.front().name;
+        types.push_back(std::move(type));
+    }
+    return {{"oneOf", std::move(types)}};
+}
+
+/// What a file may say that extends one which says the rest.
+Json partOf(const std::vector<const SchemaSection*>& sections) {
+    Json part = mapOfSections(sections);
+    for (const char* key : {"required", "anyOf"}) part.erase(key);
+    return part;
+}
+
+void addParts(const SchemaFile& file, Json& definitions) {
+    std::vector<const SchemaSection*> claims;
+    for (const SchemaSection& section : file.sections) {
+        if (section.name == "claim" || isClaimType(section)) claims.push_back(&section);
+    }
+    definitions["claim_part"] = partOf(claims);
+    definitions["assumption_part"] = partOf({&schemaSection("assumption")});
+}
+
+/// Where nothing is extended, everything must be there.
+Json wholeUnlessExtended() {
+    return {{"if", {{"required", Json::array({"extends"})}}},
+            {"else",
+             {{"properties",
+               {{"claims", mapOf(refTo("claim"))}, {"assumptions", mapOf(refTo("assumption"))}}}}}};
+}
+
+Json definitionsOf(const SchemaFile& file) {
+    Json definitions = Json::object();
+    for (const SchemaSection& section : file.sections) {
+        if (isClaimType(section)) continue;
+        definitions[section.name] =
+            section.name == "claim" ? claimType(file) : mapOfSections({&section});
+    }
+    if (file.name == "experiment") addParts(file, definitions);
+    return definitions;
+}
+
+/// What a parameter is swept over.
+Json axisOf(const std::string& technique, const std::string& param) {
+    Json value = refTo("params_" + technique + "/properties/" + param);
+    return orNull(anyOf({listOf(std::move(value), 1), refTo("axis")}));
+}
+
+/// The parameters of a technique; its sweep, which has them as axes.
+void defineTechnique(const SchemaNames::Technique& technique, Json& definitions) {
+    Json params = Json::object();
+    Json axes = Json::object();
+    for (const std::string& key : keysOf("sweep")) axes[key] = anything();  // `sweep` says more
+    for (const ParamInfo& info : technique.params) {
+        Json param = orNull(jsonTypeOf(info));
+        param["description"] = info.unit.empty() ? info.doc : info.doc + " [" + info.unit + "]";
+        param["default"] = parseYaml(info.defaultValue, "default").toJson();
+        params[info.name] = std::move(param);
+        axes[info.name] = axisOf(technique.name, info.name);
+    }
+    definitions["params_" + technique.name] = {{"type", {"object", "null"}},
+                                               {"properties", std::move(params)},
+                                               {"additionalProperties", false}};
+    definitions["sweep_" + technique.name] = {{"type", {"object", "null"}},
+                                              {"properties", std::move(axes)},
+                                              {"additionalProperties", false}};
+}
+
+/// `params` and `sweep` hold what the technique declares, in profiles too.
+Json conditionOf(const SchemaNames::Technique& technique) {
+    const Json measured = {{"params", refTo("params_" + technique.name)},
+                           {"sweep", refTo("sweep_" + technique.name)}};
+    Json profile = {{"type", {"object", "null"}}, {"properties", measured}};
+    Json properties = measured;
+    properties["profiles"] = {{"additionalProperties", std::move(profile)}};
+    return {{"if",
+             {{"properties", {{"technique", {{"const", technique.name}}}}},
+              {"required", Json::array({"technique"})}}},
+            {"then", {{"properties", std::move(properties)}}}};
+}
+
+void addNames(const SchemaNames& names, Json& root) {
+    if (names.techniques.empty()) return;
+    Json& definitions = root["definitions"];
+    Json techniques = Json::array();
+    for (const SchemaNames::Technique& technique : names.techniques) {
+        defineTechnique(technique, definitions);
+        root["allOf"].push_back(conditionOf(technique));
+        techniques.push_back(technique.name);
+    }
+    for (Json* map : {&root, &definitions["content"]}) {
+        Json& technique = (*map)["properties"]["technique"];
+        technique.erase("type");
+        technique["enum"] = techniques;
+        technique["enum"].push_back(nullptr);
+    }
+}
+
+Json experimentOrPreset(bool isPreset, const SchemaNames& names) {
+    const SchemaFile& file = schema().front();
+    const std::vector<const SchemaSection*> extended = {&schemaSection("composition"),
+                                                        &schemaSection("content")};
+    Json root = mapOfSections(extended);
+    if (!isPreset) {
+        root = mapOfSections({&schemaSection("identity"), extended[0], extended[1]});
+        Json identities = Json::array();
+        for (const std::string& key : keysOf("identity")) {
+            identities.push_back({{"required", Json::array({key})}});
+        }
+        root["oneOf"] = std::move(identities);
+        root.update(needsOneOf({{"title", "technique"}, {"title", "printed"}, {"extends"}}));
+    }
+    root["definitions"] = definitionsOf(file);
+    root["allOf"] = Json::array();
+    if (!isPreset) root["allOf"].push_back(wholeUnlessExtended());
+    addNames(names, root);
+    return root;
+}
+
+Json sceneOrExpectations(std::string_view kind, const SchemaNames& names) {
+    for (const SchemaFile& file : schema()) {
+        if (file.name != kind) continue;
+        Json root = mapOfSections({&file.sections.front()});
+        root["definitions"] = definitionsOf(file);
+        if (kind == "scene" && !names.generators.empty()) {
+            Json& source = root["definitions"]["generator_source"]["properties"];
+            source["generator"].erase("type");
+            source["generator"].update(choice(names.generators));
+        }
+        return root;
+    }
+    throw UsageError(fmt::format("schema '{}'; allowed: {}", kind, fmt::join(kKinds, ", ")));
+}
+
+/// A name such as `12` or `true` is read as text, but a YAML reader makes it a number.
+Json spellingsOf(const std::vector<std::string>& names) {
+    Json values = Json::array();
+    for (const std::string& name : names) {
+        values.push_back(name);
+        const Json plain = Node::scalar(name).toJson();
+        if (!plain.is_string()) values.push_back(plain);
+    }
+    return {{"enum", std::move(values)}};
+}
+
+Json numberType(const char* type, const ParamInfo& info) {
+    Json number = {{"type", type}};
+    const auto bound = [](double value) {
+        const bool isWhole = value == std::floor(value) && std::abs(value) < 1e15;
+        return isWhole ? Json(std::llround(value)) : Json(value);
+    };
+    if (std::isfinite(info.min)) number["minimum"] = bound(info.min);
+    if (std::isfinite(info.max)) number["maximum"] = bound(info.max);
+    return number;
+}
+
+/// On one line what fits there: people read it, and the differences between two versions.
+std::string dumped(const Json& json, std::size_t indent) {
+    constexpr std::size_t kMaxColumns = 200;
+    const std::string flat = json.dump();
+    if (!json.is_structured() || indent + flat.size() <= kMaxColumns) return flat;
+    std::vector<std::string> lines;
+    for (const auto& [key, value] : json.items()) {
+        const std::string name = json.is_object() ? Json(key).dump() + ": " : "";
+        lines.push_back(fmt::format("{:{}}{}{}", "", indent + 1, name, dumped(value, indent + 1)));
+    }
+    const std::string text = fmt::format("\n{}\n{:{}}", fmt::join(lines, ",\n"), "", indent);
+    return json.is_object() ? fmt::format("{{{}}}", text) : fmt::format("[{}]", text);
+}
+
+}  // namespace
+
+Json jsonTypeOf(const ParamInfo& info) {
+    if (info.count > 0) {
+        return tupleOf(numberType("number", info), static_cast<int>(info.count));
+    }
+    if (!info.choices.empty()) return spellingsOf(info.choices);
+    if (info.type == "boolean") return boolean();
+    if (info.type == "integer" || info.type == "number") return numberType(info.type.c_str(), info);
+    return text();
+}
+
+std::string jsonSchema(std::string_view kind, const SchemaNames& names) {
+    Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                 {"title", fmt::format("gfxrepro {}", kind)}};
+    const bool isPreset = kind == "preset";
+    root.update(isPreset || kind == "experiment" ? experimentOrPreset(isPreset, names)
+                                                 : sceneOrExpectations(kind, names));
+    return dumped(root, 0) + "\n";
+}
+
+}  // namespace gfxrepro::config

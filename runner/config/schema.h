@@ -1,0 +1,76 @@
+// The schema of the files that people write, as data: every key with its type, default and meaning.
+// The readers take the keys that they allow from here; so do `gfxrepro describe config`, the JSON
+// schema for editors and configs/README.md. A new key is one line here, and its reading.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "runner/config/params.h"
+
+namespace gfxrepro::config {
+
+using Json = nlohmann::ordered_json;
+
+/// What summarizes the records of a cell.
+inline constexpr std::array<std::string_view, 6> kStatistics = {"median", "mean", "min",
+                                                                "max",    "sum",  "count"};
+
+/// A key of a map.
+struct SchemaKey {
+    std::string name;
+    std::string type;    // in words
+    std::string absent;  // the default, or what its absence means: "none", "required"
+    std::string doc;
+    Json json;  // the type as JSON schema has it
+
+    bool isRequired() const { return absent == "required"; }
+};
+
+/// The keys of one kind of map.
+struct SchemaSection {
+    std::string name;  // "layout": for keysOf, and in the JSON schema
+    std::string path;  // what stands before its keys: "layout.", "claims.ID."
+    std::string doc;   // begins its table
+    std::vector<SchemaKey> keys;
+    bool isRemovable = true;    // a key may be null, which removes what an extended file has set
+    Json others = nullptr;      // the type of all further keys; null: there are none
+    Json conditions = nullptr;  // further JSON schema: which keys go together
+};
+
+/// A kind of file and its sections, the top of the file first.
+struct SchemaFile {
+    std::string name;  // "experiment", "scene", "expectations"
+    std::string doc;
+    std::vector<SchemaSection> sections;
+};
+
+const std::vector<SchemaFile>& schema();
+const SchemaSection& schemaSection(std::string_view name);
+/// The keys of a section in the order of the schema.
+std::vector<std::string> keysOf(std::string_view section);
+
+/// What a JSON schema may say beyond the sections: names that other modules own.
+struct SchemaNames {
+    struct Technique {
+        std::string name;
+        std::vector<ParamInfo> params;
+    };
+    std::vector<Technique> techniques;
+    std::vector<std::string> generators;
+};
+
+/// `kind`: experiment, preset (what experiments extend), scene or expectations.
+/// JSON Schema, draft 7, as text. Throws UsageError for an unknown kind.
+std::string jsonSchema(std::string_view kind, const SchemaNames& names);
+
+/// The keys of an experiment in aligned columns (`gfxrepro describe config`).
+std::string describeConfig();
+/// The keys of all files as Markdown tables, for configs/README.md.
+std::string describeConfigInMarkdown();
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,93 @@
+// The keys of claims: what all have, and what each type has.
+#include "runner/config/schema_files.h"
+#include "runner/config/schema_types.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using namespace types;
+
+Json pairOfNumbers() {
+    return tupleOf(number(), 2);
+}
+
+/// "25%", or 0.25.
+Json fraction() {
+    return anyOf({{{"type", "string"}, {"pattern", R"(^\s*[0-9.eE+-]+\s*%$)"}},
+                  {{"type", "number"}, {"minimum", 0}, {"maximum", 1}}});
+}
+
+SchemaKey over(const char* key, const char* doc) {
+    return {key, "row axis | column", "required", doc, text()};
+}
+
+SchemaKey between(const char* doc) {
+    return {"between", "[low, high]", "none", doc, pairOfNumbers()};
+}
+
+SchemaKey within(const char* doc) {
+    return {"within", "25% | fraction", "required", doc, fraction()};
+}
+
+SchemaSection common() {
+    return {"claim",
+            "claims.ID.",
+            "Every claim has these, and exactly one of the keys in the tables below with what "
+            "belongs to it; a, b and c are expressions over columns.",
+            {{"says", "line", "required", "the claim in the paper's sense", text()},
+             {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+             {"across", "row axis", "none",
+              "a, b are its labels instead of columns; those become the row axis `column`", text()},
+             {"statistic", "name", "the first", "of cells with several", choice(kStatistics)},
+             {"device", "any | gpu", "any", "where it must hold", choice({"any", "gpu"})},
+             {"profile", "quick | full | paper", "all", "the only profile it is judged in",
+              choice({"quick", "full", "paper"})}},
+            false};
+}
+
+/// The first key names the type.
+SchemaSection kind(SchemaKey first, std::vector<SchemaKey> further, Json conditions = nullptr) {
+    first.absent = "required";
+    SchemaSection section{"claim." + first.name, "claims.ID.", "", {first}, false};
+    for (SchemaKey& key : further) section.keys.push_back(std::move(key));
+    section.conditions = std::move(conditions);
+    return section;
+}
+
+}  // namespace
+
+std::vector<SchemaSection> claimSections() {
+    return {
+        common(),
+        kind({"order", "a < b < c", "", "in this order", text()}, {}),
+        kind({"ratio", "a / b", "", "the ratio lies within bounds", text()},
+             {{"at_least", "number", "none", "lower bound", number()},
+              {"at_most", "number", "none", "upper bound", number()},
+              between("instead of the two")},
+             needsOneOf({{"at_least"}, {"at_most"}, {"between"}})),
+        kind({"trend", "a", "", "grows or falls, or as a power", text()},
+             {over("over", "along which"),
+              {"exponent", "[low, high]", "none", "of the fitted power", pairOfNumbers()},
+              {"direction", "increasing | decreasing", "none", "which way",
+               choice({"increasing", "decreasing"})},
+              {"strictly", "true | false", "false", "no two equal; with direction", boolean()}},
+             needsOneOf({{"exponent"}, {"direction"}})),
+        kind({"independent", "a | [a, b]", "", "does not depend on something", oneOrMore(text())},
+             {over("of", "on which"), within("how far it may vary")}),
+        kind({"bound", "a", "", "every value lies within bounds", text()},
+             {{"above", "number", "none", "lower bound", number()},
+              {"below", "number", "none", "upper bound", number()}},
+             needsOneOf({{"above"}, {"below"}})),
+        kind({"exact", "a", "", "is exactly so", text()},
+             {{"equals", "number | printed", "required", "what it is",
+               anyOf({number(), choice({"printed"})})}}),
+        kind({"tolerance", "a", "", "is the printed value", text()},
+             {within("how far from the printed value")}),
+        kind({"crossover", "[a, b]", "", "the two change places", tupleOf(text(), 2)},
+             {over("over", "along which"),
+              {"between", "[low, high]", "required", "where", pairOfNumbers()}}),
+    };
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,223 @@
+// The keys of tables, figures, sections and sweeps.
+#include "runner/config/schema_files.h"
+#include "runner/config/schema_types.h"
+#include "runner/config/sections.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using namespace types;
+
+/// The text of a cell, or what it shows.
+Json selectionType() {
+    return anyOf({text(), refTo("selection")});
+}
+
+Json axesType() {
+    return anyOf({text(), listOf(text()), mapOf(selectionType())});
+}
+
+Json axisType() {
+    return anyOf({listOf(anything(), 1), refTo("axis")});
+}
+
+SchemaSection identity() {
+    return {
+        "identity",
+        "",
+        "Exactly one key names the experiment; a file that others extend has none.",
+        {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
+         {"figure", "PAPER/NUMBER", "none", "a figure", text()},
+         {"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
+         {"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME", text()}},
+        false};
+}
+
+SchemaSection composition() {
+    return {"composition",
+            "",
+            "What the file is put together from.",
+            {{"extends", "file | [files]", "[]",
+              "files laid under this one, later over earlier; in configs/, then beside this file",
+              oneOrMore(text())},
+             {"profiles", "{quick, paper}", "none", "parts laid over the file by --profile",
+              refTo("profiles")}}};
+}
+
+SchemaSection content() {
+    return {
+        "content",
+        "",
+        "What is measured and shown.",
+        {{"title", "line", "required", "what is shown, in the paper's words", text()},
+         {"technique", "name", "none", "what measures; without it the file is only `printed`",
+          text()},
+         {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
+         {"params", "{name: value}", "{}", "of the technique: `gfxrepro describe TECHNIQUE`",
+          mapOf(anything())},
+         {"output", "map", "512 × 512", "size of the image", refTo("output")},
+         {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
+         {"measure", "map", "once", "how, and how often", refTo("measure")},
+         {"layout", "map", "none", "what the table looks like", refTo("layout")},
+         {"printed", "map", "none", "what the paper printed; never reaches a worker",
+          refTo("printed")},
+         {"claims", "{ID: claim}", "{}", "what must follow from the numbers",
+          mapOf(refTo("claim_part"))},
+         {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
+          listOf(refTo("plot"))},
+         {"assumptions", "{NAME: assumption}", "{}",
+          "what the paper left open: a parameter, `scene`, or free text",
+          mapOf(refTo("assumption_part"))}}};
+}
+
+SchemaSection profiles() {
+    return {"profiles",
+            "profiles.",
+            "",
+            {{"quick", "part of a config", "none", "laid over the file by --profile quick",
+              refTo("content")},
+             {"paper", "part of a config", "none", "laid over the file by --profile paper",
+              refTo("content")}}};
+}
+
+SchemaSection sweep() {
+    return {
+        "sweep",
+        "sweep.",
+        "Any other key is a parameter of the technique: it is an axis too. A condition's value may "
+        "be a list: any of these.",
+        {{"scene", "values", "none", "scenes", axisType()},
+         {"output.width", "values", "none", "widths of the image", axisType()},
+         {"output.height", "values", "none", "heights of the image", axisType()},
+         {"zip", "[{axis: values}]", "[]", "each block: axes that go together",
+          listOf(mapOf(axisType()))},
+         {"list", "[[{axis: value}]]", "[]", "each block: points spelt out; keys may differ",
+          listOf(listOf(pairs(), 1))},
+         {"exclude", "[{axis: value}]", "[]", "drops points that match all pairs", listOf(pairs())},
+         {"when", "{axis: {other: value}}", "{}", "the axis varies only there", mapOf(pairs())}},
+        true,
+        axisType()};
+}
+
+SchemaSection axis() {
+    return {"axis",
+            "values.",
+            "Values are a list, or a map with one of these keys.",
+            {{"range",
+              "[first, last, step]",
+              "none",
+              "both ends included; step 1 may be left out",
+              {{"type", "array"}, {"items", number()}, {"minItems", 2}, {"maxItems", 3}}},
+             {"log2", "[first, last]", "none", "powers of two, both ends included",
+              tupleOf(number(), 2)}},
+            false,
+            nullptr,
+            {{"minProperties", 1}, {"maxProperties", 1}}};
+}
+
+SchemaSection layout() {
+    return {
+        "layout",
+        "layout.",
+        "",
+        {{"axes", "{axis: {label: selection}}", "{}", "axes of labels, for rows and columns",
+          mapOf(mapOf(selectionType()))},
+         {"rows", "axis | [axes] | {label: selection}", "one row", "what the rows stand for",
+          axesType()},
+         {"columns", "axis | [axes] | {label: selection}", "one column",
+          "axes: declared above, or swept, a parameter, scene, frame", axesType()},
+         {"cell", "format | selection", "{median:.4g}", "what every cell shows", selectionType()}}};
+}
+
+SchemaSection selection() {
+    return {
+        "selection",
+        "selection.",
+        "A selection is a metric, or a map of these; the column's part wins over the row's, "
+        "the row's over the cell's.",
+        {{"metric", "name", "none", "of the technique's metrics", text()},
+         {"pass", "name", "whole case", "step of the algorithm", text()},
+         {"format", "text", "none", "median mean min max sum count in braces: {mean:.2f}", text()},
+         {"scale", "number", "1", "multiplies every value", number()},
+         {"where", "{axis: value}", "{}", "only these cases", pairs()}}};
+}
+
+SchemaSection printed() {
+    return {"printed",
+            "printed.",
+            "",
+            {{"hardware", "text", "\"\"", "what the paper measured on", text()},
+             {"remark", "text", "\"\"", "misprints and the like", text()},
+             {"values",
+              "CSV block",
+              "none",
+              "a header of row axes and columns, then the rows",
+              {{"type", "string"}}}}};
+}
+
+SchemaSection plot() {
+    return {
+        "plot",
+        "plot.",
+        "",
+        {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
+         {"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
+          oneOrMore(text())},
+         {"by", "row axis", "none", "of each y a curve a value", text()},
+         {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
+          oneOrMore(text())},
+         {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+         {"log", "[x, y]", "[]", "axes that are logarithmic",
+          listOf({{"enum", {"x", "y"}}})},
+         {"title", "line", "the file's", "above the curves", text()}},
+        false};
+}
+
+SchemaSection assumption() {
+    return {"assumption",
+            "assumptions.NAME.",
+            "",
+            {{"value", "value", "none", "what is taken", anything()},
+             {"range", "[values] | [first, last]", "none",
+              "what `gfxrepro sensitivity` tries instead", anything()},
+             {"unit", "line", "none", "of value and range", text()},
+             {"why", "line", "required", "why this value", text()}},
+            false};
+}
+
+/// Declared where they are read.
+SchemaSection declared(const std::string& name, const Params& params) {
+    SchemaSection section{name, name + ".", "", {}};
+    for (const ParamInfo& info : params.declared()) {
+        std::string type = info.range.empty() ? info.type : info.range;
+        if (!info.unit.empty()) type += " " + info.unit;
+        section.keys.push_back({info.name, type, info.defaultValue, info.doc, jsonTypeOf(info)});
+    }
+    return section;
+}
+
+SchemaSection output() {
+    Params params(Node(), "output");
+    readOutput(params);
+    return declared("output", params);
+}
+
+SchemaSection measure() {
+    Params params(Node(), "measure");
+    readMeasure(params);
+    return declared("measure", params);
+}
+
+}  // namespace
+
+SchemaFile experimentSchema() {
+    SchemaFile file{"experiment",
+                    "A table, figure, section or sweep",
+                    {identity(), composition(), content(), output(), sweep(), axis(), measure(),
+                     profiles(), layout(), selection(), printed(), plot(), assumption()}};
+    for (SchemaSection& section : claimSections()) file.sections.push_back(std::move(section));
+    return file;
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,52 @@
+# What `cmake --install` puts beside program, shaders and configs, and the Debian package of all of it.
+# The program itself prints its man page and completions.
+
+set(shared "${CMAKE_BINARY_DIR}/share")
+file(MAKE_DIRECTORY "${shared}")
+find_program(GFXREPRO_GZIP gzip REQUIRED)
+set(man "${shared}/gfxrepro.1.gz")
+add_custom_command(OUTPUT "${man}"
+    COMMAND gfxrepro man > "${shared}/gfxrepro.1"
+    COMMAND "${GFXREPRO_GZIP}" -9nf "${shared}/gfxrepro.1"
+    DEPENDS gfxrepro VERBATIM)
+install(FILES "${man}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+set(made "${man}")
+
+# add_completion(SHELL FOLDER NAME): installed where Debian's packages have theirs.
+function(add_completion shell folder name)
+    set(script "${shared}/completion.${shell}")
+    add_custom_command(OUTPUT "${script}"
+        COMMAND gfxrepro completion ${shell} > "${script}" DEPENDS gfxrepro VERBATIM)
+    install(FILES "${script}" DESTINATION "${CMAKE_INSTALL_DATADIR}/${folder}" RENAME ${name})
+    set(made "${made};${script}" PARENT_SCOPE)
+endfunction()
+add_completion(bash bash-completion/completions gfxrepro)
+add_completion(fish fish/vendor_completions.d gfxrepro.fish)
+add_completion(zsh zsh/vendor-completions _gfxrepro)
+add_custom_target(gfxrepro_share ALL DEPENDS ${made})
+
+install(PROGRAMS "${CMAKE_SOURCE_DIR}/scripts/fetch-assets"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/gfxrepro/scripts")
+install(FILES "${CMAKE_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES "${CMAKE_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME gfxrepro)
+set(CPACK_PACKAGE_CONTACT "gfxrepro developers <developers@gfxrepro.invalid>")
+set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/package")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# GLVND finds its drivers at run time, and the report starts gnuplot: no library says so. A GPU's own
+# driver serves instead of Mesa's.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, gnuplot-nox")
+set(CPACK_PACKAGE_DESCRIPTION
+"Experiments are YAML files: a published table, figure or section each, with
+its printed numbers, what is measured for it, and the claims that must
+follow. They run headless through EGL and OpenGL 4.5, on a GPU or on Mesa's
+software device; what comes out is tables, verdicts and a report.")
+include(CPack)

@@ -1,0 +1,174 @@
+// The advice of `gfxrepro doctor`, each from made-up facts, by its exact words.
+#include <gtest/gtest.h>
+
+#include "runner/cli/advice.h"
+
+namespace gfxrepro::cli {
+namespace {
+
+DeviceFacts gpu() {
+    DeviceFacts device;
+    device.renderer = "a GPU";
+    device.timerResolutionNs = 40.0;
+    device.maxTextureSizePx = 16384;
+    device.max3dTextureSizePx = 2048;
+    device.maxStorageBlockBytes = 128LL << 20;
+    return device;
+}
+
+MachineFacts goodMachine() {
+    MachineFacts facts;
+    facts.devices = {gpu()};
+    facts.assetsFolder = "/models";
+    facts.coreCount = 4;
+    return facts;
+}
+
+/// "severity id: problem → advice" of each finding, a line each.
+std::string linesOf(const MachineFacts& facts) {
+    std::string lines;
+    for (const Finding& finding : findingsOf(facts)) {
+        lines += std::string(severityName(finding.severity)) + " " + finding.id + ": " +
+                 finding.problem + " → " + finding.advice + "\n";
+    }
+    return lines;
+}
+
+TEST(Doctor, SaysNothingOfAGoodMachine) {
+    EXPECT_EQ(linesOf(goodMachine()), "");
+}
+
+TEST(Doctor, NoEgl) {
+    MachineFacts facts = goodMachine();
+    facts.devices.clear();
+    EXPECT_EQ(linesOf(facts),
+              "fatal no_egl: No EGL device was found: there is no driver to draw with. → Install "
+              "libegl1, libegl-mesa0 and libgl1-mesa-dri for the software device, or a GPU's "
+              "driver with EGL.\n");
+}
+
+TEST(Doctor, OldGl) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].problem = "OpenGL 3.3 only";
+    EXPECT_EQ(linesOf(facts),
+              "fatal device_does_not_serve: Device 0 does not serve: OpenGL 3.3 only. → OpenGL 4.5 "
+              "is needed: update this device's driver, or take another device with --device.\n"
+              "fatal no_device: No device makes an OpenGL 4.5 context: nothing can be measured. → "
+              "Install libegl-mesa0 and libgl1-mesa-dri of Mesa 20.3 or newer for the software "
+              "device.\n");
+    // Beside one that serves it is no more than a remark.
+    facts.devices.push_back(gpu());
+    EXPECT_EQ(linesOf(facts).substr(0, 29), "results device_does_not_serve");
+}
+
+TEST(Doctor, SoftwareOnly) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].isSoftware = true;
+    EXPECT_EQ(linesOf(facts),
+              "results software_only: There is no GPU, only the software device: claims that need "
+              "a GPU stay without a verdict. → On a machine with a GPU, install its driver with "
+              "EGL, and let this user open /dev/dri or /dev/nvidia*.\n");
+    facts.devices.push_back(gpu());
+    EXPECT_EQ(linesOf(facts), "");
+}
+
+TEST(Doctor, CoarseTimer) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].timerResolutionNs = 20000.0;
+    EXPECT_EQ(linesOf(facts),
+              "times coarse_timer: Device 0: its clock moves in steps of 20000 ns, so short passes "
+              "cannot be told apart. → Compare times of this device with more frames (--set "
+              "measure.repeats=50), or take another device.\n");
+}
+
+TEST(Doctor, SmallLimits) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].max3dTextureSizePx = 256;
+    facts.devices[0].maxStorageBlockBytes = 1 << 20;
+    EXPECT_EQ(linesOf(facts),
+              "results small_limits: Device 0 has smaller limits than OpenGL 4.5 promises (3D "
+              "textures of 256, storage blocks of 1048576): the largest cases will be marked "
+              "unsupported. → Measure those on another device; --set and --sweep make them "
+              "smaller.\n");
+}
+
+TEST(Doctor, Assets) {
+    MachineFacts facts = goodMachine();
+    facts.hasAssets = false;
+    facts.standInCount = 3;
+    EXPECT_EQ(linesOf(facts),
+              "results no_assets: The folder of real models, /models, is not there: stand-ins are "
+              "measured, and marked. → Run scripts/fetch-assets, or name a folder with --assets "
+              "or GFXREPRO_ASSETS.\n");
+    facts.hasAssets = true;
+    EXPECT_EQ(linesOf(facts),
+              "results stand_ins: The real models of 3 scenes are not in /models: stand-ins are "
+              "measured, and marked. → Run scripts/fetch-assets; `gfxrepro describe SCENE` says "
+              "where those come from that it cannot get.\n");
+    facts.standInCount = 0;
+    facts.missingSceneCount = 2;
+    EXPECT_NE(linesOf(facts).find(
+                  "results missing_scenes: 2 scenes have not even a stand-in: their cases will not "
+                  "run. → `gfxrepro describe SCENE` says which file each needs.\n"),
+              std::string::npos);
+}
+
+TEST(Doctor, Disk) {
+    MachineFacts facts = goodMachine();
+    facts.freeDiskBytes = 0.25 * 1024 * 1024 * 1024;
+    facts.isRunsWritable = false;
+    facts.runsFolder = "/usr/runs";
+    EXPECT_EQ(linesOf(facts),
+              "results runs_not_writable: /usr/runs cannot be written: no run can be kept there. → "
+              "Go to a folder of your own, or name one with --out.\n"
+              "results little_disk: Only 0.25 GiB of disk are free here; a run of a whole paper "
+              "writes up to 1 GiB of images. → Free some, or name a folder on another disk with "
+              "--out.\n");
+}
+
+TEST(Doctor, Programs) {
+    MachineFacts facts = goodMachine();
+    facts.hasGnuplot = false;
+    facts.cpuIsa = "SSE";
+    EXPECT_EQ(linesOf(facts),
+              "results no_gnuplot: gnuplot is not installed: the report has no curves. → Install "
+              "gnuplot-nox, then `gfxrepro report RUN` draws them.\n"
+              "times no_avx: The processor has no AVX: ray tracing on it takes several times "
+              "longer. → In a virtual machine, ask for the host's processor type; otherwise allow "
+              "more time with --set measure.time_limit_s=600.\n");
+}
+
+TEST(Doctor, Noise) {
+    MachineFacts facts = goodMachine();
+    facts.load = 3.0;
+    facts.cpuGovernor = "powersave";
+    facts.stolenFraction = 0.034;
+    EXPECT_EQ(linesOf(facts),
+              "times other_load: Other programs are running: a load of 3.0 on 4 cores. Times will "
+              "scatter. → Stop them, or wait, before a table of times is measured.\n"
+              "times cpu_governor: The processor changes its clock as it goes (governor "
+              "'powersave'): times will scatter. → As root: echo performance | tee "
+              "/sys/devices/system/cpu/cpu*/cpufreq/scaling_governor\n"
+              "times noisy_host: This virtual machine was kept waiting 3.4 % of the time: its host "
+              "is busy with others. → Measure times on a machine of one's own; elsewhere raise "
+              "measure.processes and look at the intervals.\n");
+    facts = goodMachine();
+    facts.cpuGovernor = "performance";
+    facts.load = 0.5;
+    EXPECT_EQ(linesOf(facts), "");
+}
+
+TEST(Doctor, WorstFirst) {
+    MachineFacts facts = goodMachine();
+    facts.load = 9.0;
+    facts.hasGnuplot = false;
+    facts.devices.clear();
+    const std::vector<Finding> findings = findingsOf(facts);
+    ASSERT_EQ(findings.size(), 3U);
+    EXPECT_EQ(findings[0].id, "no_egl");
+    EXPECT_EQ(findings[1].id, "no_gnuplot");
+    EXPECT_EQ(findings[2].id, "other_load");
+}
+
+}  // namespace
+}  // namespace gfxrepro::cli

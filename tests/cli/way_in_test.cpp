@@ -1,0 +1,232 @@
+// Help, man page and completion: made from the same definitions, checked by the programs they are
+// for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+
+std::vector<std::string> linesOf(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+bool isHere(const std::string& program) {
+    return runProgram({"/bin/sh", "-c", "command -v " + program}).exitCode == 0;
+}
+
+std::string manPage() {
+    const ProcessResult result = gfxrepro({"man"});
+    EXPECT_EQ(result.exitCode, 0);
+    return result.out;
+}
+
+/// Every command as words, {"image", "diff"}; from the man page, which has all of them.
+std::vector<std::vector<std::string>> allCommands() {
+    std::vector<std::vector<std::string>> commands;
+    for (const std::string& line : linesOf(manPage())) {
+        if (!line.starts_with(".SS gfxrepro ")) continue;
+        std::istringstream stream(line.substr(13));
+        commands.emplace_back();
+        for (std::string word; stream >> word && !word.starts_with("[");) {
+            commands.back().push_back(word);
+        }
+    }
+    return commands;
+}
+
+std::size_t columnsOf(const std::string& line) {
+    return static_cast<std::size_t>(
+        std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+void expectFitsOnAScreen(const std::vector<std::string>& command) {
+    const std::string name = testing::PrintToString(command);
+    std::vector<std::string> arguments = command;
+    arguments.emplace_back("--help");
+    const ProcessResult result = gfxrepro(arguments);
+    EXPECT_EQ(result.exitCode, 0) << name;
+    const std::vector<std::string> lines = linesOf(result.out);
+    EXPECT_LE(lines.size(), 24U) << name << "\n" << result.out;
+    for (const std::string& line : lines) EXPECT_LE(columnsOf(line), 80U) << name << ": " << line;
+}
+
+TEST(Help, FitsOnAScreen) {
+    const auto commands = allCommands();
+    EXPECT_GE(commands.size(), 18U);
+    EXPECT_THAT(commands, Contains(ElementsAre("image", "diff")));
+    expectFitsOnAScreen({});
+    expectFitsOnAScreen({"image"});
+    for (const auto& command : commands) expectFitsOnAScreen(command);
+}
+
+TEST(Help, HasEveryCommandInAGroup) {
+    const std::string help = gfxrepro({"--help"}).out;
+    for (const auto& command : allCommands()) {
+        EXPECT_NE(help.find(" " + command.front() + " "), std::string::npos) << command.front();
+    }
+    // CLI11's own group: the command has no place yet (runner/cli/help.cpp).
+    EXPECT_EQ(help.find("Subcommands"), std::string::npos);
+}
+
+TEST(Help, ExamplesNameWhatThereIs) {
+    for (const auto& command : allCommands()) {
+        std::vector<std::string> arguments = command;
+        arguments.emplace_back("--help");
+        const std::string help = gfxrepro(arguments).out;
+        const std::size_t at = help.find("\nExample: ");
+        if (at == std::string::npos) continue;
+        std::istringstream words(help.substr(at + 10));
+        for (std::string word; words >> word;) {
+            if (word.starts_with("--"))
+                EXPECT_NE(help.find("  " + word), std::string::npos) << word;
+        }
+    }
+}
+
+TEST(ManPage, PassesTheLinters) {
+    const TemporaryFolder folder;
+    const fs::path page = folder.write("gfxrepro.1", manPage());
+    bool isChecked = false;
+    if (isHere("mandoc")) {
+        EXPECT_EQ(
+            runProgram({"/usr/bin/env", "mandoc", "-T", "lint", "-W", "error", page.string()}).out,
+            "");
+        isChecked = true;
+    }
+    if (isHere("groff")) {
+        const ProcessResult groff = runProgram({"/usr/bin/env", "groff", "-man", "-ww", "-K",
+                                                "utf8", "-T", "utf8", "-z", page.string()});
+        EXPECT_EQ(groff.err, "");
+        EXPECT_EQ(groff.exitCode, 0);
+        isChecked = true;
+    }
+    if (!isChecked) GTEST_SKIP() << "neither mandoc nor groff is here";
+}
+
+TEST(ManPage, HasItsSectionsAndOptions) {
+    const std::string page = manPage();
+    for (const char* section : {"NAME", "SYNOPSIS", "DESCRIPTION", "COMMANDS", "EXIT STATUS",
+                                "ENVIRONMENT", "FILES", "EXAMPLES"}) {
+        EXPECT_NE(page.find(std::string("\n.SH ") + section + "\n"), std::string::npos) << section;
+    }
+    EXPECT_NE(page.find("\n.B \\-\\-profile quick|full|paper\n"), std::string::npos);
+}
+
+std::vector<std::string> completed(std::vector<std::string> words) {
+    words.insert(words.begin(), "complete");
+    const ProcessResult result = gfxrepro(words);
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.err, "");
+    return linesOf(result.out);
+}
+
+TEST(Completion, OffersWhatTheCommandLineTakes) {
+    EXPECT_THAT(completed({"rep"}), ElementsAre("report", "reproduce"));
+    EXPECT_THAT(completed({""}), IsSupersetOf({"run", "doctor", "completion"}));
+    EXPECT_THAT(completed({"run", "--pro"}), ElementsAre("--profile"));
+    EXPECT_THAT(completed({"run", "--profile", ""}), ElementsAre("full", "paper", "quick"));
+    EXPECT_THAT(completed({"run", "--profile=p"}), ElementsAre("--profile=paper"));
+    EXPECT_THAT(completed({"run", "--profile", "=", "p"}), ElementsAre("paper"));
+    EXPECT_THAT(completed({"run", "--quiet", "--dev"}), ElementsAre("--device"));
+    EXPECT_THAT(completed({"image", ""}), Contains("diff"));
+    EXPECT_THAT(completed({"list", "t"}), ElementsAre("tables", "techniques"));
+    EXPECT_THAT(completed({"list", "tables", ""}), IsEmpty());
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.2", "zju2005/2."}), Contains("zju2005/2.1"));
+    EXPECT_THAT(completed({"describe", "voxel"}), ElementsAre("voxelization"));
+    EXPECT_THAT(completed({"scene", "models/bu"}), ElementsAre("models/buddha", "models/bunny"));
+}
+
+TEST(Completion, OffersFilesByWhatTheyAre) {
+    const TemporaryFolder folder;
+    folder.write("a.yaml", "");
+    folder.write("a.txt", "");
+    folder.write("run/plan.json", "{}");
+    folder.write("sub/b.yaml", "");
+    const std::string here = folder.path().string() + "/";
+    EXPECT_THAT(completed({"run", here}),
+                ElementsAre(here + "a.yaml", here + "run/", here + "sub/"));
+    EXPECT_THAT(completed({"table", here}), ElementsAre(here + "run", here + "sub/"));
+    EXPECT_THAT(completed({"run", "--out", here}), ElementsAre(here + "run/", here + "sub/"));
+}
+
+TEST(Completion, SaysNothingToNonsense) {
+    EXPECT_THAT(completed({"run", "--nonsense="}), IsEmpty());
+    EXPECT_THAT(completed({"run", "--set", "reso"}), IsEmpty());
+    EXPECT_THAT(completed({"table", "/not/there/"}), IsEmpty());
+    EXPECT_THAT(completed({"describe", "--nonsense", "no such name"}), IsEmpty());
+    completed({});
+}
+
+/// What the shell says.
+std::string answerOf(const std::string& shell, const std::string& script) {
+    const ProcessResult result = runProgram({"/usr/bin/env", shell, "-c", script});
+    EXPECT_EQ(result.err, "");
+    return result.out;
+}
+
+TEST(Completion, BashAsksTheProgram) {
+    const std::string script = "source <('" GFXREPRO_PROGRAM
+                               "' completion bash)\n"
+                               "COMP_WORDS=('" GFXREPRO_PROGRAM
+                               "' run --profile '') COMP_CWORD=3\n"
+                               "_gfxrepro; echo \"${COMPREPLY[*]}\"\n"
+                               "COMP_WORDS=('" GFXREPRO_PROGRAM
+                               "' reproduce zju2005/2.1 --pro) COMP_CWORD=2\n"
+                               "_gfxrepro; echo \"${COMPREPLY[*]}\"\n"
+                               "complete -p gfxrepro";
+    EXPECT_EQ(answerOf("bash", script),
+              "full paper quick\nzju2005/2.1 zju2005/2.10\n"
+              "complete -o default -F _gfxrepro gfxrepro\n");
+}
+
+TEST(Completion, FishAsksTheProgram) {
+    if (!isHere("fish")) GTEST_SKIP() << "no fish here";
+    const std::string program = GFXREPRO_PROGRAM;
+    const std::string script = "set PATH " + fs::path(program).parent_path().string() +
+                               " $PATH; gfxrepro completion fish | source; "
+                               "complete -C 'gfxrepro run --profile '; complete -C 'gfxrepro rep'";
+    EXPECT_EQ(answerOf("fish", script), "full\npaper\nquick\nreport\nreproduce\n");
+}
+
+TEST(Completion, ZshTakesTheScript) {
+    if (!isHere("zsh")) GTEST_SKIP() << "no zsh here";
+    // Its completion needs a terminal: compadd is replaced by a function that prints.
+    const std::string script =
+        "compdef() { }\ncompadd() { print -r -- \"$@\" }\n"
+        "source <('" GFXREPRO_PROGRAM
+        "' completion zsh)\n"
+        "words=('" GFXREPRO_PROGRAM "' run --profile q) CURRENT=4; _gfxrepro";
+    EXPECT_THAT(answerOf("zsh", script), testing::HasSubstr("-- quick\n"));
+}
+
+// The first line of a config is for editors: no number may depend on it.
+TEST(Modeline, ChangesNoPlan) {
+    const TemporaryFolder folder;
+    const auto planOf = [&](const std::string& head) {
+        const fs::path config = folder.write(
+            "a.yaml", head + "sweep_of: a\ntitle: A\ntechnique: template\noutput: {width: 32}\n");
+        const ProcessResult result = gfxrepro({"plan", config.string(), "--json"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.out;
+    };
+    const std::string without = planOf("");
+    EXPECT_NE(without.find("\"hash\""), std::string::npos);
+    EXPECT_EQ(planOf("# yaml-language-server: $schema=../schema/experiment.json\n"), without);
+    EXPECT_NE(planOf("scene: shapes/torus\n"), without);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

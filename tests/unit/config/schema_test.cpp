@@ -1,0 +1,306 @@
+// The schema as JSON, judged by a validator that is not ours; and the readers beside it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "runner/config/schema.h"
+#include "runner/core/files.h"
+#include "runner/report/records.h"
+#include "tests/unit/config/experiment_fixture.h"
+
+namespace gfxrepro::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kConfigs = GFXREPRO_CONFIGS;
+
+nlohmann::json plainJson(const Node& node) {
+    return nlohmann::json::parse(node.toJson().dump());
+}
+
+/// A committed schema.
+class JsonSchema {
+  public:
+    explicit JsonSchema(const std::string& kind)
+        : text_(nlohmann::json::parse(readFile(kConfigs / "schema" / (kind + ".json")))) {
+        valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
+        parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(text_), schema_);
+    }
+
+    /// Empty: valid; else the innermost complaint.
+    std::string complaint(const nlohmann::json& document) const {
+        valijson::ValidationResults results;
+        const valijson::adapters::NlohmannJsonAdapter adapter(document);
+        if (valijson::Validator(valijson::Validator::kStrongTypes)
+                .validate(schema_, adapter, &results)) {
+            return "";
+        }
+        std::string text = "invalid";
+        for (valijson::ValidationResults::Error error; results.popError(error);) {
+            text += "\n";
+            for (const std::string& step : error.context) text += step;
+            text += ": " + error.description;
+        }
+        return text;
+    }
+    std::string complaintAbout(const std::string& yaml) const {
+        return complaint(plainJson(parseYaml(yaml, "test.yaml")));
+    }
+
+  private:
+    nlohmann::json text_;
+    valijson::Schema schema_;
+};
+
+std::string kindOf(const fs::path& config) {
+    if (config.filename().string().starts_with("expect-")) return "expectations";
+    const std::string folder = *config.lexically_relative(kConfigs).begin();
+    return folder == "scenes" ? "scene" : folder == "presets" ? "preset" : "experiment";
+}
+
+TEST(JsonSchema, TakesEveryShippedFile) {
+    int count = 0;
+    for (const std::string kind : {"experiment", "preset", "scene", "expectations"}) {
+        const JsonSchema schema(kind);
+        for (const auto& file : fs::recursive_directory_iterator(kConfigs)) {
+            if (file.path().extension() != ".yaml" || kindOf(file.path()) != kind) continue;
+            EXPECT_EQ(schema.complaint(plainJson(parseYamlFile(file.path()))), "") << file.path();
+            ++count;
+        }
+    }
+    EXPECT_GT(count, 200);
+}
+
+TEST(JsonSchema, RefusesWhatIsNoDocumentAtAll) {
+    for (const char* kind : {"experiment", "preset", "scene", "expectations"}) {
+        const JsonSchema schema(kind);
+        for (const char* yaml : {"[]", "text", "12", "nonsense: 1"}) {
+            EXPECT_NE(schema.complaintAbout(yaml), "") << kind << ": " << yaml;
+        }
+    }
+}
+
+// Both must refuse: the readers with a place, the schema for editors without.
+TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
+    const JsonSchema schema("experiment");
+    const std::string head = "table: p/1\ntitle: t\ntechnique: template\n";
+    const std::string table = head + "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: ";
+    const std::string claim = table + "{aa: m, bb: m}}\nclaims:\n  C: ";
+    ASSERT_EQ(loadError(head), "no error");
+    ASSERT_EQ(schema.complaintAbout(head), "");
+    ASSERT_EQ(loadError(claim + "{says: s, order: aa < bb}"), "no error");
+    ASSERT_EQ(schema.complaintAbout(claim + "{says: s, order: aa < bb}"), "");
+    for (const std::string& text : {
+             std::string("title: t\ntechnique: template\n"),    // no identity
+             head + "figure: p/2\n",                            // two
+             std::string("table: p/1\ntechnique: template\n"),  // no title
+             std::string("table: p/1\ntitle: t\n"),             // nothing to measure or print
+             head + "ouptut: {width: 64}\n",                    // unknown keys, at each depth
+             head + "output: {widht: 64}\n",
+             head + "measure: {warm: 1}\n",
+             head + "profiles: {full: {}}\n",
+             head + "profiles: {quick: {ouptut: {}}}\n",
+             table + "{aa: {metric: m, formt: x}}}\n",
+             claim + "{says: s, order: aa < bb, within: 5%}",  // of another type
+             claim + "{says: s, order: aa < bb, bound: aa, above: 1}",
+             claim + "{says: s}",
+             claim + "{order: aa < bb}",
+             claim + "{says: s, ratio: aa / bb}",
+             claim + "{says: s, bound: aa}",
+             claim + "{says: s, trend: aa, over: scene}",
+             claim + "{says: s, trend: aa, direction: increasing}",
+             claim + "{says: s, crossover: [aa], over: scene, between: [1, 2]}",
+             claim + "{says: s, independent: aa, of: scene, within: 25}",
+             claim + "{says: s, exact: aa, equals: about}",
+             claim + "{says: s, order: aa < bb, device: cpu}",
+             claim + "{says: s, order: aa < bb, statistic: mode}",
+             claim + "{says: s, order: aa < bb, profile: fast}",
+             head + "output: {width: 0}\n",  // ranges and types
+             head + "output: {width: 64.5}\n",
+             head + "measure: {lane: fast}\n",
+             head + "measure: {repeats: often}\n",
+             head + "params: 12\n",
+             head + "sweep: [1, 2]\n",
+             head + "sweep: {brightness: 1}\n",
+             head + "sweep: {brightness: []}\n",
+             head + "sweep: {brightness: {range: [1]}}\n",
+             head + "sweep: {brightness: {log2: [1, 2, 4]}}\n",
+             head + "sweep: {brightness: {steps: [1, 2]}}\n",
+             head + "assumptions: {a: {value: 1}}\n",
+             head + "assumptions: {a: {why: w, vlaue: 1}}\n",
+         }) {
+        EXPECT_NE(loadError(text), "no error") << text;
+        EXPECT_NE(schema.complaintAbout(text), "") << text;
+    }
+}
+
+TEST(JsonSchema, KnowsTheParametersOfEachTechnique) {
+    const JsonSchema schema("experiment");
+    const std::string head = "table: p/1\ntitle: t\ntechnique: voxelization\n";
+    for (const char* good :
+         {"params: {resolution: 64}", "params: {method: worksheet}",
+          "sweep: {resolution: [64, 128]}", "sweep: {resolution: {log2: [64, 128]}}",
+          "profiles: {quick: {sweep: {resolution: [64]}}}",
+          "profiles: {quick: {sweep: null, params: {resolution: null}}}"}) {
+        EXPECT_EQ(schema.complaintAbout(head + good), "") << good;
+    }
+    for (const char* bad :
+         {"params: {resolutoin: 64}", "params: {resolution: many}", "params: {resolution: 1e9}",
+          "params: {method: by_hand}", "sweep: {resolutoin: [64]}", "sweep: {resolution: [many]}",
+          "sweep: {resolution: 64}", "profiles: {quick: {params: {resolutoin: 64}}}",
+          "profiles: {quick: {sweep: {resolutoin: [64]}}}"}) {
+        EXPECT_NE(schema.complaintAbout(head + bad), "") << bad;
+    }
+    EXPECT_NE(schema.complaintAbout("table: p/1\ntitle: t\ntechnique: voxelisation\n"), "");
+    // Where the technique comes from a file that is extended, nothing is known of parameters.
+    EXPECT_EQ(schema.complaintAbout("table: p/1\nextends: x.yaml\nparams: {resolutoin: 1}"), "");
+}
+
+TEST(JsonSchema, RefusesWrongScenesAndExpectations) {
+    const JsonSchema scene("scene");
+    const std::string head = "scene: a/b\ndoc: d\nsources: ";
+    EXPECT_EQ(scene.complaintAbout(head + "[{file: a.ply}, {generator: terrain, seed: 1}]"), "");
+    for (const char* bad :
+         {"[]", "[{}]", "{file: a.ply}", "[{file: /a.ply}]", "[{file: a.ply, up: x}]",
+          "[{file: a.ply, generator: terrain}]", "[{generator: terrian}]",
+          "[{generator: terrain, seed: -1}]", "[{height_map: a.png}]",
+          "[{height_map: a.png, spacing_m: 0}]", "[{height_map: a.png, spacing_m: 1, detail_m: 1}]",
+          "[{file: a.ply, points: 0}]"}) {
+        EXPECT_NE(scene.complaintAbout(head + bad), "") << bad;
+    }
+    const JsonSchema expectations("expectations");
+    const std::string entry = "{table: p/1, reason: r, until: 2027-01-31";
+    EXPECT_EQ(expectations.complaintAbout("fails: [" + entry + ", status: timeout, at: {a: [1]}}]"),
+              "");
+    for (const std::string& bad :
+         {std::string("failures: []"), "skips: [" + entry + ", status: timeout}]",
+          "fails: [" + entry + ", status: late}]", std::string("fails: [{table: p/1}]"),
+          std::string("flakes: [{table: p/1, reason: r, until: soon}]")}) {
+        EXPECT_NE(expectations.complaintAbout(bad), "") << bad;
+    }
+}
+
+/// A section's keys in a file that is right: the place for a bad value.
+struct Embedding {
+    std::string section;
+    std::string before;
+    std::string indent;
+    std::vector<std::pair<std::string, std::string>> keys;  // as they are when another is tested
+};
+
+/// "no error", or the error with a value of no use at `key`.
+class BadValues : public ExperimentTest {
+  protected:
+    /// Whether the reader complains of the very line on which the value of no use stands.
+    bool isNoticed(const Embedding& where, const std::string& key) const {
+        std::string text = where.before + where.indent + key + ": [[nonsense]]\n";
+        const auto line = std::count(text.begin(), text.end(), '\n');
+        for (const auto& [name, value] : where.keys) {
+            if (name != key) text += where.indent + name + ": " + value + "\n";
+        }
+        const std::string error = loadError(text);
+        return error.find(".yaml:" + std::to_string(line) + ":") != std::string::npos &&
+               error.find("unknown key") == std::string::npos;
+    }
+};
+
+// A key of the schema that nobody reads would be ignored in silence.
+TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
+    const std::string head = "table: p/1\ntitle: t\ntechnique: x\n";
+    const std::string table = head + "sweep: {scene: [s, t]}\n";
+    const std::string claim = table +
+                              "layout: {rows: scene, columns: {aa: m, bb: m}}\n"
+                              "printed: {values: \"scene, aa\\ns, 1\"}\nclaims:\n  C:\n";
+    std::vector<Embedding> embeddings = {
+        {"identity", "title: t\ntechnique: x\n", "", {}},
+        {"composition", head, "", {}},
+        {"content",
+         "table: p/1\n",
+         "",
+         {{"title", "t"}, {"technique", "x"}, {"layout", "{columns: {aa: m}}"}}},
+        {"profiles", head + "profiles:\n", "  ", {}},
+        {"output", head + "output:\n", "  ", {}},
+        {"measure", head + "measure:\n", "  ", {}},
+        {"sweep", head + "sweep:\n", "  ", {}},
+        {"axis", head + "sweep:\n  a:\n", "    ", {}},
+        {"layout", table + "layout:\n", "  ", {{"rows", "scene"}, {"columns", "{aa: m}"}}},
+        {"selection", table + "layout:\n  columns:\n    aa:\n", "      ", {{"metric", "m"}}},
+        {"printed", table + "layout: {rows: scene, columns: {aa: m}}\nprinted:\n", "  ", {}},
+        {"assumption", head + "assumptions:\n  a:\n", "    ", {{"why", "w"}}},
+        {"claim", claim, "    ", {{"says", "s"}, {"order", "aa < bb"}}},
+        {"claim.order", claim, "    ", {{"says", "s"}}},
+        {"claim.ratio", claim, "    ", {{"says", "s"}, {"ratio", "aa / bb"}}},
+        {"claim.trend",
+         claim,
+         "    ",
+         {{"says", "s"}, {"trend", "aa"}, {"over", "scene"}, {"direction", "increasing"}}},
+        {"claim.independent",
+         claim,
+         "    ",
+         {{"says", "s"}, {"independent", "aa"}, {"of", "scene"}, {"within", "5%"}}},
+        {"claim.bound", claim, "    ", {{"says", "s"}, {"bound", "aa"}}},
+        {"claim.exact", claim, "    ", {{"says", "s"}, {"exact", "aa"}}},
+        {"claim.tolerance", claim, "    ", {{"says", "s"}, {"tolerance", "aa"}, {"within", "5%"}}},
+        {"claim.crossover",
+         claim,
+         "    ",
+         {{"says", "s"}, {"crossover", "[aa, bb]"}, {"over", "scene"}, {"between", "[1, 2]"}}},
+    };
+    // Any value will do here; those who own scenes and assumptions judge it.
+    const std::set<std::string> anything = {"content.scene", "sweep.scene", "assumption.value",
+                                            "assumption.range"};
+    std::set<std::string> seen;
+    for (const Embedding& embedding : embeddings) {
+        seen.insert(embedding.section);
+        for (const std::string& key : keysOf(embedding.section)) {
+            const std::string name = embedding.section + "." + key;
+            if (!anything.contains(name)) EXPECT_TRUE(isNoticed(embedding, key)) << name;
+        }
+    }
+    for (const SchemaSection& section : schema().front().sections) {
+        EXPECT_TRUE(seen.contains(section.name)) << section.name << " has no test";
+    }
+}
+
+TEST(Schema, StatusesAreThoseOfRecords) {
+    const auto& keys = schemaSection("expected_failure").keys;
+    const auto status = std::find_if(keys.begin(), keys.end(),
+                                     [](const SchemaKey& key) { return key.name == "status"; });
+    ASSERT_NE(status, keys.end());
+    std::size_t count = 0;
+    for (const auto& name : status->json.at("enum")) {
+        EXPECT_NO_THROW(report::statusFromName(name.get<std::string>())) << name;
+        ++count;
+    }
+    EXPECT_EQ(count, static_cast<std::size_t>(report::Status::Error) + 1);
+}
+
+TEST(Schema, DescribesEveryKeyInWordsAndInMarkdown) {
+    const std::string words = describeConfig();
+    const std::string markdown = describeConfigInMarkdown();
+    for (const SchemaFile& file : schema()) {
+        for (const SchemaSection& section : file.sections) {
+            for (const SchemaKey& key : section.keys) {
+                EXPECT_NE(markdown.find("| `" + key.name + "` |"), std::string::npos) << key.name;
+                EXPECT_FALSE(key.doc.empty()) << section.name << "." << key.name;
+                if (file.name != "experiment") continue;
+                EXPECT_NE(words.find("\n" + section.path + key.name + " "), std::string::npos)
+                    << section.path << key.name;
+            }
+        }
+    }
+}
+
+TEST(Schema, UnknownKindIsAUsageError) {
+    EXPECT_EQ(test::errorText([] { (void)jsonSchema("table", {}); }),
+              "schema 'table'; allowed: experiment, preset, scene, expectations");
+}
+
+}  // namespace
+}  // namespace gfxrepro::config
