@@ -157,21 +157,19 @@ SchemaSection printed() {
 }
 
 SchemaSection plot() {
-    return {
-        "plot",
-        "plot.",
-        "",
-        {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
-         {"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
-          oneOrMore(text())},
-         {"by", "row axis", "none", "of each y a curve a value", text()},
-         {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
-          oneOrMore(text())},
-         {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
-         {"log", "[x, y]", "[]", "axes that are logarithmic",
-          listOf({{"enum", {"x", "y"}}})},
-         {"title", "line", "the file's", "above the curves", text()}},
-        false};
+    return {"plot",
+            "plot.",
+            "",
+            {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
+             {"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
+              oneOrMore(text())},
+             {"by", "row axis", "none", "of each y a curve a value", text()},
+             {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
+              oneOrMore(text())},
+             {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+             {"log", "[x, y]", "[]", "axes that are logarithmic", listOf({{"enum", {"x", "y"}}})},
+             {"title", "line", "the file's", "above the curves", text()}},
+            false};
 }
 
 SchemaSection assumption() {
