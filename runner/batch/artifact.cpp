@@ -91,6 +91,7 @@ std::string scriptText(const Plan& plan, const config::Experiment& experiment) {
     for (const std::string& set : plan.request.sets) command += " --set " + shellQuoted(set);
     for (const std::string& sweep : plan.request.sweeps)
         command += " --sweep " + shellQuoted(sweep);
+    for (const std::string& only : plan.request.only) command += " --only " + shellQuoted(only);
     return fmt::format(
         "#!/bin/sh\n# {}: {}\nset -e\ncd \"$(dirname \"$0\")/..\"\n"
         "exec \"${{GFXREPRO:-gfxrepro}}\" {} --out again/{}\n",

@@ -171,6 +171,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
         const PhaseScope phase(context, "record", result.cost.recordS);
         recorder.setIteration(frame, 0);
         technique.record(recorder);
+        recorder.checkTruths();
         context.device.finish("recording");
         profiler.collect();
     }
@@ -180,7 +181,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
 
 CaseResult measureCase(const Case& item, MeasureContext& context) {
     CaseResult result;
-    RunRecorder recorder(context.runDir, item, result);
+    RunRecorder recorder(context.runDir, context.command, item, result);
     const technique::TechniqueInfo& info =
         technique::findTechnique(context.techniques, item.technique, {});
     config::Params params(item.given, "technique '" + item.technique + "'");

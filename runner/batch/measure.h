@@ -18,6 +18,7 @@ struct MeasureContext {
     SceneCache& scenes;
     std::span<const technique::TechniqueInfo> techniques;
     std::filesystem::path runDir;
+    std::string command;            // as typed
     long long baselineMemoryBytes;  // resident before the first scene was loaded
     /// Told at the begin (true) and end (false) of load, setup, render and record.
     std::function<void(std::string_view phase, bool isBegin)> onPhase;

@@ -103,6 +103,17 @@ std::string Case::slug() const {
     return slug;
 }
 
+std::string Case::method() const {
+    const config::Node* method = params.find("method");
+    return method ? method->text() : "";
+}
+
+Json Case::recordedParams() const {
+    Json json = params.toJson();
+    json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
+    return json;
+}
+
 Json Case::toJson() const {
     return {{"id", id},
             {"experiment", experiment},
@@ -153,6 +164,7 @@ Json Plan::toJson() const {
                   {{"configs", request.configs},
                    {"sets", request.sets},
                    {"sweeps", request.sweeps},
+                   {"only", request.only},
                    {"device", request.device}}},
                  {"scenes", Json::object()},
                  {"experiments", Json::array()},
@@ -183,8 +195,12 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     plan.deviceClass = required(node, "device_class").text();
     plan.seed = std::stoull(required(node, "seed").text());
     const config::Node& request = required(node, "request");
-    plan.request = {textsFrom(required(request, "configs")), textsFrom(required(request, "sets")),
-                    textsFrom(required(request, "sweeps")), required(request, "device").text()};
+    plan.request = {textsFrom(required(request, "configs")),
+                    textsFrom(required(request, "sets")),
+                    textsFrom(required(request, "sweeps")),
+                    {},
+                    required(request, "device").text()};
+    if (const config::Node* only = request.find("only")) plan.request.only = textsFrom(*only);
     for (const auto& [reference, key] : required(node, "scenes").entries()) {
         plan.sceneKeys[reference] = key.text();
     }

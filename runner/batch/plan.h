@@ -31,8 +31,11 @@ struct Case {
     config::Measure measure;
     std::uint64_t seed = 0;
 
-    std::string title() const;  // "zju2005/2.1 scene=models/duck"
-    std::string slug() const;   // "zju2005-2.1": for file names
+    std::string title() const;   // "zju2005/2.1 scene=models/duck"
+    std::string slug() const;    // "zju2005-2.1": for file names
+    std::string method() const;  // the parameter of that name; empty when there is none
+    /// `params` with the size of the output: what records and images say.
+    nlohmann::ordered_json recordedParams() const;
     nlohmann::ordered_json toJson() const;
     static Case fromJson(const config::Node& node);
 };
@@ -42,6 +45,7 @@ struct Request {
     std::vector<std::string> configs;  // absolute paths
     std::vector<std::string> sets;     // --set, as written
     std::vector<std::string> sweeps;   // --sweep, as written
+    std::vector<std::string> only;     // --only, as written
     std::string device = "auto";
 };
 

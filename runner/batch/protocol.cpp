@@ -56,7 +56,8 @@ Json toJson(const CaseResult& result) {
         json["samples"].push_back({s.frame, s.repeat, s.pass, s.metric, s.unit, s.value, s.isVoid});
     }
     for (const report::ImageEntry& i : result.images) {
-        json["images"].push_back({i.caseId, i.table, i.frame, i.name, i.png, i.exr, i.title});
+        json["images"].push_back(
+            {i.caseId, i.table, i.frame, i.name, i.png, i.exr, i.title, i.truthOf});
     }
     for (const SceneUse& s : result.scenes) {
         json["scenes"].push_back({s.reference, s.kind, s.description, s.sha256});
@@ -74,7 +75,8 @@ CaseResult caseResultFromJson(const Json& json) {
         result.samples.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5), s.at(6)});
     }
     for (const Json& i : json.at("images")) {
-        result.images.push_back({i.at(0), i.at(1), i.at(2), i.at(3), i.at(4), i.at(5), i.at(6)});
+        result.images.push_back(
+            {i.at(0), i.at(1), i.at(2), i.at(3), i.at(4), i.at(5), i.at(6), i.at(7)});
     }
     for (const Json& s : json.at("scenes")) {
         result.scenes.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});

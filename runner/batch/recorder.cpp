@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "runner/batch/image_attributes.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
 
@@ -36,7 +37,8 @@ void RunRecorder::metric(std::string_view metric, double value, std::string_view
         {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value, false});
 }
 
-void RunRecorder::image(std::string_view name, const image::ImageF& image) {
+void RunRecorder::image(std::string_view name, const image::ImageF& image,
+                        const technique::ImageOptions& options) {
     static const std::vector<std::string> kChannels[] = {
         {}, {"Y"}, {}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     const int channels = image.channels();
@@ -44,13 +46,6 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image) {
         throw Error("image '" + std::string(name) + "' has " + std::to_string(channels) +
                     " channels; 1, 3 or 4 are allowed");
     }
-    image::ExrImage exr;
-    exr.add(image, kChannels[channels]);
-    this->image(name, exr, image);
-}
-
-void RunRecorder::image(std::string_view name, const image::ExrImage& image,
-                        const image::ImageF& preview) {
     checkFileName(name);
     std::string stem = "images/" + item_.slug() + "/" + item_.id + "-" + std::string(name);
     if (item_.measure.frames > 1) {
@@ -59,13 +54,27 @@ void RunRecorder::image(std::string_view name, const image::ExrImage& image,
         stem += frame;
     }
     fs::create_directories((runDir_ / stem).parent_path());
-    image::ExrImage exr = image;
-    exr.attributes["case"] = item_.id;
-    exr.attributes["title"] = item_.title();
+    image::ExrImage exr = options.layers;
+    exr.add(image, kChannels[channels]);
+    describeImage(exr, item_, frame_, command_, options);
     image::writeExr(runDir_ / (stem + ".exr"), exr);
-    image::writePng(runDir_ / (stem + ".png"), image::toSrgb8(preview));
+    image::writePng(runDir_ / (stem + ".png"), image::toSrgb8(image));
     result_.images.push_back({item_.id, item_.experiment, frame_, std::string(name), stem + ".png",
-                              stem + ".exr", item_.title()});
+                              stem + ".exr", item_.title(), options.truthOf});
+}
+
+void RunRecorder::checkTruths() const {
+    for (const report::ImageEntry& truth : result_.images) {
+        if (truth.frame != frame_ || truth.truthOf.empty()) continue;
+        const bool isThere = std::any_of(
+            result_.images.begin(), result_.images.end(), [&](const report::ImageEntry& other) {
+                return other.frame == frame_ && other.name == truth.truthOf;
+            });
+        if (!isThere) {
+            throw Error("image '" + truth.name + "' is the truth of '" + truth.truthOf +
+                        "', which is not among the frame's images");
+        }
+    }
 }
 
 fs::path RunRecorder::artifact(std::string_view fileName) {

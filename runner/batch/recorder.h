@@ -13,8 +13,10 @@ namespace gfxrepro::batch {
 /// are not finite and for names that are no file names.
 class RunRecorder : public technique::Recorder {
   public:
-    RunRecorder(const std::filesystem::path& runDir, const Case& item, CaseResult& result)
-        : runDir_(runDir), item_(item), result_(result) {}
+    /// `command` is the one that measures, as typed.
+    RunRecorder(const std::filesystem::path& runDir, const std::string& command, const Case& item,
+                CaseResult& result)
+        : runDir_(runDir), command_(command), item_(item), result_(result) {}
 
     /// Where in the case the next calls belong.
     void setIteration(int frame, int repeat) {
@@ -24,13 +26,15 @@ class RunRecorder : public technique::Recorder {
 
     void metric(std::string_view metric, double value, std::string_view unit,
                 std::string_view pass) override;
-    void image(std::string_view name, const image::ImageF& image) override;
-    void image(std::string_view name, const image::ExrImage& image,
-               const image::ImageF& preview) override;
+    void image(std::string_view name, const image::ImageF& image,
+               const technique::ImageOptions& options) override;
     std::filesystem::path artifact(std::string_view fileName) override;
+    /// Throws Error when an image of this frame is the truth of one that was not given.
+    void checkTruths() const;
 
   private:
     std::filesystem::path runDir_;
+    std::string command_;
     const Case& item_;
     CaseResult& result_;
     int frame_ = 0;

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "runner/batch/report_runs.h"
 #include "runner/core/files.h"
 #include "runner/report/report.h"
 
@@ -133,7 +134,8 @@ std::vector<report::ClaimResult> writeResults(const fs::path& runDir, const Stor
         report::writeClaims(runDir, claims, context);
     }
     if (which.report) {
-        report::writeReport(runDir, run.plan.experiments, run.records, run.manifest, context);
+        const html::ReportRun shown = reportRun(runDir, run);
+        html::writeReport(runDir / "report.html", {&shown, 1});
     }
     return claims;
 }

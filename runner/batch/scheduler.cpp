@@ -270,7 +270,8 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lan
             "--device",       options.device,
             "--assets",       options.assetsFolder,
             "--lane",         lane == Lane::Timing ? "timing" : "quality",
-            "--run",          runDir.string()};
+            "--run",          runDir.string(),
+            "--command",      options.command};
 }
 
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases) {
@@ -296,14 +297,12 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
     row.caseId = item.id;
     row.table = item.experiment;
     row.technique = item.technique;
-    if (const config::Node* method = item.params.find("method")) row.method = method->text();
+    row.method = item.method();
     // As the config spells it: a user's own file is an absolute path in item.scene.
     const config::Node* sceneAxis = item.axes.find("scene");
     const config::Node& scene = sceneAxis ? *sceneAxis : item.scene;
     if (!scene.isNull()) row.scene = scene.text();
-    nlohmann::ordered_json params = item.params.toJson();
-    params["output"] = {{"width", item.outputWidthPx}, {"height", item.outputHeightPx}};
-    row.params = params.dump();
+    row.params = item.recordedParams().dump();
     row.process = unit.process;
     row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";
     row.status = result.status;

@@ -29,6 +29,7 @@ struct SchedulerOptions {
     std::string assetsFolder;
     int jobs = 1;  // quality units at once
     Expectations expectations = {};
+    std::string command = {};  // as typed: images say what measured them
 };
 
 struct RunOutcome {

@@ -68,6 +68,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
                            scenes,
                            techniques,
                            options.runDir,
+                           options.command,
                            residentBytes(::getpid()),
                            [](std::string_view phase, bool isBegin) {
                                send({{isBegin ? "begin" : "end", phase}});

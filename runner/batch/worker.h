@@ -14,6 +14,7 @@ struct WorkerOptions {
     config::Measure::Lane lane = config::Measure::Lane::Quality;
     std::string assetsFolder;
     std::string runDir;
+    std::string command = {};  // that measures, as typed
 };
 
 /// Runs until standard input ends. Every failure of a case becomes its status; nothing is thrown

@@ -7,7 +7,7 @@ namespace gfxrepro::cli {
 
 int check(const Context& context, const Selection& selection) {
     const scene::Catalog catalog = openCatalog(selection.assets);
-    batch::Request request{{}, selection.sets, selection.sweeps, selection.device};
+    batch::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
     for (const std::string& file : selection.names) {
         request.configs = {file};
         const config::Experiment experiment = loadExperiments(request, selection.profile).front();

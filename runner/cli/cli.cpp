@@ -10,6 +10,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
 #include "runner/cli/help.h"
+#include "runner/cli/image_commands.h"
 #include "runner/cli/man_page.h"
 #include "runner/cli/parse.h"
 #include "runner/core/files.h"
@@ -28,9 +29,9 @@ struct Options {
     SensitivityOptions sensitivity;
     DescribeOptions describe;
     batch::WorkerOptions worker;
-    std::string name;  // of list; a run directory; a shell
-    std::vector<std::string> shards;
-    std::string imageA, imageB, imageOut;
+    std::string name;                 // of list; a run directory; a shell
+    std::vector<std::string> shards;  // run directories of merge and report
+    ImageCommandOptions image;
     std::string out;  // of export
     std::string lane = "quality";
     bool asJson = false;
@@ -59,6 +60,11 @@ CLI::Option* addConfigs(CLI::App* app, std::vector<std::string>& names) {
     return app->add_option("configs", names, "config files")->option_text("CONFIG");
 }
 
+CLI::Option* addTables(CLI::App* app, std::vector<std::string>& names) {
+    return app->add_option("tables", names, "PAPER, PAPER/TABLE or config files")
+        ->option_text("TABLE");
+}
+
 void addSelection(CLI::App* app, Selection& selection) {
     addProfile(app, selection.profile);
     app->add_option("--set", selection.sets, "laid over every config")
@@ -71,6 +77,12 @@ void addSelection(CLI::App* app, Selection& selection) {
     addAssets(app, selection.assets);
 }
 
+void addOnly(CLI::App* app, std::vector<std::string>& only) {
+    app->add_option("--only", only, "only the cases that have it")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+}
+
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
     app->add_option("--from", from, "run to predict times from (default: the newest in runs/)")
         ->allow_extra_args(false)
@@ -79,6 +91,7 @@ void addFrom(CLI::App* app, std::vector<std::string>& from) {
 
 void addRunOptions(CLI::App* app, RunOptions& options) {
     addSelection(app, options.selection);
+    addOnly(app, options.selection.only);
     app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)")
         ->option_text("DIR");
     app->add_option("--resume", options.resume,
@@ -129,8 +142,9 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
 
     CLI::App* planApp =
         app.add_subcommand("plan", "list the cases of configs with their time and memory");
-    addConfigs(planApp, o.selection.names)->required();
+    addTables(planApp, o.selection.names)->required();
     addSelection(planApp, o.selection);
+    addOnly(planApp, o.selection.only);
     addFrom(planApp, o.run.from);
     planApp->add_flag("--json", o.asJson, "the plan as it would be frozen");
     planApp->callback(
@@ -139,16 +153,14 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
 
 void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs: records.csv");
-    addConfigs(runApp, o.run.selection.names);
+    addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =
         app.add_subcommand("reproduce", "run + tables + claims + report of papers or tables");
-    reproduceApp
-        ->add_option("names", o.run.selection.names,
-                     "PAPER, PAPER/TABLE or a config file; none: all papers")
-        ->option_text("TABLE");
+    addTables(reproduceApp, o.run.selection.names)
+        ->description("PAPER, PAPER/TABLE or config files; none: all papers");
     addRunOptions(reproduceApp, o.run);
     reproduceApp->callback([&] { o.command = [&] { return reproduce(context, o.run); }; });
 
@@ -161,7 +173,14 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     };
     addResult("table", "make a run's tables again from its records", table);
     addResult("claims", "judge a run's claims again", claims);
-    addResult("report", "make a run's report.html again", report);
+    CLI::App* reportApp =
+        app.add_subcommand("report", "make a run's report.html again, or one of several runs");
+    reportApp->add_option("runs", o.shards, "run directories, or kept results")
+        ->required()
+        ->option_text("RUN");
+    reportApp->add_option("--out", o.out, "default RUN/report.html; of several: report.html")
+        ->option_text("FILE");
+    reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out); }; });
 
     CLI::App* exportApp =
         app.add_subcommand("export", "a run as an artifact: results, licences, checksums");
@@ -183,9 +202,9 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
     SubmitOptions& s = o.submit;
     CLI::App* submitApp =
         app.add_subcommand("submit", "shards on other machines: a Slurm array, or commands");
-    submitApp->add_option("configs", s.selection.names, "config files, papers or tables")
-        ->option_text("TABLE");
+    addTables(submitApp, s.selection.names);
     addSelection(submitApp, s.selection);
+    addOnly(submitApp, s.selection.only);
     submitApp->add_option("--out", s.out, "folder of the shards and of the merged run")
         ->option_text("DIR");
     submitApp->add_option("--engine", s.engine, "who starts the shards")
@@ -247,14 +266,7 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
 }
 
 void addTools(CLI::App& app, const Context& context, Options& o) {
-    CLI::App* imageApp = app.add_subcommand("image", "compare images: MSE, PSNR, SSIM, maximum");
-    imageApp->require_subcommand(1);
-    CLI::App* diffApp = imageApp->add_subcommand("diff", "compare two EXR or two PNG files");
-    diffApp->add_option("a", o.imageA, "image")->required();
-    diffApp->add_option("b", o.imageB, "image")->required();
-    diffApp->add_option("--out", o.imageOut, "write the absolute difference (.exr or .png)");
-    diffApp->callback(
-        [&] { o.command = [&] { return imageDiff(o.imageA, o.imageB, o.imageOut); }; });
+    addImageCommands(app, o.image, o.command);
 
     CLI::App* sceneApp = app.add_subcommand("scene", "look at a scene, or export it");
     sceneApp->add_option("name", o.scene.name, "catalogue name or file")
@@ -277,6 +289,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
     workerApp->add_option("--assets", o.worker.assetsFolder);
     workerApp->add_option("--lane", o.lane);
     workerApp->add_option("--run", o.worker.runDir);
+    workerApp->add_option("--command", o.worker.command);
     workerApp->callback([&] {
         o.command = [&] {
             o.worker.lane =

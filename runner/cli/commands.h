@@ -30,6 +30,7 @@ struct Selection {
     std::string profile = "full";
     std::vector<std::string> sets;
     std::vector<std::string> sweeps;
+    std::vector<std::string> only;
     std::string assets;
     std::string device = "auto";
 };
@@ -108,14 +109,14 @@ int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);
 int table(const std::string& runDir);
 int claims(const std::string& runDir);
-int report(const std::string& runDir);
+/// Of several folders side by side: to `out`, or report.html where one is.
+int report(const std::vector<std::string>& runDirs, const std::string& out);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);
 int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
 int sensitivity(const Context& context, const SensitivityOptions& options);
 /// To `out`, or DIR-artifact.
 int exportRun(const std::string& runDir, const std::string& out, const std::string& assets);
-int imageDiff(const std::string& a, const std::string& b, const std::string& out);
 int scene(const SceneOptions& options);
 
 }  // namespace gfxrepro::cli

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <set>
 
+#include "runner/batch/case_filter.h"
 #include "runner/batch/scheduler.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -121,7 +122,7 @@ std::vector<config::Experiment> loadExperiments(const batch::Request& request,
 }
 
 batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {
-    batch::Request request{{}, selection.sets, selection.sweeps, selection.device};
+    batch::Request request{{}, selection.sets, selection.sweeps, selection.only, selection.device};
     for (const std::string& file : files) {
         request.configs.push_back(fs::absolute(file).lexically_normal());
     }
@@ -146,6 +147,7 @@ batch::Plan planFor(const Context& context, const batch::Request& request,
     batch::Plan plan = batch::makePlan(loadExperiments(request, profile), openCatalog(assets),
                                        context.techniques, profile, deviceClass, kSeed);
     plan.request = request;
+    batch::keepOnly(plan, request.only);
     return plan;
 }
 

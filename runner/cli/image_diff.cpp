@@ -1,64 +1,165 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/image_commands.h"
 #include "runner/image/exr_io.h"
+#include "runner/image/image_file.h"
 #include "runner/image/png_io.h"
+#include "runner/metrics/error_map.h"
+#include "runner/metrics/hdr_flip.h"
 #include "runner/metrics/image_error.h"
 
 namespace gfxrepro::cli {
 
-namespace fs = std::filesystem;
+using image::ImageF;
 
 namespace {
 
-std::string extensionOf(const fs::path& path) {
-    const std::string extension = path.extension();
-    if (extension == ".exr" || extension == ".png") return extension;
-    throw UsageError(path.string() + ": is neither .exr nor .png");
-}
+struct Pair {
+    bool isLinear = false;   // EXR; else sRGB as stored in PNG files
+    ImageF reference, test;  // as stored
+    ImageF linearReference, linearTest;
+};
 
-/// EXR: linear values. PNG: values as stored, in [0, 1].
-image::ImageF readImage(const fs::path& path) {
-    if (extensionOf(path) == ".exr") return image::readExr(path).colour();
-    const image::Image16 stored = image::readPng16(path);
-    image::ImageF result(stored.width(), stored.height(), stored.channels());
-    const auto from = stored.values();
-    const auto to = result.values();
-    for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<float>(from[i]) / 65535.0F;
+/// The three channels that FLIP looks at: a grey image's thrice, without alpha.
+ImageF coloursOf(const ImageF& image) {
+    ImageF result(image.width(), image.height(), 3);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < 3; ++c) {
+                result.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
+            }
+        }
+    }
     return result;
 }
 
-void writeImage(const fs::path& path, const image::ImageF& image) {
-    if (extensionOf(path) == ".png") {
-        image::writePng(path, image::toSrgb8(image));
+Pair readPair(const ImageDiffOptions& options) {
+    Pair pair;
+    pair.isLinear = image::isExrFile(options.reference);
+    if (image::isExrFile(options.test) != pair.isLinear) {
+        throw UsageError(fmt::format(
+            "image diff: {} and {} are of different kinds; an EXR is linear, a PNG is not",
+            options.reference, options.test));
+    }
+    if (!options.out.empty()) image::isExrFile(options.out);
+    pair.reference = image::readStored(options.reference);
+    pair.test = image::readStored(options.test);
+    metrics::requireComparable(pair.reference, pair.test);
+    pair.linearReference = pair.isLinear ? pair.reference : image::readLinear(options.reference);
+    pair.linearTest = pair.isLinear ? pair.test : image::readLinear(options.test);
+    return pair;
+}
+
+bool exceedsOne(const ImageF& image) {
+    return std::any_of(image.values().begin(), image.values().end(),
+                       [](float value) { return value > 1.0F; });
+}
+
+bool usesHdrFlip(const ImageDiffOptions& options, const Pair& pair) {
+    if (options.flip != "auto") return options.flip == "hdr";
+    return pair.isLinear && (exceedsOne(pair.reference) || exceedsOne(pair.test));
+}
+
+ImageF flipMapOf(const ImageDiffOptions& options, const Pair& pair) {
+    const ImageF reference = coloursOf(pair.linearReference), test = coloursOf(pair.linearTest);
+    return usesHdrFlip(options, pair) ? metrics::hdrFlipMap(reference, test)
+                                      : metrics::flipMap(reference, test);
+}
+
+/// Structural similarity has no value for smaller images.
+constexpr int kLeastSsimPx = 11;
+
+std::vector<std::pair<std::string, double>> valuesOf(const ImageDiffOptions& options,
+                                                     const Pair& pair,
+                                                     std::optional<ImageF>& flipMap) {
+    const ImageF& a = pair.reference;
+    const ImageF& b = pair.test;
+    const auto isWanted = [&](const char* name) {
+        return options.metrics.empty() || std::find(options.metrics.begin(), options.metrics.end(),
+                                                    name) != options.metrics.end();
+    };
+    const bool fitsSsim = a.width() >= kLeastSsimPx && a.height() >= kLeastSsimPx;
+    std::vector<std::pair<std::string, double>> values;
+    if (isWanted("mse")) values.emplace_back("mse", metrics::meanSquaredError(a, b));
+    if (isWanted("psnr")) values.emplace_back("psnr_db", metrics::peakSignalToNoiseDb(a, b));
+    if (isWanted("ssim") && (fitsSsim || !options.metrics.empty())) {
+        values.emplace_back("ssim", metrics::structuralSimilarity(a, b));
+    }
+    if (isWanted("flip")) {
+        flipMap = flipMapOf(options, pair);
+        values.emplace_back(usesHdrFlip(options, pair) ? "hdr_flip" : "flip",
+                            metrics::meanOfFlip(*flipMap));
+    }
+    if (isWanted("max")) values.emplace_back("max", metrics::maxAbsoluteError(a, b));
+    return values;
+}
+
+/// The map's numbers: gain · (reference − test) or its magnitude a channel, or FLIP.
+ImageF numbersOf(const ImageDiffOptions& options, const Pair& pair, const ImageF* flipMap) {
+    if (flipMap != nullptr) return *flipMap;
+    const auto gain = static_cast<float>(options.gain);
+    if (options.map == "abs") {
+        return metrics::absoluteDifference(pair.reference, pair.test, gain);
+    }
+    ImageF difference = pair.reference;
+    for (std::size_t i = 0; i < difference.values().size(); ++i) {
+        difference.values()[i] = gain * (difference.values()[i] - pair.test.values()[i]);
+    }
+    return difference;
+}
+
+/// Differences of what is compared above: linear light of EXR files, displayed values of PNG files.
+image::Image8 pictureOf(const ImageDiffOptions& options, const Pair& pair, const ImageF* flipMap) {
+    if (flipMap != nullptr) return metrics::flipPicture(*flipMap);
+    const auto draw =
+        options.map == "abs" ? metrics::absoluteErrorPicture : metrics::signedErrorPicture;
+    return draw(pair.linearReference, pair.linearTest, static_cast<float>(options.gain),
+                pair.isLinear ? metrics::ErrorOf::Linear : metrics::ErrorOf::Displayed);
+}
+
+void writeMap(const ImageDiffOptions& options, const Pair& pair, std::optional<ImageF> flipMap) {
+    if (options.map == "flip" && !flipMap) flipMap = flipMapOf(options, pair);
+    const ImageF* flip = options.map == "flip" ? &*flipMap : nullptr;
+    if (!image::isExrFile(options.out)) {
+        image::writePng(options.out, pictureOf(options, pair, flip));
         return;
     }
+    static const std::vector<std::string> kNames[] = {
+        {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    const ImageF numbers = numbersOf(options, pair, flip);
     image::ExrImage exr;
-    const std::vector<std::string> names = image.channels() == 1 ? std::vector<std::string>{"Y"}
-                                           : image.channels() == 3
-                                               ? std::vector<std::string>{"R", "G", "B"}
-                                               : std::vector<std::string>{"R", "G", "B", "A"};
-    exr.add(image, names, image::ExrPixelType::Float);
-    image::writeExr(path, exr);
+    exr.add(numbers, kNames[numbers.channels()], image::ExrPixelType::Float);
+    exr.attributes["reference"] = options.reference;
+    exr.attributes["test"] = options.test;
+    exr.attributes["map"] = options.map;
+    exr.attributes["gain"] = flip ? "1" : fmt::format("{:g}", options.gain);
+    image::writeExr(options.out, exr);
 }
 
 }  // namespace
 
-int imageDiff(const std::string& a, const std::string& b, const std::string& out) {
-    if (extensionOf(a) != extensionOf(b)) {
-        throw UsageError("image diff: " + a + " and " + b +
-                         " are of different kinds; an EXR is linear, a PNG is not");
+int imageDiff(const ImageDiffOptions& options) {
+    const Pair pair = readPair(options);
+    std::optional<ImageF> flipMap;
+    const auto values = valuesOf(options, pair, flipMap);
+    if (options.asJson) {
+        nlohmann::ordered_json json;
+        for (const auto& [name, value] : values) {
+            json[name] = std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+        }
+        fmt::print("{}\n", json.dump(2));
+    } else {
+        for (const auto& [name, value] : values) fmt::print("{} {:.6g}\n", name, value);
     }
-    if (!out.empty()) extensionOf(out);
-    const image::ImageF first = readImage(a);
-    const image::ImageF second = readImage(b);
-    fmt::print("mse {:.6g}\n", metrics::meanSquaredError(first, second));
-    fmt::print("psnr_db {:.4g}\n", metrics::peakSignalToNoiseDb(first, second));
-    fmt::print("ssim {:.6g}\n", metrics::structuralSimilarity(first, second));
-    fmt::print("max {:.6g}\n", metrics::maxAbsoluteError(first, second));
-    if (!out.empty()) writeImage(out, metrics::absoluteDifference(first, second));
+    if (!options.out.empty()) writeMap(options, pair, std::move(flipMap));
     return kExitOk;
 }
 

@@ -26,8 +26,8 @@ std::vector<std::string> predictionTexts(const batch::Case& item,
 int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
          bool asJson) {
     const batch::Plan plan =
-        planFor(context, requestOf(selection, selection.names), selection.profile, selection.assets,
-                deviceClassFor(selection));
+        planFor(context, requestOf(selection, findPaperConfigs(selection.names)), selection.profile,
+                selection.assets, deviceClassFor(selection));
     if (asJson) {
         fmt::print("{}\n", plan.toJson().dump(2));
         return kExitOk;

@@ -3,14 +3,21 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 
-#include "runner/batch/run.h"
+#include "runner/batch/report_runs.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/results.h"
 
 namespace gfxrepro::cli {
 
+namespace fs = std::filesystem;
+
 namespace {
+
+/// More names of failing claims than these bury the summary.
+constexpr std::size_t kSaidFailing = 20;
 
 /// Says what is missing; the exit code of a command that has nothing worse to report.
 int completenessCode(const batch::StoredRun& run) {
@@ -20,21 +27,60 @@ int completenessCode(const batch::StoredRun& run) {
     return kExitIncomplete;
 }
 
-}  // namespace
-
-int conclude(const std::filesystem::path& runDir) {
-    const std::vector<report::ClaimResult> claims =
-        batch::writeResults(runDir, batch::readRun(runDir), {});
-    fmt::print("claims: {}\n", report::claimSummaryLine(claims));
-    bool anyFails = false;
+/// Names the claims that fail, and gives their number.
+std::size_t sayFailing(const std::vector<report::ClaimResult>& claims) {
+    std::size_t failing = 0;
     for (const report::ClaimResult& claim : claims) {
-        if (claim.verdict != report::Verdict::Fails) continue;
-        anyFails = true;
+        if (claim.verdict != report::Verdict::Fails || ++failing > kSaidFailing) continue;
         fmt::print("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id,
                    claim.text, claim.measured, claim.required);
     }
+    if (failing > kSaidFailing) {
+        fmt::print("  and {} more that fail, in the report\n", failing - kSaidFailing);
+    }
+    return failing;
+}
+
+/// How many claims hold, paper by paper where there are several, and what the other words mean.
+void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
+    std::map<std::string, std::vector<report::ClaimResult>> ofPaper;
+    std::set<report::Verdict> verdicts;
+    for (const report::ClaimResult& claim : claims) {
+        ofPaper[claim.table.substr(0, claim.table.find('/'))].push_back(claim);
+        verdicts.insert(claim.verdict);
+    }
+    if (ofPaper.size() > 1) {
+        for (const auto& [paper, own] : ofPaper) {
+            fmt::print("  {:<12}{}\n", paper, report::claimSummaryLine(own));
+        }
+    }
+    fmt::print("claims: {}\n", report::claimSummaryLine(claims));
+    static const std::pair<report::Verdict, const char*> kMeanings[] = {
+        {report::Verdict::Ambiguous, "the 95 % interval holds the bound: more repeats may tell"},
+        {report::Verdict::Unmeasured, "a case that it needs has no result"},
+        {report::Verdict::NotApplicable, "asks for a GPU, or for another profile"},
+    };
+    for (const auto& [verdict, meaning] : kMeanings) {
+        if (verdicts.contains(verdict)) {
+            fmt::print("  {}: {}\n", report::verdictName(verdict), meaning);
+        }
+    }
+}
+
+void sayReport(const fs::path& runDir) {
     fmt::print("report: {}\n", (runDir / "report.html").string());
-    return anyFails ? kExitClaimFailed : kExitOk;
+}
+
+}  // namespace
+
+int conclude(const fs::path& runDir) {
+    const std::vector<report::ClaimResult> claims =
+        batch::writeResults(runDir, batch::readRun(runDir), {});
+    const std::size_t failing = sayFailing(claims);
+    sayVerdicts(claims);
+    fmt::print("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
+    sayReport(runDir);
+    return failing > 0 ? kExitClaimFailed : kExitOk;
 }
 
 int table(const std::string& runDir) {
@@ -62,11 +108,20 @@ int claims(const std::string& runDir) {
     return anyFails ? kExitClaimFailed : code;
 }
 
-int report(const std::string& runDir) {
-    const batch::StoredRun run = batch::readRun(runDir);
-    batch::writeResults(runDir, run, {.tables = false, .claims = false, .report = true});
-    fmt::print("report: {}\n", (std::filesystem::path(runDir) / "report.html").string());
-    return completenessCode(run);
+int report(const std::vector<std::string>& runDirs, const std::string& out) {
+    if (runDirs.size() == 1 && out.empty()) {
+        const batch::StoredRun run = batch::readRun(runDirs.front());
+        batch::writeResults(runDirs.front(), run,
+                            {.tables = false, .claims = false, .report = true});
+        sayReport(runDirs.front());
+        return completenessCode(run);
+    }
+    std::vector<html::ReportRun> runs;
+    for (const std::string& dir : runDirs) runs.push_back(batch::reportRun(dir));
+    const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
+    html::writeReport(file, runs);
+    fmt::print("report: {}\n", file.string());
+    return kExitOk;
 }
 
 }  // namespace gfxrepro::cli

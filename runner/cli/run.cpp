@@ -70,8 +70,11 @@ batch::Request withinBudget(const batch::Plan& plan, const batch::Request& reque
 Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
-    const batch::SchedulerOptions scheduler{
-        request.device, fs::absolute(assetsFolder(selection.assets)), jobsOf(options), {}};
+    const batch::SchedulerOptions scheduler{request.device,
+                                            fs::absolute(assetsFolder(selection.assets)),
+                                            jobsOf(options),
+                                            {},
+                                            context.commandLine};
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
@@ -108,6 +111,7 @@ void requireSameRequest(const RunOptions& options, const batch::Request& request
     if (request.configs != stored.request.configs) other = "configs";
     if (request.sets != stored.request.sets) other = "--set";
     if (request.sweeps != stored.request.sweeps) other = "--sweep";
+    if (request.only != stored.request.only) other = "--only";
     if (request.device != stored.request.device) other = "--device";
     if (options.selection.profile != stored.profile) other = "--profile";
     if (options.shard != (stored.shard ? stored.shard->name() : "")) other = "--shard";
@@ -140,7 +144,8 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     const batch::SchedulerOptions scheduler{stored.plan.request.device,
                                             fs::absolute(assetsFolder(options.selection.assets)),
                                             jobsOf(options),
-                                            {}};
+                                            {},
+                                            context.commandLine};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     const batch::Plan now = planFor(context, stored.plan.request, stored.plan.profile,
                                     scheduler.assetsFolder, deviceClassOf(device));
@@ -219,6 +224,11 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
 }
 
+/// The configs that were named; none for no name, which a resumed run gives.
+std::vector<std::string> configsOf(const std::vector<std::string>& names) {
+    return names.empty() ? names : findPaperConfigs(names);
+}
+
 void requireUsable(const RunOptions& options) {
     if (!options.resume.empty() && !options.out.empty()) {
         throw UsageError("--out and --resume exclude each other: both name the folder");
@@ -235,14 +245,14 @@ int run(const Context& context, const RunOptions& options) {
         throw UsageError("run: give config files, or --resume DIR");
     }
     requireUsable(options);
-    return execute(context, options, requestOf(options.selection, files), false);
+    return execute(context, options, requestOf(options.selection, configsOf(files)), false);
 }
 
 int reproduce(const Context& context, const RunOptions& options) {
     requireUsable(options);
     const std::vector<std::string>& names = options.selection.names;
-    std::vector<std::string> files;
-    if (options.resume.empty() || !names.empty()) files = findPaperConfigs(names);
+    const bool isAll = options.resume.empty() && names.empty();
+    const std::vector<std::string> files = isAll ? findPaperConfigs({}) : configsOf(names);
     return execute(context, options, requestOf(options.selection, files), true);
 }
 

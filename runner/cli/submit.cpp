@@ -67,6 +67,7 @@ std::vector<std::string> runArgumentsOf(const SubmitOptions& options,
     add("--assets", fs::absolute(assetsFolder(options.selection.assets)));
     for (const std::string& set : request.sets) add("--set", set);
     for (const std::string& sweep : request.sweeps) add("--sweep", sweep);
+    for (const std::string& only : request.only) add("--only", only);
     if (options.jobs > 0) add("--jobs", std::to_string(options.jobs));
     return arguments;
 }

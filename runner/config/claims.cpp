@@ -105,7 +105,7 @@ class ClaimReader {
             claim_.profile = name;
         }
         if (const Node* across = node_.find("across")) readAcross(*across);
-        if (const Node* at = node_.find("at")) readAt(*at);
+        if (const Node* at = node_.find("at")) claim_.at = readRowFilter(*at, what_, names_);
     }
 
     /// From here on the axis and the columns have changed places.
@@ -128,24 +128,6 @@ class ClaimReader {
         names_.columns.clear();
         if (!names_.hasAllColumns) return;
         for (const Node& value : known->second) names_.columns.push_back(value.text());
-    }
-
-    void readAt(const Node& at) {
-        requireKeys(at, what_ + ": at", names_.rowAxes);
-        for (const auto& [axis, value] : at.entries()) {
-            const std::vector<Node> wanted =
-                value.isSequence() ? value.items() : Node::Sequence{value};
-            const auto known = names_.rowValues.find(axis);
-            for (const Node& item : wanted) {
-                if (known == names_.rowValues.end()) break;
-                const Node all = Node::sequence(known->second);
-                if (matchesAny(item, all)) continue;
-                Names texts;
-                for (const Node& one : known->second) texts.push_back(one.toFlowText());
-                throwNotAllowed(item, what_ + ": at." + axis, joined(texts, " | "));
-            }
-            claim_.at.emplace_back(axis, wanted);
-        }
     }
 
     void readOperands(const Node& node) {

@@ -135,7 +135,8 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key : {"scene", "params", "output", "sweep", "measure", "layout", "claims"}) {
+    for (const char* key :
+         {"scene", "params", "output", "sweep", "measure", "layout", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -164,18 +165,19 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     experiment.measure = readMeasure(measure);
 }
 
-/// Layout, printed values and claims, each checked against the one before.
+/// Layout, and what is checked against it: printed values, claims, plots.
 void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const Node* printed = document.find("printed");
     const Node* layout = document.find("layout");
     const Node* claims = document.find("claims");
+    const Node* plots = document.find("plots");
     if (experiment.technique.empty()) {
         experiment.printed = readPrinted(*printed, nullptr, nullptr);
         return;
     }
     const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
     requireAxisNames(experiment.sweep, points);
-    for (const char* key : {"printed", "claims"}) {
+    for (const char* key : {"printed", "claims", "plots"}) {
         if (document.find(key) && !layout) {
             throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
         }
@@ -186,6 +188,7 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const TableNames names = tableNames(experiment.layout, vocabulary);
     if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
     if (claims) experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty());
+    if (plots) experiment.plots = readPlots(*plots, names);
 }
 
 }  // namespace

@@ -84,6 +84,9 @@ struct Printed {
     SourceLocation location;
 };
 
+/// Of row axes, these values: which rows are read.
+using RowFilter = std::vector<std::pair<std::string, std::vector<Node>>>;
+
 /// What a claim calls the axis of the columns when it compares rows (`across`).
 inline constexpr const char* kColumnAxis = "column";
 
@@ -104,12 +107,26 @@ struct ClaimSpec {
     std::optional<std::string> statistic;  // of a cell with several, e.g. mean
     /// Rows that are read: axis = one of these values. A claim must hold in every group of rows
     /// that agree on all row axes but `over`.
-    std::vector<std::pair<std::string, std::vector<Node>>> at;
+    RowFilter at;
     /// A row axis whose labels the operands name instead of columns; the columns become the row
     /// axis `column` (kColumnAxis). So rows are compared with rows, a column at a time.
     std::optional<std::string> across;
     Device device = Device::Any;
     std::optional<std::string> profile;  // only in this one
+    SourceLocation location;
+};
+
+/// An entry of `plots:` — curves of the table's numbers. Every row axis has its place: it is `x`,
+/// `by`, in `panels`, at one value by `at`, or, where `x` is a column, along the curve.
+struct PlotSpec {
+    std::string title;                // empty: the experiment's
+    std::string x;                    // a row axis of numbers, or a column
+    std::vector<std::string> y;       // columns: a curve each
+    std::optional<std::string> by;    // a row axis: of each y a curve a value
+    std::vector<std::string> panels;  // row axes: a panel for each combination of values
+    RowFilter at;
+    bool isLogX = false;
+    bool isLogY = false;
     SourceLocation location;
 };
 
@@ -138,6 +155,7 @@ struct Experiment {
     Layout layout;
     Printed printed;
     std::vector<ClaimSpec> claims;
+    std::vector<PlotSpec> plots;
     std::vector<Assumption> assumptions;
     std::vector<std::string> profiles;  // those that the file declares
     Node document;                      // merged and profile applied, as it stands before expansion

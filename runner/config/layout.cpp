@@ -207,6 +207,24 @@ TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary) {
     return names;
 }
 
+RowFilter readRowFilter(const Node& at, const std::string& what, const TableNames& names) {
+    requireKeys(at, what + ": at", names.rowAxes);
+    RowFilter filter;
+    for (const auto& [axis, value] : at.entries()) {
+        const Node::Sequence wanted = value.isSequence() ? value.items() : Node::Sequence{value};
+        const auto known = names.rowValues.find(axis);
+        for (const Node& item : wanted) {
+            if (known == names.rowValues.end()) break;
+            if (matchesAny(item, Node::sequence(known->second))) continue;
+            Names texts;
+            for (const Node& one : known->second) texts.push_back(one.toFlowText());
+            throwNotAllowed(item, fmt::format("{}: at.{}", what, axis), joined(texts, " | "));
+        }
+        filter.emplace_back(axis, wanted);
+    }
+    return filter;
+}
+
 void requireStatistic(const Node& name) {
     if (std::find(kStatistics.begin(), kStatistics.end(), lineOf(name, "statistic")) ==
         kStatistics.end()) {

@@ -64,6 +64,8 @@ SchemaSection content() {
           refTo("printed")},
          {"claims", "{ID: claim}", "{}", "what must follow from the numbers",
           mapOf(refTo("claim_part"))},
+         {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
+          listOf(refTo("plot"))},
          {"assumptions", "{NAME: assumption}", "{}",
           "what the paper left open: a parameter, `scene`, or free text",
           mapOf(refTo("assumption_part"))}}};
@@ -154,6 +156,24 @@ SchemaSection printed() {
               {{"type", "string"}}}}};
 }
 
+SchemaSection plot() {
+    return {
+        "plot",
+        "plot.",
+        "",
+        {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
+         {"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
+          oneOrMore(text())},
+         {"by", "row axis", "none", "of each y a curve a value", text()},
+         {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
+          oneOrMore(text())},
+         {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+         {"log", "[x, y]", "[]", "axes that are logarithmic",
+          listOf({{"enum", {"x", "y"}}})},
+         {"title", "line", "the file's", "above the curves", text()}},
+        false};
+}
+
 SchemaSection assumption() {
     return {"assumption",
             "assumptions.NAME.",
@@ -195,7 +215,7 @@ SchemaFile experimentSchema() {
     SchemaFile file{"experiment",
                     "A table, figure, section or sweep",
                     {identity(), composition(), content(), output(), sweep(), axis(), measure(),
-                     profiles(), layout(), selection(), printed(), assumption()}};
+                     profiles(), layout(), selection(), printed(), plot(), assumption()}};
     for (SchemaSection& section : claimSections()) file.sections.push_back(std::move(section));
     return file;
 }

@@ -43,6 +43,11 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
 
 std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted);
 
+std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names);
+
+/// `at` of a claim or a plot; `what` begins the messages.
+RowFilter readRowFilter(const Node& at, const std::string& what, const TableNames& names);
+
 /// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".
 void requireCellFormat(const Node& format);
 /// Throws Error unless it is one of median, mean, min, max, sum, count.

@@ -1,6 +1,6 @@
 #include "runner/image/image.h"
 
-#include <cmath>
+#include "runner/image/srgb.h"
 
 namespace gfxrepro::image {
 
@@ -15,10 +15,6 @@ float clampedToUnit(float value) {
     return value > 0.0F ? (value < 1.0F ? value : 1.0F) : 0.0F;
 }
 
-float srgbFromLinear(float linear) {
-    return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
-}
-
 }  // namespace
 
 Image8 toSrgb8(const ImageF& linear) {
@@ -28,7 +24,7 @@ Image8 toSrgb8(const ImageF& linear) {
     const std::span<std::uint8_t> to = result.values();
     for (std::size_t i = 0; i < from.size(); ++i) {
         const float value = clampedToUnit(from[i]);
-        to[i] = quantized(i % channels == 3 ? value : srgbFromLinear(value));
+        to[i] = quantized(i % channels == 3 ? value : srgbOf(value));
     }
     return result;
 }

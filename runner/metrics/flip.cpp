@@ -322,11 +322,14 @@ ImageF flipMap(const ImageF& reference, const ImageF& test, double pixelsPerDegr
     return map;
 }
 
-double flip(const ImageF& reference, const ImageF& test, double pixelsPerDegree) {
-    const ImageF map = flipMap(reference, test, pixelsPerDegree);
+double meanOfFlip(const ImageF& map) {
     double sum = 0.0;
     for (const float value : map.values()) sum += double{value};
     return sum / static_cast<double>(map.values().size());
+}
+
+double flip(const ImageF& reference, const ImageF& test, double pixelsPerDegree) {
+    return meanOfFlip(flipMap(reference, test, pixelsPerDegree));
 }
 
 }  // namespace gfxrepro::metrics

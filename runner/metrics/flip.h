@@ -15,7 +15,9 @@ constexpr double kFlipPixelsPerDegree = 67.0206;
 /// are not 3, a value is not finite, or pixelsPerDegree is outside of [1, 1000].
 image::ImageF flipMap(const image::ImageF& reference, const image::ImageF& test,
                       double pixelsPerDegree = kFlipPixelsPerDegree);
-/// Mean of the map.
+/// The mean of such a map: what is printed.
+double meanOfFlip(const image::ImageF& map);
+/// Of the map of two images.
 double flip(const image::ImageF& reference, const image::ImageF& test,
             double pixelsPerDegree = kFlipPixelsPerDegree);
 

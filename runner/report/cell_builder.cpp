@@ -76,8 +76,7 @@ struct Gathered {
     Status worst = Status::Ok;
     std::string message;
     std::set<std::string> units;
-    std::size_t caseCount = 0;
-    bool hasMatch = false;  // of a case, whether or not it has the metric
+    std::vector<std::string> caseIds;
 
     void note(Status status, const std::string& why) {
         if (status > worst) {
@@ -132,7 +131,7 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
     int unitCount = 0;
     for (const CaseRecords& run : cases.run) {
         if (!matches(run.axes, cases, query.where, false)) continue;
-        ++gathered.caseCount;
+        gathered.caseIds.push_back(run.id);
         std::map<int, int> unitOfFrame;
         takeCase(run, query, unitOfFrame, unitCount, gathered);
     }
@@ -195,7 +194,12 @@ void fillValues(const CellQuery& query, const Samples& samples, std::uint64_t se
         measured.statistic = query.format.placeholders()[i].name;
         measured.value = summarize(samples, statistics[i]);
         measured.interval = {measured.value, measured.value};
-        if (!draws[i].empty()) measured.interval = metrics::centralInterval(draws[i]);
+        measured.text = query.format.formatOne(i, measured.value);
+        if (!draws[i].empty()) {
+            measured.interval = metrics::centralInterval(draws[i]);
+            measured.low = query.format.formatOne(i, measured.interval.low);
+            measured.high = query.format.formatOne(i, measured.interval.high);
+        }
         measured.draws = std::move(draws[i]);
         values.push_back(measured.value);
         lows.push_back(measured.interval.low);
@@ -230,17 +234,17 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
             std::move(where)};
 }
 
-BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
-    BuiltCell built;
-    Cell& cell = built.cell;
+Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
+    Cell cell;
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
-    if (gathered.caseCount == 0) {
+    const std::size_t taken = gathered.caseIds.size();
+    if (taken == 0) {
         cell.isPlanned = planned > 0;
         gathered.note(Status::Missing, "not run");
-    } else if (isPlanComplete(query, cases) && planned > gathered.caseCount) {
-        gathered.note(Status::Missing, std::to_string(planned - gathered.caseCount) + " of " +
+    } else if (isPlanComplete(query, cases) && planned > taken) {
+        gathered.note(Status::Missing, std::to_string(planned - taken) + " of " +
                                            std::to_string(planned) + " cases were not run");
     }
     if (!hasSamples && gathered.worst == Status::Ok) {
@@ -248,7 +252,11 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;
-    if (gathered.units.size() == 1 && !query.isScaled) built.unit = *gathered.units.begin();
+    cell.caseIds = std::move(gathered.caseIds);
+    if (!query.isScaled) {
+        cell.metric = query.metric;
+        if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
+    }
     if (hasSamples) fillValues(query, gathered.samples, seed, cell);
     const std::string word(statusName(cell.status));
     const bool isFlaky = hasSamples && cell.status == Status::Flaky;
@@ -256,7 +264,7 @@ BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint6
     if (isFlaky) cell.measured += " (flaky)";
     if (cell.isPartial) cell.measured += " (partial: " + word + ")";
     if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
-    return built;
+    return cell;
 }
 
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases) {

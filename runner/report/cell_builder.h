@@ -27,11 +27,7 @@ struct CellQuery {
 /// Throws Error at the selection's place when no part gives a metric, or for a bad format.
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column);
 
-struct BuiltCell {
-    Cell cell;
-    std::string unit;  // of the records; empty if they disagree
-};
-BuiltCell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed);
+Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed);
 
 /// Where the scenes come from of the cases that a row takes.
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases);

@@ -60,9 +60,13 @@ std::string CellFormat::format(std::span<const double> values) const {
     GFXREPRO_ASSERT_EQ(values.size(), placeholders_.size());
     std::string text = literals_[0];
     for (std::size_t i = 0; i < values.size(); ++i) {
-        text += formatted(placeholders_[i].spec, values[i]) + literals_[i + 1];
+        text += formatOne(i, values[i]) + literals_[i + 1];
     }
     return text;
+}
+
+std::string CellFormat::formatOne(std::size_t placeholder, double value) const {
+    return formatted(placeholders_[placeholder].spec, value);
 }
 
 std::vector<std::optional<double>> CellFormat::parse(std::string_view text) const {

@@ -28,6 +28,8 @@ class CellFormat {
 
     /// `values` lies beside the placeholders.
     std::string format(std::span<const double> values) const;
+    /// The one number that stands at a placeholder.
+    std::string formatOne(std::size_t placeholder, double value) const;
     /// The numbers of a text that was written this way, beside the placeholders; empty where there
     /// is none ("16MB"). Digits may be grouped by commas.
     std::vector<std::optional<double>> parse(std::string_view text) const;

@@ -10,6 +10,7 @@
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "runner/report/csv.h"
 
 namespace gfxrepro::report {
@@ -18,19 +19,31 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kHeader = "case,table,frame,name,png,exr,title";
-constexpr std::size_t kColumnCount = 7;
+constexpr std::string_view kHeader = "case,table,frame,name,png,exr,title,truth_of";
+/// Of runs before truths were named.
+constexpr std::string_view kOldHeader = "case,table,frame,name,png,exr,title";
 
 fs::path indexOf(const fs::path& runDir) {
     return runDir / "images" / "index.csv";
 }
 
-ImageEntry entryFromFields(const SourceLocation& where, const std::vector<std::string>& fields) {
-    if (fields.size() != kColumnCount) {
-        throw Error(where, "expected " + std::to_string(kColumnCount) + " columns, found " +
+/// How many columns the rows under a header have.
+std::size_t columnCount(const SourceLocation& where, const std::vector<std::string>& header) {
+    const std::string found = joined(header, ",");
+    if (found != kHeader && found != kOldHeader) {
+        throw Error(where, "expected the columns " + std::string(kHeader) + ", found " + found);
+    }
+    return header.size();
+}
+
+ImageEntry entryFromFields(const SourceLocation& where, std::size_t columns,
+                           const std::vector<std::string>& fields) {
+    if (fields.size() != columns) {
+        throw Error(where, "expected " + std::to_string(columns) + " columns, found " +
                                std::to_string(fields.size()));
     }
     ImageEntry entry{fields[0], fields[1], 0, fields[3], fields[4], fields[5], fields[6]};
+    if (columns > 7) entry.truthOf = fields[7];
     const char* end = fields[2].data() + fields[2].size();
     const auto [stop, error] = std::from_chars(fields[2].data(), end, entry.frame);
     if (error != std::errc() || stop != end) {
@@ -90,7 +103,7 @@ void appendImages(const fs::path& runDir, const std::vector<ImageEntry>& images)
     for (const ImageEntry& image : images) {
         CsvRow row(text);
         row.text(image.caseId).text(image.table).integer(image.frame).text(image.name);
-        row.text(image.png).text(image.exr).text(image.title).end();
+        row.text(image.png).text(image.exr).text(image.title).text(image.truthOf).end();
     }
     const fs::path index = indexOf(runDir);
     if (!appendToWhole(index, text)) writeFileAtomic(index, wholeRows(index) + text);
@@ -104,9 +117,10 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
     std::vector<std::string> fields;
     std::vector<ImageEntry> images;
     std::map<std::tuple<std::string, int, std::string>, std::size_t> indices;
-    reader.next(fields);  // the header
+    if (!reader.next(fields)) return {};
+    const std::size_t columns = columnCount(reader.location(), fields);
     while (reader.next(fields)) {
-        ImageEntry entry = entryFromFields(reader.location(), fields);
+        ImageEntry entry = entryFromFields(reader.location(), columns, fields);
         const auto [found, isNew] =
             indices.try_emplace({entry.caseId, entry.frame, entry.name}, images.size());
         if (isNew) {

@@ -7,8 +7,8 @@
 
 namespace gfxrepro::report {
 
-/// Columns case,table,frame,name,png,exr,title in this order. Paths are relative to the run folder:
-/// "images/zju2005-2.1/<case>-<name>.png".
+/// Columns case,table,frame,name,png,exr,title,truth_of in this order. Paths are relative to the
+/// run folder: "images/zju2005-2.1/<case>-<name>.png".
 struct ImageEntry {
     std::string caseId;
     std::string table;  // "zju2005/2.1"
@@ -17,6 +17,8 @@ struct ImageEntry {
     std::string png;    // empty when there is none
     std::string exr;    // empty when there is none
     std::string title;  // the case's title: "zju2005/2.1 scene=models/duck"
+    /// The name of the image, of the same case and frame, that this one is the truth of; or empty.
+    std::string truthOf = {};
 
     bool operator==(const ImageEntry&) const = default;
 };
@@ -27,7 +29,8 @@ void appendImages(const std::filesystem::path& runDir, const std::vector<ImageEn
 
 /// The images of a run, in the order in which they were made; none when there is no list. Of two
 /// entries of one case, frame and name the last counts (a case that was run again). A torn last
-/// line is passed over; other malformed rows are an Error with file and line.
+/// line is passed over; other malformed rows are an Error with file and line. Lists of older runs
+/// end with the title.
 std::vector<ImageEntry> readImages(const std::filesystem::path& runDir);
 
 }  // namespace gfxrepro::report

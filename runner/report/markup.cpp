@@ -44,7 +44,7 @@ std::string escapeXml(std::string_view text) {
 }
 
 std::string escapeLatex(std::string_view text) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 26> kCommands = {{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 40> kCommands = {{
         {"\\", "\\textbackslash{}"},
         {"{", "\\{"},
         {"}", "\\}"},
@@ -71,6 +71,20 @@ std::string escapeLatex(std::string_view text) {
         {"≥", "$\\geq$"},
         {"−", "$-$"},
         {"·", "$\\cdot$"},
+        {"°", "$^\\circ$"},
+        {"µ", "$\\mu$"},
+        {"α", "$\\alpha$"},
+        {"β", "$\\beta$"},
+        {"δ", "$\\delta$"},
+        {"ε", "$\\varepsilon$"},
+        {"θ", "$\\theta$"},
+        {"λ", "$\\lambda$"},
+        {"μ", "$\\mu$"},
+        {"π", "$\\pi$"},
+        {"σ", "$\\sigma$"},
+        {"τ", "$\\tau$"},
+        {"φ", "$\\varphi$"},
+        {"Δ", "$\\Delta$"},
     }};
     std::string out;
     while (!text.empty()) {

@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "runner/config/experiment.h"
 #include "runner/report/claims.h"
 #include "runner/report/records.h"
@@ -19,7 +17,7 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
                                const std::vector<Record>& records);
 
 /// tables/<slug>.csv (every column printed, measured, low, high, status at full precision), .md
-/// (printed beside measured) and .tex (booktabs) for each.
+/// (printed beside measured) and .tex (booktabs, a macro a number) for each.
 void writeTables(const std::filesystem::path& runDir, const std::vector<Table>& tables);
 
 /// The claims of all experiments, in order; `tables` lies beside `experiments`. Throws Error as the
@@ -33,13 +31,8 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
 void writeClaims(const std::filesystem::path& runDir, const std::vector<ClaimResult>& results,
                  const ReportContext& context);
 
-/// report.html: one file without scripts or outside references; images/index.csv gives its images,
-/// which lie inside of it up to 20 MB a run and are linked beyond. Builds the tables and judges the
-/// claims itself. `manifest` is manifest.json; of it are shown, where there: commit, build, cpu,
-/// gl.renderer, gl.version, profile, started.
-void writeReport(const std::filesystem::path& runDir,
-                 const std::vector<config::Experiment>& experiments,
-                 const std::vector<Record>& records, const nlohmann::ordered_json& manifest,
-                 const ReportContext& context);
+/// claims.csv as writeClaims() wrote it; what a claim says is not kept there. Throws Error with
+/// file and line.
+std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::report

@@ -7,6 +7,7 @@
 #include "runner/core/text.h"
 #include "runner/report/cell_builder.h"
 #include "runner/report/csv.h"
+#include "runner/report/default_layout.h"
 
 namespace gfxrepro::report {
 
@@ -31,9 +32,10 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
     for (TableRow& row : table.rows) {
         row.source = sceneSourceOf(layout, row.labels, cases);
         for (std::size_t i = 0; i < columns.size(); ++i) {
-            BuiltCell built = buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed);
-            row.cells.push_back(std::move(built.cell));
-            if (!built.unit.empty()) units[i].insert(built.unit);
+            row.cells.push_back(
+                buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed));
+            const std::string& unit = row.cells.back().unit;
+            if (!unit.empty()) units[i].insert(unit);
         }
     }
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -86,22 +88,32 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
     const config::Printed& printed = experiment.printed;
     if (printed.rows.empty()) return;
     const PrintedColumns found = findColumns(printed, table);
+    const auto layInto = [&](TableRow& row, const std::vector<std::string>& printedRow) {
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            if (!found.columns[i] || printedRow[*found.columns[i]].empty()) continue;
+            Cell& cell = row.cells[i];
+            cell.printed = printedRow[*found.columns[i]];
+            cell.printedValues =
+                makeQuery(experiment.layout, row.labels, columns[i]).format.parse(*cell.printed);
+        }
+    };
     for (const std::vector<std::string>& printedRow : printed.rows) {
         bool isPlaced = false;
         for (TableRow& row : table.rows) {
             if (!isRowOf(printedRow, found, row)) continue;
             isPlaced = true;
-            for (std::size_t i = 0; i < columns.size(); ++i) {
-                if (!found.columns[i] || printedRow[*found.columns[i]].empty()) continue;
-                Cell& cell = row.cells[i];
-                cell.printed = printedRow[*found.columns[i]];
-                cell.printedValues = makeQuery(experiment.layout, row.labels, columns[i])
-                                         .format.parse(*cell.printed);
-            }
+            layInto(row, printedRow);
         }
-        if (!isPlaced) {
-            table.notes.push_back("printed, but not part of this run: " + joined(printedRow));
+        if (isPlaced) continue;
+        table.notes.push_back("printed, but not part of this run: " + joined(printedRow));
+        Cell unplanned;
+        unplanned.isPlanned = false;
+        TableRow row{{}, SceneSource::Unknown, std::vector<Cell>(columns.size(), unplanned)};
+        for (const auto& axis : found.axes) {
+            row.labels.push_back(axis ? canonicalText(printedRow[*axis]) : "");
         }
+        layInto(row, printedRow);
+        table.printedRows.push_back(std::move(row));
     }
 }
 
@@ -197,7 +209,11 @@ Table transposed(const Table& table, std::size_t rowAxis) {
     return result;
 }
 
-Table buildTable(const config::Experiment& experiment, const std::vector<Record>& records) {
+Table buildTable(const config::Experiment& given, const std::vector<Record>& records) {
+    config::Experiment experiment = given;
+    if (!given.layout.isGiven && given.kind == config::Experiment::Kind::Sweep) {
+        experiment.layout = defaultLayout(given, records);
+    }
     Table table;
     table.id = experiment.id;
     table.slug = experiment.slug();

@@ -18,6 +18,8 @@ struct Measured {
     double value = 0.0;
     metrics::Interval interval;  // 95 %
     std::vector<double> draws;   // resampled values; empty when there is one sample
+    std::string text;            // as the format writes the value
+    std::string low, high;       // and the interval's ends; empty without one
 };
 
 /// What stands at a row and a column.
@@ -31,6 +33,9 @@ struct Cell {
     std::string low, high;            // the interval's ends, formatted likewise; empty without one
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
+    std::vector<std::string> caseIds;                  // whose records it takes
+    std::string metric;  // what it shows; empty, as its unit, where it is scaled
+    std::string unit;    // of the records, if they agree
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
@@ -65,7 +70,8 @@ struct Table {
     std::vector<std::string> rowAxes;
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;
-    std::vector<std::string> notes;  // printed rows that found no place, and the like
+    std::vector<TableRow> printedRows;  // printed, but not part of this run; no cell is planned
+    std::vector<std::string> notes;     // printed rows that found no place, and the like
 
     bool hasSources() const;
     /// "scene=models/duck, step=1"; "" for a table of one row.
@@ -83,6 +89,8 @@ Table transposed(const Table& table, std::size_t rowAxis);
 /// and `cell` choose; repeats (over processes) are reduced to their median for each frame, then the
 /// format's statistics are taken over frames. With a single frame they are taken over the repeats.
 /// Intervals are from a bootstrap over processes, then repeats.
+///
+/// An experiment of one's own without a layout gets the default one (default_layout.h).
 ///
 /// Of an experiment without a technique the table is what was printed: the first column for the
 /// rows, no cell planned.

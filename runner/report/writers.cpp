@@ -7,6 +7,7 @@
 #include "runner/core/text.h"
 #include "runner/report/control_pair.h"
 #include "runner/report/csv.h"
+#include "runner/report/latex.h"
 #include "runner/report/markup.h"
 #include "runner/report/report.h"
 
@@ -114,48 +115,6 @@ std::string tableMarkdown(const Table& table) {
     for (const std::string& note : table.notes)
         text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
     return text;
-}
-
-std::string latexCell(const Cell& cell) {
-    if (!cell.isPlanned) return "";
-    std::string text = escapeLatex(cell.measured);
-    if (!cell.low.empty() && cell.low != cell.high) {
-        text +=
-            fmt::format(" {{\\scriptsize[{}, {}]}}", escapeLatex(cell.low), escapeLatex(cell.high));
-    }
-    return text;
-}
-
-/// Printed and measured stand in columns of their own, so that numbers align.
-std::string tableLatex(const Table& table) {
-    std::string text = "\\begin{tabular}{";
-    text += std::string(table.rowAxes.size() + (table.hasSources() ? 1 : 0), 'l');
-    const std::size_t width = table.isOnlyPrinted ? 1 : 2;
-    text += std::string(width * table.columns.size(), 'r') + "}\n\\toprule\n";
-    std::vector<std::string> head, subhead;
-    for (const std::string& axis : table.rowAxes) head.push_back(escapeLatex(axis));
-    if (table.hasSources()) head.emplace_back("source");
-    subhead.resize(head.size());
-    for (const TableColumn& column : table.columns) {
-        const std::string label = escapeLatex(column.label);
-        head.push_back(table.isOnlyPrinted ? label
-                                           : fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", label));
-        subhead.insert(subhead.end(), {"printed", "measured"});
-    }
-    text += joined(head, " & ") + " \\\\\n";
-    if (!table.isOnlyPrinted) text += joined(subhead, " & ") + " \\\\\n";
-    text += "\\midrule\n";
-    for (const TableRow& row : table.rows) {
-        std::vector<std::string> cells;
-        for (const std::string& label : row.labels) cells.push_back(escapeLatex(label));
-        if (table.hasSources()) cells.emplace_back(sceneSourceName(row.source));
-        for (const Cell& cell : row.cells) {
-            cells.push_back(escapeLatex(cell.printed.value_or("")));
-            if (!table.isOnlyPrinted) cells.push_back(latexCell(cell));
-        }
-        text += joined(cells, " & ") + " \\\\\n";
-    }
-    return text + "\\bottomrule\n\\end{tabular}\n";
 }
 
 std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportContext& context) {

@@ -47,6 +47,25 @@ struct FrameContext {
     gl::Profiler& profiler;
 };
 
+/// The view that an image shows.
+struct ImageCamera {
+    glm::mat4 viewFromWorld{1.0F};  // looks along −z
+    glm::mat4 clipFromView{1.0F};   // x and y from −w to w, y upwards
+    float nearM = 0.0F;             // eye distance along the view axis
+    float farM = 0.0F;
+};
+
+/// What a technique may say of an image besides its pixels.
+struct ImageOptions {
+    /// The image of the same frame that this one is the truth of: the report shows one on the
+    /// other.
+    std::string truthOf = {};
+    std::optional<ImageCamera> camera = {};
+    /// Further channels of the same size, for the EXR file alone: "Z", "N.X", "id", "error.R". Its
+    /// attributes go into the file, too.
+    image::ExrImage layers = {};
+};
+
 /// Takes what a technique has to report of the last iteration.
 class Recorder {
   public:
@@ -57,10 +76,8 @@ class Recorder {
                         std::string_view pass = "") = 0;
     /// Saved as images/<case>-<name>.exr, with a PNG beside it for the report (linear, shown as
     /// sRGB). 1, 3 or 4 channels.
-    virtual void image(std::string_view name, const image::ImageF& image) = 0;
-    /// As above with channels of the technique's own; `preview` is what the PNG shows.
-    virtual void image(std::string_view name, const image::ExrImage& image,
-                       const image::ImageF& preview) = 0;
+    virtual void image(std::string_view name, const image::ImageF& image,
+                       const ImageOptions& options = {}) = 0;
     /// A path in the run directory for a file of the technique's own format ("grid.binvox").
     virtual std::filesystem::path artifact(std::string_view fileName) = 0;
 };

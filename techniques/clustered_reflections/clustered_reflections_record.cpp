@@ -6,10 +6,12 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/clustered_reflections/reflection_pictures.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::clustered_reflections {
 
+using depth_images::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
@@ -37,11 +39,15 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 
     const image::ImageF picture = composite_->read();
     if (params_.showsPictures) {
-        recorder.image("result", picture);
+        depth_images::ImageLayers layers =
+            reflections::surfaceLayers(gbuffer, params_.supersampling);
+        if (params_.measuresErrors) layers.errors(picture, truthOf(gbuffer).picture);
+        recorder.image("result", picture, layers.options());
         recorder.image("reflectors",
-                       numbersPicture(gbuffer, reflectorNumbers(gbuffer), params_.supersampling));
+                       numbersPicture(gbuffer, reflectorNumbers(gbuffer), params_.supersampling),
+                       seenFrom(gbuffer.view));
         composite_->render(*gbuffer_, *target_, true);
-        recorder.image("reflection", composite_->read());
+        recorder.image("reflection", composite_->read(), seenFrom(gbuffer.view));
     }
     if (params_.measuresErrors) recordErrors(recorder, gbuffer, picture);
     if (clusteredTracer_) recordClusters(recorder, gbuffer, picture);
@@ -121,9 +127,10 @@ void ClusteredReflections::recordErrors(technique::Recorder& recorder, const Hos
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
-    recorder.image("truth", truth);
-    recorder.image("error", reflections::errorPicture(picture, truth, 1));
-    recorder.image("error_50", reflections::errorPicture(picture, truth, 50));
+    recorder.image("truth", truth, seenFrom(gbuffer.view, "result"));
+    recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(gbuffer.view));
+    recorder.image("error_50", reflections::errorPicture(picture, truth, 50),
+                   seenFrom(gbuffer.view));
 }
 
 void ClusteredReflections::recordClusters(technique::Recorder& recorder, const HostGBuffer& gbuffer,
@@ -138,9 +145,12 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
     recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
     recorder.metric("environment_pct", percent(fallen, clustered), "%");
     if (params_.showsPictures) {
-        recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling));
-        recorder.image("environment", reflections::markedPicture(picture, environment, gbuffer,
-                                                                 params_.supersampling));
+        recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
+                       seenFrom(gbuffer.view));
+        recorder.image(
+            "environment",
+            reflections::markedPicture(picture, environment, gbuffer, params_.supersampling),
+            seenFrom(gbuffer.view));
     }
     if (params_.measuresErrors) recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
 }
@@ -156,8 +166,10 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
     recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
                     "%");
     if (!params_.showsPictures) return;
-    recorder.image("occlusion", reflections::markedPicture(picture, errors.isMissing, gbuffer,
-                                                           params_.supersampling));
+    recorder.image(
+        "occlusion",
+        reflections::markedPicture(picture, errors.isMissing, gbuffer, params_.supersampling),
+        seenFrom(gbuffer.view));
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -9,6 +9,7 @@
 #include "techniques/depth_sampling/pictures.h"
 #include "techniques/depth_sampling/view_check.h"
 #include "techniques/depth_sampling/visibility_experiment.h"
+#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -165,13 +166,17 @@ void DepthSampling::record(technique::Recorder& recorder) {
 void DepthSampling::recordPictures(technique::Recorder& recorder) const {
     for (std::size_t i = 0; i < measures_->images.size(); ++i) {
         const MarkedImage marked = experiment_->markedImage(i);
-        recorder.image(imageName(i), depth_images::shadingPicture(marked.image));
-        recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks));
+        recorder.image(imageName(i), depth_images::shadingPicture(marked.image),
+                       depth_images::layersOf(marked.image).options());
+        recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks),
+                       depth_images::seenFrom(marked.image.view));
     }
     const MarkedImage frame =
         experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
-    recorder.image("output_frame", availabilityPicture(frame.image, frame.marks));
-    recorder.image("output_frame_truth", depth_images::shadingPicture(frame.image));
+    const depth_images::ImageLayers layers = depth_images::layersOf(frame.image);
+    recorder.image("output_frame", availabilityPicture(frame.image, frame.marks), layers.options());
+    recorder.image("output_frame_truth", depth_images::shadingPicture(frame.image),
+                   layers.options("output_frame"));
 }
 
 void recordMeasures(technique::Recorder& recorder, const Measures& measures) {

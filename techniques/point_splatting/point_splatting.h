@@ -80,7 +80,9 @@ class PointSplatting final : public technique::Technique {
     /// The selection alone, without what follows from it: the median of many.
     double selectionMs() const;
     void recordSpeed(technique::Recorder& recorder);
-    void recordErrors(technique::Recorder& recorder, const image::ImageF& picture) const;
+    image::ImageF supersampledTruth() const;
+    void recordErrors(technique::Recorder& recorder, const image::ImageF& picture,
+                      const image::ImageF& supersampled) const;
 
     PointSplattingParams params_;
     std::optional<SourceLocation> pointsAt_;  // of the parameter `points` where given

@@ -11,6 +11,7 @@
 #include "runner/metrics/statistics.h"
 #include "techniques/point_splatting/compression_errors.h"
 #include "techniques/point_splatting/point_splatting.h"
+#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -38,6 +39,20 @@ void recordDifference(technique::Recorder& recorder, const image::ImageF& truth,
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1", truthName);
 }
 
+/// Unit, world space; 0 where no splat is.
+std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const PatchView& view) {
+    const glm::mat3 modelFromView = glm::transpose(glm::mat3(view.viewFromModel));
+    const std::vector<float> sums = accumulated.read<float>(GL_RGBA, GL_FLOAT, 4);
+    std::vector<glm::vec3> normals;
+    normals.reserve(sums.size() / 4);
+    for (std::size_t i = 0; i < sums.size(); i += 4) {
+        const glm::vec3 sum(sums[i], sums[i + 1], sums[i + 2]);
+        const float length = glm::length(sum);
+        normals.push_back(length > 0.0F ? modelFromView * (sum / length) : glm::vec3(0.0F));
+    }
+    return normals;
+}
+
 double percent(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
@@ -51,8 +66,16 @@ void PointSplatting::record(technique::Recorder& recorder) {
     if (params_.measuresSpeed) recordSpeed(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
     const image::ImageF picture = output().readImage(3);
-    if (params_.showsPictures) recorder.image("image", picture);
-    if (params_.measuresErrors) recordErrors(recorder, picture);
+    std::optional<image::ImageF> truth;
+    if (params_.measuresErrors) truth = supersampledTruth();
+    if (params_.showsPictures) {
+        depth_images::ImageLayers layers(depth_images::viewOf(camera_, sizePx_));
+        const bool hasNormals = renderer_ && params_.method != Method::Sprites;
+        if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
+        if (truth) layers.errors(picture, *truth, "supersampled");
+        recorder.image("image", picture, layers.options());
+    }
+    if (truth) recordErrors(recorder, picture, *truth);
 }
 
 void PointSplatting::recordModel(technique::Recorder& recorder) const {
@@ -182,23 +205,28 @@ void PointSplatting::recordSpeed(technique::Recorder& recorder) {
                     static_cast<double>(model_->positions().size()) / median, "point/s");
 }
 
-void PointSplatting::recordErrors(technique::Recorder& recorder,
-                                  const image::ImageF& picture) const {
-    const auto compare = [&](const image::ImageF& truth, const char* name) {
-        recordDifference(recorder, truth, picture, name);
-        if (!params_.showsPictures) return;
-        recorder.image(name, truth);
-        recorder.image(fmt::format("flip_{}", name), metrics::flipMap(truth, picture));
-    };
-    // All points, uncompressed, by full EWA at 4 × 4 samples a pixel.
+/// All points, uncompressed, by full EWA at 4 × 4 samples a pixel.
+image::ImageF PointSplatting::supersampledTruth() const {
     SplatSettings splats = params_.splats;
     splats.storage = PointStorage::Uncompressed;
     SelectionSettings all = params_.selection;
     all.method = SplatMethod::FullEwa;
     all.choosesLevels = false;
     all.prefixShare = 1.0F;
-    compare(image::averaged(drawnWith(splats, all, kSupersampling), kSupersampling),
-            "supersampled");
+    return image::averaged(drawnWith(splats, all, kSupersampling), kSupersampling);
+}
+
+void PointSplatting::recordErrors(technique::Recorder& recorder, const image::ImageF& picture,
+                                  const image::ImageF& supersampled) const {
+    const depth_images::View view = depth_images::viewOf(camera_, sizePx_);
+    const auto compare = [&](const image::ImageF& truth, const char* name) {
+        recordDifference(recorder, truth, picture, name);
+        if (!params_.showsPictures) return;
+        recorder.image(name, truth, depth_images::seenFrom(view, "image"));
+        recorder.image(fmt::format("flip_{}", name), metrics::flipMap(truth, picture),
+                       depth_images::seenFrom(view));
+    };
+    compare(supersampled, "supersampled");
 
     // The same levels and bytes by full EWA.
     if (params_.method != Method::FullEwa) {
@@ -207,6 +235,8 @@ void PointSplatting::recordErrors(technique::Recorder& recorder,
         compare(drawnWith(params_.splats, fullEwa, 1), "full_ewa");
     }
     // The same levels and filters of 60 bytes a point.
+    SplatSettings splats = params_.splats;
+    splats.storage = PointStorage::Uncompressed;
     if (params_.splats.storage == PointStorage::Compressed && params_.method != Method::Compute &&
         params_.method != Method::GlPoints) {
         compare(drawnWith(splats, params_.selection, 1), "uncompressed");

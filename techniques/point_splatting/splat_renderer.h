@@ -30,7 +30,7 @@ class SplatRenderer {
     /// RGBA8, linear. Alpha is the coverage, 1 but at edges (sprites: everywhere); the colour is
     /// multiplied by it, as over black.
     const gl::Texture& output() const { return output_; }
-    /// RGBA16F before normalization: Σ w n in view space, and Σ w in alpha. For tests.
+    /// RGBA16F before normalization: Σ w n in view space, and Σ w in alpha. Not of sprites.
     const gl::Texture& accumulated() const { return normalSums_; }
     std::size_t pointBytes() const { return points_.sizeBytes(); }  // what holds the points
     std::size_t targetBytes() const;                                // images

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runner/scene/animation.h"
+#include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/shared/reflections/path_view.h"
 
 namespace gfxrepro::ray_tracing {
@@ -127,7 +128,8 @@ void RayTracing::record(technique::Recorder& recorder) {
         recorder.metric("nodes", static_cast<double>(computeTracer_->bvh().nodeCount()), "node");
         recorder.metric("memory_bytes", static_cast<double>(computeTracer_->sizeBytes()), "byte");
     }
-    recorder.image("result", composite_->read());
+    recorder.image("result", composite_->read(),
+                   reflections::surfaceLayers(gbuffer, params_.supersampling).options());
     if (params_.measuresErrors) recordErrors(recorder, gbuffer);
 }
 

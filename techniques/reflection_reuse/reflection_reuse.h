@@ -44,11 +44,12 @@ class ReflectionReuse final : public technique::Technique {
     void recordMatches(technique::Recorder& recorder);
     image::ImageF truthOf(const reflections::HostGBuffer& gbuffer);
     void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                      const image::ImageF& picture);
+                      const image::ImageF& picture, const image::ImageF& truth);
     void recordUndetected(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                           const image::ImageF& picture, const image::ImageF& truth);
+    /// `truth` is empty where errors are not measured.
     void recordPictures(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                        const image::ImageF& picture);
+                        const image::ImageF& picture, const image::ImageF& truth);
 
     ReuseParams params_;
     std::optional<reflections::ReflectiveScene> scene_;

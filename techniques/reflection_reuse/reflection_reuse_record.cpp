@@ -9,10 +9,12 @@
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::reflection_reuse {
 
+using depth_images::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
@@ -95,8 +97,9 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
     if (renderer_) recordReuse(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
     const image::ImageF picture = composite_->read();
-    if (params_.measuresErrors) recordErrors(recorder, host, picture);
-    if (params_.showsPictures) recordPictures(recorder, host, picture);
+    const image::ImageF truth = params_.measuresErrors ? truthOf(host) : image::ImageF();
+    if (params_.measuresErrors) recordErrors(recorder, host, picture, truth);
+    if (params_.showsPictures) recordPictures(recorder, host, picture, truth);
 }
 
 void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
@@ -168,8 +171,7 @@ image::ImageF ReflectionReuse::truthOf(const HostGBuffer& host) {
 }
 
 void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuffer& host,
-                                   const image::ImageF& picture) {
-    const image::ImageF truth = truthOf(host);
+                                   const image::ImageF& picture, const image::ImageF& truth) {
     const std::vector<std::uint8_t> reflective =
         reflections::reflectivePixels(host, params_.supersampling);
     recorder.metric("channel_error",
@@ -180,9 +182,9 @@ void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuf
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (renderer_) recordUndetected(recorder, host, picture, truth);
     if (!params_.showsPictures) return;
-    recorder.image("truth", truth);
-    recorder.image("error", reflections::errorPicture(picture, truth, 1));
-    recorder.image("error_60", reflections::errorPicture(picture, truth, 60));
+    recorder.image("truth", truth, seenFrom(host.view, "result"));
+    recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(host.view));
+    recorder.image("error_60", reflections::errorPicture(picture, truth, 60), seenFrom(host.view));
 }
 
 void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const HostGBuffer& host,
@@ -194,27 +196,36 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
                     "%");
     if (!params_.showsPictures) return;
     recorder.image("undetected",
-                   reflections::markedPicture(picture, marks, host, params_.supersampling));
+                   reflections::markedPicture(picture, marks, host, params_.supersampling),
+                   seenFrom(host.view));
 }
 
 void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGBuffer& host,
-                                     const image::ImageF& picture) {
-    recorder.image("result", picture);
+                                     const image::ImageF& picture, const image::ImageF& truth) {
+    depth_images::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
+    if (!truth.empty()) layers.errors(picture, truth);
+    recorder.image("result", picture, layers.options());
     composite_->render(gbuffer(), reflection(), true);
-    recorder.image("reflection", composite_->read());
+    recorder.image("reflection", composite_->read(), seenFrom(host.view));
     if (!renderer_) return;
-    recorder.image("recomputed", reflections::markedPicture(picture, readRecomputed(*renderer_),
-                                                            host, params_.supersampling));
+    recorder.image("recomputed",
+                   reflections::markedPicture(picture, readRecomputed(*renderer_), host,
+                                              params_.supersampling),
+                   seenFrom(host.view));
     if (renderer_->counts().isKeyFrame) return;
     const ReflectionDepthImage& key = renderer_->keyFrame();
     composite_->render(key.gbuffer, key.reflection);
-    recorder.image("key_frame", composite_->read());
+    recorder.image("key_frame", composite_->read(), seenFrom(key.gbuffer.view));
     if (params_.method != Method::Reuse) return;
     const HostGBuffer hostKey = reflections::readGBuffer(key.gbuffer);
-    recorder.image("offsets", offsetsPicture(hostKey, readOffsets(renderer_->offsets()),
-                                             params_.supersampling));
-    recorder.image("shifted", shiftedPicture(hostKey, readRadiance(renderer_->shifted().radiance),
-                                             params_.supersampling));
+    recorder.image(
+        "offsets",
+        offsetsPicture(hostKey, readOffsets(renderer_->offsets()), params_.supersampling),
+        seenFrom(hostKey.view));
+    recorder.image(
+        "shifted",
+        shiftedPicture(hostKey, readRadiance(renderer_->shifted().radiance), params_.supersampling),
+        seenFrom(hostKey.view));
 }
 
 }  // namespace gfxrepro::reflection_reuse

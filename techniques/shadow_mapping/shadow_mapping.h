@@ -64,6 +64,7 @@ class ShadowMapping final : public technique::Technique {
 
   private:
     void recordSteps(technique::Recorder& recorder) const;
+    void recordPicture(technique::Recorder& recorder) const;
     void recordErrors(technique::Recorder& recorder, const ShadedImage& image);
     void recordDifference(technique::Recorder& recorder, const ShadedImage& image);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "techniques/shadow_mapping/shadow_mapping.h"
+#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {
@@ -35,19 +36,33 @@ image::ImageF colourPicture(const ShadedImage& image) {
     return picture;
 }
 
-/// White where lit by truth, grey where in shadow, dark where it is not asked.
-image::ImageF truthPicture(const ShadowErrors& errors, glm::ivec2 sizePx) {
+/// White where lit, grey where in shadow, dark where it is not asked: by the truth, or by `terms`
+/// of the map.
+image::ImageF shadowPicture(const ShadowErrors& errors, const std::vector<float>* terms,
+                            glm::ivec2 sizePx) {
     image::ImageF picture(sizePx.x, sizePx.y, 1);
     for (int y = 0; y < sizePx.y; ++y) {
         for (int x = 0; x < sizePx.x; ++x) {
             const auto i = static_cast<std::size_t>(y * sizePx.x + x);
-            const float value = errors.classes[i] == PixelClass::NotCompared ? 0.02F
-                                : errors.truth[i]                            ? 0.9F
-                                                                             : 0.2F;
-            picture.at(x, sizePx.y - 1 - y, 0) = value;
+            const float lit = terms ? (*terms)[i] : static_cast<float>(errors.truth[i]);
+            const bool isCompared = errors.classes[i] != PixelClass::NotCompared;
+            picture.at(x, sizePx.y - 1 - y, 0) = isCompared ? 0.2F + 0.7F * lit : 0.02F;
         }
     }
     return picture;
+}
+
+/// With the normals that only an image with terms has.
+depth_images::ImageLayers layersOf(const ShadedImage& image) {
+    const std::vector<float> normals = image.normals.read<float>(GL_RGB, GL_FLOAT, 3);
+    std::vector<glm::vec3> normalWorld;
+    for (std::size_t i = 0; i < normals.size(); i += 3) {
+        normalWorld.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
+    }
+    depth_images::ImageLayers layers(image.view);
+    layers.windowDepths(image.depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1));
+    layers.normals(normalWorld);
+    return layers;
 }
 
 }  // namespace
@@ -56,13 +71,19 @@ void ShadowMapping::record(technique::Recorder& recorder) {
     recordSteps(recorder);
     recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
     recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
-    if (params_.showsPictures) recorder.image("result", colourPicture(*image_));
+    if (params_.showsPictures) recordPicture(recorder);
     if (!params_.measuresErrors && !params_.comparesMethods) return;
     // Once more with the terms that the measured frame does not write.
     ShadedImage image = makeShadedImage(image_->view, true);
     shadedView_->render(*drawable_, *maps_, image);
     if (params_.measuresErrors) recordErrors(recorder, image);
     if (params_.comparesMethods) recordDifference(recorder, image);
+}
+
+void ShadowMapping::recordPicture(technique::Recorder& recorder) const {
+    const std::vector<float> depths = image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    recorder.image("result", colourPicture(*image_),
+                   depth_images::ImageLayers(image_->view).windowDepths(depths).options());
 }
 
 // [zju2005] Table 4.3
@@ -86,17 +107,26 @@ void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImag
     const scene::Box& bounds = drawable_->bounds();
     const ShadowTruth truth(*tracer_, glm::length(bounds.size()));
     std::uint64_t compared = 0, edge = 0, acne = 0, leak = 0;
+    const glm::ivec2 sizePx = image.view.sizePx;
     for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const std::vector<float> ofLight = channelOf(terms, i);
         const ShadowErrors errors =
-            truth.compare(points, truthLight(lights_[i], bounds, params_.maps.sizePx),
-                          channelOf(terms, i), params_.edgeReachTexels());
+            truth.compare(points, truthLight(lights_[i], bounds, params_.maps.sizePx), ofLight,
+                          params_.edgeReachTexels());
         compared += errors.compared;
         edge += errors.edge;
         acne += errors.acne;
         leak += errors.leak;
         if (!params_.showsPictures) continue;
-        recorder.image(fmt::format("truth_{}", i), truthPicture(errors, image.view.sizePx));
-        recorder.image(fmt::format("errors_{}", i), classPicture(errors, image.view.sizePx));
+        const std::string name = fmt::format("shadow_{}", i);
+        const image::ImageF picture = shadowPicture(errors, &ofLight, sizePx);
+        const image::ImageF truthPicture = shadowPicture(errors, nullptr, sizePx);
+        const std::string truthName = fmt::format("truth_{}", i);
+        recorder.image(name, picture,
+                       layersOf(image).errors(picture, truthPicture, truthName).options());
+        recorder.image(truthName, truthPicture, depth_images::seenFrom(image.view, name));
+        recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
+                       depth_images::seenFrom(image.view));
     }
     recorder.metric("compared_points", static_cast<double>(compared), "pixel");
     recorder.metric("wrong_pct", percent(edge + acne + leak, compared), "%");

@@ -83,6 +83,7 @@ class SoftShadows final : public technique::Technique {
     HostVisibilityMask measuredMask() const;
     const HostVisibilityMask& geometryTruth();
     const HostVisibilityMask& tracedTruth();
+    void recordPicture(technique::Recorder& recorder);
     void recordErrors(technique::Recorder& recorder, const char* truthName,
                       const HostVisibilityMask& truth);
     void recordMeshes(technique::Recorder& recorder) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runner/scene/load.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 
 namespace gfxrepro::soft_shadows {
@@ -117,17 +118,32 @@ void SoftShadows::record(technique::Recorder& recorder) {
                         "triangle");
     }
     if (params_.reconstructs()) recordMeshes(recorder);
-    if (params_.showsPictures) {
-        const std::vector<float> shares = params_.isFiltered()
-                                              ? litShares_.read<float>(GL_RED, GL_FLOAT, 1)
-                                              : litShares(measuredMask());
-        recorder.image("shadow", shadowPicture(hostReceivers_, shares));
-    }
+    if (params_.showsPictures) recordPicture(recorder);
     if (params_.method == Method::RayTraced || params_.isFiltered()) return;
     if (params_.measured != Measured::SoftShadow) return;
     recordLightView(recorder, "inside", light_.centre);
     // As far beyond the edge as the edge is from the centre, seen from there.
     recordLightView(recorder, "outside", light_.centre + 2.0F * light_.right);
+}
+
+void SoftShadows::recordPicture(technique::Recorder& recorder) {
+    const std::vector<float> shares = params_.isFiltered()
+                                          ? litShares_.read<float>(GL_RED, GL_FLOAT, 1)
+                                          : litShares(measuredMask());
+    const image::ImageF picture = shadowPicture(hostReceivers_, shares);
+    const std::vector<glm::vec3> normals(hostReceivers_.normals.begin(),
+                                         hostReceivers_.normals.end());
+    depth_images::ImageLayers layers(receivers_.view);
+    layers.pointDepths(hostReceivers_.positions).normals(normals);
+    const auto addErrors = [&](const HostVisibilityMask& truth, const char* name) {
+        layers.errors(picture, shadowPicture(hostReceivers_, litShares(truth)), name);
+    };
+    if (params_.tracesTruth) {
+        addErrors(tracedTruth(), "truth_ray_traced");
+    } else if (params_.measuresErrors) {
+        addErrors(geometryTruth(), "truth_geometry");
+    }
+    recorder.image("shadow", picture, layers.options());
 }
 
 void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthName,
@@ -143,9 +159,11 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
     }
     if (params_.showsPictures) {
         recorder.image(fmt::format("error_{}", truthName),
-                       errorPicture(hostReceivers_, errors.signedIntensity));
+                       errorPicture(hostReceivers_, errors.signedIntensity),
+                       depth_images::seenFrom(receivers_.view));
         recorder.image(fmt::format("truth_{}", truthName),
-                       shadowPicture(hostReceivers_, litShares(truth)));
+                       shadowPicture(hostReceivers_, litShares(truth)),
+                       depth_images::seenFrom(receivers_.view, "shadow"));
     }
 }
 
@@ -211,8 +229,14 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
     recorder.metric("missing_pct", percent(agreement.missing), "%", name);
     recorder.metric("nearer_pct", percent(agreement.nearer), "%", name);
     if (!params_.showsPictures) return;
-    recorder.image(fmt::format("casters_{}", name), depthPicture(view, measured));
-    recorder.image(fmt::format("geometry_{}", name), depthPicture(view, truth));
+    const std::string casters = fmt::format("casters_{}", name);
+    const auto record = [&](const std::string& imageName, const std::vector<float>& windowDepths,
+                            const std::string& truthOf) {
+        recorder.image(imageName, depthPicture(view, windowDepths),
+                       depth_images::ImageLayers(view).windowDepths(windowDepths).options(truthOf));
+    };
+    record(casters, measured, "");
+    record(fmt::format("geometry_{}", name), truth, casters);
 }
 
 namespace {

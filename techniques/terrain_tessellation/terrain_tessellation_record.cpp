@@ -5,6 +5,7 @@
 
 #include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
@@ -32,13 +33,19 @@ void TerrainTessellation::record(technique::Recorder& recorder) {
     recordDrawn(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
     const Drawn drawn = drawnAgain(params_.method, selection_, params_.measuresErrors);
+    std::optional<Drawn> truth;
+    if (params_.measuresErrors) truth = drawnAgain(Method::UniformGrid, selectAll(), true);
     if (params_.showsPictures) {
-        recorder.image("image", image::averaged(drawn.picture, params_.supersampling));
+        const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
+        depth_images::ImageLayers layers(drawn.depths.view, params_.supersampling);
+        layers.depths(drawn.depths.depthM);
+        if (truth) {
+            layers.errors(picture, image::averaged(truth->picture, params_.supersampling));
+        }
+        recorder.image("image", picture, layers.options());
         if (params_.method == Method::Adaptive) recordCulling(recorder);
     }
-    if (params_.measuresErrors) {
-        recordErrors(recorder, drawn, drawnAgain(Method::UniformGrid, selectAll(), true));
-    }
+    if (truth) recordErrors(recorder, drawn, *truth);
 }
 
 void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
@@ -130,9 +137,13 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truthPicture), "dB");
     recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
     if (!params_.showsPictures) return;
-    recorder.image("truth", truthPicture);
-    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8));
-    recorder.image("cracks", withMarks(drawn.picture, cracks));
+    recorder.image("truth", truthPicture,
+                   depth_images::ImageLayers(truth.depths.view, params_.supersampling)
+                       .depths(truth.depths.depthM)
+                       .options("image"));
+    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8),
+                   depth_images::seenFrom(view_));
+    recorder.image("cracks", withMarks(drawn.picture, cracks), depth_images::seenFrom(view_));
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -38,6 +38,7 @@ class Drawing {
   private:
     DrawingSettings settings_;
     std::optional<VolumeRenderer> renderer_;
+    technique::ImageCamera camera_;
     gl::Texture head_;
 };
 

@@ -117,6 +117,7 @@ class Mock : public technique::Technique {
         const bool isNan = behaviour_ == Behaviour::NotANumber;
         recorder.metric("number", isNan ? std::nan("") : number_, "1");
         recorder.image("flat", image::ImageF(4, 4, 3, 0.5F));
+        recorder.image("truth", image::ImageF(4, 4, 3, 0.25F), {.truthOf = "flat"});
     }
 
     const gl::Texture* frameImage() const override { return &image_; }

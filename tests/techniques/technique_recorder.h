@@ -25,10 +25,10 @@ class MetricRecorder final : public technique::Recorder {
             EXPECT_LE(value, key.find("_sum_") != std::string::npos ? 1600.0 : 100.0) << key;
         }
     }
-    void image(std::string_view name, const image::ImageF& image) override {
+    void image(std::string_view name, const image::ImageF& image,
+               const technique::ImageOptions&) override {
         images.emplace(name, image);
     }
-    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
     std::filesystem::path artifact(std::string_view) override { return {}; }
 
     std::map<std::string, double> metrics;

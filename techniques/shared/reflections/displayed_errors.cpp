@@ -82,6 +82,17 @@ image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
     return picture;
 }
 
+depth_images::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling) {
+    std::vector<std::uint32_t> reflectors;
+    reflectors.reserve(gbuffer.surface.size());
+    for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
+        reflectors.push_back(static_cast<std::uint32_t>(gbuffer.reflector(i)));
+    }
+    depth_images::ImageLayers layers(gbuffer.view, supersampling);
+    layers.depths(gbuffer.depthM).normals(gbuffer.normalWorld).ids("id", reflectors);
+    return layers;
+}
+
 image::ImageF markedPicture(const image::ImageF& picture, const std::vector<std::uint8_t>& marks,
                             const HostGBuffer& gbuffer, int supersampling) {
     const image::ImageF shares = averagedPicture(gbuffer, supersampling, [&](std::size_t i) {

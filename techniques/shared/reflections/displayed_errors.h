@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runner/image/image.h"
+#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/gbuffer.h"
 
 namespace gfxrepro::reflections {
@@ -28,6 +29,9 @@ image::ImageF errorPicture(const image::ImageF& picture, const image::ImageF& tr
 /// A colour a sample, by its index in the G-buffer; averaged to output pixels, rows from the top.
 image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
                               const std::function<glm::vec3(std::size_t)>& colorOf);
+
+/// Depths, normals and reflectors ("id", 0: none) for the EXR file of a frame's picture.
+depth_images::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling);
 
 /// [xie2017] Fig. 27, 28 and 40: `picture`, a little darker, with marked samples red.
 image::ImageF markedPicture(const image::ImageF& picture, const std::vector<std::uint8_t>& marks,

@@ -21,10 +21,10 @@ class MetricRecorder final : public technique::Recorder {
                 std::string_view) override {
         metrics[std::string(metric)] = value;
     }
-    void image(std::string_view name, const image::ImageF& image) override {
+    void image(std::string_view name, const image::ImageF& image,
+               const technique::ImageOptions&) override {
         images.emplace(name, image);
     }
-    void image(std::string_view, const image::ExrImage&, const image::ImageF&) override {}
     std::filesystem::path artifact(std::string_view fileName) override {
         return folder_ / fileName;
     }

@@ -47,6 +47,8 @@ TEST(Text, SplitsTrimsAndJoins) {
     EXPECT_EQ(trimmed("  "), "");
     const std::vector<std::string> items = {"a", "b"};
     EXPECT_EQ(joined(items), "a, b");
+    const std::vector<std::string> gaps = {"", "a", "", ""};
+    EXPECT_EQ(joined(gaps), ", a, , ");
 }
 
 TEST(Hash, MatchesFips180) {

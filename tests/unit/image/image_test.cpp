@@ -137,6 +137,36 @@ TEST(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
     EXPECT_EQ(read.colour().at(5, 3, 2), written.colour().at(5, 3, 2));
 }
 
+TEST(Exr, KeepsWholeNumbersAndMatrices) {
+    const TemporaryFolder folder;
+    ImageF ids(3, 2, 1);
+    const float values[] = {0.0F, 1.0F, 65537.0F, 16777215.0F, 16777216.0F, 7.0F};
+    std::copy(std::begin(values), std::end(values), ids.values().begin());
+    ExrImage written;
+    written.add(ids, {"id"}, ExrPixelType::Uint);
+    std::array<float, 16>& matrix = written.matrices["worldToCamera"];
+    for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] = 0.1F * static_cast<float>(i);
+    writeExr(folder.path() / "a.exr", written);
+    const ExrImage read = readExr(folder.path() / "a.exr");
+    EXPECT_EQ(read.matrices, written.matrices);
+    ASSERT_EQ(read.channels.size(), 1U);
+    EXPECT_EQ(read.channels[0].type, ExrPixelType::Uint);
+    EXPECT_EQ(read.channels[0].values, ids);
+}
+
+TEST(Exr, RefusesWhatIsNoWholeNumber) {
+    const TemporaryFolder folder;
+    for (const auto& [value, text] :
+         {std::pair(0.5F, "0.500000"), std::pair(-1.0F, "-1.000000"),
+          std::pair(16777218.0F, "16777218.000000"), std::pair(std::nanf(""), "nan")}) {
+        ExrImage image;
+        image.add(ImageF(2, 1, 1, value), {"id"}, ExrPixelType::Uint);
+        EXPECT_EQ(errorText([&] { writeExr(folder.path() / "a.exr", image); }, folder.path()),
+                  std::string("cannot write DIR/a.exr: channel 'id' holds ") + text +
+                      "; whole numbers from 0 to 16777216 are allowed");
+    }
+}
+
 TEST(Exr, RefusesAttributesThatDoNotEndWhereTheirTypeDoes) {
     const TemporaryFolder folder;
     writeExr(folder.path() / "a.exr", exrNoise());

@@ -323,6 +323,17 @@ claims:
                 testing::EndsWith("claim 'X': statistic 'min' is not in the format of column 'e'"));
 }
 
+/// Shown with one digit, a and b are the same number, and a is 2 as asked; as measured they are
+/// not.
+TEST(Claims, AreJudgedOnWhatWasMeasuredNotOnWhatIsShown) {
+    const auto records = powers([](double) { return 2.04; }, [](double) { return 1.96; });
+    EXPECT_EQ(judgePowers("order: b < a", records).verdict, Verdict::Holds);
+    EXPECT_EQ(judgePowers("ratio: a / b, at_least: 1.04", records).verdict, Verdict::Holds);
+    EXPECT_EQ(judgePowers("ratio: a / b, at_least: 1.0409", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("bound: a, below: 2.03", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("exact: a, equals: 2", records).verdict, Verdict::Fails);
+}
+
 /// Rows `method` × `scene`, columns a and b; one claim that compares methods.
 std::string acrossBody(const std::string& claim) {
     return R"(

@@ -14,7 +14,8 @@ TEST(Images, AppendedAndRead) {
     const test::TemporaryFolder folder;
     EXPECT_TRUE(readImages(folder.path()).empty());
     const ImageEntry first{"abc", "zju2005/2.1", 0, "surface", "images/a.png", "", "a, \"b\""};
-    const ImageEntry second{"abc", "zju2005/2.1", 1, "surface", "images/b.png", "images/b.exr", ""};
+    const ImageEntry second{"abc",          "zju2005/2.1",  1,  "truth",
+                            "images/b.png", "images/b.exr", "", "surface"};
     appendImages(folder.path(), {first});
     appendImages(folder.path(), {second});
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(first, second));
@@ -34,14 +35,25 @@ TEST(Images, TornLineIsPassedOver) {
     EXPECT_EQ(readImages(folder.path()).size(), 2u);
 }
 
+TEST(Images, OlderListsNameNoTruths) {
+    const test::TemporaryFolder folder;
+    folder.write("images/index.csv", "case,table,frame,name,png,exr,title\na,b,2,n,p,e,t\n");
+    EXPECT_THAT(readImages(folder.path()),
+                testing::ElementsAre(ImageEntry{"a", "b", 2, "n", "p", "e", "t", ""}));
+    folder.write("images/index.csv", "case,table\na,b\n");
+    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
+              "DIR/images/index.csv:1: expected the columns "
+              "case,table,frame,name,png,exr,title,truth_of, found case,table");
+}
+
 TEST(Images, MalformedRowIsAnError) {
     const test::TemporaryFolder folder;
     folder.write("images/index.csv", "case,table,frame,name,png,exr,title\na,b,x,n,p,e,t\n");
     EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
               "DIR/images/index.csv:2: column 'frame': expected an integer, found 'x'");
-    folder.write("images/index.csv", "case,table,frame,name,png,exr,title\na,b\n");
+    folder.write("images/index.csv", "case,table,frame,name,png,exr,title,truth_of\na,b\n");
     EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
-              "DIR/images/index.csv:2: expected 7 columns, found 2");
+              "DIR/images/index.csv:2: expected 8 columns, found 2");
 }
 
 }  // namespace

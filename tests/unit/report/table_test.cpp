@@ -356,5 +356,26 @@ TEST(Table, BadParamsNameTheCase) {
                                     "JSON: "));
 }
 
+TEST(Table, OnesOwnExperimentNeedsNoLayout) {
+    RecordMaker maker;
+    for (const double n : {1.0, 2.0}) {
+        const std::string params = n == 1.0 ? R"({"resolution": 64})" : R"({"resolution": 128})";
+        maker.beginCase("models/duck", params).add("triangles", {n}, "", "triangle");
+        maker.add("scene_source", {1.0}, "", "enum").add("gpu_time_ms", {n, 3.0 * n}, "draw");
+    }
+    config::Experiment own = experimentFrom("scene: models/duck\nsweep: {resolution: [64, 128]}\n");
+    EXPECT_TRUE(buildTable(own, maker.records()).columns.empty()) << "a paper's shows pictures";
+    own.kind = config::Experiment::Kind::Sweep;
+    const Table table = buildTable(own, maker.records());
+    ASSERT_EQ(table.rowAxes, (std::vector<std::string>{"resolution"}));
+    ASSERT_EQ(table.columns.size(), 2U);
+    EXPECT_EQ(table.columns[0].label, "triangles");
+    EXPECT_EQ(table.columns[1].label, "draw gpu_time_ms");
+    ASSERT_EQ(table.rows.size(), 2U);
+    EXPECT_EQ(table.rows[1].labels[0], "128");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "4");
+    EXPECT_TRUE(buildTable(own, {}).columns.empty());
+}
+
 }  // namespace
 }  // namespace gfxrepro::report

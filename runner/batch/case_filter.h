@@ -1,0 +1,21 @@
+// A few cases of a plan, chosen by what they have: how one case is run again.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runner/batch/plan.h"
+
+namespace gfxrepro::batch {
+
+/// Leaves the cases that have all of `only`, each "key=value" as written on the command line. A key
+/// is a sweep's axis, a parameter, `scene`, `output.width`, `output.height`, or `case` with the
+/// beginning of an id. The plan's hash stays that of the whole plan. Throws UsageError when no case
+/// has the key, or the value, with those that there are.
+void keepOnly(Plan& plan, const std::vector<std::string>& only);
+
+/// The shortest `only` that leaves this case alone: its axes; where other cases have them too, its
+/// id, which lasts as long as the build.
+std::vector<std::string> onlyOf(const Case& item, const Plan& plan);
+
+}  // namespace gfxrepro::batch

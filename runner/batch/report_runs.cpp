@@ -1,0 +1,116 @@
+#include "runner/batch/report_runs.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "runner/batch/case_filter.h"
+#include "runner/batch/submission.h"
+#include "runner/core/files.h"
+#include "runner/report/report.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// "load 0.01 s, setup 0.14 s, render 0.46 s, record 0.03 s, peak 124 MB".
+std::string costText(const Json& cost) {
+    std::string text;
+    for (const char* phase : {"load", "setup", "render", "record"}) {
+        const auto found = cost.find(std::string(phase) + "_s");
+        if (found == cost.end()) continue;
+        text += fmt::format("{} {:.3g} s, ", phase, found->get<double>());
+    }
+    if (const auto peak = cost.find("peak_bytes"); peak != cost.end()) {
+        text += fmt::format("peak {:.0f} MB", peak->get<double>() / 1e6);
+    }
+    return text;
+}
+
+/// A line of log.jsonl about a case, for people; then what its worker printed.
+std::string eventText(const Json& event) {
+    const int process = event.value("process", 0);
+    std::string text = event.value("time", "");
+    text += process < 0 ? "  A/A pair" : fmt::format("  process {}", process);
+    text += fmt::format("  {}", event.value("status", ""));
+    if (event.contains("cost")) text += "  " + costText(event["cost"]);
+    for (const char* key : {"message", "output"}) {
+        if (const std::string said = event.value(key, ""); !said.empty()) text += '\n' + said;
+    }
+    return text;
+}
+
+/// Of each case, what the log says; a torn or foreign line is passed over.
+std::map<std::string, std::vector<std::string>> caseLogs(const fs::path& runDir) {
+    std::map<std::string, std::vector<std::string>> logs;
+    std::ifstream file(runDir / "log.jsonl");
+    std::string line;
+    while (std::getline(file, line)) {
+        const Json event = Json::parse(line, nullptr, false);
+        if (!event.is_object() || !event.contains("case")) continue;
+        logs[event.value("case", "")].push_back(eventText(event));
+    }
+    return logs;
+}
+
+/// "xie2017/table-13" of a shipped config; another's file.
+std::string configName(const fs::path& file) {
+    const fs::path folder = file.parent_path();
+    std::error_code isAbsent;
+    const bool isShipped = fs::equivalent(folder.parent_path(), dataFolder("configs"), isAbsent);
+    const bool isPaper = isShipped && folder.filename() != "sweeps" && folder.filename() != "smoke";
+    return isPaper ? (folder.filename() / file.stem()).string() : file.string();
+}
+
+std::string commandOf(const Case& item, const Plan& plan) {
+    std::string config;
+    for (const config::Experiment& experiment : plan.experiments) {
+        if (experiment.id == item.experiment) config = configName(experiment.file);
+    }
+    std::string command = "gfxrepro run " + shellQuoted(config) + " --profile " + plan.profile;
+    const auto add = [&](const char* option, const std::string& value) {
+        command += fmt::format(" {} {}", option, shellQuoted(value));
+    };
+    if (plan.request.device != "auto") add("--device", plan.request.device);
+    for (const std::string& set : plan.request.sets) add("--set", set);
+    for (const std::string& sweep : plan.request.sweeps) add("--sweep", sweep);
+    for (const std::string& only : onlyOf(item, plan)) add("--only", only);
+    return command;
+}
+
+}  // namespace
+
+html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
+    html::ReportRun result{
+        runDir, reportContext(run.manifest), run.manifest, run.plan.experiments, run.records, {},
+        {}};
+    auto logs = caseLogs(runDir);
+    for (const Case& item : run.plan.cases) {
+        result.cases.push_back({item.id, item.experiment, item.title(), commandOf(item, run.plan),
+                                std::move(logs[item.id])});
+    }
+    return result;
+}
+
+html::ReportRun reportRun(const fs::path& folder) {
+    if (fs::exists(folder / "plan.json")) return reportRun(folder, readRun(folder));
+    if (!fs::exists(folder / "manifest.json") || !fs::exists(folder / "claims.csv")) {
+        throw Error(folder.string() + ": is neither a run directory (plan.json) nor kept results " +
+                    "(manifest.json and claims.csv)");
+    }
+    html::ReportRun result;
+    result.folder = folder;
+    result.manifest = Json::parse(readFile(folder / "manifest.json"), nullptr, false);
+    if (!result.manifest.is_object()) {
+        throw Error((folder / "manifest.json").string() + ": is no JSON object");
+    }
+    result.context = reportContext(result.manifest);
+    result.keptClaims = report::readClaims(folder / "claims.csv");
+    return result;
+}
+
+}  // namespace gfxrepro::batch

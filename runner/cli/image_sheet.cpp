@@ -1,0 +1,34 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "runner/cli/commands.h"
+#include "runner/cli/image_commands.h"
+#include "runner/image/contact_sheet.h"
+#include "runner/image/image_file.h"
+#include "runner/image/png_io.h"
+
+namespace gfxrepro::cli {
+
+// The names are printed and not drawn: text on images would take a font and a library for it.
+int imageSheet(const ImageSheetOptions& options) {
+    if (image::isExrFile(options.out)) {
+        throw UsageError(options.out + ": a contact sheet is a .png");
+    }
+    std::vector<image::Image8> images;
+    for (const std::string& file : options.files) {
+        images.push_back(image::isExrFile(file) ? image::toSrgb8(image::readLinear(file))
+                                                : image::readPng8(file));
+    }
+    image::SheetLayout layout;
+    layout.columns = options.columns;
+    layout.cellWidthPx = options.widthPx;
+    image::writePng(options.out, image::contactSheet(images, layout));
+    const auto columns = std::min(static_cast<std::size_t>(options.columns), options.files.size());
+    for (std::size_t i = 0; i < options.files.size(); ++i) {
+        fmt::print("row {} column {}  {}\n", i / columns + 1, i % columns + 1, options.files[i]);
+    }
+    return kExitOk;
+}
+
+}  // namespace gfxrepro::cli

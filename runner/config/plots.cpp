@@ -1,0 +1,181 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runner/config/checks.h"
+#include "runner/config/schema.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool contains(const Names& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The first value of an axis that is no number, if its values are known.
+const Node* firstText(const std::string& axis, const TableNames& names) {
+    const auto known = names.rowValues.find(axis);
+    if (known == names.rowValues.end()) return nullptr;
+    for (const Node& value : known->second) {
+        if (!value.isScalar() || !parseDouble(value.text())) return &value;
+    }
+    return nullptr;
+}
+
+/// Reads one plot. `what_` begins the messages: "plot 1".
+class PlotReader {
+  public:
+    PlotReader(std::size_t number, const Node& node, const TableNames& names)
+        : node_(node), names_(names), what_(fmt::format("plot {}", number)) {}
+
+    PlotSpec read() {
+        requireKeys(node_, what_, keysOf("plot"));
+        plot_.location = node_.location();
+        if (const Node* title = node_.find("title"))
+            plot_.title = lineOf(*title, what_ + ": title");
+        readX(require("x"));
+        readY(require("y"));
+        if (const Node* by = node_.find("by")) plot_.by = readAxis(*by, "by");
+        if (const Node* panels = node_.find("panels")) {
+            for (const Node& axis : listed(*panels)) {
+                plot_.panels.push_back(readAxis(axis, "panels"));
+            }
+        }
+        if (const Node* at = node_.find("at")) plot_.at = readRowFilter(*at, what_, names_);
+        if (const Node* log = node_.find("log")) readLog(*log);
+        requirePlaces();
+        return std::move(plot_);
+    }
+
+  private:
+    const Node& require(const char* key) const {
+        const Node* value = node_.find(key);
+        if (!value) throw Error(node_.location(), fmt::format("{} needs '{}'", what_, key));
+        return *value;
+    }
+
+    static Node::Sequence listed(const Node& node) {
+        return node.isSequence() ? node.items() : Node::Sequence{node};
+    }
+
+    bool isColumn(const std::string& name) const {
+        return !names_.hasAllColumns || contains(names_.columns, name);
+    }
+
+    /// What `x` may be: the row axes of numbers, then the columns.
+    Names abscissae() const {
+        Names known;
+        for (const std::string& axis : names_.rowAxes) {
+            if (!firstText(axis, names_)) known.push_back(axis);
+        }
+        known.insert(known.end(), names_.columns.begin(), names_.columns.end());
+        return known;
+    }
+
+    void readX(const Node& node) {
+        const std::string& name = lineOf(node, what_ + ": x");
+        if (contains(names_.rowAxes, name)) {
+            if (const Node* text = firstText(name, names_)) {
+                throw Error(
+                    node.location(),
+                    fmt::format("{}: x is row axis '{}', whose {} is no number; allowed: {}", what_,
+                                name, text->toFlowText(), joined(abscissae())));
+            }
+            use(name, node);
+        } else if (!isColumn(name)) {
+            const Names known = abscissae();
+            const std::string near = suggestion(name, known);
+            throw Error(node.location(),
+                        fmt::format("{}: x is '{}', neither a row axis nor a column{}", what_, name,
+                                    near.empty() ? "; allowed: " + joined(known) : near));
+        }
+        plot_.x = name;
+    }
+
+    void readY(const Node& node) {
+        for (const Node& item : listed(node)) {
+            const std::string& name = lineOf(item, what_ + ": y");
+            if (!isColumn(name)) {
+                const std::string near = suggestion(name, names_.columns);
+                throw Error(
+                    item.location(),
+                    fmt::format("{}: unknown column '{}'{}", what_, name,
+                                near.empty() ? "; allowed: " + joined(names_.columns) : near));
+            }
+            if (contains(plot_.y, name)) {
+                throw Error(item.location(),
+                            fmt::format("{}: column '{}' stands twice", what_, name));
+            }
+            plot_.y.push_back(name);
+        }
+        if (plot_.y.empty()) throwNotAllowed(node, what_ + ": y", "a column, or a list");
+    }
+
+    std::string readAxis(const Node& node, const char* key) {
+        const std::string what = fmt::format("{}: {}", what_, key);
+        const std::string& name = lineOf(node, what);
+        if (!contains(names_.rowAxes, name)) {
+            throwNotAllowed(node, what, joined(names_.rowAxes, " | "));
+        }
+        use(name, node);
+        return name;
+    }
+
+    void use(const std::string& axis, const Node& node) {
+        if (contains(used_, axis)) {
+            throw Error(node.location(),
+                        fmt::format("{}: row axis '{}' is used twice", what_, axis));
+        }
+        used_.push_back(axis);
+    }
+
+    void readLog(const Node& node) {
+        for (const Node& item : listed(node)) {
+            const std::string name = item.isScalar() ? item.text() : "";
+            if (name != "x" && name != "y") throwNotAllowed(item, what_ + ": log", "x, y");
+            (name == "x" ? plot_.isLogX : plot_.isLogY) = true;
+        }
+    }
+
+    /// Two rows at one place of a curve would be drawn over each other.
+    void requirePlaces() const {
+        if (!contains(names_.rowAxes, plot_.x)) return;
+        for (const std::string& axis : names_.rowAxes) {
+            const auto known = names_.rowValues.find(axis);
+            if (known == names_.rowValues.end() || known->second.size() == 1) continue;
+            const bool isChosen =
+                std::any_of(plot_.at.begin(), plot_.at.end(), [&](const auto& chosen) {
+                    return chosen.first == axis && chosen.second.size() == 1;
+                });
+            if (contains(used_, axis) || isChosen) continue;
+            throw Error(node_.location(),
+                        fmt::format("{}: row axis '{}' has no place; allowed: in by or panels, or "
+                                    "one value in at",
+                                    what_, axis));
+        }
+    }
+
+    const Node& node_;
+    const TableNames& names_;
+    std::string what_;
+    PlotSpec plot_;
+    Names used_;
+};
+
+}  // namespace
+
+std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names) {
+    if (!node.isSequence()) throwNotAllowed(node, "plots", "a list of plots");
+    std::vector<PlotSpec> plots;
+    for (const Node& plot : node.items()) {
+        plots.push_back(PlotReader(plots.size() + 1, plot, names).read());
+    }
+    return plots;
+}
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,172 @@
+#include "runner/html/gallery.h"
+
+#include <fmt/format.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+#include "runner/core/files.h"
+#include "runner/image/png_io.h"
+#include "runner/image/resample.h"
+#include "runner/image/srgb.h"
+#include "runner/metrics/error_map.h"
+#include "runner/metrics/flip.h"
+#include "runner/report/markup.h"
+
+namespace gfxrepro::html {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kThumbnailPx = 192;
+
+/// Whether `made` is there and no older than what it is made from.
+bool isCurrent(const fs::path& made, const fs::path& source) {
+    std::error_code isAbsent;
+    const auto madeAt = fs::last_write_time(made, isAbsent);
+    return !isAbsent && madeAt >= fs::last_write_time(source);
+}
+
+/// A path as a link: its parts may hold what an address may not.
+std::string encodedAddress(const fs::path& path) {
+    std::string address;
+    for (const char c : path.generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool isPlain =
+            std::isalnum(byte) != 0 || std::string_view("/-_.~").find(c) != std::string_view::npos;
+        address += isPlain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+    }
+    return address;
+}
+
+/// The linear values of what a PNG shows, 3 channels.
+image::ImageF displayed(const image::Image8& png) {
+    static const std::array<float, 256> kDecoded = image::srgbDecoding();
+    image::ImageF linear(png.width(), png.height(), 3);
+    for (int y = 0; y < png.height(); ++y) {
+        for (int x = 0; x < png.width(); ++x) {
+            for (int c = 0; c < 3; ++c) {
+                linear.at(x, y, c) = kDecoded[png.at(x, y, png.channels() < 3 ? 0 : c)];
+            }
+        }
+    }
+    return linear;
+}
+
+/// "images/a/b.png" → "<folder>/a/b<suffix>.png".
+fs::path besides(const std::string& png, const fs::path& folder, const std::string& suffix) {
+    const fs::path place = fs::path(png).lexically_relative("images");
+    return folder / place.parent_path() / (place.stem().string() + suffix + ".png");
+}
+
+/// Where the thumbnail of an image lies, made if it is not there; the image itself if that is
+/// small.
+std::string thumbnailOf(const fs::path& runDir, const std::string& png,
+                        const image::Image8& image) {
+    const int longerPx = std::max(image.width(), image.height());
+    if (longerPx <= kThumbnailPx) return png;
+    const fs::path place = besides(png, "thumbnails", "");
+    if (!isCurrent(runDir / place, runDir / png)) {
+        fs::create_directories((runDir / place).parent_path());
+        image::writePng(
+            runDir / place,
+            image::resizedTo(image, std::max(1, kThumbnailPx * image.width() / longerPx)));
+    }
+    return place.generic_string();
+}
+
+using ImageKey = std::tuple<std::string, int, std::string>;  // case, frame, name
+
+/// One run's images on their way into a page.
+class Gallery {
+  public:
+    Gallery(const fs::path& runDir, const fs::path& file, bool embeds)
+        : runDir_(runDir), pageFolder_(fs::absolute(file).parent_path()), embeds_(embeds) {
+        for (report::ImageEntry& entry : report::readImages(runDir)) {
+            std::error_code isAbsent;
+            if (entry.png.empty() || !fs::is_regular_file(runDir / entry.png, isAbsent)) continue;
+            if (!entry.truthOf.empty()) {
+                truths_.try_emplace({entry.caseId, entry.frame, entry.truthOf}, entry);
+            }
+            frames_[entry.caseId].insert(entry.frame);
+            entries_.push_back(std::move(entry));
+        }
+    }
+
+    const std::vector<report::ImageEntry>& entries() const { return entries_; }
+
+    Shot shotOf(const report::ImageEntry& entry) const {
+        const image::Image8 picture = image::readPng8(runDir_ / entry.png);
+        Shot shot;
+        shot.table = entry.table;
+        shot.caseId = entry.caseId;
+        shot.caseTitle = entry.title;
+        shot.name = nameOf(entry);
+        shot.width = picture.width();
+        shot.height = picture.height();
+        const std::string thumbnail =
+            embeds_ ? entry.png : thumbnailOf(runDir_, entry.png, picture);
+        shot.thumbnail = addressOf(thumbnail);
+        if (thumbnail != entry.png) shot.full = addressOf(entry.png);
+        const auto truth = truths_.find({entry.caseId, entry.frame, entry.name});
+        if (truth != truths_.end()) compare(entry, picture, truth->second, shot);
+        return shot;
+    }
+
+  private:
+    /// A frame is named only where a case has several.
+    std::string nameOf(const report::ImageEntry& entry) const {
+        if (frames_.at(entry.caseId).size() == 1) return entry.name;
+        return fmt::format("{}, frame {}", entry.name, entry.frame);
+    }
+
+    void compare(const report::ImageEntry& entry, const image::Image8& picture,
+                 const report::ImageEntry& truth, Shot& shot) const {
+        shot.truth = nameOf(truth);
+        const image::Image8 reference = image::readPng8(runDir_ / truth.png);
+        if (reference.width() != picture.width() || reference.height() != picture.height()) return;
+        const image::ImageF map = metrics::flipMap(displayed(reference), displayed(picture));
+        const auto values = map.values();
+        shot.flipMean =
+            std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+        const fs::path place = besides(entry.png, "images", "-flip");
+        if (!isCurrent(runDir_ / place, runDir_ / entry.png)) {
+            image::writePng(runDir_ / place, metrics::flipPicture(map));
+        }
+        shot.flip = addressOf(place.generic_string());
+    }
+
+    /// What an <img> of the page takes for a file of the run.
+    std::string addressOf(const std::string& place) const {
+        if (embeds_) return "data:image/png;base64," + report::base64(readFile(runDir_ / place));
+        return encodedAddress(fs::relative(fs::absolute(runDir_ / place), pageFolder_));
+    }
+
+    fs::path runDir_;
+    fs::path pageFolder_;
+    bool embeds_;
+    std::vector<report::ImageEntry> entries_;
+    std::map<ImageKey, report::ImageEntry> truths_;  // by the image that they are the truth of
+    std::map<std::string, std::set<int>> frames_;    // of each case
+};
+
+}  // namespace
+
+std::vector<Shot> gatherShots(const fs::path& runDir, const fs::path& file, bool embeds) {
+    const Gallery gallery(runDir, file, embeds);
+    std::vector<Shot> shots(gallery.entries().size());
+    tbb::parallel_for(std::size_t{0}, shots.size(),
+                      [&](std::size_t i) { shots[i] = gallery.shotOf(gallery.entries()[i]); });
+    return shots;
+}
+
+}  // namespace gfxrepro::html

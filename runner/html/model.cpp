@@ -1,0 +1,122 @@
+#include "runner/html/model.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "runner/core/files.h"
+#include "runner/report/plot.h"
+#include "runner/report/report.h"
+
+namespace gfxrepro::html {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Beyond this the images stay files of their own: browsers open larger pages badly.
+constexpr std::uintmax_t kEmbeddedImagesBytes = 20'000'000;
+
+std::uintmax_t imagesBytes(const ReportRun& run) {
+    std::uintmax_t total = 0;
+    for (const report::ImageEntry& image : report::readImages(run.folder)) {
+        std::error_code isAbsent;
+        const std::uintmax_t size = fs::file_size(run.folder / image.png, isAbsent);
+        if (!image.png.empty() && !isAbsent) total += size;
+    }
+    return total;
+}
+
+/// The cases of a table whose last record of a process is no measurement.
+std::vector<Failure> failuresOf(const std::string& table,
+                                const std::vector<report::Record>& records) {
+    std::map<std::pair<std::string, int>, const report::Record*> last;
+    std::vector<std::pair<std::string, int>> order;
+    for (const report::Record& record : records) {
+        if (record.table != table || record.isControl()) continue;
+        const auto [place, isNew] = last.try_emplace({record.caseId, record.process}, &record);
+        if (isNew) order.push_back(place->first);
+        place->second = &record;
+    }
+    std::vector<Failure> failures;
+    for (const auto& key : order) {
+        const report::Record& record = *last[key];
+        if (record.status == report::Status::Ok) continue;
+        std::string name = record.scene;
+        if (!record.method.empty()) name += (name.empty() ? "" : ", ") + record.method;
+        failures.push_back(
+            {record.caseId, name.empty() ? table : name, record.status, record.message});
+    }
+    return failures;
+}
+
+/// The page of a table, made when it is first asked for.
+Page& pageOf(const std::string& id, Model& model) {
+    for (Page& page : model.pages) {
+        if (page.id == id) return page;
+    }
+    Page page;
+    page.id = id;
+    page.label = id;
+    page.slug = id;
+    std::ranges::replace(page.slug, '/', '-');
+    page.parts.resize(model.runs.size());
+    return model.pages.emplace_back(std::move(page));
+}
+
+void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) {
+    const ReportRun& run = model.runs[index];
+    const std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
+    const std::vector<report::PlotFile> plots =
+        report::writePlots(run.folder, tables, run.experiments);
+    const std::vector<Shot> shots = gatherShots(run.folder, file, embeds);
+    for (std::size_t i = 0; i < run.experiments.size(); ++i) {
+        const config::Experiment& experiment = run.experiments[i];
+        Page& page = pageOf(experiment.id, model);
+        page.label = experiment.label();
+        page.title = experiment.title;
+        RunPart& part = page.parts[index];
+        part.experiment = &experiment;
+        part.table = tables[i];
+        part.claims = report::evaluateClaims(experiment, tables[i], run.context);
+        part.failures = failuresOf(experiment.id, run.records);
+        std::ranges::copy_if(shots, std::back_inserter(part.shots),
+                             [&](const Shot& shot) { return shot.table == experiment.id; });
+        for (const report::PlotFile& plot : plots) {
+            if (plot.table != experiment.id) continue;
+            part.curves.push_back({plot.title,
+                                   plot.svg.empty() ? "" : readFile(run.folder / plot.svg),
+                                   plot.problem, plot.script});
+        }
+        for (const ReportCase& item : run.cases) {
+            if (item.table == experiment.id) part.cases.push_back(&item);
+        }
+    }
+    for (const report::ClaimResult& claim : run.keptClaims) {
+        pageOf(claim.table, model).parts[index].claims.push_back(claim);
+    }
+}
+
+}  // namespace
+
+const RunPart* Page::shown() const {
+    const auto part = std::ranges::find_if(parts, [](const auto& p) { return p.experiment; });
+    return part == parts.end() ? nullptr : &*part;
+}
+
+std::string Model::letter(std::size_t run) {
+    GFXREPRO_ASSERT(run < 26);
+    return std::string(1, static_cast<char>('A' + run));
+}
+
+Model buildModel(std::span<const ReportRun> runs, const fs::path& file) {
+    Model model{runs, {}};
+    std::uintmax_t bytes = 0;
+    for (const ReportRun& run : runs) bytes += imagesBytes(run);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        addRun(i, file, bytes <= kEmbeddedImagesBytes, model);
+    }
+    return model;
+}
+
+}  // namespace gfxrepro::html

@@ -1,0 +1,44 @@
+// report.html: what a person looks at after a run, or to lay several runs side by side.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/report/claims.h"
+#include "runner/report/records.h"
+
+namespace gfxrepro::html {
+
+/// A case of a run's plan: how it is run again, and what its log says.
+struct ReportCase {
+    std::string id;
+    std::string table;    // "zju2005/2.1"
+    std::string title;    // "zju2005/2.1 scene=models/duck"
+    std::string command;  // for a shell
+    std::vector<std::string> log;
+};
+
+/// A finished run: all that its pages show. Of the manifest are shown, where there: commit, build,
+/// cpu, cores, memory_bytes, gl.renderer, gl.version, profile, started, scenes.
+struct ReportRun {
+    std::filesystem::path folder;
+    report::ReportContext context;
+    nlohmann::ordered_json manifest;
+    std::vector<config::Experiment> experiments;
+    std::vector<report::Record> records;
+    std::vector<ReportCase> cases;
+    /// Verdicts as they were kept, of a run of which only these are at hand; else they are judged.
+    std::vector<report::ClaimResult> keptClaims;
+};
+
+/// One file that asks no network and no other file but images: an overview of all claims, then a
+/// page a table. Images lie inside up to 20 MB; beyond, the page shows thumbnails that are made
+/// beside the images, and links both, relative to `file`. Several runs are lettered A, B, … and
+/// stand side by side. Throws Error when a file cannot be written.
+void writeReport(const std::filesystem::path& file, std::span<const ReportRun> runs);
+
+}  // namespace gfxrepro::html

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "runner/html/parts.h"
+#include "runner/report/markup.h"
+
+namespace gfxrepro::html {
+
+using report::Cell;
+using report::escapeXml;
+using report::Table;
+using report::TableRow;
+
+namespace {
+
+/// The tables of several runs laid over one another: a row or column that any of them has. Runs of
+/// other profiles have other rows.
+class Overlay {
+  public:
+    explicit Overlay(const Page& page) {
+        for (std::size_t run = 0; run < page.parts.size(); ++run) {
+            if (!page.parts[run].experiment) continue;
+            const Table& table = page.parts[run].table;
+            runs_.push_back(run);
+            tables_.push_back(&table);
+            for (const report::TableColumn& column : table.columns) {
+                const auto isSame = [&](const auto& known) { return known.label == column.label; };
+                if (std::ranges::none_of(columns_, isSame)) columns_.push_back(column);
+            }
+            for (const TableRow& row : table.rows) {
+                if (std::ranges::find(rows_, row.labels) == rows_.end()) {
+                    rows_.push_back(row.labels);
+                }
+            }
+        }
+    }
+
+    const std::vector<std::size_t>& runs() const { return runs_; }
+    const std::vector<report::TableColumn>& columns() const { return columns_; }
+    const std::vector<std::vector<std::string>>& rows() const { return rows_; }
+
+    /// A row of the i-th table; null where it has none.
+    const TableRow* find(std::size_t i, const std::vector<std::string>& labels) const {
+        const auto& rows = tables_[i]->rows;
+        const auto row =
+            std::ranges::find_if(rows, [&](const auto& r) { return r.labels == labels; });
+        return row == rows.end() ? nullptr : &*row;
+    }
+    const Cell* find(std::size_t i, const TableRow* row, const std::string& column) const {
+        if (!row) return nullptr;
+        for (std::size_t c = 0; c < tables_[i]->columns.size(); ++c) {
+            if (tables_[i]->columns[c].label == column) return &row->cells[c];
+        }
+        return nullptr;
+    }
+    /// What the paper printed there; the same in every run that has the cell.
+    std::optional<std::string> printed(const std::vector<std::string>& labels,
+                                       const std::string& column) const {
+        for (std::size_t i = 0; i < tables_.size(); ++i) {
+            const Cell* cell = find(i, find(i, labels), column);
+            if (cell && cell->printed) return cell->printed;
+        }
+        return std::nullopt;
+    }
+    bool hasPrinted(const std::string& column) const {
+        return std::ranges::any_of(
+            rows_, [&](const auto& row) { return printed(row, column).has_value(); });
+    }
+    bool isOnlyPrinted() const { return tables_.front()->isOnlyPrinted; }
+    const Table& first() const { return *tables_.front(); }
+    bool isEmpty() const { return tables_.empty() || columns_.empty() || rows_.empty(); }
+    /// What stands under one column's head: the printed number, then a number a run.
+    std::size_t widthOf(const std::string& column) const {
+        return isOnlyPrinted() ? 1 : (hasPrinted(column) ? 1 : 0) + runs_.size();
+    }
+
+  private:
+    std::vector<std::size_t> runs_;  // beside tables_: its index in the model
+    std::vector<const Table*> tables_;
+    std::vector<report::TableColumn> columns_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+std::string headHtml(const Overlay& overlay, bool isComparison) {
+    const auto isGroup = [&](const auto& column) { return overlay.widthOf(column.label) > 1; };
+    const bool isTwoLines = std::ranges::any_of(overlay.columns(), isGroup);
+    const char* rowSpan = isTwoLines ? " rowspan=\"2\"" : "";
+    std::string head = "<thead><tr>";
+    std::string below;
+    for (const std::string& axis : overlay.first().rowAxes) {
+        head += fmt::format("<th class=\"axis\"{}>{}</th>", rowSpan, escapeXml(axis));
+    }
+    for (const report::TableColumn& column : overlay.columns()) {
+        // "draw_ms" and "triangles" say their unit already.
+        const bool isSaid = column.label.find(column.unit) != std::string::npos;
+        const std::string unit =
+            isSaid || column.unit == "1"
+                ? ""
+                : fmt::format(" <span class=\"sub\">{}</span>", escapeXml(column.unit));
+        const std::string span = isGroup(column)
+                                     ? fmt::format(" colspan=\"{}\"", overlay.widthOf(column.label))
+                                     : std::string(rowSpan);
+        head += fmt::format("<th class=\"{}\"{}>{}{}</th>", isGroup(column) ? "group" : "num", span,
+                            escapeXml(column.label), unit);
+        if (!isGroup(column)) continue;
+        if (overlay.hasPrinted(column.label)) below += "<th class=\"sub\">printed</th>";
+        for (const std::size_t run : overlay.runs()) {
+            below += fmt::format("<th class=\"sub\">{}</th>",
+                                 isComparison ? Model::letter(run) : "measured");
+        }
+    }
+    head += "</tr>";
+    if (isTwoLines) head += fmt::format("<tr>{}</tr>", below);
+    return head + "</thead>\n";
+}
+
+/// "×1.2" of the printed number; a rate of what was, not a comparison of machines.
+std::string ratioHtml(const Cell& cell) {
+    if (cell.values.empty() || cell.printedValues.empty() || !cell.printedValues[0]) return "";
+    const double printed = *cell.printedValues[0];
+    if (printed == 0.0) return "";
+    return fmt::format("<span class=\"ratio\" title=\"measured ÷ printed\">×{:.3g}</span>",
+                       cell.values[0].value / printed);
+}
+
+std::string cellHtml(const Cell* cell, std::size_t run) {
+    if (!cell || !cell->isPlanned) return "<td></td>";
+    std::string anchors;
+    for (const std::string& id : cell->caseIds) anchors += caseAnchor(run, id) + ' ';
+    if (!anchors.empty()) anchors.pop_back();
+    std::string attributes =
+        anchors.empty() ? "" : fmt::format(" data-cases=\"{}\"", escapeXml(anchors));
+    if (!cell->message.empty()) {
+        attributes += fmt::format(" title=\"{}\"", escapeXml(cell->message));
+    }
+    if (!cell->isOk()) {
+        return fmt::format("<td class=\"num\"{}><span class=\"status\">{}</span></td>", attributes,
+                           escapeXml(cell->measured));
+    }
+    std::string html = fmt::format("<td class=\"num\"{}>{}", attributes, escapeXml(cell->measured));
+    std::string below;
+    if (!cell->low.empty() && cell->low != cell->high) {
+        below = fmt::format("<span title=\"95 % interval\">{}–{}</span>", escapeXml(cell->low),
+                            escapeXml(cell->high));
+    }
+    if (const std::string ratio = ratioHtml(*cell); !ratio.empty()) {
+        below += (below.empty() ? "" : " ") + ratio;
+    }
+    if (!below.empty()) html += fmt::format("<span class=\"interval\">{}</span>", below);
+    return html + "</td>";
+}
+
+bool isStandIn(const Overlay& overlay, const std::vector<std::string>& labels) {
+    for (std::size_t i = 0; i < overlay.runs().size(); ++i) {
+        const TableRow* row = overlay.find(i, labels);
+        if (row && row->source == report::SceneSource::StandIn) return true;
+    }
+    return false;
+}
+
+std::string rowHtml(const Overlay& overlay, const std::vector<std::string>& labels) {
+    std::string html = "<tr>";
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const bool isMarked = i == 0 && isStandIn(overlay, labels);
+        html += fmt::format("<th scope=\"row\">{}{}</th>", escapeXml(labels[i]),
+                            isMarked ? " <abbr title=\"stand-in\">†</abbr>" : "");
+    }
+    for (const report::TableColumn& column : overlay.columns()) {
+        if (overlay.hasPrinted(column.label)) {
+            html += fmt::format("<td class=\"num printed\">{}</td>",
+                                escapeXml(overlay.printed(labels, column.label).value_or("")));
+        }
+        if (overlay.isOnlyPrinted()) continue;
+        for (std::size_t i = 0; i < overlay.runs().size(); ++i) {
+            html +=
+                cellHtml(overlay.find(i, overlay.find(i, labels), column.label), overlay.runs()[i]);
+        }
+    }
+    return html + "</tr>\n";
+}
+
+}  // namespace
+
+std::string tableHtml(const Page& page, const Model& model) {
+    const Overlay overlay(page);
+    if (overlay.isEmpty()) return "";
+    std::string html = "<div class=\"scroll\"><table class=\"results\">\n" +
+                       headHtml(overlay, model.isComparison()) + "<tbody>\n";
+    bool hasStandIn = false;
+    for (const std::vector<std::string>& labels : overlay.rows()) {
+        html += rowHtml(overlay, labels);
+        hasStandIn |= isStandIn(overlay, labels);
+    }
+    html += "</tbody></table></div>\n";
+    if (!overlay.isOnlyPrinted()) {
+        html +=
+            "<p class=\"soft small\">Under a number: its 95 % interval, and × what is printed. "
+            "Point at a row for its cases; click to keep them.</p>\n";
+    }
+    if (hasStandIn) {
+        html +=
+            "<p class=\"soft small\">† a stand-in with the printed counts: the real model was "
+            "not at hand.</p>\n";
+    }
+    return html;
+}
+
+}  // namespace gfxrepro::html

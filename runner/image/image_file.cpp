@@ -1,0 +1,38 @@
+#include "runner/image/image_file.h"
+
+#include <string>
+
+#include "runner/image/exr_io.h"
+#include "runner/image/png_io.h"
+#include "runner/image/srgb.h"
+
+namespace gfxrepro::image {
+
+bool isExrFile(const std::filesystem::path& path) {
+    const std::string extension = path.extension();
+    if (extension == ".exr" || extension == ".png") return extension == ".exr";
+    throw UsageError(path.string() + ": is neither .exr nor .png");
+}
+
+ImageF readStored(const std::filesystem::path& path) {
+    if (isExrFile(path)) return readExr(path).colour();
+    const Image16 stored = readPng16(path);
+    ImageF result(stored.width(), stored.height(), stored.channels());
+    const auto from = stored.values();
+    const auto to = result.values();
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<float>(from[i]) / 65535.0F;
+    return result;
+}
+
+ImageF readLinear(const std::filesystem::path& path) {
+    ImageF image = readStored(path);
+    if (isExrFile(path)) return image;
+    const auto channels = static_cast<std::size_t>(image.channels());
+    const std::size_t colours = channels % 2 == 0 ? channels - 1 : channels;  // the rest is alpha
+    for (std::size_t i = 0; i < image.values().size(); ++i) {
+        if (i % channels < colours) image.values()[i] = linearOf(image.values()[i]);
+    }
+    return image;
+}
+
+}  // namespace gfxrepro::image

@@ -1,0 +1,132 @@
+#include "runner/report/gnuplot.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "runner/core/text.h"
+
+extern char** environ;
+
+namespace gfxrepro::report {
+
+namespace {
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File temporaryFile() {
+    File file(std::tmpfile(), &std::fclose);
+    if (!file) throw Error(fmt::format("cannot make a temporary file: {}", std::strerror(errno)));
+    return file;
+}
+
+std::string contentOf(std::FILE* file) {
+    std::rewind(file);
+    std::string text;
+    char buffer[65536];
+    while (const std::size_t count = std::fread(buffer, 1, sizeof(buffer), file)) {
+        text.append(buffer, count);
+    }
+    return text;
+}
+
+/// Starts gnuplot with its output in files: they take any amount, where two pipes have to be read
+/// in turn. An errno where it does not start.
+int start(const std::string& script, std::FILE* output, std::FILE* errors, pid_t& pid) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fileno(output), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, fileno(errors), STDERR_FILENO);
+    std::string arguments[] = {"gnuplot", "--default-settings", script};
+    char* pointers[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
+    const int reason = posix_spawnp(&pid, "gnuplot", &actions, nullptr, pointers, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    return reason;
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
+        text.replace(at, from.size(), to);
+        at += to.size();
+    }
+}
+
+/// What stands after each `head` begins with `prefix`.
+void beginAll(std::string& text, const std::string& head, const std::string& prefix) {
+    for (std::size_t at = text.find(head); at != std::string::npos; at = text.find(head, at)) {
+        at += head.size();
+        if (text.compare(at, prefix.size(), prefix) != 0) text.insert(at, prefix);
+    }
+}
+
+/// One line of drawing, in which no text of ours stands.
+std::string adaptedLine(std::string line, const std::string& name) {
+    for (const char* quote : {"'", "\""}) {
+        // A group's colour would hide that of the page; what is drawn in it is written so itself.
+        replaceAll(line, fmt::format(" color={0}black{0}", quote), "");
+        for (const char* key : {"fill", "stroke"}) {
+            replaceAll(line, fmt::format("{0}={1}black{1}", key, quote),
+                       fmt::format("{0}={1}currentColor{1}", key, quote));
+        }
+        beginAll(line, fmt::format(" id={}", quote), name + "_");
+        beginAll(line, fmt::format(" xlink:href={}#", quote), name + "_");
+    }
+    return line;
+}
+
+}  // namespace
+
+Drawn runGnuplot(const std::filesystem::path& script) {
+    const File output = temporaryFile();
+    const File errors = temporaryFile();
+    pid_t pid = 0;
+    const int reason =
+        start(std::filesystem::absolute(script).string(), output.get(), errors.get(), pid);
+    if (reason == ENOENT) return {"", "gnuplot is not installed"};
+    if (reason != 0) return {"", fmt::format("cannot run gnuplot: {}", std::strerror(reason))};
+    int status = 0;
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    }
+    std::string svg = contentOf(output.get());
+    if (status == 0 && std::string_view(svg).find("</svg>") != std::string_view::npos) {
+        return {std::move(svg), ""};
+    }
+    std::string said(trimmed(contentOf(errors.get())));
+    return {"", fmt::format("gnuplot failed: {}", said.empty() ? "it wrote no SVG" : said)};
+}
+
+std::string adaptedSvg(const std::string& svg, const std::string& name) {
+    std::string result;
+    std::string group;  // an opened group that may turn out to be empty
+    for (const std::string& line : split(svg, '\n')) {
+        if (line.starts_with("<?xml")) continue;
+        if (line.starts_with("<g fill=")) {
+            result += group;
+            group = adaptedLine(line, name) + "\n";
+            continue;
+        }
+        if (line == "</g>" && !group.empty()) {
+            group.clear();
+            continue;
+        }
+        result += std::exchange(group, "");
+        const std::size_t text = line.find("<text>");
+        std::string own = text == std::string::npos ? "" : line.substr(text);
+        replaceAll(own, "]]>", "]]&gt;");
+        // Titles are what gnuplot calls a part, which says nothing to anyone who hovers over it.
+        result += adaptedLine(line.substr(0, std::min(text, line.find("<title>"))), name);
+        result += own + "\n";
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,68 @@
+#include "runner/report/plot.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cctype>
+
+#include "runner/core/files.h"
+#include "runner/report/figure.h"
+#include "runner/report/gnuplot.h"
+
+namespace gfxrepro::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A name for ids: letters, digits and _.
+std::string idOf(const std::string& stem) {
+    std::string id = "plot_" + stem;
+    std::replace_if(
+        id.begin(), id.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+    return id;
+}
+
+PlotFile writePlot(const fs::path& runDir, const Table& table, const config::PlotSpec& plot,
+                   const std::string& stem) {
+    const Figure figure = makeFigure(plot, table);
+    PlotFile file;
+    file.table = table.id;
+    file.title = plot.title.empty() ? table.title : plot.title;
+    file.notes = figure.notes;
+    const std::string svg = fmt::format("plots/{}.svg", stem);
+    if (figure.panels.empty()) {
+        file.problem = "no value was measured";
+        fs::remove(runDir / svg);  // of a run before this one
+        return file;
+    }
+    file.script = fmt::format("plots/{}.gp", stem);
+    const std::string source = fmt::format("{}: {}", table.label, file.title);
+    writeFileAtomic(runDir / file.script, gnuplotScript(figure, idOf(stem), source));
+    const Drawn drawn = runGnuplot(runDir / file.script);
+    file.problem = drawn.problem;
+    if (drawn.problem.empty()) {
+        file.svg = svg;
+        writeFileAtomic(runDir / svg, adaptedSvg(drawn.svg, idOf(stem)));
+    } else {
+        fs::remove(runDir / svg);
+    }
+    return file;
+}
+
+}  // namespace
+
+std::vector<PlotFile> writePlots(const fs::path& runDir, const std::vector<Table>& tables,
+                                 const std::vector<config::Experiment>& experiments) {
+    GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
+    std::vector<PlotFile> files;
+    for (std::size_t i = 0; i < experiments.size(); ++i) {
+        const std::vector<config::PlotSpec>& plots = experiments[i].plots;
+        for (std::size_t n = 0; n < plots.size(); ++n) {
+            const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
+            files.push_back(writePlot(runDir, tables[i], plots[n], tables[i].slug + suffix));
+        }
+    }
+    return files;
+}
+
+}  // namespace gfxrepro::report

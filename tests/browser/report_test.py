@@ -1,0 +1,348 @@
+#!/usr/bin/env python3
+"""The report in a real browser: report_test.py MOCK_PROGRAM OUT. Exit 77: something is not installed."""
+
+import csv
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+
+import png
+import webdriver
+
+MOCK, OUT = sys.argv[1], pathlib.Path(sys.argv[2])
+DARK, LIGHT, GREY = (100, 100, 100), (140, 140, 140), (120, 120, 120)
+MANY = 1200  # images of the large report
+
+TABLE = """
+table: demo2026/{number}
+title: "Times <b>&</b> numbers"
+technique: mock
+measure: {{repeats: 5}}
+sweep:
+  number: [1, 2, 3]
+  behaviour: [ok, throw]
+layout:
+  rows: number
+  columns: {{ok: {{where: {{behaviour: ok}}}}, throw: {{where: {{behaviour: throw}}}}}}
+  cell: {{metric: number, format: "{{median:.1f}}"}}
+printed:
+  hardware: "a <machine>"
+  values: |
+    number,ok
+    1,2.0
+    2,2.0
+claims:
+  H: {{says: the first is small, bound: ok, below: 5, at: {{number: 1}}}}
+  F: {{says: the third is small, bound: ok, below: 2, at: {{number: 3}}}}
+  U: {{says: what was thrown is small, bound: throw, below: 2}}
+  G: {{says: on a GPU it is faster, bound: ok, below: 1, device: gpu}}
+assumptions:
+  view: {{value: front, range: [front, back], why: the paper does not say}}
+"""
+
+
+def run(*arguments, data):
+    return subprocess.run([MOCK, *map(str, arguments)], env={**os.environ, "GFXREPRO_DATA": str(data)},
+                          capture_output=True, text=True, check=False)
+
+
+def make_run(data, folder, name="demo2026"):
+    shutil.rmtree(folder, ignore_errors=True)
+    result = run("reproduce", name, "--device", "software", "--quiet", "--profile", "quick", "--out", folder, data=data)
+    assert (folder / "report.html").exists(), result.stderr
+    return folder
+
+
+def add_images(folder, images):
+    """Replaces the run's images by (case, name, truth_of, colour function) of 64² pixels."""
+    rows = ["case,table,frame,name,png,exr,title,truth_of"]
+    for i, (case, name, truth_of, colour) in enumerate(images):
+        file = f"images/made/{i}.png"
+        png.write(folder / file, 64, 64, colour)
+        rows.append(f'{case},demo2026/1,0,{name},{file},,"demo2026/1 case {case}",{truth_of}')
+    (folder / "images" / "index.csv").write_text("\n".join(rows) + "\n")
+
+
+def halves(left, right):
+    return lambda x, y: left if x < 32 else right
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(OUT, ignore_errors=True)
+        cls.data = OUT / "data"
+        (cls.data / "configs" / "scenes").mkdir(parents=True)
+        (cls.data / "configs" / "demo2026").mkdir()
+        for number in (1, 2):
+            (cls.data / "configs" / "demo2026" / f"table-{number}.yaml").write_text(TABLE.format(number=number))
+        (cls.data / "shaders").mkdir()
+        cls.folder = make_run(cls.data, OUT / "run")
+        # Left A is darker than its truth, right it is equal; "other" is brighter on the left.
+        add_images(cls.folder, [("c1", "result", "", halves(DARK, GREY)), ("c1", "truth", "result", halves(LIGHT, GREY)),
+                             ("c2", "result", "", halves(LIGHT, GREY)), ("c2", "truth", "result", halves(DARK, GREY))])
+        assert run("report", cls.folder, data=cls.data).returncode == 4  # cases threw
+        cls.browser = cls.enterClassContext(webdriver.Browser())
+
+    def setUp(self):
+        self.browser.resize(1300, 900)
+        self.browser.emulate()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def open(self, fragment="", folder=None):
+        return self.browser.open((folder or self.folder) / "report.html", fragment)
+
+    def shown(self, selector):
+        return self.browser.script(
+            "return [...document.querySelectorAll(arguments[0])].filter(e => e.checkVisibility()).length", selector)
+
+    def test_the_overview_shows_every_claim_once(self):
+        self.open()
+        with open(self.folder / "claims.csv", encoding="utf-8") as file:
+            claims = list(csv.DictReader(file))
+        self.assertEqual(len(claims), 8)
+        self.assertEqual(self.shown(".grid .badge"), len(claims))
+        for verdict in {c["verdict"] for c in claims}:
+            self.assertEqual(self.shown(f".grid .badge.{verdict}"), sum(c["verdict"] == verdict for c in claims))
+        self.assertEqual(self.shown(".page"), 1)
+        self.assertEqual(self.shown("b"), 0, "a title's markup must stay text")
+        self.browser.screenshot(OUT / "overview.png")
+
+    def test_filters_choose_by_verdict_words_and_paper(self):
+        self.open()
+        for verdict in ("holds", "ambiguous", "unmeasured", "not-applicable"):
+            self.browser.click(f".filters input[value={verdict}]")
+        self.assertEqual(self.shown(".grid .badge"), 2)
+        self.assertEqual(self.shown(".grid .badge.fails"), 2)
+        self.assertEqual(self.browser.script("return document.querySelector('.filters output').value"), "2 of 8 verdicts")
+        self.browser.type(".filters [name=text]", "no such words")
+        self.assertEqual(self.shown(".grid tbody tr"), 0)
+        self.open()
+        self.browser.type(".filters [name=text]", "GPU")
+        self.assertEqual(self.shown(".grid .badge"), 2)
+
+    def test_pages_turn(self):
+        self.open()
+        self.browser.click(".grid a[href='#demo2026-1']")
+        self.browser.wait("return document.getElementById('demo2026-1').checkVisibility()")
+        self.assertEqual(self.shown(".page"), 1)
+        self.browser.click("nav .next")
+        self.browser.wait("return document.getElementById('demo2026-2').checkVisibility()")
+        self.assertEqual(self.browser.script("return document.querySelector('nav select').value"), "demo2026-2")
+        self.browser.script("history.back()")
+        self.browser.wait("return document.getElementById('demo2026-1').checkVisibility()")
+
+    def test_rows_show_their_cases(self):
+        self.open("#demo2026-1")
+        self.assertEqual(self.shown(".cases-shown"), 0)
+        self.browser.point("#demo2026-1 .results tbody tr:nth-child(2) td:nth-child(3)")
+        self.browser.wait("return document.querySelector('.cases-shown').checkVisibility()")
+        first = self.browser.script("return document.querySelector('.cases-shown .command').textContent")
+        self.assertIn("--only number=2 --only behaviour=ok", first)
+        self.assertEqual(self.shown(".cases-shown .case"), 2)
+        self.assertIn("nothing works", self.browser.script("return document.querySelector('.cases-shown').textContent"))
+        self.browser.screenshot(OUT / "cases.png")
+        self.browser.point("#demo2026-1 h2")
+        self.browser.wait("return !document.querySelector('.cases-shown').checkVisibility()")
+        self.browser.click("#demo2026-1 .results tbody tr:nth-child(1)")
+        self.browser.point("#demo2026-1 h2")
+        self.assertEqual(self.shown(".cases-shown.kept .case"), 2)
+        self.browser.click(".cases-shown .close")
+        self.assertEqual(self.shown(".cases-shown"), 0)
+
+    def test_the_command_runs_that_case_alone(self):
+        self.open("#demo2026-1")
+        case, command = self.browser.script(
+            "const c = document.querySelector('#demo2026-1 .case');"
+            "return [c.id.slice(2), c.querySelector('.command').textContent]")
+        again = OUT / "again"
+        shutil.rmtree(again, ignore_errors=True)
+        done = subprocess.run(f"{command} --out {again}".replace("gfxrepro", MOCK, 1), shell=True, check=False,
+                              env={**os.environ, "GFXREPRO_DATA": str(self.data)}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(again / "records.csv", encoding="utf-8") as file:
+            self.assertEqual({row["case"] for row in csv.DictReader(file)}, {case})
+
+    def view(self, case):
+        self.open("#demo2026-1")
+        self.browser.click(f".shot[data-case={case}][data-name=result]")
+        self.browser.wait("return document.getElementById('viewer').open && "
+                          "[...document.querySelectorAll('.stage img')].every(i => i.complete)")
+
+    def pixels(self, name):
+        """The colours left and right of the middle of the first pane's image."""
+        time.sleep(0.2)  # until the compositor has drawn
+        self.browser.screenshot(OUT / f"{name}.png", ".stage")
+        box = self.browser.script(
+            "const i = document.querySelector('.pane .layers').getBoundingClientRect(),"
+            "s = document.querySelector('.stage').getBoundingClientRect();"
+            "return [i.left - s.left, i.top - s.top, i.width, i.height]")
+        _, _, at = png.read(OUT / f"{name}.png")
+        y = round(box[1] + box[3] / 2)
+        return at(round(box[0] + box[2] / 4), y), at(round(box[0] + box[2] * 3 / 4), y)
+
+    def set_gain(self, exponent):
+        self.browser.script("const g = document.querySelector('[name=gain]'); g.value = arguments[0];"
+                            "g.dispatchEvent(new Event('input', {bubbles: true}))", exponent)
+
+    def near(self, found, expected, tolerance=3):
+        for f, e in zip(found, expected):
+            self.assertLessEqual(abs(f - e), tolerance, f"{found} is not {expected}")
+
+    def test_the_viewer_pairs_an_image_with_its_truth(self):
+        self.view("c1")
+        self.assertEqual(self.browser.script("return document.querySelector('#viewer [name=b]').selectedOptions[0].text"),
+                         "truth · case c1")
+        left, right = self.pixels("viewer-side")
+        self.near(left, DARK)
+        self.near(right, GREY)
+        self.assertEqual(self.shown(".stage .pane"), 2)
+        self.browser.press("\ue00c")  # Escape
+        self.browser.wait("return !document.getElementById('viewer').open")
+
+    def test_flip_shows_one_then_the_other(self):
+        self.view("c1")
+        self.browser.press("2")
+        self.near(self.pixels("viewer-flip-a")[0], DARK)
+        self.browser.press("f")
+        self.near(self.pixels("viewer-flip-b")[0], LIGHT)
+        self.assertEqual(self.shown(".stage .pane"), 1)
+
+    def test_the_slider_shows_a_left_and_b_right_of_it(self):
+        self.view("c1")
+        self.browser.press("3")
+        self.near(self.pixels("viewer-slider")[0], DARK)
+        self.browser.drag(".handle", -500, 0)
+        self.near(self.pixels("viewer-slider-dragged")[0], LIGHT)
+
+    def test_error_maps_show_sign_and_gain(self):
+        grey = (222, 222, 222)
+        for case, is_darker in (("c1", True), ("c2", False)):
+            self.view(case)
+            self.browser.press("4")
+            self.set_gain(2)  # ×4: 4 · 40/255 = 0.63 of the way to the end
+            left, right = self.pixels(f"viewer-signed-{case}")
+            self.near(right, grey)
+            self.assertEqual(left[0] > left[2], is_darker, f"red where A is darker, blue where brighter: {left}")
+            middle, end = 222, (181, 5, 38) if is_darker else (59, 77, 191)
+            part = 4 * 40 / 255
+            self.near(left, [middle + part * (e - middle) for e in end], 5)
+            self.set_gain(7)
+            left, right = self.pixels(f"viewer-signed-128-{case}")
+            self.near(right, grey, 1)  # equal stays grey at any gain
+            self.near(left, end, 4)
+        self.browser.press("5")
+        self.set_gain(2)
+        left, right = self.pixels("viewer-absolute")
+        self.near(left, (160, 160, 160))  # 4 · |100 − 140|
+        self.near(right, (0, 0, 0))
+
+    def test_the_flip_map_and_its_legend(self):
+        self.view("c1")
+        self.browser.press("6")
+        left, right = self.pixels("viewer-flip-map")
+        self.assertGreater(sum(left), sum(right) + 60)
+        self.near(right, (0, 0, 4))
+        self.assertEqual(self.shown(".legend"), 1)
+        self.browser.script("document.querySelector('#viewer [name=b]').value = 2;"
+                            "document.querySelector('#viewer [name=b]').dispatchEvent(new Event('change', {bubbles: true}))")
+        self.assertTrue(self.browser.script("return document.querySelector('[value=flip-map]').disabled"),
+                        "images that are no pair have no map")
+
+    def test_zoom_is_the_same_in_both_panes_and_shows_pixels(self):
+        self.view("c1")
+        for _ in range(12):
+            self.browser.scroll(".pane", -100)
+        transforms = self.browser.script("return [...document.querySelectorAll('.layers')].map(l => l.style.transform)")
+        self.assertEqual(transforms[0], transforms[1])
+        self.assertEqual(self.shown(".layers.pixels"), 2)
+        _, _, at = (self.pixels("viewer-zoomed"), *png.read(OUT / "viewer-zoomed.png"))[1:]
+        row = {at(x, 300) for x in range(40, 600)}
+        self.assertLessEqual(row, {DARK, GREY}, "no colour between two pixels: they are not smoothed")
+        self.browser.drag(".pane", 40, 30)
+        moved = self.browser.script("return [...document.querySelectorAll('.layers')].map(l => l.style.transform)")
+        self.assertEqual(moved[0], moved[1])
+        self.assertNotEqual(moved[0], transforms[0])
+
+    def test_nothing_is_asked_of_a_network_and_no_image_is_missing(self):
+        self.open()
+        self.browser.script("document.body.classList.remove('paged');"
+                            "document.querySelectorAll('img').forEach(i => { i.loading = 'eager'; })")
+        self.browser.wait("return [...document.querySelectorAll('.gallery img')].every(i => i.complete)")
+        self.assertEqual(self.browser.script("return [...document.querySelectorAll('.gallery img')].filter(i => !i.naturalWidth).length"), 0)
+        self.assertEqual(self.shown(".gallery img"), 4)
+        names = self.browser.script("return performance.getEntriesByType('resource').map(e => e.name)")
+        self.assertEqual([n for n in names if not n.startswith(("file:", "data:"))], [])
+
+    def test_narrow_dark_and_print(self):
+        self.browser.resize(500, 900)  # Chromium's windows are not narrower
+        for fragment in ("", "#demo2026-1"):
+            self.open(fragment)
+            self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth - innerWidth"), 0)
+        self.browser.screenshot(OUT / "narrow.png")
+        self.browser.resize(1300, 900)
+        luminance = ("const c = getComputedStyle(document.body)[arguments[0]].match(/\\d+/g).map(Number);"
+                     "return (c[0] + c[1] + c[2]) / 3")
+        for scheme, is_dark in (("dark", True), ("light", False)):
+            self.browser.emulate(scheme=scheme)
+            self.open("#demo2026-1")
+            self.assertEqual(self.browser.script(luminance, "backgroundColor") < 60, is_dark)
+            self.assertEqual(self.browser.script(luminance, "color") > 180, is_dark)
+            self.browser.screenshot(OUT / f"{scheme}.png")
+        self.browser.emulate(media="print", scheme="dark")
+        self.assertEqual(self.shown(".page"), 3, "print has all pages")
+        self.assertEqual(self.shown("nav, .filters, .cases-shown"), 0)
+        self.assertGreater(self.browser.script(luminance, "backgroundColor"), 240)
+
+    def test_many_images_are_loaded_as_they_come_into_sight(self):
+        folder = OUT / "many"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(self.folder, folder)
+        noise = os.urandom(3 * 96 * 96)
+        rows = ["case,table,frame,name,png,exr,title,truth_of"]
+        pixel = lambda x, y: noise[3 * (96 * (y % 96) + x % 96):][:3]
+        png.write(folder / "images/made/noise.png", 288, 288, pixel)
+        for i in range(MANY):
+            file = f"images/made/many-{i}.png"
+            shutil.copy(folder / "images/made/noise.png", folder / file)
+            rows.append(f"c{i // 4},demo2026/1,0,n{i % 4},{file},,demo2026/1 case {i // 4},")
+        (folder / "images" / "index.csv").write_text("\n".join(rows) + "\n")
+        run("report", folder, data=self.data)
+        seconds = self.open("#demo2026-1", folder)
+        print(f"\n{MANY} images, {(folder / 'report.html').stat().st_size / 1e6:.1f} MB of HTML: opened in {seconds:.2f} s", file=sys.stderr)
+        self.assertEqual(self.browser.script("return document.querySelectorAll('.gallery img').length"), MANY)
+        loaded = self.browser.script("return performance.getEntriesByType('resource').length")
+        self.assertLess(loaded, MANY / 2, "only what is near the window is loaded")
+        sources = self.browser.script("return [...document.querySelectorAll('.gallery img')].map(i => i.getAttribute('src'))")
+        self.assertTrue(all((folder / s).is_file() for s in sources))
+        self.browser.click(".shot[data-case=c250]")
+        self.browser.wait("const i = document.querySelector('.stage .a');"
+                          "return i.complete && i.naturalWidth === 288 && document.getElementById('viewer').open")
+
+    def test_runs_side_by_side(self):
+        other = make_run(self.data, OUT / "other", "demo2026/1")
+        both = OUT / "both" / "report.html"
+        both.parent.mkdir(exist_ok=True)
+        result = run("report", self.folder, other, "--out", both, data=self.data)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.browser.open(both)
+        self.assertEqual(self.shown(".grid thead th"), 5)  # paper, table, claim, A, B
+        self.assertEqual(self.shown(".grid .badge"), 8 + 4)
+        self.browser.open(both, "#demo2026-1")
+        self.assertEqual(self.browser.script(
+            "return [...document.querySelectorAll('#demo2026-1 .results thead .sub')].map(h => h.textContent)"),
+            ["printed", "A", "B", "A", "B"])
+        self.browser.screenshot(OUT / "both.png")
+
+
+if __name__ == "__main__":
+    if webdriver.missing():
+        print(f"skipped: {webdriver.missing()} is not installed (scripts/setup installs it)")
+        sys.exit(77)
+    unittest.main(argv=[sys.argv[0], "-v"])

@@ -1,0 +1,304 @@
+// `gfxrepro image …` on files that the tests write.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "runner/image/exr_io.h"
+#include "runner/image/png_io.h"
+#include "runner/metrics/flip.h"
+#include "runner/metrics/hdr_flip.h"
+#include "runner/report/images.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using image::ExrImage;
+using image::Image8;
+using image::ImageF;
+
+class ImageCommands : public ::testing::Test {
+  protected:
+    std::string at(const char* name) const { return (folder_.path() / name).string(); }
+
+    /// 16 × 12, a step between two colours at column 8, with depth, normals, ids and attributes.
+    ExrImage gbuffer(float bright) const {
+        ImageF colour(16, 12, 3, 0.25F), depth(16, 12, 1), normal(16, 12, 3), id(16, 12, 1);
+        for (int y = 0; y < 12; ++y) {
+            for (int x = 8; x < 16; ++x) {
+                for (int c = 0; c < 3; ++c) colour.at(x, y, c) = bright;
+                depth.at(x, y) = static_cast<float>(x);
+                normal.at(x, y, 1) = 1.0F;
+                id.at(x, y) = 70000.0F;
+            }
+        }
+        ExrImage exr;
+        exr.add(colour, {"R", "G", "B"});
+        exr.add(depth, {"Z"}, image::ExrPixelType::Float);
+        exr.add(normal, {"N.X", "N.Y", "N.Z"});
+        exr.add(id, {"id"}, image::ExrPixelType::Uint);
+        exr.attributes["case"] = "0123456789ab";
+        // x' = x / 16, y' = y / 12 of points (x, y, ·, 1): pixels of the whole image.
+        exr.matrices["worldToNDC"] = {1.0F / 16, 0, 0, 0, 0, 1.0F / 12, 0, 0,
+                                      0,         0, 1, 0, 0, 0,         0, 1};
+        return exr;
+    }
+    std::string write(const char* name, const ExrImage& exr) const {
+        image::writeExr(folder_.path() / name, exr);
+        return at(name);
+    }
+    std::string write(const char* name, const Image8& image) const {
+        image::writePng(folder_.path() / name, image);
+        return at(name);
+    }
+    std::string out(const std::vector<std::string>& arguments) const {
+        const ProcessResult result = gfxrepro(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_EQ(result.err, "");
+        return result.out;
+    }
+    /// Standard error of a call that must end with exit code 2, with the folder's path as DIR.
+    std::string refusal(const std::vector<std::string>& arguments) const {
+        ProcessResult result = gfxrepro(arguments);
+        EXPECT_EQ(result.exitCode, 2);
+        EXPECT_EQ(result.out, "");
+        const std::string prefix = folder_.path().string();
+        for (std::size_t found; (found = result.err.find(prefix)) != std::string::npos;) {
+            result.err.replace(found, prefix.size(), "DIR");
+        }
+        return result.err;
+    }
+
+    TemporaryFolder folder_;
+};
+
+/// From the technique through the worker and the runner into the files.
+TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
+    const std::string config = writeMockConfig(folder_, "params: {number: 7}\n").string();
+    const std::string run = at("run");
+    const ProcessResult result =
+        gfxrepro({"run", config, "--device", "software", "--quiet", "--out", run});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const std::vector<report::ImageEntry> images = report::readImages(run);
+    ASSERT_EQ(images.size(), 2U);
+    EXPECT_EQ(images[0].name, "flat");
+    EXPECT_EQ(images[0].truthOf, "");
+    EXPECT_EQ(images[1].name, "truth");
+    EXPECT_EQ(images[1].truthOf, "flat");
+    const auto attributes = image::readExr(std::filesystem::path(run) / images[1].exr).attributes;
+    EXPECT_EQ(attributes.at("command"),
+              "gfxrepro run " + config + " --device software --quiet --out " + run);
+    EXPECT_EQ(attributes.at("case"), images[1].caseId);
+    EXPECT_EQ(attributes.at("technique"), "mock");
+    EXPECT_EQ(nlohmann::json::parse(attributes.at("params")).at("number"), 7);
+    EXPECT_FALSE(attributes.at("commit").empty());
+}
+
+TEST_F(ImageCommands, DiffPrintsTheMetrics) {
+    const ExrImage a = gbuffer(0.75F), b = gbuffer(0.5F);
+    const std::string first = write("a.exr", a), second = write("b.exr", b);
+    // Half of the pixels are 0.25 off: MSE 1/32, PSNR 10·log10(32).
+    const std::string text = out({"image", "diff", first, second});
+    EXPECT_NE(text.find("mse 0.03125\npsnr_db 15.0515\nssim 0."), std::string::npos) << text;
+    EXPECT_NE(text.find("\nflip 0."), std::string::npos) << text;
+    EXPECT_NE(text.find("\nmax 0.25\n"), std::string::npos) << text;
+    const auto json =
+        nlohmann::json::parse(out({"image", "diff", first, second, "--json", "--metric", "flip"}));
+    ASSERT_EQ(json.size(), 1U);
+    EXPECT_DOUBLE_EQ(json.at("flip"), metrics::flip(a.colour(), b.colour()));
+    // Equal images: infinite, which JSON has no number for.
+    EXPECT_EQ(out({"image", "diff", first, first, "--metric", "psnr,max", "--json"}),
+              "{\n  \"psnr_db\": null,\n  \"max\": 0.0\n}\n");
+}
+
+TEST_F(ImageCommands, DiffTakesHdrFlipAboveOne) {
+    const ExrImage a = gbuffer(6.0F), b = gbuffer(2.0F);
+    const std::string first = write("a.exr", a), second = write("b.exr", b);
+    const auto valueOf = [&](std::vector<std::string> more, const char* name) {
+        std::vector<std::string> arguments{"image", "diff", first, second, "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return nlohmann::json::parse(out(arguments)).at(name).get<double>();
+    };
+    EXPECT_DOUBLE_EQ(valueOf({}, "hdr_flip"), metrics::hdrFlip(a.colour(), b.colour()));
+    EXPECT_DOUBLE_EQ(valueOf({"--flip", "ldr"}, "flip"), metrics::flip(a.colour(), b.colour()));
+}
+
+TEST_F(ImageCommands, DiffWritesMaps) {
+    const std::string first = write("a.exr", gbuffer(0.75F)),
+                      second = write("b.exr", gbuffer(0.5F));
+    out({"image", "diff", first, second, "--out", at("e.png"), "--gain", "2"});
+    const Image8 absolute = image::readPng8(at("e.png"));
+    EXPECT_EQ(absolute.at(0, 0, 0), 0);
+    EXPECT_EQ(absolute.at(15, 11, 2), 128);  // 2 · 0.25 of 255, rounded
+    out({"image", "diff", first, second, "--out", at("e.png"), "--map", "signed", "--gain", "4"});
+    const Image8 isDark = image::readPng8(at("e.png"));
+    EXPECT_EQ(isDark.at(0, 0, 0), 221);   // equal: grey
+    EXPECT_EQ(isDark.at(15, 0, 0), 180);  // the test is too dark: red
+    out({"image", "diff", first, second, "--out", at("e.exr"), "--map", "signed"});
+    EXPECT_EQ(image::readExr(at("e.exr")).colour().at(15, 0, 1), 0.25F);
+    out({"image", "diff", first, second, "--out", at("e.exr"), "--map", "flip"});
+    EXPECT_GT(image::readExr(at("e.exr")).find("Y")->at(8, 5), 0.1F);
+}
+
+TEST_F(ImageCommands, DiffOfSmallImagesHasNoSimilarity) {
+    Image8 a(4, 4, 3, 100), b(4, 4, 3, 151);
+    const std::string first = write("a.png", a), second = write("b.png", b);
+    // PNG values count as they are stored: 51 of 255.
+    const std::string text = out({"image", "diff", first, second});
+    EXPECT_EQ(text.substr(0, text.find("flip")), "mse 0.04\npsnr_db 13.9794\n");
+    EXPECT_EQ(refusal({"image", "diff", first, second, "--metric", "ssim"}),
+              "gfxrepro: structural similarity needs images of at least 11x11 pixels, found 4x4 "
+              "with 3 channels\n");
+}
+
+TEST_F(ImageCommands, DiffRefuses) {
+    const std::string exr = write("a.exr", gbuffer(1.0F)), png = write("b.png", Image8(4, 4, 3));
+    EXPECT_EQ(refusal({"image", "diff", exr, png}),
+              "gfxrepro: image diff: DIR/a.exr and DIR/b.png are of different kinds; an EXR is "
+              "linear, a PNG is not\n");
+    EXPECT_EQ(refusal({"image", "diff", png, write("c.png", Image8(5, 4, 3))}),
+              "gfxrepro: the images differ in shape: 4x4 with 3 channels and 5x4 with 3 "
+              "channels\n");
+    EXPECT_EQ(refusal({"image", "diff", png, png, "--out", at("x.jpg")}),
+              "gfxrepro: DIR/x.jpg: is neither .exr nor .png\n");
+}
+
+TEST_F(ImageCommands, ConvertShowsColoursChannelsAndDirections) {
+    const std::string in = write("a.exr", gbuffer(0.5F));
+    out({"image", "convert", in, at("a.png"), "--exposure", "1"});
+    EXPECT_EQ(image::readPng8(at("a.png")).at(15, 0, 0), 255);
+    EXPECT_EQ(image::readPng8(at("a.png")).at(0, 0, 0), 188);  // 0.5
+
+    // Z is 8 … 15 where there is something; 0 is nothing and shown as the nearer end.
+    EXPECT_EQ(out({"image", "convert", in, at("z.png"), "--channels", "Z"}),
+              "Z: 8 to 15 in magma\n");
+    const Image8 depth = image::readPng8(at("z.png"));
+    EXPECT_EQ(depth.at(0, 0, 2), 4);
+    EXPECT_EQ(depth.at(15, 0, 2), 191);
+    EXPECT_EQ(out({"image", "convert", in, at("z.png"), "--channels", "Z", "--range", "0,15",
+                   "--colours", "grey"}),
+              "Z: 0 to 15 in grey\n");
+    EXPECT_EQ(image::readPng8(at("z.png")).at(12, 0, 1), 204);
+
+    out({"image", "convert", in, at("n.png"), "--channels", "N.X,N.Y,N.Z"});
+    const Image8 normal = image::readPng8(at("n.png"));
+    EXPECT_EQ(normal.at(0, 0, 1), 128);
+    EXPECT_EQ(normal.at(15, 0, 0), 128);
+    EXPECT_EQ(normal.at(15, 0, 1), 255);
+}
+
+TEST_F(ImageCommands, ConvertKeepsWhatAnExrHas) {
+    const ExrImage a = gbuffer(0.5F);
+    const std::string in = write("a.exr", a);
+    out({"image", "convert", in, at("b.exr"), "--exposure", "-1"});
+    const ExrImage b = image::readExr(at("b.exr"));
+    EXPECT_EQ(b.attributes, a.attributes);
+    EXPECT_EQ(b.matrices, a.matrices);
+    EXPECT_EQ(b.channels.size(), a.channels.size());
+    EXPECT_EQ(b.find("R")->at(15, 0), 0.25F);
+    EXPECT_EQ(*b.find("id"), *a.find("id"));
+    out({"image", "convert", in, at("b.exr"), "--channels", "id,Z"});
+    EXPECT_EQ(image::readExr(at("b.exr")).channels.size(), 2U);
+    // There and back.
+    out({"image", "convert", in, at("a.png")});
+    out({"image", "convert", at("a.png"), at("c.exr")});
+    EXPECT_NEAR(image::readExr(at("c.exr")).colour().at(15, 0, 1), 0.5F, 0.003F);
+}
+
+TEST_F(ImageCommands, ConvertRefuses) {
+    const std::string in = write("a.exr", gbuffer(0.5F)), png = write("b.png", Image8(4, 4, 3));
+    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--channels", "z"}),
+              "gfxrepro: DIR/a.exr: no channel 'z'; did you mean 'Z'?; it has B, G, N.X, N.Y, N.Z, "
+              "R, Z, id\n");
+    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--channels", "R,G"}),
+              "gfxrepro: --channels takes 1 or 3 names for a PNG, found 2\n");
+    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--channels", "Z", "--range", "3,3"}),
+              "gfxrepro: --range: expected two numbers that differ, low,high; found '3,3'\n");
+    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--range", "0,1"}),
+              "gfxrepro: --range is of one channel: give --channels\n");
+    EXPECT_EQ(refusal({"image", "convert", png, at("x.png"), "--channels", "Z"}),
+              "gfxrepro: DIR/b.png: --channels is for EXR files\n");
+    EXPECT_EQ(refusal({"image", "convert", in, at("x.exr"), "--tonemap", "aces"}),
+              "gfxrepro: --tonemap and --range are for PNG files; an EXR keeps its numbers\n");
+}
+
+TEST_F(ImageCommands, CropKeepsChannelsAndWhereTheyAre) {
+    const ExrImage a = gbuffer(0.5F);
+    out({"image", "crop", write("a.exr", a), at("b.exr"), "6", "3", "4", "2", "--scale", "3"});
+    const ExrImage b = image::readExr(at("b.exr"));
+    ASSERT_EQ(b.width(), 12);
+    ASSERT_EQ(b.height(), 6);
+    EXPECT_EQ(b.channels.size(), a.channels.size());
+    EXPECT_EQ(b.find("id")->at(5, 0), 0.0F);
+    EXPECT_EQ(b.find("id")->at(6, 5), 70000.0F);
+    EXPECT_EQ(b.attributes, a.attributes);
+    // The point (8, 4) is the middle of the part, (6, 3) its upper left corner.
+    const std::array<float, 16>& ndc = b.matrices.at("worldToNDC");
+    EXPECT_NEAR(8.0F * ndc[0] + ndc[12], 0.5F, 1e-6);
+    EXPECT_NEAR(4.0F * ndc[5] + ndc[13], 0.5F, 1e-6);
+    EXPECT_NEAR(6.0F * ndc[0] + ndc[12], 0.0F, 1e-6);
+}
+
+TEST_F(ImageCommands, CropOfPngAndRefusals) {
+    Image8 image(5, 4, 3);
+    image.at(4, 3, 1) = 9;
+    const std::string in = write("a.png", image);
+    out({"image", "crop", in, at("b.png"), "4", "3", "1", "1", "--scale", "2"});
+    const Image8 corner = image::readPng8(at("b.png"));
+    EXPECT_EQ(corner.width(), 2);
+    EXPECT_EQ(corner.at(1, 1, 1), 9);
+    EXPECT_EQ(refusal({"image", "crop", in, at("b.png"), "3", "0", "3", "2"}),
+              "gfxrepro: 3x2 pixels from (3, 0) are no part of an image of 5x4\n");
+    EXPECT_EQ(refusal({"image", "crop", in, at("b.png"), "0", "0", "2", "2", "--scale", "0"}),
+              "gfxrepro: 2x2 pixels from (0, 0) cannot be magnified 0 times; 1 to 16384 times are "
+              "allowed\n");
+    EXPECT_EQ(refusal({"image", "crop", in, at("b.exr"), "0", "0", "2", "2"}),
+              "gfxrepro: image crop: DIR/a.png and DIR/b.exr are of different kinds; 'image "
+              "convert' makes one of the other\n");
+}
+
+TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
+    const std::string red = write("r.png", [] {
+        Image8 image(10, 20, 3);
+        for (std::size_t i = 0; i < image.values().size(); i += 3) image.values()[i] = 200;
+        return image;
+    }());
+    const std::string grey = write("g.png", Image8(30, 30, 1, 50));
+    const std::string exr = write("e.exr", gbuffer(1.0F));
+    std::string text = out(
+        {"image", "contact-sheet", at("s.png"), red, grey, exr, "--columns", "2", "--width", "40"});
+    for (std::size_t found; (found = text.find(folder_.path().string())) != std::string::npos;) {
+        text.replace(found, folder_.path().string().size(), "DIR");
+    }
+    EXPECT_EQ(text,
+              "row 1 column 1  DIR/r.png\nrow 1 column 2  DIR/g.png\nrow 2 column 1  DIR/e.exr\n");
+    const Image8 sheet = image::readPng8(at("s.png"));
+    EXPECT_EQ(sheet.width(), 2 * 40 + 3 * 8);
+    EXPECT_EQ(sheet.height(), 80 + 30 + 3 * 8);
+    EXPECT_EQ(sheet.at(8, 87, 0), 200);
+    EXPECT_EQ(sheet.at(56 + 20, 8 + 20, 2), 50);
+    EXPECT_EQ(sheet.at(56 + 20, 8 + 60, 2), 96);   // below the lower one of a row
+    EXPECT_EQ(sheet.at(8 + 39, 96 + 29, 1), 255);  // the right half of the EXR file
+    EXPECT_EQ(refusal({"image", "contact-sheet", at("s.exr"), red}),
+              "gfxrepro: DIR/s.exr: a contact sheet is a .png\n");
+}
+
+TEST_F(ImageCommands, InfoNamesChannelsAndAttributes) {
+    EXPECT_EQ(out({"image", "info", write("a.exr", gbuffer(0.5F))}),
+              "exr 16x12\n"
+              "channel B          half  0.25 to 0.5, mean 0.375\n"
+              "channel G          half  0.25 to 0.5, mean 0.375\n"
+              "channel N.X        half  0 to 0, mean 0\n"
+              "channel N.Y        half  0 to 1, mean 0.5\n"
+              "channel N.Z        half  0 to 0, mean 0\n"
+              "channel R          half  0.25 to 0.5, mean 0.375\n"
+              "channel Z          float 0 to 15, mean 5.75\n"
+              "channel id         uint  0 to 70000, mean 35000\n"
+              "case: 0123456789ab\n"
+              "worldToNDC: 0.0625 0 0 0 0 0.0833333 0 0 0 0 1 0 0 0 0 1\n");
+    EXPECT_EQ(out({"image", "info", write("b.png", Image8(4, 5, 1))}), "png 4x5, 1 channel\n");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

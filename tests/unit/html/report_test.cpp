@@ -1,0 +1,206 @@
+#include "runner/html/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/core/files.h"
+#include "runner/image/png_io.h"
+#include "runner/report/images.h"
+#include "runner/report/report.h"
+#include "tests/support/support.h"
+#include "tests/unit/report/fixture.h"
+
+namespace gfxrepro::html {
+namespace {
+
+using report::Status;
+using testing::HasSubstr;
+using testing::Not;
+
+const report::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
+                                     "gfxrepro reproduce"};
+
+config::Experiment experiment() {
+    return report::experimentFrom(R"(
+sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
+layout:
+  rows: scene
+  columns:
+    error: {metric: error, format: "{mean:.2f}/{max:.0f}"}
+    draw_ms: {metric: gpu_time_ms, format: "{median:.1f}"}
+printed:
+  hardware: "Radeon <9800> & co"
+  values: |
+    scene,error,draw_ms
+    models/duck,3.00/106,16.0
+claims:
+  A: {says: "a < b & \"c\"", bound: draw_ms, below: 10, at: {scene: models/duck}}
+  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}}
+  C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
+assumptions:
+  padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
+)");
+}
+
+std::vector<report::Record> records(double drawMs = 8.0) {
+    report::RecordMaker maker;
+    maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {drawMs});
+    maker.add("scene_source", {1.0}, "", "enum");
+    maker.beginCase("<b>&|_%").add("error", {2.5}).add("gpu_time_ms", {1.0 / 3.0});
+    maker.beginCase("models/lost").fail(Status::Crash, "signal <11>");
+    return maker.records();
+}
+
+ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
+    const std::string id = records()[0].caseId;
+    return {folder,
+            kContext,
+            {{"cpu", "Xeon <script>"}, {"scenes", {{"models/duck", {{"kind", "stand-in"}}}}}},
+            {experiment()},
+            records(drawMs),
+            {{id, "zju2005/9.9", "zju2005/9.9 scene=models/duck", "gfxrepro run 'a<b'", {"ok"}}},
+            {}};
+}
+
+/// A grey picture, `differing` in one pixel.
+image::Image8 picture(std::uint8_t differing) {
+    image::Image8 result(8, 8, 3, std::uint8_t{128});
+    result.at(0, 0, 0) = differing;
+    return result;
+}
+
+TEST(Report, IsOneSafeFile) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    image::writePng(folder.path() / "a.png", picture(128));
+    report::appendImages(folder.path(), {{"case", "zju2005/9.9", 0, "surface", "a.png", "",
+                                          "zju2005/9.9 scene=<img onerror=x>"}});
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    for (const char* part : {
+             "src=\"data:image/png;base64,iVBORw0KGgo",
+             "alt=\"zju2005/9.9 scene=&lt;img onerror=x&gt; · surface\"",
+             "<td>Xeon &lt;script&gt;</td>",
+             "<td>1 stand-in <span class=\"soft\">(models/duck)</span></td>",
+             "<th scope=\"row\">&lt;b&gt;&amp;|_%</th>",
+             "models/duck <abbr title=\"stand-in\">†</abbr>",
+             "<span class=\"badge fails\">fails</span>",
+             "<td class=\"id\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
+             "<td>not &lt;said&gt;</td>",
+             "<span class=\"status\">crash</span> — signal &lt;11&gt;",
+             "cells without a value: 2 crash; 1 of its cases failed",
+             "gfxrepro reproduce zju2005/9.9 --profile quick",
+             "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
+             "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    for (const char* forbidden : {"<script>alert", "<b>&|", "onerror=x>", "src=\"http",
+                                  "href=\"http", "url(http", "@import", "<link rel=\"style"}) {
+        EXPECT_THAT(html, Not(HasSubstr(forbidden)));
+    }
+}
+
+TEST(Report, CellsNameTheirCases) {
+    const test::TemporaryFolder folder;
+    const ReportRun run = runIn(folder.path());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    const std::string anchor = "A-" + run.cases[0].id;
+    EXPECT_THAT(html, HasSubstr("data-cases=\"" + anchor.substr(0, anchor.find('{'))));
+    EXPECT_THAT(html, HasSubstr("<article class=\"case\" id=\"A-case:models/duck"));
+}
+
+TEST(Report, ImagesWithATruthGetAFlipMap) {
+    const test::TemporaryFolder folder;
+    const ReportRun run = runIn(folder.path());
+    std::filesystem::create_directories(folder.path() / "images/x");
+    image::writePng(folder.path() / "images/x/result.png", picture(255));
+    image::writePng(folder.path() / "images/x/truth.png", picture(128));
+    report::appendImages(
+        folder.path(), {{"c", "zju2005/9.9", 0, "result", "images/x/result.png", "", "t"},
+                        {"c", "zju2005/9.9", 0, "truth", "images/x/truth.png", "", "t", "result"}});
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"truth\" data-flip=\"data:"));
+    EXPECT_THAT(html, testing::ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
+    EXPECT_THAT(html, Not(HasSubstr("FLIP 0.0000")));
+    const image::Image8 map = image::readPng8(folder.path() / "images/x/result-flip.png");
+    EXPECT_EQ(map.width(), 8);
+    EXPECT_GT(int{map.at(0, 0, 0)}, 40) << "the pixel that differs";
+    EXPECT_LT(int{map.at(7, 7, 0)}, int{map.at(0, 0, 0)});
+}
+
+TEST(Report, LargeGalleriesLieBesideThePage) {
+    const test::TemporaryFolder folder;
+    const ReportRun run = runIn(folder.path());
+    image::Image8 noise(600, 620, 3);  // a megabyte, taken 20 times
+    std::uint32_t state = 1;
+    for (std::uint8_t& value : noise.values()) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<std::uint8_t>(state >> 24U);
+    }
+    std::filesystem::create_directories(folder.path() / "images");
+    image::writePng(folder.path() / "images/a b#1.png", noise);
+    for (int i = 0; i < 20; ++i) {
+        report::appendImages(folder.path(), {{"case", "zju2005/9.9", 0, std::to_string(i),
+                                              "images/a b#1.png", "", "t"}});
+    }
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("<img src=\"thumbnails/a%20b%231.png\""));
+    EXPECT_THAT(html, HasSubstr("data-full=\"images/a%20b%231.png\""));
+    EXPECT_LT(html.size(), 150'000U);
+    const image::Image8 thumbnail = image::readPng8(folder.path() / "thumbnails/a b#1.png");
+    EXPECT_EQ(thumbnail.width(), 185);
+    EXPECT_EQ(thumbnail.height(), 191);
+    EXPECT_NEAR(thumbnail.at(80, 80, 0), 150, 100) << "the mean light of some ten random values";
+}
+
+TEST(Report, RunsStandSideBySide) {
+    const test::TemporaryFolder a, b, out;
+    const std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
+    writeReport(out.path() / "both.html", runs);
+    const std::string html = readFile(out.path() / "both.html");
+    EXPECT_THAT(html, HasSubstr("<th class=\"sub\">printed</th><th class=\"sub\">A</th>"
+                                "<th class=\"sub\">B</th>"));
+    EXPECT_THAT(html, HasSubstr("class=\"differs\"><td>zju2005</td>"));  // claim A, 8 against 12
+    EXPECT_THAT(html, HasSubstr("<b>A</b> quick, llvmpipe"));
+}
+
+TEST(Report, KeptVerdictsStandBesideARun) {
+    const test::TemporaryFolder a, kept;
+    const auto file =
+        kept.write("claims.csv",
+                   "claim,table,device,profile,verdict,measured,required,margin,reason\n"
+                   "A,zju2005/9.9,gpu,quick,fails,12,draw_ms ≤ 10,-2,\n"
+                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,\n");
+    ReportRun other;
+    other.folder = kept.path();
+    other.context = kContext;
+    other.manifest = nlohmann::ordered_json::object();
+    other.keptClaims = report::readClaims(file);
+    const std::vector<ReportRun> runs = {other, runIn(a.path())};
+    writeReport(a.path() / "both.html", runs);
+    const std::string html = readFile(a.path() / "both.html");
+    EXPECT_THAT(html,
+                HasSubstr("<b>A</b> <span class=\"soft\">a &lt; b &amp; &quot;c&quot;</span>"));
+    EXPECT_THAT(html, HasSubstr("<section class=\"page\" id=\"zju2005-1.1\">"));
+}
+
+TEST(Report, RefusesVerdictsThatAreNone) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("claims.csv", "claim,table\nA,t,d,p,perhaps,,,,\n");
+    try {
+        report::readClaims(file);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  file.string() +
+                      ":2: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
+                      "unmeasured)");
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::html

@@ -1,0 +1,177 @@
+#include "runner/report/figure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/report/gnuplot_axis.h"
+#include "tests/unit/report/fixture.h"
+
+namespace gfxrepro::report {
+namespace {
+
+using testing::ElementsAre;
+
+/// Scenes a and b, sizes 0 to 4; `plots` are checked against it.
+config::Experiment sized(const std::string& plots, const std::string& printed = "") {
+    return experimentFrom(R"(
+sweep: {scene: [a, b], size: [4, 1, 0, 2]}
+layout:
+  rows: [scene, size]
+  columns:
+    draw_ms: {metric: gpu_time_ms}
+    load_ms: {metric: cpu_time_ms}
+    count: {metric: count}
+  cell: "{median:.1f}"
+)" + printed + "plots: " + plots);
+}
+
+/// Scene a: draw_ms is 10 · size by three processes, failed at size 1; b is not run.
+std::vector<Record> sizedRecords() {
+    RecordMaker maker;
+    for (const int size : {0, 2, 4}) {
+        maker.beginCase("a", "{\"size\":" + std::to_string(size) + "}");
+        for (int process = 0; process < 3; ++process) {
+            maker.process(process).add("gpu_time_ms", {10.0 * size + process - 1});
+        }
+        maker.process(0).add("cpu_time_ms", {7.0});
+        maker.add("count", {100.0 + size}, "", "triangle");
+    }
+    maker.beginCase("a", "{\"size\":1}").fail(Status::Crash, "signal 11");
+    return maker.records();
+}
+
+Figure figureOf(const config::Experiment& experiment, const std::vector<Record>& records) {
+    return makeFigure(experiment.plots.at(0), buildTable(experiment, records));
+}
+
+TEST(Figure, OrdersPointsAndLeavesGaps) {
+    const Figure figure = figureOf(sized("[{x: size, y: draw_ms, panels: scene}]"), sizedRecords());
+    EXPECT_EQ(figure.xLabel, "size");
+    ASSERT_EQ(figure.panels.size(), 1U);  // of scene b there is nothing
+    EXPECT_EQ(figure.panels[0].title, "a");
+    EXPECT_EQ(figure.panels[0].yLabel, "draw (ms)");
+    const FigureCurve& curve = figure.panels[0].curves.at(0);
+    EXPECT_EQ(curve.name, "draw");
+    ASSERT_EQ(curve.points.size(), 4U);
+    EXPECT_EQ(curve.points[0].x, 0.0);
+    EXPECT_EQ(curve.points[0].y, 0.0);
+    EXPECT_EQ(curve.points[1].x, 1.0);
+    EXPECT_FALSE(curve.points[1].y.has_value());
+    EXPECT_EQ(curve.points[1].remark, "crash");
+    EXPECT_EQ(curve.points[3].y, 40.0);
+    EXPECT_TRUE(curve.points[3].hasInterval);
+    EXPECT_GE(curve.points[3].interval.low, 39.0);
+    EXPECT_LT(curve.points[3].interval.low, 40.0);
+    EXPECT_THAT(figure.notes, ElementsAre("left out: 5 of 8 values (1 crash, 4 missing)"));
+}
+
+TEST(Figure, OneSampleHasNoInterval) {
+    const Figure figure =
+        figureOf(sized("[{x: size, y: load_ms, panels: scene, at: {scene: a}}]"), sizedRecords());
+    EXPECT_EQ(figure.panels[0].curves[0].points[0].y, 7.0);
+    EXPECT_FALSE(figure.panels[0].curves[0].points[0].hasInterval);
+}
+
+TEST(Figure, LogarithmicAxesLeaveOutWhatIsNotPositive) {
+    const Figure figure = figureOf(
+        sized("[{x: size, y: [draw_ms, load_ms], at: {scene: a}, log: [x, y]}]"), sizedRecords());
+    for (const FigureCurve& curve : figure.panels.at(0).curves) {
+        ASSERT_EQ(curve.points.size(), 3U) << curve.name;  // not size 0
+        EXPECT_EQ(curve.points[0].x, 1.0);
+    }
+    EXPECT_THAT(figure.notes, ElementsAre("left out: 2 of 8 values (2 crash)",
+                                          "left out: 2 values not positive on a logarithmic axis"));
+    // Only draw_ms is 0 at size 0; its place stays, as a gap.
+    const Figure half = figureOf(
+        sized("[{x: size, y: [draw_ms, load_ms], at: {scene: a}, log: y}]"), sizedRecords());
+    EXPECT_FALSE(half.panels.at(0).curves[0].points[0].y.has_value());
+    EXPECT_EQ(half.panels.at(0).curves[1].points[0].y, 7.0);
+    EXPECT_EQ(half.notes.at(1), "left out: 1 value not positive on a logarithmic axis");
+}
+
+TEST(Figure, PrintedStandsOverThePrintedX) {
+    const std::string printed = R"(printed:
+  values: |
+    scene,size,draw_ms,count
+    a,2,25,1000
+    a,4,,2000
+    a,8,99,4000
+    c,8,77,4000
+)";
+    const Figure over =
+        figureOf(sized("[{x: size, y: draw_ms, by: scene}]", printed), sizedRecords());
+    EXPECT_EQ(over.curveNames.size(), 2U);  // scene c is not part of the run, size 8 is not of a's
+    ASSERT_EQ(over.panels.at(0).curves.at(0).printed.size(), 2U);
+    EXPECT_EQ(over.panels[0].curves[0].printed[1].x, 8.0);
+    EXPECT_EQ(over.panels[0].curves[0].printed[1].y, 99.0);
+    EXPECT_EQ(over.panels[0].curves[0].printed[0].x, 2.0);
+    EXPECT_EQ(over.panels[0].curves[0].printed[0].y, 25.0);
+    const Figure column =
+        figureOf(sized("[{x: count, y: draw_ms, by: scene}]", printed), sizedRecords());
+    EXPECT_EQ(column.xLabel, "count (triangle)");
+    EXPECT_EQ(column.panels.at(0).curves.at(0).printed.at(0).x, 1000.0);
+    ASSERT_EQ(column.panels[0].curves[0].points.size(), 3U);  // where there is a count
+    EXPECT_EQ(column.panels[0].curves[0].points[1].x, 102.0);
+}
+
+TEST(Figure, CurvesAreColumnsOfEachValue) {
+    const Figure figure =
+        figureOf(sized("[{x: size, y: [draw_ms, load_ms], by: scene}]"), sizedRecords());
+    EXPECT_THAT(figure.curveNames, ElementsAre("a, draw", "a, load", "b, draw", "b, load"));
+    EXPECT_EQ(figure.panels.at(0).yLabel, "time (ms)");  // two metrics, one unit
+    EXPECT_TRUE(figure.panels[0].curves[2].points[0].remark == "missing");
+    const Figure sizes =
+        figureOf(sized("[{x: count, y: draw_ms, by: size, at: {scene: a}}]"), sizedRecords());
+    EXPECT_EQ(sizes.curveNames.at(0), "size 4");
+}
+
+TEST(Figure, Labels) {
+    EXPECT_EQ(quantityLabel("gpu_time_ms", "ms"), "gpu time (ms)");
+    EXPECT_EQ(quantityLabel("clusters", "cluster"), "clusters");
+    EXPECT_EQ(quantityLabel("flip_mean", "1"), "flip mean");
+    EXPECT_EQ(quantityLabel("frame_rate", "1/s"), "frame rate (1/s)");
+    EXPECT_EQ(quantityLabel("output.width", ""), "width of the image (px)");
+    EXPECT_EQ(quantityLabel("fps", "1/s"), "frame rate (fps)");
+    EXPECT_EQ(quantityLabel("delta_s", ""), "delta s");  // no seconds
+    EXPECT_EQ(quantityLabel("_ms", ""), " ms");          // nothing would be left
+}
+
+TEST(Figure, Ranges) {
+    const AxisRange flat = rangeOf({3.0, 3.0}, false, true);
+    EXPECT_LT(flat.low, 3.0);
+    EXPECT_GT(flat.high, 3.0);
+    EXPECT_EQ(rangeOf({0.0}, false, true).high, 1.0);
+    EXPECT_EQ(rangeOf({1.0, 10.0}, false, true).low, 0.0);
+    EXPECT_GT(rangeOf({9.0, 10.0}, false, true).low, 8.0);  // a small change far from zero
+    const AxisRange powers = rangeOf({1.0, 1000.0}, true, false);
+    EXPECT_LT(powers.low, 1.0);
+    EXPECT_GT(powers.low, 0.1);
+    EXPECT_GT(powers.high, 1000.0);
+}
+
+TEST(Figure, Tics) {
+    const auto labels = [](const Tics& tics) {
+        std::vector<std::string> texts;
+        for (const auto& [value, text] : tics) {
+            if (!text.empty()) texts.push_back(text);
+        }
+        return texts;
+    };
+    EXPECT_THAT(labels(logarithmicTics({0.5, 2e7})),
+                ElementsAre("1", "10", "100", "1000", "10⁴", "10⁵", "10⁶", "10⁷"));
+    EXPECT_THAT(labels(logarithmicTics({0.04, 3.0})),
+                ElementsAre("0.05", "0.1", "0.2", "0.5", "1", "2"));
+    EXPECT_THAT(labels(logarithmicTics({1e-9, 1e-6})), ElementsAre("10⁻⁹", "10⁻⁸", "10⁻⁷", "10⁻⁶"));
+    EXPECT_THAT(labels(logarithmicTics({9000, 60000})), ElementsAre("10⁴", "2·10⁴", "5·10⁴"));
+    EXPECT_EQ(linearStep({0.0, 1.1}, 6), 0.2);
+    EXPECT_EQ(linearStep({0.0, 18.0}, 4), 5.0);
+    EXPECT_DOUBLE_EQ(linearStep({3.0, 3.0 + 5e-5}, 6), 1e-5);
+    EXPECT_EQ(linearStep({0.0, 2.1e6}, 4), 1e6);
+    EXPECT_THAT(labels(logarithmicTics({9.9, 11.1})), ElementsAre("10", "10.5", "11"));
+    EXPECT_THAT(labels(ticsAt({512, 64, 128, 256, 64}, {60, 540}, true)),
+                ElementsAre("64", "128", "256", "512"));
+    EXPECT_TRUE(ticsAt({1, 2, 3, 1000}, {0, 1000}, false).empty());  // 1 to 3 would overlap
+}
+
+}  // namespace
+}  // namespace gfxrepro::report
