@@ -35,11 +35,10 @@ void addDeviceFindings(const MachineFacts& facts, Findings& findings) {
                                        [](const DeviceFacts& d) { return d.problem.empty(); });
     for (const DeviceFacts& device : facts.devices) {
         if (device.problem.empty()) continue;
-        findings.push_back(
-            {"device_does_not_serve", anyServes ? Severity::Result : Severity::Fatal,
-             fmt::format("Device {} does not serve: {}.", device.index, device.problem),
-             "OpenGL 4.5 is needed: update this device's driver, or take another "
-             "device with --device."});
+        findings.push_back({"device_does_not_serve", anyServes ? Severity::Result : Severity::Fatal,
+                            fmt::format("A device does not serve: {}.", device.problem),
+                            "OpenGL 4.5 is needed: update this device's driver, or take another "
+                            "device with --device."});
     }
     if (!anyServes) {
         findings.push_back({"no_device", Severity::Fatal,

@@ -51,7 +51,7 @@ TEST(Doctor, OldGl) {
     MachineFacts facts = goodMachine();
     facts.devices[0].problem = "OpenGL 3.3 only";
     EXPECT_EQ(linesOf(facts),
-              "fatal device_does_not_serve: Device 0 does not serve: OpenGL 3.3 only. → OpenGL 4.5 "
+              "fatal device_does_not_serve: A device does not serve: OpenGL 3.3 only. → OpenGL 4.5 "
               "is needed: update this device's driver, or take another device with --device.\n"
               "fatal no_device: No device makes an OpenGL 4.5 context: nothing can be measured. → "
               "Install libegl-mesa0 and libgl1-mesa-dri of Mesa 20.3 or newer for the software "
