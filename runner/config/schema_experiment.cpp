@@ -167,7 +167,8 @@ SchemaSection plot() {
              {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
               oneOrMore(text())},
              {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
-             {"log", "[x, y]", "[]", "axes that are logarithmic", listOf({{"enum", {"x", "y"}}})},
+             {"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
+              oneOrMore(choice({"x", "y"}))},
              {"title", "line", "the file's", "above the curves", text()}},
             false};
 }
