@@ -122,6 +122,9 @@ TEST(Shards, MergeToTheTablesOfOneRun) {
     EXPECT_EQ(result.exitCode, 0) << result.err;
     EXPECT_EQ(result.out, "merged 3 shards into " + merged +
                               ": 10 of 10 measured, 0 failed, 0 missing\nclaims: no claims\n"
+                              "tables: " +
+                              merged +
+                              "/tables (CSV, Markdown, LaTeX)\n"
                               "report: " +
                               merged + "/report.html\n");
     expectSameTables(merged, whole);

@@ -1,5 +1,6 @@
 #include "runner/html/report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -142,9 +143,14 @@ TEST(Report, LargeGalleriesLieBesideThePage) {
     }
     std::filesystem::create_directories(folder.path() / "images");
     image::writePng(folder.path() / "images/a b#1.png", noise);
-    for (int i = 0; i < 20; ++i) {
-        report::appendImages(folder.path(), {{"case", "zju2005/9.9", 0, std::to_string(i),
-                                              "images/a b#1.png", "", "t"}});
+    for (int i = 1; i <= 20; ++i) {
+        const std::string name = fmt::format("images/a b#{}.png", i);
+        if (i > 1) {
+            std::filesystem::create_hard_link(folder.path() / "images/a b#1.png",
+                                              folder.path() / name);
+        }
+        report::appendImages(folder.path(),
+                             {{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t"}});
     }
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
