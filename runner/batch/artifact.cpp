@@ -31,8 +31,9 @@ std::uintmax_t sizeOf(const fs::path& path) {
 }
 
 void copyResults(const fs::path& runDir, const fs::path& target) {
-    for (const char* name : {"plan.json", "manifest.json", "records.csv", "claims.csv", "junit.xml",
-                             "report.html", "log.jsonl", "tables", "images", "artifacts"}) {
+    for (const char* name :
+         {"plan.json", "manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html",
+          "log.jsonl", "tables", "plots", "images", "thumbnails", "artifacts"}) {
         if (fs::exists(runDir / name)) fs::copy(runDir / name, target / name, kRecursive);
     }
 }
@@ -145,7 +146,8 @@ std::string readmeText(const fs::path& runDir, const StoredRun& run) {
         const std::string slug = experiment.slug();
         std::uintmax_t bytes = 0;
         for (const fs::path& part :
-             {fs::path("images") / slug, fs::path("artifacts") / slug,
+             {fs::path("images") / slug, fs::path("thumbnails") / slug,
+              fs::path("artifacts") / slug,
               fs::path("tables") / (slug + ".csv"), fs::path("tables") / (slug + ".md"),
               fs::path("tables") / (slug + ".tex")}) {
             bytes += sizeOf(runDir / part);
