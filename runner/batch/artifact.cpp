@@ -147,9 +147,8 @@ std::string readmeText(const fs::path& runDir, const StoredRun& run) {
         std::uintmax_t bytes = 0;
         for (const fs::path& part :
              {fs::path("images") / slug, fs::path("thumbnails") / slug,
-              fs::path("artifacts") / slug,
-              fs::path("tables") / (slug + ".csv"), fs::path("tables") / (slug + ".md"),
-              fs::path("tables") / (slug + ".tex")}) {
+              fs::path("artifacts") / slug, fs::path("tables") / (slug + ".csv"),
+              fs::path("tables") / (slug + ".md"), fs::path("tables") / (slug + ".tex")}) {
             bytes += sizeOf(runDir / part);
         }
         text += fmt::format("| {}: {} | scripts/{}.sh | {:.1f} | {:.1f} |\n", experiment.label(),
