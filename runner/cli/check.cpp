@@ -2,6 +2,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/report/claims.h"
 
 namespace gfxrepro::cli {
 
@@ -13,6 +14,7 @@ int check(const Context& context, const Selection& selection) {
         const config::Experiment experiment = loadExperiments(request, selection.profile).front();
         const std::size_t caseCount =
             batch::resolveCases(experiment, catalog, context.techniques, 1).size();
+        report::requireProvenance(experiment, report::buildTable(experiment, {}));
         fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
                    caseCount == 1 ? "" : "s", experiment.claims.size(),
                    experiment.claims.size() == 1 ? "" : "s");

@@ -51,10 +51,15 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
     }
     if (ofPaper.size() > 1) {
         for (const auto& [paper, own] : ofPaper) {
-            fmt::print("  {:<12}{}\n", paper, report::claimSummaryLine(own));
+            fmt::print("  {:<12}{}\n", paper, report::originSummaryLine(own));
         }
     }
-    fmt::print("claims: {}\n", report::claimSummaryLine(claims));
+    fmt::print("claims: {}\n", report::originSummaryLine(claims));
+    for (const report::ClaimResult& claim : claims) {
+        if (!claim.isNews()) continue;
+        fmt::print("  news: {} {} {}, known: {}\n", claim.table, claim.id,
+                   report::verdictName(claim.verdict), report::verdictName(claim.known));
+    }
     static const std::pair<report::Verdict, const char*> kMeanings[] = {
         {report::Verdict::Ambiguous, "the 95 % interval holds the bound: more repeats may tell"},
         {report::Verdict::Unmeasured, "a case that it needs has no result"},
@@ -97,10 +102,11 @@ int claims(const std::string& runDir) {
     const std::vector<report::ClaimResult> results =
         batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false});
     for (const report::ClaimResult& claim : results) {
-        fmt::print("{} {}: {}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
+        fmt::print("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
+                   claim.isNews() ? " (news)" : "",
                    claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    fmt::print("{}\n", report::claimSummaryLine(results));
+    fmt::print("{}\n", report::originSummaryLine(results));
     const bool anyFails = std::any_of(results.begin(), results.end(), [](const auto& claim) {
         return claim.verdict == report::Verdict::Fails;
     });

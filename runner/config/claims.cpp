@@ -75,6 +75,7 @@ class ClaimReader {
         readCommon();
         readOperands(*node_.find(kind.key));
         readRequired();
+        readProvenance(node_, what_, claim_);
         return std::move(claim_);
     }
 
@@ -220,10 +221,10 @@ class ClaimReader {
             case Type::Order:
                 break;
             case Type::Ratio:
-                readBound("at_least", claim_.low);
-                readBound("at_most", claim_.high);
+                readLow("at_least");
+                readHigh("at_most");
                 readPair("between");
-                requireSome("at_least, at_most or between");
+                requireSome("at_least, more_than, at_most, less_than or between");
                 break;
             case Type::Trend:
                 readOver("over");
@@ -235,9 +236,9 @@ class ClaimReader {
                 readWithin();
                 break;
             case Type::Bound:
-                readBound("above", claim_.low);
-                readBound("below", claim_.high);
-                requireSome("above or below");
+                readLow("above");
+                readHigh("below");
+                requireSome("above, more_than, below or less_than");
                 break;
             case Type::Exact:
                 readEquals();
@@ -254,11 +255,28 @@ class ClaimReader {
         }
     }
 
-    void readBound(std::string_view key, std::optional<double>& bound) {
-        if (const Node* value = node_.find(key)) bound = value->asDouble();
-        if (claim_.low && claim_.high && *claim_.low > *claim_.high) {
-            throw Error(node_.find(key)->location(), what_ + ": the lower bound exceeds the upper");
+    /// The bound under one of two keys; true for the second, which excludes the bound itself.
+    bool readBound(std::string_view key, std::string_view excluding, std::optional<double>& bound) {
+        const Node* included = node_.find(key);
+        const Node* excluded = node_.find(excluding);
+        if (included && excluded) {
+            throw Error(excluded->location(), what_ + ": '" + std::string(key) + "' and '" +
+                                                  std::string(excluding) + "'; one is allowed");
         }
+        const Node* value = included ? included : excluded;
+        if (value) bound = value->asDouble();
+        if (claim_.low && claim_.high && *claim_.low > *claim_.high) {
+            throw Error(value->location(), what_ + ": the lower bound exceeds the upper");
+        }
+        return excluded != nullptr;
+    }
+
+    void readLow(std::string_view key) {
+        claim_.isLowExcluded = readBound(key, "more_than", claim_.low);
+    }
+
+    void readHigh(std::string_view key) {
+        claim_.isHighExcluded = readBound(key, "less_than", claim_.high);
     }
 
     void readPair(std::string_view key) {

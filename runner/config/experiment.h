@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -94,6 +95,22 @@ inline constexpr const char* kColumnAxis = "column";
 struct ClaimSpec {
     enum class Type { Order, Ratio, Trend, Independent, Bound, Exact, Tolerance, Crossover };
     enum class Device { Any, Gpu };
+    /// Whose claim it is: a statement of the document; read off its printed numbers; an aim of
+    /// ours; true by construction (a self-test); or of an input that was fitted to it.
+    enum class Origin { Document, Derived, Ours, Definition, Calibrated };
+    /// Where the number in its bound comes from.
+    enum class BoundSource { Print, Text, Ours };
+    /// Of a claim about time: what decides it. Algorithmic: counts of work, on any device.
+    /// Architectural: units, caches and buses of a GPU, judged only there. Absolute: times as
+    /// such, judged on a GPU at the printed parameters.
+    enum class TimeKind { Algorithmic, Architectural, Absolute };
+    /// `because:` a verdict other than `holds` that is known, where, and its proven cause.
+    struct Known {
+        std::string verdict;                 // "fails", "ambiguous", …
+        std::optional<std::string> device;   // "software" | "gpu"; none: on any
+        std::optional<std::string> profile;  // none: in any
+        std::string reason;
+    };
     std::string id;
     std::string text;  // `says:` the claim in the paper's sense, one line
     Type type = Type::Order;
@@ -101,9 +118,11 @@ struct ClaimSpec {
         operands;  // order: a < b < c · ratio: a / b · independent: each · crossover: a, b
     std::optional<std::string> over;  // trend, crossover: a row axis or column; independent: `of`
     std::optional<double> low,
-        high;               // what is required of the ratio, exponent, spread (as a fraction), …
-    bool isStrict = false;  // trend: strictly monotonic
-    int direction = 0;      // trend: −1 decreasing, +1 increasing, 0 by exponent
+        high;  // what is required of the ratio, exponent, spread (as a fraction), …
+    bool isLowExcluded = false;            // more_than
+    bool isHighExcluded = false;           // less_than
+    bool isStrict = false;                 // trend: strictly monotonic
+    int direction = 0;                     // trend: −1 decreasing, +1 increasing, 0 by exponent
     std::optional<std::string> statistic;  // of a cell with several, e.g. mean
     /// Rows that are read: axis = one of these values. A claim must hold in every group of rows
     /// that agree on all row axes but `over`.
@@ -113,8 +132,19 @@ struct ClaimSpec {
     std::optional<std::string> across;
     Device device = Device::Any;
     std::optional<std::string> profile;  // only in this one
+    std::optional<Origin> origin;        // none: ours
+    std::optional<BoundSource> boundFrom;
+    std::optional<TimeKind> timeKind;
+    std::vector<Known> because;
     SourceLocation location;
+
+    /// Whether a number stands in what it requires: then the number has a source.
+    bool hasBound() const;
 };
+/// "document", "derived", …: the names in configs.
+std::string_view originName(ClaimSpec::Origin origin);
+std::string_view boundSourceName(ClaimSpec::BoundSource source);
+std::string_view timeKindName(ClaimSpec::TimeKind kind);
 
 /// An entry of `plots:` — curves of the table's numbers. Every row axis has its place: it is `x`,
 /// `by`, in `panels`, at one value by `at`, or, where `x` is a column, along the curve.

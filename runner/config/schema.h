@@ -20,6 +20,18 @@ using Json = nlohmann::ordered_json;
 inline constexpr std::array<std::string_view, 6> kStatistics = {"median", "mean", "min",
                                                                 "max",    "sum",  "count"};
 
+/// The words of a claim, in the order of the enums of ClaimSpec.
+inline constexpr std::array<std::string_view, 5> kOrigins = {"document", "derived", "ours",
+                                                             "definition", "calibrated"};
+inline constexpr std::array<std::string_view, 3> kBoundSources = {"print", "text", "ours"};
+inline constexpr std::array<std::string_view, 3> kTimeKinds = {"algorithmic", "architectural",
+                                                               "absolute"};
+/// What `because` may tell of, and where.
+inline constexpr std::array<std::string_view, 3> kKnownVerdicts = {"fails", "ambiguous",
+                                                                   "unmeasured"};
+inline constexpr std::array<std::string_view, 2> kDeviceClasses = {"software", "gpu"};
+inline constexpr std::array<std::string_view, 3> kProfiles = {"quick", "full", "paper"};
+
 /// A key of a map.
 struct SchemaKey {
     std::string name;

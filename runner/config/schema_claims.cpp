@@ -42,8 +42,35 @@ SchemaSection common() {
              {"statistic", "name", "the first", "of cells with several", choice(kStatistics)},
              {"device", "any | gpu", "any", "where it must hold", choice({"any", "gpu"})},
              {"profile", "quick | full | paper", "all", "the only profile it is judged in",
-              choice({"quick", "full", "paper"})}},
+              choice(kProfiles)},
+             {"origin", "document | derived | ours | definition | calibrated", "ours",
+              "a statement of the document; read off its numbers; our aim; true by construction; "
+              "or of an input fitted to it. A document's table needs it",
+              choice(kOrigins)},
+             {"bound_from", "print | text | ours", "none",
+              "where the number that it requires comes from. A document's table needs it",
+              choice(kBoundSources)},
+             {"kind", "algorithmic | architectural | absolute", "none",
+              "of a claim about time: counts of work decide; a GPU's units do; or times as such, "
+              "at the printed parameters. The last two are judged on a GPU only",
+              choice(kTimeKinds)},
+             {"because", "known | [known]", "none",
+              "where it is known not to hold, and why; any other verdict than the known is news",
+              oneOrMore(refTo("because"))}},
             false};
+}
+
+SchemaSection because() {
+    return {
+        "because",
+        "claims.ID.because.",
+        "",
+        {{"verdict", "fails | ambiguous | unmeasured", "required", "what it comes to",
+          choice(kKnownVerdicts)},
+         {"reason", "line", "required", "the cause, with the experiment that shows it", text()},
+         {"device", "software | gpu", "any", "on this class of devices", choice(kDeviceClasses)},
+         {"profile", "quick | full | paper", "any", "in this profile", choice(kProfiles)}},
+        false};
 }
 
 /// The first key names the type.
@@ -60,12 +87,15 @@ SchemaSection kind(SchemaKey first, std::vector<SchemaKey> further, Json conditi
 std::vector<SchemaSection> claimSections() {
     return {
         common(),
+        because(),
         kind({"order", "a < b < c", "", "in this order", text()}, {}),
         kind({"ratio", "a / b", "", "the ratio lies within bounds", text()},
              {{"at_least", "number", "none", "lower bound", number()},
+              {"more_than", "number", "none", "lower bound, itself excluded", number()},
               {"at_most", "number", "none", "upper bound", number()},
-              between("instead of the two")},
-             needsOneOf({{"at_least"}, {"at_most"}, {"between"}})),
+              {"less_than", "number", "none", "upper bound, itself excluded", number()},
+              between("instead of two bounds")},
+             needsOneOf({{"at_least"}, {"more_than"}, {"at_most"}, {"less_than"}, {"between"}})),
         kind({"trend", "a", "", "grows or falls, or as a power", text()},
              {over("over", "along which"),
               {"exponent", "[low, high]", "none", "of the fitted power", pairOfNumbers()},
@@ -76,9 +106,11 @@ std::vector<SchemaSection> claimSections() {
         kind({"independent", "a | [a, b]", "", "does not depend on something", oneOrMore(text())},
              {over("of", "on which"), within("how far it may vary")}),
         kind({"bound", "a", "", "every value lies within bounds", text()},
-             {{"above", "number", "none", "lower bound", number()},
-              {"below", "number", "none", "upper bound", number()}},
-             needsOneOf({{"above"}, {"below"}})),
+             {{"above", "number", "none", "lower bound, itself included", number()},
+              {"more_than", "number", "none", "lower bound, itself excluded", number()},
+              {"below", "number", "none", "upper bound, itself included", number()},
+              {"less_than", "number", "none", "upper bound, itself excluded", number()}},
+             needsOneOf({{"above"}, {"more_than"}, {"below"}, {"less_than"}})),
         kind({"exact", "a", "", "is exactly so", text()},
              {{"equals", "number | printed", "required", "what it is",
                anyOf({number(), choice({"printed"})})}}),

@@ -43,6 +43,9 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
 
 std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted);
 
+/// origin, bound_from, kind and because of a claim; `what` begins the messages.
+void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim);
+
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names);
 
 /// `at` of a claim or a plot; `what` begins the messages.

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "runner/config/schema.h"
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
 
@@ -102,14 +103,15 @@ std::string factsHtml(const Model& model) {
     return html + "</tbody></table></div>\n";
 }
 
-/// A line a run: how many claims have which verdict.
+/// A line a run: how many of the documents' own claims have which verdict; below it the others.
 std::string countsHtml(const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < model.runs.size(); ++run) {
-        std::map<Verdict, std::vector<ClaimResult>> alike;
+        std::map<Verdict, std::vector<ClaimResult>> own;
+        std::vector<ClaimResult> others;
         for (const Page& page : model.pages) {
             for (const ClaimResult& claim : page.parts[run].claims) {
-                alike[claim.verdict].push_back(claim);
+                (claim.isOfDocument() ? own[claim.verdict] : others).push_back(claim);
             }
         }
         html += "<p class=\"counts\">";
@@ -117,14 +119,37 @@ std::string countsHtml(const Model& model) {
             html += fmt::format("<b>{}</b> {} ", Model::letter(run),
                                 escapeXml(runName(model.runs[run])));
         }
-        if (alike.empty()) html += "No claims.";
-        for (const auto& [verdict, claims] : alike) {
+        html += own.empty() ? "No claim of a document. " : "Of the documents' own claims ";
+        for (const auto& [verdict, claims] : own) {
             html += fmt::format("<span class=\"badge {}\">{}</span>", verdictName(verdict),
                                 claimSummaryLine(claims));
+        }
+        if (!others.empty()) {
+            html += fmt::format("<br><span class=\"soft\">Not counted: {}</span>",
+                                originSummaryLine(others));
         }
         html += "</p>\n";
     }
     return html;
+}
+
+/// Verdicts that are not what the configs know.
+std::string newsHtml(const Model& model) {
+    std::string items;
+    for (const Page& page : model.pages) {
+        for (std::size_t run = 0; run < page.parts.size(); ++run) {
+            for (const ClaimResult& claim : page.parts[run].claims) {
+                if (!claim.isNews()) continue;
+                items +=
+                    fmt::format("<li>{}<a href=\"#{}\">{}</a> <b>{}</b> {}, known: {}</li>\n",
+                                model.isComparison() ? Model::letter(run) + ": " : "",
+                                escapeXml(page.slug), escapeXml(page.label), escapeXml(claim.id),
+                                verdictName(claim.verdict), verdictName(claim.known));
+            }
+        }
+    }
+    if (items.empty()) return "";
+    return fmt::format("<h3>What is news</h3>\n<ul>\n{}</ul>\n", items);
 }
 
 /// What the script filters the grid by; without it there is nothing to press.
@@ -136,6 +161,11 @@ std::string filtersHtml(const Model& model) {
         "<option value=\"\">all</option>";
     for (const std::string& paper : papers) {
         html += fmt::format("<option>{}</option>", escapeXml(paper));
+    }
+    html +=
+        "</select></label>\n<label>whose <select name=\"origin\"><option value=\"\">all</option>";
+    for (const std::string_view origin : config::kOrigins) {
+        html += fmt::format("<option>{}</option>", origin);
     }
     html +=
         "</select></label>\n<label>claim <input type=\"search\" name=\"text\" "
@@ -158,11 +188,12 @@ std::string claimBadge(const ClaimResult& claim, const Page& page, const std::st
     const std::string measured =
         claim.measured.empty() ? claim.reason : fmt::format("measured {}", claim.measured);
     return fmt::format(
-        "<a class=\"badge {0}\" data-verdict=\"{0}\" data-text=\"{1}\" href=\"#{2}\" "
-        "title=\"{3}\">{4}</a>",
+        "<a class=\"badge {0}{6}\" data-verdict=\"{0}\" data-origin=\"{5}\" data-text=\"{1}\" "
+        "href=\"#{2}\" title=\"{3}\">{4}</a>",
         verdictName(claim.verdict), escapeXml(claim.id + ' ' + claim.text), escapeXml(page.slug),
         escapeXml(fmt::format("{}: {}; {}", verdictName(claim.verdict), claim.text, measured)),
-        escapeXml(word));
+        escapeXml(word), config::originName(claim.origin),
+        claim.isOfDocument() ? "" : " uncounted");
 }
 
 std::string pageLink(const Page& page) {
@@ -282,7 +313,8 @@ std::string overviewHtml(const Model& model) {
     return "<section class=\"page\" id=\"overview\">\n<h1>Published tables, measured again</h1>\n" +
            countsHtml(model) + filtersHtml(model) +
            (model.isComparison() ? gridOfSeveralHtml(model) : gridOfOneHtml(model)) +
-           missingHtml(model) + "<h3>What ran on what</h3>\n" + factsHtml(model) + "</section>\n";
+           newsHtml(model) + missingHtml(model) + "<h3>What ran on what</h3>\n" + factsHtml(model) +
+           "</section>\n";
 }
 
 }  // namespace gfxrepro::html

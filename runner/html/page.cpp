@@ -28,6 +28,38 @@ std::vector<const report::ClaimResult*> claimsOf(const Page& page) {
     return claims;
 }
 
+/// Whose claim it is, and of a time what kind.
+std::string whoseHtml(const report::ClaimResult& claim) {
+    std::string html(config::originName(claim.origin));
+    if (claim.timeKind) html += fmt::format(", {}", config::timeKindName(*claim.timeKind));
+    return html;
+}
+
+std::string requiredHtml(const report::ClaimResult& claim) {
+    std::string html = escapeXml(claim.required);
+    if (claim.boundFrom) {
+        const std::string_view source = config::boundSourceName(*claim.boundFrom);
+        html += fmt::format(" <span class=\"soft\">({})</span>", source);
+    }
+    return html;
+}
+
+std::string newsHtml(const report::ClaimResult& claim) {
+    if (!claim.isNews()) return "";
+    return fmt::format(" <span class=\"news\" title=\"known: {}\">news</span>",
+                       verdictName(claim.known));
+}
+
+/// What the judging noted, and the known cause.
+std::string whyHtml(const report::ClaimResult& claim) {
+    const std::string cause =
+        claim.because.empty()
+            ? ""
+            : fmt::format("{}{}", claim.verdict == claim.known ? "" : "known cause of failing: ",
+                          escapeXml(claim.because));
+    return escapeXml(claim.reason) + (claim.reason.empty() || cause.empty() ? "" : ". ") + cause;
+}
+
 std::string claimsHtml(const Page& page, const Model& model) {
     const auto claims = claimsOf(page);
     if (claims.empty()) return "";
@@ -36,8 +68,8 @@ std::string claimsHtml(const Page& page, const Model& model) {
         "<th>claim</th>";
     if (model.isComparison()) html += "<th>run</th>";
     html +=
-        "<th>verdict</th><th>what the paper says</th><th>required</th><th>measured</th>"
-        "<th>reason</th></tr></thead>\n<tbody>\n";
+        "<th>verdict</th><th>whose</th><th>what it says</th><th>required</th><th>measured</th>"
+        "<th>why</th></tr></thead>\n<tbody>\n";
     for (const report::ClaimResult* claim : claims) {
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
             for (const report::ClaimResult& result : page.parts[run].claims) {
@@ -45,11 +77,11 @@ std::string claimsHtml(const Page& page, const Model& model) {
                 html += fmt::format("<tr><td class=\"id\">{}</td>", escapeXml(result.id));
                 if (model.isComparison()) html += fmt::format("<td>{}</td>", Model::letter(run));
                 html += fmt::format(
-                    "<td>{}</td><td>{}</td><td>{}</td><td class=\"measured\">{}</td>"
+                    "<td>{}{}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"measured\">{}</td>"
                     "<td class=\"soft\">{}</td></tr>\n",
-                    verdictBadge(result.verdict), escapeXml(result.text),
-                    escapeXml(result.required), escapeXml(result.measured),
-                    escapeXml(result.reason));
+                    verdictBadge(result.verdict), newsHtml(result), whoseHtml(result),
+                    escapeXml(result.text), requiredHtml(result), escapeXml(result.measured),
+                    whyHtml(result));
             }
         }
     }

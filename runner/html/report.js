@@ -36,7 +36,7 @@
     const wanted = new FormData(filters);
     const verdicts = new Set(wanted.getAll('verdict'));
     const words = wanted.get('text').trim().toLowerCase();
-    const isAll = verdicts.size === all('input[name=verdict]', filters).length && !words;
+    const isAll = verdicts.size === all('input[name=verdict]', filters).length && !words && !wanted.get('origin');
     let shown = 0;
     for (const row of all('.grid tbody tr')) {
       const isHere = (!wanted.get('paper') || row.dataset.paper === wanted.get('paper')) &&
@@ -44,6 +44,7 @@
       let count = 0;
       for (const badge of all('.badge', row)) {
         badge.hidden = !(verdicts.has(badge.dataset.verdict) &&
+                         (!wanted.get('origin') || badge.dataset.origin === wanted.get('origin')) &&
                          (!words || badge.dataset.text.toLowerCase().includes(words) ||
                           row.textContent.toLowerCase().includes(words)));
         if (!badge.hidden) ++count;

@@ -215,6 +215,11 @@ void fillValues(const CellQuery& query, const Samples& samples, std::uint64_t se
 
 }  // namespace
 
+bool isTimeMetric(std::string_view metric) {
+    return metric.ends_with("_ms") || metric.ends_with("frame_rate") ||
+           metric.ends_with("_per_second") || metric.find("_us_per_") != std::string_view::npos;
+}
+
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {
     config::Selection selection;
     Where where;
@@ -236,6 +241,7 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
     Cell cell;
+    cell.isTime = isTimeMetric(query.metric);
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();

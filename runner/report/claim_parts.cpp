@@ -13,6 +13,8 @@ Requirement rangeOf(const config::ClaimSpec& claim, const std::string& name,
     Requirement requirement;
     if (claim.low) requirement.low = *claim.low;
     if (claim.high) requirement.high = *claim.high;
+    requirement.isLowExcluded = claim.isLowExcluded;
+    requirement.isHighExcluded = claim.isHighExcluded;
     requirement.isPercent = isPercent;
     requirement.text = name + " " + rangeText(requirement);
     return requirement;

@@ -54,11 +54,14 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
                                                       : interval.low >= requirement.low;
     const bool isBelowLow = requirement.isLowExcluded ? interval.high <= requirement.low
                                                       : interval.high < requirement.low;
+    const bool isBelowHigh = requirement.isHighExcluded ? interval.high < requirement.high
+                                                        : interval.high <= requirement.high;
+    const bool isAboveHigh = requirement.isHighExcluded ? interval.low >= requirement.high
+                                                        : interval.low > requirement.high;
     // A crossing that is not there is infinite: outside of any range, an open one too.
     const bool isAbsent = std::isinf(interval.low) && interval.low == interval.high;
-    if (isBelowLow || interval.low > requirement.high || isAbsent) return Verdict::Fails;
-    if (isAboveLow && interval.high <= requirement.high && std::isfinite(interval.low) &&
-        std::isfinite(interval.high)) {
+    if (isBelowLow || isAboveHigh || isAbsent) return Verdict::Fails;
+    if (isAboveLow && isBelowHigh && std::isfinite(interval.low) && std::isfinite(interval.high)) {
         return Verdict::Holds;
     }
     return Verdict::Ambiguous;
@@ -193,8 +196,9 @@ std::string rangeText(const Requirement& requirement) {
     const std::string low = quantityText(requirement.low, requirement);
     const std::string high = quantityText(requirement.high, requirement);
     if (std::isinf(requirement.high)) return (requirement.isLowExcluded ? "> " : "≥ ") + low;
-    if (std::isinf(requirement.low)) return "≤ " + high;
-    return "in [" + low + ", " + high + "]";
+    if (std::isinf(requirement.low)) return (requirement.isHighExcluded ? "< " : "≤ ") + high;
+    return fmt::format("in {}{}, {}{}", requirement.isLowExcluded ? '(' : '[', low, high,
+                       requirement.isHighExcluded ? ')' : ']');
 }
 
 }  // namespace gfxrepro::report

@@ -26,6 +26,7 @@ struct Requirement {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
     bool isLowExcluded = false;
+    bool isHighExcluded = false;
     std::string text;        // "exponent in [0.3, 1.2]"
     bool isPercent = false;  // shown ×100 with a percent sign
 };

@@ -106,6 +106,17 @@ std::string ClaimReader::groupName(const Rows& rows) const {
     return joined(parts);
 }
 
+bool ClaimReader::readsTime() const {
+    const Rows read = rows();
+    const auto isTime = [&](const Operand& operand) {
+        return std::ranges::any_of(operand.columns(), [&](std::size_t column) {
+            return std::ranges::any_of(
+                read, [&](std::size_t row) { return table_.rows[row].cells[column].isTime; });
+        });
+    };
+    return std::ranges::any_of(operands_, isTime);
+}
+
 bool ClaimReader::isPlanned(const ClaimPart& part, std::size_t row) const {
     for (const std::size_t operand : part.operands) {
         for (const std::size_t column : operands_[operand].columns()) {

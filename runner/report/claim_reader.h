@@ -35,6 +35,9 @@ class ClaimReader {
     /// The labels that the rows share: "scene=models/duck".
     std::string groupName(const Rows& rows) const;
 
+    /// Whether some cell that it may read is a time or a rate of time.
+    bool readsTime() const;
+
   private:
     [[noreturn]] void fail(const std::string& message) const {
         throw Error(claim_.location, "claim '" + claim_.id + "': " + message);

@@ -1,8 +1,12 @@
 #include "runner/report/claims.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "runner/core/text.h"
 #include "runner/report/claim_parts.h"
@@ -102,8 +106,9 @@ std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& contex
     return "";
 }
 
-/// The table as the claim reads it.
+/// The table as the claim reads it: with `across`, rows for columns.
 Table tableFor(const ClaimSpec& claim, const Table& table) {
+    if (!claim.across) return table;
     const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
     if (found == table.rowAxes.end()) {
         throw Error(claim.location, "claim '" + claim.id + "': across: '" + *claim.across +
@@ -113,6 +118,17 @@ Table tableFor(const ClaimSpec& claim, const Table& table) {
     return transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
 }
 
+/// What the config knows of the claim on this device and in this profile.
+void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
+    for (const ClaimSpec::Known& known : claim.because) {
+        if (known.device.value_or(context.deviceClass) != context.deviceClass) continue;
+        if (known.profile.value_or(context.profile) != context.profile) continue;
+        result.known = verdictFromName(known.verdict);
+        result.because = known.reason;
+        return;
+    }
+}
+
 ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
     ClaimReader reader(claim, table);
     const std::vector<ClaimPart> parts = partsOf(claim);
@@ -120,6 +136,10 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
     result.id = claim.id;
     result.table = table.id;
     result.text = claim.text;
+    result.origin = claim.origin.value_or(ClaimSpec::Origin::Ours);
+    result.boundFrom = claim.boundFrom;
+    result.timeKind = claim.timeKind;
+    takeKnown(claim, context, result);
     std::vector<std::string> required;
     for (const ClaimPart& part : parts) required.push_back(part.requirement.text);
     result.required = joined(required, "; ");
@@ -148,6 +168,16 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
 
 }  // namespace
 
+Verdict verdictFromName(std::string_view name) {
+    std::vector<std::string> names;
+    for (const Verdict verdict : {Verdict::Holds, Verdict::Fails, Verdict::Ambiguous,
+                                  Verdict::NotApplicable, Verdict::Unmeasured}) {
+        if (verdictName(verdict) == name) return verdict;
+        names.emplace_back(verdictName(verdict));
+    }
+    throw Error(fmt::format("'{}' is no verdict ({})", name, joined(names)));
+}
+
 std::string_view verdictName(Verdict verdict) {
     switch (verdict) {
         case Verdict::Holds:
@@ -174,6 +204,27 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, co
     return results;
 }
 
+void requireProvenance(const config::Experiment& experiment, const Table& table) {
+    const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
+    Table read;  // outlives its reader
+    for (const ClaimSpec& claim : experiment.claims) {
+        const auto complain = [&](const std::string& what) {
+            throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, what));
+        };
+        if (isOfDocument && !claim.origin) {
+            complain("needs 'origin': document | derived | ours | definition | calibrated");
+        }
+        if (isOfDocument && claim.hasBound() && !claim.boundFrom) {
+            complain("requires a number and needs 'bound_from': print | text | ours");
+        }
+        const bool readsTime = ClaimReader(claim, read = tableFor(claim, table)).readsTime();
+        if (isOfDocument && readsTime && !claim.timeKind) {
+            complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
+        }
+        if (!readsTime && claim.timeKind) complain("has a 'kind' and reads no time");
+    }
+}
+
 std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
     if (results.empty()) return "no claims";
     std::map<Verdict, int> counts;
@@ -186,6 +237,24 @@ std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
         parts.push_back(std::to_string(count) + " " + word);
     }
     return joined(parts);
+}
+
+std::string originSummaryLine(const std::vector<ClaimResult>& results) {
+    using Origin = ClaimSpec::Origin;
+    static constexpr std::pair<Origin, const char*> kGroups[] = {
+        {Origin::Document, "of the documents' own claims"},
+        {Origin::Derived, "read off their numbers"},
+        {Origin::Ours, "our aims"},
+        {Origin::Definition, "definitions"},
+        {Origin::Calibrated, "calibrated inputs"}};
+    std::vector<std::string> parts;
+    for (const auto& [origin, name] : kGroups) {
+        std::vector<ClaimResult> alike;
+        std::ranges::copy_if(results, std::back_inserter(alike),
+                             [&](const ClaimResult& result) { return result.origin == origin; });
+        if (!alike.empty()) parts.push_back(fmt::format("{} {}", name, claimSummaryLine(alike)));
+    }
+    return joined(parts, "; ");
 }
 
 }  // namespace gfxrepro::report

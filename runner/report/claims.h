@@ -1,6 +1,7 @@
 // Claims: what the paper says must follow from its table, judged on the measured one.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@ namespace gfxrepro::report {
 enum class Verdict { Holds, Fails, Ambiguous, NotApplicable, Unmeasured };
 /// "holds", "fails", "ambiguous", "not-applicable", "unmeasured".
 std::string_view verdictName(Verdict verdict);
+/// Throws Error for a name that is none.
+Verdict verdictFromName(std::string_view name);
 
 /// Where the run took place, as far as claims ask.
 struct ReportContext {
@@ -32,7 +35,21 @@ struct ClaimResult {
     std::string required;  // "exponent in [0.3, 1.2]"
     std::string margin;    // distance from the point to the nearest bound, in the quantity's unit;
                            // negative outside
-    std::string reason;
+    std::string reason;    // of a verdict that is not plain: "worst at …", "one sample"
+
+    config::ClaimSpec::Origin origin = config::ClaimSpec::Origin::Ours;
+    std::optional<config::ClaimSpec::BoundSource> boundFrom;
+    std::optional<config::ClaimSpec::TimeKind> timeKind;
+    Verdict known = Verdict::Holds;  // what it comes to as far as the config knows
+    std::string because;             // why, where it does not hold
+
+    /// A statement of the document itself: what counts.
+    bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
+    /// Holds where it was known to fail, or fails where it was known to hold.
+    bool isNews() const {
+        return (verdict == Verdict::Holds && known == Verdict::Fails) ||
+               (verdict == Verdict::Fails && known == Verdict::Holds);
+    }
 };
 
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required
@@ -43,7 +60,16 @@ struct ClaimResult {
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,
                                         const ReportContext& context);
 
+/// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
+/// none, or where a document's table does not say whose the claim or its bound is. `table` may have
+/// been built from no records.
+void requireProvenance(const config::Experiment& experiment, const Table& table);
+
 /// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.
 std::string claimSummaryLine(const std::vector<ClaimResult>& results);
+
+/// "of the documents' own claims 40 hold, 12 fail; derived from their numbers 5 hold; …": by
+/// origin, only those that occur. A definition and a calibrated input are tests of ours.
+std::string originSummaryLine(const std::vector<ClaimResult>& results);
 
 }  // namespace gfxrepro::report

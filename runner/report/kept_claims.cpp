@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "runner/config/schema.h"
 #include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/report/csv.h"
 #include "runner/report/report.h"
 
@@ -9,38 +12,53 @@ namespace gfxrepro::report {
 
 namespace {
 
-Verdict verdictFromName(const std::string& name, const SourceLocation& where) {
-    std::vector<std::string> known;
-    for (const Verdict verdict : {Verdict::Holds, Verdict::Fails, Verdict::Ambiguous,
-                                  Verdict::NotApplicable, Verdict::Unmeasured}) {
-        if (verdictName(verdict) == name) return verdict;
-        known.emplace_back(verdictName(verdict));
+Verdict verdictAt(const SourceLocation& where, const std::string& name) {
+    try {
+        return verdictFromName(name);
+    } catch (const Error& error) {
+        throw Error(where, error.what());
     }
-    throw Error(where, fmt::format("'{}' is no verdict ({})", name, joined(known)));
+}
+
+/// The enumerator whose name it is; none for an empty or unknown one.
+template <class Value, std::size_t kCount>
+std::optional<Value> valueOf(const std::array<std::string_view, kCount>& names,
+                             const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return std::nullopt;
+    return static_cast<Value>(found - names.begin());
 }
 
 }  // namespace
 
 std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
-    enum Column { Id, TableId, Device, Profile, Word, Measured, Required, Margin, Reason, Count };
+    using Spec = config::ClaimSpec;
     const std::string text = readFile(file);
     CsvReader reader(text, file.string());
-    std::vector<std::string> fields;
+    std::vector<std::string> header, fields;
     std::vector<ClaimResult> claims;
-    reader.next(fields);  // the header
+    reader.next(header);
     while (reader.next(fields)) {
-        if (fields.size() != Count) {
+        if (fields.size() != header.size()) {
             throw Error(reader.location(),
-                        fmt::format("expected {} columns, found {}", int{Count}, fields.size()));
+                        fmt::format("expected {} columns, found {}", header.size(), fields.size()));
         }
+        std::map<std::string, std::string> row;
+        for (std::size_t i = 0; i < fields.size(); ++i) row[header[i]] = fields[i];
         ClaimResult& claim = claims.emplace_back();
-        claim.id = fields[Id];
-        claim.table = fields[TableId];
-        claim.verdict = verdictFromName(fields[Word], reader.location());
-        claim.measured = fields[Measured];
-        claim.required = fields[Required];
-        claim.margin = fields[Margin];
-        claim.reason = fields[Reason];
+        claim.id = row["claim"];
+        claim.table = row["table"];
+        claim.verdict = verdictAt(reader.location(), row["verdict"]);
+        claim.measured = row["measured"];
+        claim.required = row["required"];
+        claim.margin = row["margin"];
+        claim.reason = row["reason"];
+        claim.because = row["because"];
+        if (!row["known"].empty()) claim.known = verdictAt(reader.location(), row["known"]);
+        claim.origin =
+            valueOf<Spec::Origin>(config::kOrigins, row["origin"]).value_or(claim.origin);
+        claim.boundFrom = valueOf<Spec::BoundSource>(config::kBoundSources, row["bound_from"]);
+        claim.timeKind = valueOf<Spec::TimeKind>(config::kTimeKinds, row["kind"]);
     }
     return claims;
 }

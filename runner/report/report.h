@@ -2,7 +2,9 @@
 // (atomically) and may be called again at any time; none needs a GPU.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "runner/config/experiment.h"
@@ -26,13 +28,18 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
                                         const std::vector<Table>& tables,
                                         const ReportContext& context);
 
-/// claims.csv (claim,table,device,profile,verdict,measured,required,margin,reason) and junit.xml
-/// (a failed claim is a failure, one that could not be judged is skipped).
+/// The columns of claims.csv.
+inline constexpr std::array<std::string_view, 14> kClaimsColumns = {
+    "claim",   "table", "device",   "profile",  "origin", "bound_from", "kind",
+    "verdict", "known", "measured", "required", "margin", "reason",     "because"};
+
+/// claims.csv (kClaimsColumns) and junit.xml (a failed claim is a failure, one that could not be
+/// judged is skipped).
 void writeClaims(const std::filesystem::path& runDir, const std::vector<ClaimResult>& results,
                  const ReportContext& context);
 
-/// claims.csv as writeClaims() wrote it; what a claim says is not kept there. Throws Error with
-/// file and line.
+/// claims.csv as writeClaims() wrote it, in older forms too (then nothing is known of a claim's
+/// origin); what a claim says is not kept there. Throws Error with file and line.
 std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::report

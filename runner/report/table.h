@@ -22,6 +22,9 @@ struct Measured {
     std::string low, high;       // and the interval's ends; empty without one
 };
 
+/// Whether a metric is a time or a number per time: what claims of a `kind` are about.
+bool isTimeMetric(std::string_view metric);
+
 /// What stands at a row and a column.
 struct Cell {
     bool isPlanned = true;   // the sweep has such cases; if not, the cell is blank, not missing
@@ -34,8 +37,9 @@ struct Cell {
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
     std::vector<std::string> caseIds;                  // whose records it takes
-    std::string metric;  // what it shows; empty, as its unit, where it is scaled
-    std::string unit;    // of the records, if they agree
+    std::string metric;   // what it shows; empty, as its unit, where it is scaled
+    bool isTime = false;  // a time, or a rate of time
+    std::string unit;     // of the records, if they agree
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
     /// The statistic of that name, the first if the name is empty; null when it is not there.

@@ -118,12 +118,17 @@ std::string tableMarkdown(const Table& table) {
 }
 
 std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportContext& context) {
-    std::string text = "claim,table,device,profile,verdict,measured,required,margin,reason\n";
+    std::string text = fmt::format("{}\n", fmt::join(kClaimsColumns, ","));
     for (const ClaimResult& result : results) {
+        const std::string_view bound =
+            result.boundFrom ? config::boundSourceName(*result.boundFrom) : "";
+        const std::string_view kind = result.timeKind ? config::timeKindName(*result.timeKind) : "";
         CsvRow row(text);
         row.text(result.id).text(result.table).text(context.device).text(context.profile);
-        row.text(verdictName(result.verdict)).text(result.measured).text(result.required);
-        row.text(result.margin).text(result.reason).end();
+        row.text(config::originName(result.origin)).text(bound).text(kind);
+        row.text(verdictName(result.verdict)).text(verdictName(result.known));
+        row.text(result.measured).text(result.required).text(result.margin).text(result.reason);
+        row.text(result.because).end();
     }
     return text;
 }
@@ -151,7 +156,8 @@ std::string junitXml(const std::vector<ClaimResult>& results) {
         const std::string message =
             fmt::format("{}: measured {}, required {}{}", verdictName(result.verdict),
                         result.measured.empty() ? "nothing" : result.measured, result.required,
-                        result.reason.empty() ? "" : fmt::format(" ({})", result.reason));
+                        result.reason.empty() ? "" : fmt::format(" ({})", result.reason)) +
+            (result.because.empty() ? "" : fmt::format("; known: {}", result.because));
         text += fmt::format("><{} message=\"{}\"/></testcase>\n",
                             isFailure(result.verdict) ? "failure" : "skipped", escapeXml(message));
     }

@@ -144,7 +144,7 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
               head +
                   "32: claim 'C': unknown key 'above'; allowed: says, at, across, statistic, "
-                  "device, profile, order");
+                  "device, profile, origin, bound_from, kind, because, order");
     EXPECT_EQ(claimError("{says: s, order: aa}"),
               head + "23: claim 'C': order is aa; allowed: a < b < …");
     EXPECT_EQ(claimError("{says: s, order: aa < }"),
@@ -154,12 +154,17 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
               head + "23: claim 'C': ratio is aa; allowed: a / b");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
-              head + "3: claim 'C' needs at_least, at_most or between");
+              head + "3: claim 'C' needs at_least, more_than, at_most, less_than or between");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, at_most: 1}"),
               head + "54: claim 'C': the lower bound exceeds the upper");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, between: [1, 2]}"),
               head + "54: claim 'C': between beside other bounds");
-    EXPECT_EQ(claimError("{says: s, bound: aa}"), head + "3: claim 'C' needs above or below");
+    EXPECT_EQ(claimError("{says: s, bound: aa}"),
+              head + "3: claim 'C' needs above, more_than, below or less_than");
+    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, more_than: 1}"),
+              head + "48: claim 'C': 'above' and 'more_than'; one is allowed");
+    EXPECT_EQ(claimError("{says: s, bound: aa, more_than: 2, less_than: 1}"),
+              head + "52: claim 'C': the lower bound exceeds the upper");
 }
 
 TEST_F(ExperimentTest, BadClaimsOverAxes) {
@@ -207,6 +212,52 @@ TEST_F(ExperimentTest, BadClaimScopes) {
               head + "48: statistic is avg; allowed: median, mean, min, max, sum, count");
     EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, above: 1}"),
               head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
+}
+
+TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
+    const std::string layout =
+        "sweep: {scene: [s]}\nlayout: {rows: scene, columns: {aa: m, bb: m}}\nclaims:\n  C: ";
+    const auto error = [&](const std::string& keys) {
+        return errorWith(layout + "{says: s, bound: aa, less_than: 1, " + keys + "}");
+    };
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(error("origin: mine"),
+              head +
+                  "49: claim 'C': origin is mine; allowed: document | derived | ours | "
+                  "definition | calibrated");
+    EXPECT_EQ(error("bound_from: paper"),
+              head + "53: claim 'C': bound_from is paper; allowed: print | text | ours");
+    EXPECT_EQ(
+        error("kind: fast"),
+        head + "47: claim 'C': kind is fast; allowed: algorithmic | architectural | absolute");
+    EXPECT_EQ(error("kind: absolute, device: gpu"),
+              head + "65: claim 'C': device beside kind, which decides it");
+    EXPECT_EQ(errorWith(layout + "{says: s, order: aa < bb, bound_from: print}"),
+              head + "44: claim 'C': bound_from, and there is no number in what it requires");
+    EXPECT_EQ(error("because: {verdict: fails}"), head + "50: claim 'C': because needs 'reason'");
+    EXPECT_EQ(error("because: {verdict: holds, reason: r}"),
+              head +
+                  "60: claim 'C': because: verdict is holds; allowed: fails | ambiguous | "
+                  "unmeasured");
+    EXPECT_EQ(error("because: [{verdict: fails, reason: r, device: cpu}]"),
+              head + "87: claim 'C': because: device is cpu; allowed: software | gpu");
+}
+
+TEST_F(ExperimentTest, ProvenanceOfAClaim) {
+    const Experiment table = load(
+        "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
+        "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
+        "  C: {says: s, bound: aa, more_than: 0, origin: derived, bound_from: print, kind: "
+        "architectural, because: [{verdict: fails, profile: quick, reason: r}]}\n");
+    const ClaimSpec& claim = table.claims.at(0);
+    EXPECT_EQ(claim.origin, ClaimSpec::Origin::Derived);
+    EXPECT_EQ(claim.boundFrom, ClaimSpec::BoundSource::Print);
+    EXPECT_EQ(claim.timeKind, ClaimSpec::TimeKind::Architectural);
+    EXPECT_EQ(claim.device, ClaimSpec::Device::Gpu);
+    EXPECT_TRUE(claim.isLowExcluded);
+    ASSERT_EQ(claim.because.size(), 1u);
+    EXPECT_EQ(claim.because[0].profile, "quick");
+    EXPECT_EQ(claim.because[0].device, std::nullopt);
 }
 
 TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {

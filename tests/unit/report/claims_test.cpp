@@ -145,6 +145,65 @@ TEST(Claims, Bound) {
     EXPECT_EQ(result.reason, "worst at n=8; one sample");
 }
 
+TEST(Claims, StrictBoundsExcludeTheBound) {
+    const auto records = powers([](double) { return 0.0; });
+    EXPECT_EQ(judgePowers("bound: a, above: 0", records).verdict, Verdict::Holds);
+    const ClaimResult result = judgePowers("bound: a, more_than: 0, less_than: 1", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.required, "a in (0, 1)");
+    EXPECT_EQ(judgePowers("bound: a, less_than: 0", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("bound: a, less_than: 0.1", records).required, "a < 0.1");
+}
+
+TEST(Claims, KnownVerdictsAndNews) {
+    const auto records = powers([](double n) { return n; });
+    const std::string fails = "because: {verdict: fails, profile: quick, reason: the scene}";
+    ClaimResult result = judgePowers("bound: a, below: 1, " + fails, records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.known, Verdict::Fails);
+    EXPECT_EQ(result.because, "the scene");
+    EXPECT_FALSE(result.isNews());
+    result = judgePowers("bound: a, below: 8, " + fails, records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_TRUE(result.isNews());
+    result = judgePowers("bound: a, below: 1, because: {verdict: fails, device: gpu, reason: r}",
+                         records);
+    EXPECT_EQ(result.known, Verdict::Holds);
+    EXPECT_TRUE(result.isNews());
+}
+
+std::string provenanceError(const std::string& claim) {
+    const config::Experiment experiment = experimentFrom(
+        "sweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: {metric: "
+        "bytes}}}, rows: [scene, e], columns: {a: {pass: p}}}\nclaims:\n  C: {says: s, " +
+        claim + "}\n");
+    try {
+        requireProvenance(experiment, buildTable(experiment, {}));
+        return "no error";
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        return text.substr(text.find("claim"));
+    }
+}
+
+TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}"),
+              "claim 'C' needs 'origin': document | derived | ours | definition | calibrated");
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}, origin: document"),
+              "claim 'C' requires a number and needs 'bound_from': print | text | ours");
+    EXPECT_EQ(
+        provenanceError("bound: a, below: 1, at: {e: much}, origin: document, bound_from: text"),
+        "no error");
+    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document"),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
+    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document, kind: "
+                              "algorithmic"),
+              "no error");
+    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: much}, origin: document, kind: "
+                              "algorithmic"),
+              "claim 'C' has a 'kind' and reads no time");
+}
+
 TEST(Claims, ExactAndTolerance) {
     const std::string printed = R"(
 printed:
@@ -401,6 +460,11 @@ TEST(Claims, Summary) {
     results[2].verdict = Verdict::Fails;
     results[3].verdict = Verdict::NotApplicable;
     EXPECT_EQ(claimSummaryLine(results), "2 hold, 1 fails, 1 not-applicable");
+    results[0].origin = results[2].origin = config::ClaimSpec::Origin::Document;
+    results[3].origin = config::ClaimSpec::Origin::Definition;
+    EXPECT_EQ(originSummaryLine(results),
+              "of the documents' own claims 1 holds, 1 fails; our aims 1 holds; definitions 1 "
+              "not-applicable");
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ printed:
     models/duck,3.00/106,9.0
 claims:
   A: {says: "a < b & \"c\"", bound: draw_ms, below: 10, at: {scene: models/duck}}
-  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}}
+  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}, origin: document, bound_from: text, kind: algorithmic, because: {verdict: fails, reason: "slow, measured"}}
   C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
 assumptions:
   padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
@@ -79,17 +79,26 @@ TEST(Writers, ClaimFiles) {
     const auto results = evaluateClaims({experiment()}, tables, kContext);
     writeClaims(run.folder.path(), results, kContext);
     EXPECT_EQ(run.read("claims.csv"),
-              "claim,table,device,profile,verdict,measured,required,margin,reason\n"
-              "A,zju2005/9.9,llvmpipe,quick,holds,8,draw_ms ≤ 10,2,one sample\n"
-              "B,zju2005/9.9,llvmpipe,quick,fails,8,draw_ms ≤ 1,-7,one sample\n"
-              "C,zju2005/9.9,llvmpipe,quick,unmeasured,,draw_ms ≤ 1,,draw_ms at "
-              "scene=models/lost: crash (signal <11>)\n");
+              "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
+              "margin,reason,because\n"
+              "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,8,draw_ms ≤ 10,2,one sample,\n"
+              "B,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,8,draw_ms ≤ 1,-7,"
+              "one sample,\"slow, measured\"\n"
+              "C,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
+              "scene=models/lost: crash (signal <11>),\n");
+    const auto kept = readClaims(run.folder.path() / "claims.csv");
+    ASSERT_EQ(kept.size(), results.size());
+    EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
+    EXPECT_EQ(kept[1].boundFrom, config::ClaimSpec::BoundSource::Text);
+    EXPECT_EQ(kept[1].timeKind, config::ClaimSpec::TimeKind::Algorithmic);
+    EXPECT_EQ(kept[1].known, Verdict::Fails);
+    EXPECT_EQ(kept[1].because, "slow, measured");
     EXPECT_EQ(run.read("junit.xml"),
               "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
               "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
               "  <testcase classname=\"zju2005/9.9\" name=\"A\"/>\n"
               "  <testcase classname=\"zju2005/9.9\" name=\"B\"><failure message=\"fails: measured "
-              "8, required draw_ms ≤ 1 (one sample)\"/></testcase>\n"
+              "8, required draw_ms ≤ 1 (one sample); known: slow, measured\"/></testcase>\n"
               "  <testcase classname=\"zju2005/9.9\" name=\"C\"><skipped message=\"unmeasured: "
               "measured nothing, required draw_ms ≤ 1 (draw_ms at scene=models/lost: crash (signal "
               "&lt;11&gt;))\"/></testcase>\n"
