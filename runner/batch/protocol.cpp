@@ -1,6 +1,24 @@
 #include "runner/batch/protocol.h"
 
+#include <cmath>
+#include <limits>
+
 namespace gfxrepro::batch {
+
+namespace {
+
+/// JSON has no infinity.
+Json numberJson(double value) {
+    return std::isinf(value) ? Json(value > 0.0 ? "inf" : "-inf") : Json(value);
+}
+
+double numberFrom(const Json& json) {
+    if (json.is_number()) return json.get<double>();
+    const double infinity = std::numeric_limits<double>::infinity();
+    return json.get<std::string>() == "inf" ? infinity : -infinity;
+}
+
+}  // namespace
 
 Json toJson(const gl::DeviceInfo& info) {
     return {{"index", info.index},
@@ -53,7 +71,8 @@ Json toJson(const CaseResult& result) {
                  {"images", Json::array()},
                  {"scenes", Json::array()}};
     for (const Sample& s : result.samples) {
-        json["samples"].push_back({s.frame, s.repeat, s.pass, s.metric, s.unit, s.value, s.isVoid});
+        json["samples"].push_back(
+            {s.frame, s.repeat, s.pass, s.metric, s.unit, numberJson(s.value), s.isVoid});
     }
     for (const report::ImageEntry& i : result.images) {
         json["images"].push_back(
@@ -72,7 +91,8 @@ CaseResult caseResultFromJson(const Json& json) {
     json.at("void").get_to(result.voidReason);
     result.cost = costFromJson(json.at("cost"));
     for (const Json& s : json.at("samples")) {
-        result.samples.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), s.at(5), s.at(6)});
+        result.samples.push_back(
+            {s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), numberFrom(s.at(5)), s.at(6)});
     }
     for (const Json& i : json.at("images")) {
         result.images.push_back(

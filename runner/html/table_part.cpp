@@ -120,6 +120,7 @@ std::string headHtml(const Overlay& overlay, bool isComparison) {
 std::string ratioHtml(const Cell& cell) {
     if (cell.values.empty() || cell.printedValues.empty() || !cell.printedValues[0]) return "";
     const double printed = *cell.printedValues[0];
+    if (std::isinf(cell.values[0].value)) return "";
     if (printed == 0.0) return "";
     return fmt::format("<span class=\"ratio\" title=\"measured ÷ printed\">×{:.3g}</span>",
                        cell.values[0].value / printed);

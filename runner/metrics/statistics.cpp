@@ -84,9 +84,10 @@ Interval centralInterval(std::vector<double> values, double confidence) {
         const double position = share * static_cast<double>(values.size() - 1);
         const auto below = static_cast<std::size_t>(position);
         const std::size_t above = std::min(below + 1, values.size() - 1);
-        // Not std::lerp on equal ends: it must return an infinite value unharmed.
-        if (values[below] == values[above]) return values[below];
-        return std::lerp(values[below], values[above], position - static_cast<double>(below));
+        const double rest = position - static_cast<double>(below);
+        // std::lerp makes not-a-number of an infinite end.
+        if (rest == 0.0 || values[below] == values[above]) return values[below];
+        return std::lerp(values[below], values[above], rest);
     };
     return {quantile((1.0 - confidence) / 2.0), quantile((1.0 + confidence) / 2.0)};
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 
 #include "runner/core/text.h"
 
@@ -66,6 +67,7 @@ std::string CellFormat::format(std::span<const double> values) const {
 }
 
 std::string CellFormat::formatOne(std::size_t placeholder, double value) const {
+    if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
     return formatted(placeholders_[placeholder].spec, value);
 }
 

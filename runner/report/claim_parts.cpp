@@ -89,6 +89,7 @@ ClaimPart crossoverPart(const config::ClaimSpec& claim) {
                    rangeOf(claim, "crossing of " + joined(claim.operands, " and ") + " at " +
                                       claim.over.value_or("")),
                    "crossing at"};
+    part.requirement.isInfinityAbsence = true;
     part.needsX = true;
     part.minRows = 2;
     return part;

@@ -14,7 +14,18 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double relativeDifference(double left, double right) {
     if (left == right) return 0.0;
+    if (std::isinf(left) || std::isinf(right)) return left < right ? 1.0 : -1.0;
     return (right - left) / std::max(std::abs(left), std::abs(right));
+}
+
+/// The smaller one; not-a-number when either is.
+double lesser(double a, double b) {
+    return std::isnan(a) || b > a ? a : b;
+}
+
+/// The larger one; not-a-number when either is.
+double greater(double a, double b) {
+    return std::isnan(a) || b < a ? a : b;
 }
 
 /// The rows in ascending x.
@@ -58,12 +69,13 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
                                                         : interval.high <= requirement.high;
     const bool isAboveHigh = requirement.isHighExcluded ? interval.low >= requirement.high
                                                         : interval.low > requirement.high;
-    // A crossing that is not there is infinite: outside of any range, an open one too.
-    const bool isAbsent = std::isinf(interval.low) && interval.low == interval.high;
+    // A crossing that is not there lies outside of any range, an open one too.
+    const bool isAbsent =
+        requirement.isInfinityAbsence && std::isinf(interval.low) && interval.low == interval.high;
+    const bool isPartlyAbsent =
+        requirement.isInfinityAbsence && (std::isinf(interval.low) || std::isinf(interval.high));
     if (isBelowLow || isAboveHigh || isAbsent) return Verdict::Fails;
-    if (isAboveLow && isBelowHigh && std::isfinite(interval.low) && std::isfinite(interval.high)) {
-        return Verdict::Holds;
-    }
+    if (isAboveLow && isBelowHigh && !isPartlyAbsent) return Verdict::Holds;
     return Verdict::Ambiguous;
 }
 
@@ -73,7 +85,7 @@ double smallestGap(const GroupPoint& group) {
     double smallest = kInfinity;
     for (std::size_t i = 1; i < group.operands.size(); ++i) {
         for (std::size_t row = 0; row < group.operands[i].size(); ++row) {
-            smallest = std::min(
+            smallest = lesser(
                 smallest, relativeDifference(group.operands[i - 1][row], group.operands[i][row]));
         }
     }
@@ -108,7 +120,7 @@ double smallestStep(const GroupPoint& group, int direction) {
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const double step =
             relativeDifference(group.operands[0][rows[i - 1]], group.operands[0][rows[i]]);
-        smallest = std::min(smallest, direction * step);
+        smallest = lesser(smallest, direction * step);
     }
     return smallest;
 }
@@ -126,6 +138,9 @@ double crossing(const GroupPoint& group) {
     if (!arePositive(group.x) || !arePositive(a) || !arePositive(b)) return kNan;
     const std::vector<std::size_t> rows = rowsByX(group);
     const auto difference = [&](std::size_t i) { return std::log(a[rows[i]] / b[rows[i]]); };
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (std::isnan(difference(i))) return kNan;
+    }
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const double before = difference(i - 1);
         const double after = difference(i);
@@ -144,8 +159,10 @@ double largestDifference(const GroupPoint& group) {
     double largest = 0.0;
     for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
         const double expected = group.operands[1][row];
+        if (group.operands[0][row] == expected) continue;
         const double difference = std::abs(group.operands[0][row] - expected);
-        if (difference > kRounding * std::abs(expected)) largest = std::max(largest, difference);
+        const bool isRounding = difference <= kRounding * std::abs(expected);
+        if (!isRounding || std::isinf(difference)) largest = greater(largest, difference);
     }
     return largest;
 }
@@ -154,8 +171,9 @@ double largestDeviation(const GroupPoint& group) {
     double largest = 0.0;
     for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
         const double expected = group.operands[1][row];
+        if (group.operands[0][row] == expected) continue;
         const double difference = std::abs(group.operands[0][row] - expected);
-        if (difference > 0.0) largest = std::max(largest, difference / std::abs(expected));
+        largest = greater(largest, difference / std::abs(expected));
     }
     return largest;
 }
@@ -173,7 +191,7 @@ Judgement judge(const Group& group, const Quantity& quantity, const Requirement&
         if (!std::isnan(value)) draws.push_back(value);
     }
     judgement.isSingleSample = draws.empty();
-    judgement.isAbsent = std::isinf(point);
+    judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(point);
     metrics::Interval interval{point, point};
     if (!draws.empty()) interval = metrics::centralInterval(draws);
     judgement.verdict = verdictOf(interval, requirement);

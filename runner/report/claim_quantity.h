@@ -27,13 +27,18 @@ struct Requirement {
     double high = std::numeric_limits<double>::infinity();
     bool isLowExcluded = false;
     bool isHighExcluded = false;
-    std::string text;        // "exponent in [0.3, 1.2]"
-    bool isPercent = false;  // shown ×100 with a percent sign
+    bool isInfinityAbsence = false;  // crossover alone: what is infinite is not there, and fails
+    std::string text;                // "exponent in [0.3, 1.2]"
+    bool isPercent = false;          // shown ×100 with a percent sign
 };
 
 using Quantity = std::function<double(const GroupPoint&)>;
 
-/// order a < b < …: the smallest (right − left) / max(|right|, |left|) over neighbours and rows.
+// A measured value may be +∞: the PSNR of equal pictures. It is larger than any other, equal to
+// itself, and ∞ − ∞ or ∞ ÷ ∞ is not a number: a quantity that needs one is unmeasured.
+
+/// order a < b < …: the smallest (right − left) / max(|right|, |left|) over neighbours and rows; ±1
+/// where one of the two is infinite.
 double smallestGap(const GroupPoint& group);
 /// ratio a / b of the only row.
 double firstRatio(const GroupPoint& group);
@@ -60,7 +65,7 @@ struct Judgement {
     std::string measured;
     double margin = 0.0;  // to the nearest bound, negative outside
     bool isSingleSample = false;
-    bool isAbsent = false;  // the quantity is infinite: a crossing that is not there
+    bool isAbsent = false;  // a crossing that is not there
 };
 Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement);
 

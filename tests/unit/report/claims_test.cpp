@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "runner/core/random.h"
@@ -55,6 +56,30 @@ ClaimResult judgeOne(const std::string& body, const std::vector<Record>& records
 
 ClaimResult judgePowers(const std::string& claim, const std::vector<Record>& records) {
     return judgeOne(powersBody(claim), records);
+}
+
+double infinite(double) {
+    return std::numeric_limits<double>::infinity();
+}
+
+TEST(Claims, APerfectPictureIsBetterThanAnyOther) {
+    const auto forty = [](double) { return 40.0; };
+    const ClaimResult bound = judgePowers("bound: a, above: 30", powers(infinite));
+    EXPECT_EQ(bound.verdict, Verdict::Holds);
+    EXPECT_NE(bound.measured.find("∞"), std::string::npos) << bound.measured;
+    EXPECT_EQ(bound.reason.find("crossing"), std::string::npos) << bound.reason;
+    EXPECT_EQ(judgePowers("bound: a, below: 30", powers(infinite)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("order: a < b", powers(forty, infinite)).verdict, Verdict::Holds);
+    EXPECT_EQ(judgePowers("order: a < b", powers(infinite, forty)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("exact: a, equals: 40", powers(infinite)).verdict, Verdict::Fails);
+}
+
+TEST(Claims, InfinityByInfinityIsNoNumber) {
+    for (const char* claim : {"ratio: a / b, at_least: 1", "bound: a / b, above: 1",
+                              "order: c-c < a / b", "trend: a, over: n, exponent: [0, 1]"}) {
+        const ClaimResult result = judgePowers(claim, powers(infinite, infinite));
+        EXPECT_EQ(result.verdict, Verdict::Unmeasured) << claim << ": " << result.measured;
+    }
 }
 
 TEST(Claims, Order) {
