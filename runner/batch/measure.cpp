@@ -74,8 +74,8 @@ int kindNumber(scene::Origin::Kind kind) {
 
 void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
     const scene::Scene& scene = entry.scene;
-    recorder.metric("triangles", static_cast<double>(scene.triangleCount()), "triangle", "");
-    recorder.metric("vertices", static_cast<double>(scene.vertexCount()), "vertex", "");
+    recorder.metric("scene_triangles", static_cast<double>(scene.triangleCount()), "triangle", "");
+    recorder.metric("scene_vertices", static_cast<double>(scene.vertexCount()), "vertex", "");
     recorder.metric("scene_source", kindNumber(scene.origin.kind), "enum", "");
     recorder.metric("load_time_ms", entry.loadTimeMs, "ms", "");
 }
@@ -111,14 +111,16 @@ class WorkGuard {
         work.counts = query_.result();
         if (work.counts) {
             const gl::Work& counts = *work.counts;
-            recorder.metric("primitives", static_cast<double>(counts.primitives), "primitive", "");
-            recorder.metric("fragments", static_cast<double>(counts.fragments), "fragment", "");
-            recorder.metric("compute_invocations", static_cast<double>(counts.invocations), "1",
-                            "");
+            const auto record = [&](const char* name, std::uint64_t count, const char* unit) {
+                recorder.metric(name, static_cast<double>(count), unit, "");
+            };
+            record("work_primitives", counts.primitives, "primitive");
+            record("work_fragments", counts.fragments, "fragment");
+            record("work_compute_invocations", counts.invocations, "1");
         }
         if (const gl::Texture* image = technique.frameImage()) {
             work.image = ImageDigest::of(image->readImage(4));
-            recorder.metric("image_digest", work.image->hash, "1", "");
+            recorder.metric("work_image_digest", work.image->hash, "1", "");
         }
         repeats_.push_back(std::move(work));
     }
@@ -214,7 +216,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
         recordPasses(profiler, recorder);
     }
     renderAndRecord(item, *technique, profiler, context, recorder, result);
-    recorder.setIteration(0, 0);
+    recorder.setIteration(report::kSetup, report::kSetup);
     result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
     if (scene) recordMemory(context, *scene, recorder);
 

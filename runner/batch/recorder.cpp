@@ -1,8 +1,11 @@
 #include "runner/batch/recorder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "runner/batch/image_attributes.h"
 #include "runner/image/exr_io.h"
@@ -13,6 +16,8 @@ namespace gfxrepro::batch {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void checkFileName(std::string_view name) {
     const bool isPlain =
@@ -29,9 +34,17 @@ void checkFileName(std::string_view name) {
 
 void RunRecorder::metric(std::string_view metric, double value, std::string_view unit,
                          std::string_view pass) {
-    if (!std::isfinite(value)) {
-        throw Error("metric '" + std::string(metric) + "' is " + std::to_string(value) +
-                    "; a metric is a finite number");
+    const bool isPerfect = value == kInfinity && unit == "dB";
+    if (!std::isfinite(value) && !isPerfect) {
+        throw Error(
+            fmt::format("metric '{}' is {}; a metric is a finite number, or ∞ dB", metric, value));
+    }
+    if (!given_.insert({frame_, repeat_, std::string(pass), std::string(metric)}).second) {
+        const std::string where = frame_ == report::kSetup
+                                      ? "the whole case"
+                                      : fmt::format("frame {}, repeat {}", frame_, repeat_);
+        throw Error(fmt::format("metric '{}'{} is given twice for {}", metric,
+                                pass.empty() ? "" : fmt::format(" of pass '{}'", pass), where));
     }
     result_.samples.push_back(
         {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value, false});

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string>
+#include <tuple>
 
 #include "runner/batch/plan.h"
 #include "runner/batch/protocol.h"
@@ -9,8 +12,9 @@
 
 namespace gfxrepro::batch {
 
-/// Metrics and images go into `result`; files are written atomically. Throws Error for values that
-/// are not finite and for names that are no file names.
+/// Metrics and images go into `result`; files are written atomically. Throws Error for a second
+/// value of a metric, pass, frame and repeat, for values that are not finite (but +∞ dB, which two
+/// equal pictures have) and for names that are no file names.
 class RunRecorder : public technique::Recorder {
   public:
     /// `command` is the one that measures, as typed.
@@ -18,7 +22,7 @@ class RunRecorder : public technique::Recorder {
                 CaseResult& result)
         : runDir_(runDir), command_(command), item_(item), result_(result) {}
 
-    /// Where in the case the next calls belong.
+    /// Where in the case the next calls belong; at first to the set-up.
     void setIteration(int frame, int repeat) {
         frame_ = frame;
         repeat_ = repeat;
@@ -37,8 +41,9 @@ class RunRecorder : public technique::Recorder {
     std::string command_;
     const Case& item_;
     CaseResult& result_;
-    int frame_ = 0;
-    int repeat_ = 0;
+    int frame_ = report::kSetup;
+    int repeat_ = report::kSetup;
+    std::set<std::tuple<int, int, std::string, std::string>> given_;  // frame, repeat, pass, metric
 };
 
 }  // namespace gfxrepro::batch

@@ -1,5 +1,6 @@
 #include "runner/report/case_records.h"
 
+#include <climits>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -70,10 +71,26 @@ std::optional<std::string> plannedValue(const config::CaseSpec& spec, const Json
     return valueIn(params, axis);
 }
 
+bool isOfSetup(const Record* record) {
+    return record->frame == kSetup;
+}
+
 }  // namespace
 
 std::string canonicalText(const config::Node& value) {
     return value.isMap() ? value.toFlowText() : jsonText(value.toJson());
+}
+
+std::vector<const Record*> CaseRecords::Attempt::values(std::string_view metric,
+                                                        std::string_view pass) const {
+    std::vector<const Record*> values;
+    for (auto row = rows.lower_bound({metric, pass, INT_MIN, INT_MIN});
+         row != rows.end() && row->first.metric == metric && row->first.pass == pass; ++row) {
+        // In the order of frames: set-up's value comes first, and goes when a frame has one.
+        if (row->first.frame != kSetup) std::erase_if(values, isOfSetup);
+        values.push_back(row->second);
+    }
+    return values;
 }
 
 std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,

@@ -31,6 +31,8 @@ struct CaseRecords {
     };
     struct Attempt {
         std::map<Place, const Record*> rows;
+        /// The values of a metric and pass: of its frames, or of set-up where no frame has one.
+        std::vector<const Record*> values(std::string_view metric, std::string_view pass) const;
         const Record* failure = nullptr;  // why the case has no rows
     };
 

@@ -112,15 +112,11 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             continue;
         }
         std::map<int, std::vector<double>> process;
-        const CaseRecords::Place first{query.metric, query.pass, INT_MIN, INT_MIN};
-        for (auto row = attempt.rows.lower_bound(first);
-             row != attempt.rows.end() && row->first.metric == query.metric &&
-             row->first.pass == query.pass;
-             ++row) {
-            if (!matchesFrame(query.where, row->first.frame)) continue;
-            const auto [unit, isNew] = unitOfFrame.try_emplace(row->first.frame, unitCount);
+        for (const Record* record : attempt.values(query.metric, query.pass)) {
+            if (!matchesFrame(query.where, record->frame)) continue;
+            const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
             if (isNew) ++unitCount;
-            takeRow(*row->second, query, unit->second, process, gathered);
+            takeRow(*record, query, unit->second, process, gathered);
         }
         if (!process.empty()) gathered.samples.processes.push_back(std::move(process));
     }

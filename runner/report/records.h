@@ -29,6 +29,10 @@ Status statusFromName(std::string_view name);
 /// two equal measurements of this run differ. They enter no cell.
 inline constexpr int kFirstControl = -2;
 
+/// Frame and repeat of what belongs to the whole case (its scene, its set-up, its memory). Of a
+/// metric and pass that frames have values of, too, these are no part.
+inline constexpr int kSetup = -1;
+
 /// A row of records.csv. Columns in this order, schema version first.
 struct Record {
     static constexpr int kSchema = 1;
@@ -39,14 +43,15 @@ struct Record {
     std::string method;
     std::string scene;
     std::string params;  // one-line JSON of the case's resolved parameters
-    int frame = 0;
-    int repeat = 0;
+    int frame = 0;       // or kSetup
+    int repeat = 0;      // or kSetup
     int process = 0;
     std::string lane;  // "timing" | "quality"
     std::string pass;  // the paper's step; empty for whole-case metrics
     std::string metric;
     std::string unit;
-    double value = 0.0;  // not-a-number for failed cases, written as an empty field
+    /// Not-a-number for failed cases, written as an empty field; +∞ ("inf") of equal pictures.
+    double value = 0.0;
     Status status = Status::Ok;
     std::string message;
 

@@ -34,7 +34,9 @@ void addPoints(const AxisValues& values, const LayoutCases& cases,
 std::vector<int> framesOf(const CaseRecords& run) {
     std::set<int> frames;
     for (const auto& [process, attempt] : run.processes) {
-        for (const auto& [place, record] : attempt.rows) frames.insert(place.frame);
+        for (const auto& [place, record] : attempt.rows) {
+            if (place.frame != kSetup) frames.insert(place.frame);
+        }
     }
     return {frames.begin(), frames.end()};
 }

@@ -29,7 +29,7 @@ TEST(Faults, EveryFailureBecomesARow) {
                             "unsupported: unsupported (no such extension)",
                             "device_lost: device-lost (the device was reset)",
                             "not_a_number: error (metric 'number' is nan; a metric is a finite "
-                            "number)"));
+                            "number, or ∞ dB)"));
 }
 
 TEST(Faults, MemoryLimit) {
@@ -83,6 +83,49 @@ TEST(Faults, LeakEndsAtTheMemoryLimitAndCostsOneCase) {
     EXPECT_EQ(rowsOf(dir, "")[0].status, report::Status::Oom);
 }
 
+TEST(Faults, AMetricIsGivenOnce) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {behaviour: [twice]}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    EXPECT_THAT(statusLines(dir),
+                ElementsAre("twice: error (metric 'number' is given twice for frame 0, repeat 0)"));
+}
+
+TEST(Faults, APerfectPictureIsInfinitelyGood) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {behaviour: [infinite]}\n"
+                        "layout:\n  rows: behaviour\n  columns:\n"
+                        "    psnr: {metric: psnr_db, format: \"{median:.1f} dB\"}\n"
+                        "claims:\n  C: {says: it is good, bound: psnr, above: 40}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.out << run.err;
+    ASSERT_EQ(rowsOf(dir, "psnr_db").size(), 1U);
+    EXPECT_EQ(rowsOf(dir, "psnr_db")[0].value, HUGE_VAL);
+    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find("| infinite | ∞ dB |"),
+              std::string::npos)
+        << readFile(dir + "/tables/sweep-mock.md");
+    EXPECT_NE(readFile(dir + "/tables/sweep-mock.csv").find("infinite,,inf,inf,inf,ok"),
+              std::string::npos)
+        << readFile(dir + "/tables/sweep-mock.csv");
+    EXPECT_NE(readFile(dir + "/claims.csv").find(",holds,"), std::string::npos);
+}
+
+TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "measure: {lane: timing, frames: 2, repeats: 2}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
+    EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, report::kSetup);
+    EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].repeat, report::kSetup);
+}
+
 TEST(Faults, SideBySideAndInFreshProcesses) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(
@@ -119,7 +162,7 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
                                                         another, another, another));
     for (const report::Record& row : rowsOf(dir, "number"))
         EXPECT_EQ(row.status, report::Status::Ok);
-    EXPECT_EQ(rowsOf(dir, "image_digest").size(), 9U);
+    EXPECT_EQ(rowsOf(dir, "work_image_digest").size(), 9U);
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 4);
     const std::string table = readFile(dir + "/tables/sweep-mock.md");
     EXPECT_NE(table.find("| blank | ambiguous | 0 |"), std::string::npos) << table;

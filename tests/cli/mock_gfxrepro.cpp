@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <new>
@@ -28,6 +29,8 @@ enum class Behaviour {
     Unsupported,
     DeviceLost,
     NotANumber,
+    Infinite,
+    Twice,
     Leak,
     Flake,
     Blank,
@@ -44,6 +47,8 @@ constexpr config::Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Unsupported, "unsupported"},
     {Behaviour::DeviceLost, "device_lost"},
     {Behaviour::NotANumber, "not_a_number"},
+    {Behaviour::Infinite, "infinite", "its picture is perfect"},
+    {Behaviour::Twice, "twice", "records a metric a second time"},
     {Behaviour::Leak, "leak", "64 MiB more every millisecond"},
     {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
     {Behaviour::Blank, "blank", "shows nothing"},
@@ -57,6 +62,7 @@ class Mock : public technique::Technique {
           number_(params.getInt("number", 0, {"given back as a metric"})),
           marker_(params.getText("marker", "/nonexistent", {"file that ends the flakes"})),
           pauseMs_(params.getInt("pause_ms", 0, {"length of an iteration", "ms", 0, 60000})),
+          busyMs_(params.getInt("busy_ms", 0, {"CPU time of an iteration", "ms", 0, 60000})),
           allocateMib_(params.getInt("allocate_mib", 0, {"memory to touch", "MiB", 0, 4096})) {
         params.finish();
     }
@@ -67,13 +73,15 @@ class Mock : public technique::Technique {
     }
 
     void render(technique::FrameContext&) override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(pauseMs_));
         // A slower build, for tests that compare two.
         const char* slower = std::getenv("GFXREPRO_MOCK_EXTRA_MS");
-        std::this_thread::sleep_for(
-            std::chrono::milliseconds(pauseMs_ + (slower ? std::atoi(slower) : 0)));
+        compute(busyMs_ + (slower ? std::atoi(slower) : 0));
         switch (behaviour_) {
             case Behaviour::Ok:
             case Behaviour::NotANumber:
+            case Behaviour::Infinite:
+            case Behaviour::Twice:
                 show(1);
                 return;
             case Behaviour::Blank:
@@ -116,6 +124,8 @@ class Mock : public technique::Technique {
     void record(technique::Recorder& recorder) override {
         const bool isNan = behaviour_ == Behaviour::NotANumber;
         recorder.metric("number", isNan ? std::nan("") : number_, "1");
+        if (behaviour_ == Behaviour::Twice) recorder.metric("number", number_, "1");
+        if (behaviour_ == Behaviour::Infinite) recorder.metric("psnr_db", HUGE_VAL, "dB");
         recorder.image("flat", image::ImageF(4, 4, 3, 0.5F));
         recorder.image("truth", image::ImageF(4, 4, 3, 0.25F), {.truthOf = "flat"});
     }
@@ -130,10 +140,21 @@ class Mock : public technique::Technique {
         image_.upload(GL_RED, GL_FLOAT, pixels.data());
     }
 
+    /// Takes CPU time, whatever else the machine does.
+    static void compute(int timeMs) {
+        const auto spentMs = [] {
+            return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+        };
+        const double endMs = spentMs() + timeMs;
+        while (spentMs() < endMs) {
+        }
+    }
+
     Behaviour behaviour_;
     int number_;
     std::string marker_;
     int pauseMs_;
+    int busyMs_;
     int allocateMib_;
     std::vector<char> memory_;
     gl::Texture image_;

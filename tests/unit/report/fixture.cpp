@@ -54,7 +54,7 @@ RecordMaker& RecordMaker::add(const std::string& metric, const std::vector<doubl
         record.metric = metric;
         record.pass = pass;
         record.unit = unit;
-        record.repeat = static_cast<int>(i);
+        record.repeat = current_.frame == kSetup ? kSetup : static_cast<int>(i);
         record.value = repeats[i];
         records_.push_back(record);
     }

@@ -77,6 +77,26 @@ TEST(Table, WithoutATechniqueThereIsWhatWasPrinted) {
     EXPECT_FALSE(table.rows[0].cells[0].isOk());
 }
 
+TEST(Table, SetUpCountsWhereNoFrameHasTheSame) {
+    RecordMaker maker;
+    maker.beginCase("models/duck").frame(kSetup).add("cpu_time_ms", {9.0}, "preprocess");
+    maker.beginCase("models/bunny").frame(kSetup).add("cpu_time_ms", {9.0}, "preprocess");
+    maker.frame(0).add("cpu_time_ms", {1.0}, "preprocess");
+    maker.frame(1).add("cpu_time_ms", {2.0}, "preprocess");
+    const Table table = buildTable(experimentFrom(R"(
+sweep: {scene: [models/duck, models/bunny]}
+measure: {frames: 2}
+layout:
+  rows: scene
+  columns:
+    preprocess_ms: {metric: cpu_time_ms, pass: preprocess}
+  cell: "{mean:.1f} of {count:.0f}"
+)"),
+                                   maker.records());
+    EXPECT_EQ(table.rows[0].cells[0].measured, "9.0 of 1");
+    EXPECT_EQ(table.rows[1].cells[0].measured, "1.5 of 2");
+}
+
 TEST(Table, TransposedCellsKeepTheirPlaces) {
     const Table plain = buildTable(experimentFrom(kPlain), duckAndBunny().records());
     const Table table = transposed(plain, 0);
