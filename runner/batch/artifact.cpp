@@ -180,6 +180,7 @@ void writeArtifact(const fs::path& runDir, const StoredRun& run, const scene::Ca
     writeResults(runDir, run, {});
     writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
     copyResults(runDir, target);
+    writeFileAtomic(target / "manifest.json", run.manifest.dump(2) + '\n');  // with its notes
     writeFileAtomic(target / "ASSETS.md", assetsText(run.manifest, catalog));
     writeScripts(run.plan, target);
     writeFileAtomic(target / "README.md", readmeText(runDir, run));

@@ -1,11 +1,14 @@
 #include "runner/batch/manifest.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "runner/batch/commit.h"  // made by the build
 #include "runner/batch/run_directory.h"
+#include "runner/core/hash.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::batch {
@@ -75,6 +78,38 @@ void endInvocation(Json& manifest, const PhaseClock& phases, double wallS) {
     }
     invocation["overhead_s"] = wallS - phases.busyS();
     invocation["overhead_share"] = (wallS - phases.busyS()) / wallS;
+}
+
+void sealRecords(Json& manifest, const std::filesystem::path& runDir) {
+    Json& sums = manifest["sha256"] = Json::object();
+    for (const char* file : {"records.csv", "images/index.csv"}) {
+        if (std::filesystem::exists(runDir / file)) sums[file] = sha256OfFile(runDir / file);
+    }
+}
+
+void breakSeal(Json& manifest) {
+    manifest.erase("sha256");
+}
+
+void noteChanges(Json& manifest, const std::filesystem::path& runDir) {
+    if (!manifest.contains("sha256")) return;
+    const Json sums = manifest.at("sha256");  // a note moves what is in the manifest
+    for (const auto& [file, sum] : sums.items()) {
+        const std::string then = sum.get<std::string>();
+        const bool isThere = std::filesystem::exists(runDir / file);
+        const std::string now = isThere ? sha256OfFile(runDir / file) : "";
+        if (now == then) continue;
+        const std::string note =
+            fmt::format("{} was {} after the run (SHA-256 {} at its end{})", file,
+                        isThere ? "changed" : "removed", then.substr(0, 12),
+                        isThere ? ", now " + now.substr(0, 12) : "");
+        Json& notes = manifest["notes"];
+        if (std::ranges::find(notes, Json(note)) == notes.end()) notes.push_back(note);
+    }
+}
+
+std::vector<std::string> notesOf(const Json& manifest) {
+    return manifest.value("notes", std::vector<std::string>{});
 }
 
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {

@@ -1,6 +1,7 @@
 // manifest.json: with what, on what and when a run was made.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,6 +21,17 @@ void beginInvocation(Json& manifest, const std::string& commandLine);
 /// Adds end, wall time, phase totals and the runner's own share to the last invocation: the wall
 /// time in which no worker was inside of a phase.
 void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
+
+/// Notes at the end of a run what records.csv and images/index.csv are (`sha256`), so that a later
+/// change of them is seen.
+void sealRecords(Json& manifest, const std::filesystem::path& runDir);
+/// Before a run goes on, which changes them: the seal goes. What was noted of them stays.
+void breakSeal(Json& manifest);
+/// Adds to the manifest's `notes` which of the sealed files are others than at the end of the run.
+/// Nothing for a run that is under way, was killed, or comes from a program that sealed none.
+void noteChanges(Json& manifest, const std::filesystem::path& runDir);
+/// The manifest's notes, for people.
+std::vector<std::string> notesOf(const Json& manifest);
 
 /// Adds what workers loaded, one entry a reference.
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);

@@ -91,11 +91,16 @@ Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& comm
         manifest[pointer] = together(shards, pointer);
     }
     manifest["timing_machines"] = timingMachines(shards);
+    breakSeal(manifest);
+    manifest.erase("notes");
     manifest["invocations"] = Json::array();
     manifest["merged"] = Json::array();
     beginInvocation(manifest, commandLine);
     for (const ShardRun& shard : shards) {
         const Json& from = shard.run.manifest;
+        for (const std::string& note : notesOf(from)) {
+            manifest["notes"].push_back(shard.path.string() + ": " + note);
+        }
         manifest["scenes"].update(from.at("scenes"));
         manifest["merged"].push_back(
             {{"folder", shard.path.string()},
@@ -208,7 +213,9 @@ void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& sha
     fs::rename(records, directory.recordsFile());
     copyImages(directory, shards, merged.plan);
     writeFileAtomic(directory.path() / "log.jsonl", logsOf(shards));
-    writeFileAtomic(directory.manifestFile(), merged.manifest.dump(2) + '\n');
+    Json manifest = merged.manifest;
+    sealRecords(manifest, directory.path());
+    writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
     writeFileAtomic(directory.planFile(), merged.plan.toJson().dump(1) + '\n');
 }
 

@@ -102,6 +102,7 @@ StoredRun readRun(const fs::path& runDir) {
     const fs::path manifestFile = runDir / "manifest.json";
     run.manifest = Json::parse(readFile(manifestFile), nullptr, false);
     if (!run.manifest.is_object()) throw Error(manifestFile.string() + ": is no JSON object");
+    noteChanges(run.manifest, runDir);
     if (fs::exists(runDir / "records.csv")) {
         run.records = report::readRecords(runDir / "records.csv");
     }
@@ -125,8 +126,11 @@ Completeness completeness(const StoredRun& run) {
 std::vector<report::ClaimResult> writeResults(const fs::path& runDir, const StoredRun& run,
                                               const Results& which) {
     const report::ReportContext context = reportContext(run.manifest);
-    const std::vector<report::Table> tables =
-        report::buildTables(run.plan.experiments, run.records);
+    std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
+    const std::vector<std::string> notes = notesOf(run.manifest);
+    for (report::Table& table : tables) {
+        table.notes.insert(table.notes.begin(), notes.begin(), notes.end());
+    }
     std::vector<report::ClaimResult> claims;
     if (which.tables) report::writeTables(runDir, tables);
     if (which.claims) {

@@ -33,7 +33,8 @@ struct StoredRun {
     Json manifest;
     std::vector<report::Record> records;
 };
-/// Throws Error when the folder is no run.
+/// Throws Error when the folder is no run. The manifest notes what was changed since its end
+/// (noteChanges).
 StoredRun readRun(const std::filesystem::path& runDir);
 
 /// Units without a row of any kind, and units that did not end `ok`; the A/A pair, which enters no

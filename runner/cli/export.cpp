@@ -6,12 +6,15 @@
 #include "runner/batch/artifact.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/results.h"
 
 namespace gfxrepro::cli {
 
 int exportRun(const std::string& runDir, const std::string& out, const std::string& assets) {
     const std::string target = out.empty() ? runDir + "-artifact" : out;
-    batch::writeArtifact(runDir, batch::readRun(runDir), openCatalog(assets), target);
+    const batch::StoredRun run = batch::readRun(runDir);
+    batch::writeArtifact(runDir, run, openCatalog(assets), target);
+    sayNotes(run.manifest);
     fmt::print("{}\n", target);
     return kExitOk;
 }

@@ -72,15 +72,34 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
     }
 }
 
+/// The verdicts; the exit code when all cases were measured.
+int sayClaims(const std::vector<report::ClaimResult>& claims) {
+    for (const report::ClaimResult& claim : claims) {
+        fmt::print("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
+                   claim.isNews() ? " (news)" : "",
+                   claim.reason.empty() ? "" : "; " + claim.reason);
+    }
+    fmt::print("{}\n", report::originSummaryLine(claims));
+    const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
+        return claim.verdict == report::Verdict::Fails;
+    });
+    return anyFails ? kExitClaimFailed : kExitOk;
+}
+
 void sayReport(const fs::path& runDir) {
     fmt::print("report: {}\n", (runDir / "report.html").string());
 }
 
 }  // namespace
 
+void sayNotes(const batch::Json& manifest) {
+    for (const std::string& note : batch::notesOf(manifest)) fmt::print("warning: {}\n", note);
+}
+
 int conclude(const fs::path& runDir) {
-    const std::vector<report::ClaimResult> claims =
-        batch::writeResults(runDir, batch::readRun(runDir), {});
+    const batch::StoredRun run = batch::readRun(runDir);
+    const std::vector<report::ClaimResult> claims = batch::writeResults(runDir, run, {});
+    sayNotes(run.manifest);
     const std::size_t failing = sayFailing(claims);
     sayVerdicts(claims);
     fmt::print("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
@@ -94,24 +113,17 @@ int table(const std::string& runDir) {
     for (const config::Experiment& experiment : run.plan.experiments) {
         fmt::print("{}: tables/{}.csv .md .tex\n", experiment.id, experiment.slug());
     }
+    sayNotes(run.manifest);
     return completenessCode(run);
 }
 
 int claims(const std::string& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    const std::vector<report::ClaimResult> results =
-        batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false});
-    for (const report::ClaimResult& claim : results) {
-        fmt::print("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
-                   claim.isNews() ? " (news)" : "",
-                   claim.reason.empty() ? "" : "; " + claim.reason);
-    }
-    fmt::print("{}\n", report::originSummaryLine(results));
-    const bool anyFails = std::any_of(results.begin(), results.end(), [](const auto& claim) {
-        return claim.verdict == report::Verdict::Fails;
-    });
+    const int verdict = sayClaims(
+        batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false}));
+    sayNotes(run.manifest);
     const int code = completenessCode(run);
-    return anyFails ? kExitClaimFailed : code;
+    return verdict == kExitOk ? code : verdict;
 }
 
 int report(const std::vector<std::string>& runDirs, const std::string& out) {
@@ -119,11 +131,15 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
         const batch::StoredRun run = batch::readRun(runDirs.front());
         batch::writeResults(runDirs.front(), run,
                             {.tables = false, .claims = false, .report = true});
+        sayNotes(run.manifest);
         sayReport(runDirs.front());
         return completenessCode(run);
     }
     std::vector<html::ReportRun> runs;
-    for (const std::string& dir : runDirs) runs.push_back(batch::reportRun(dir));
+    for (const std::string& dir : runDirs) {
+        runs.push_back(batch::reportRun(dir));
+        sayNotes(runs.back().manifest);
+    }
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
     html::writeReport(file, runs);
     fmt::print("report: {}\n", file.string());

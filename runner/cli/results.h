@@ -3,7 +3,12 @@
 
 #include <filesystem>
 
+#include "runner/batch/manifest.h"
+
 namespace gfxrepro::cli {
+
+/// Prints what a reader of the run's results must know: a warning a line.
+void sayNotes(const batch::Json& manifest);
 
 /// Makes tables, claims and report; says what the claims came to. kExitClaimFailed when one fails,
 /// else kExitOk.

@@ -127,6 +127,7 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     const std::vector<std::string> again =
         batch::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
     batch::beginInvocation(run.manifest, commandLine);
+    batch::breakSeal(run.manifest);
     run.manifest["invocations"].back()["machine"] = machine;
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
@@ -162,6 +163,7 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
 void saveManifest(const Context& context, Prepared& run, const batch::PhaseClock& phases) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - context.start;
     batch::endInvocation(run.manifest, phases, wall.count());
+    batch::sealRecords(run.manifest, run.directory.path());
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
 }
 

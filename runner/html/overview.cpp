@@ -76,6 +76,12 @@ std::string factsHtml(const Model& model) {
          [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "started")); }},
         {"Command", [](const ReportRun& run) { return escapeXml(run.context.command); }},
         {"Scenes", [](const ReportRun& run) { return scenesHtml(run.manifest); }},
+        {"Notes",
+         [](const ReportRun& run) {
+             if (!run.manifest.is_object()) return std::string();
+             const auto notes = run.manifest.value("notes", std::vector<std::string>{});
+             return escapeXml(fmt::format("{}", fmt::join(notes, "; ")));
+         }},
         {"Folder",
          [](const ReportRun& run) {
              return escapeXml(run.folder.lexically_normal().filename().string());

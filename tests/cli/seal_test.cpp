@@ -1,0 +1,115 @@
+// Records that are changed after the run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+class Seal : public ::testing::Test {
+  protected:
+    static constexpr const char* kBody =
+        "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
+        "layout:\n  rows: behaviour\n  columns:\n"
+        "    n: {metric: number, format: \"{median:.0f}\"}\n"
+        "claims:\n  small: {says: the number is small, bound: n, below: ";
+
+    std::string config(int bound) const {
+        return writeMockConfig(folder, kBody + std::to_string(bound) + "}\n");
+    }
+    void run() const {
+        const ProcessResult result =
+            mockGfxrepro({"reproduce", config(6), "--device", "software", "--out", dir});
+        ASSERT_EQ(result.exitCode, 0) << result.out << result.err;
+        EXPECT_THAT(result.out, Not(HasSubstr("warning")));
+    }
+    /// The number becomes 4.
+    void changeRecords() const {
+        std::string records = readFile(dir + "/records.csv");
+        const std::size_t at = records.find("number,1,3,ok");
+        ASSERT_NE(at, std::string::npos);
+        writeFileAtomic(dir + "/records.csv", records.replace(at, 13, "number,1,4,ok"));
+    }
+    nlohmann::json manifest(const std::string& folderOf) const {
+        return nlohmann::json::parse(readFile(folderOf + "/manifest.json"));
+    }
+
+    TemporaryFolder folder;
+    std::string dir = folder.path() / "run";
+    const std::string warning = "warning: records.csv was changed after the run (SHA-256 ";
+};
+
+TEST_F(Seal, ARunSaysNothingOfItsOwnRecords) {
+    run();
+    EXPECT_EQ(manifest(dir)["sha256"].size(), 2U) << "records.csv and images/index.csv";
+    for (const char* command : {"table", "claims", "report"}) {
+        const ProcessResult result = mockGfxrepro({command, dir});
+        EXPECT_EQ(result.exitCode, 0) << command;
+        EXPECT_THAT(result.out, Not(HasSubstr("warning"))) << command;
+    }
+}
+
+TEST_F(Seal, ChangedRecordsAreSaidByAllThatReadsThem) {
+    run();
+    changeRecords();
+    for (const char* command : {"table", "claims", "report"}) {
+        const ProcessResult result = mockGfxrepro({command, dir});
+        EXPECT_EQ(result.exitCode, 0) << command;
+        EXPECT_THAT(result.out, HasSubstr(warning)) << command;
+    }
+    EXPECT_THAT(readFile(dir + "/tables/sweep-mock.md"),
+                HasSubstr("Note: records.csv was changed after the run"));
+    EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("records.csv was changed after the run"));
+    const std::string out = folder.path() / "out", artifact = folder.path() / "artifact";
+    EXPECT_THAT(mockGfxrepro({"compare", dir, dir, "--out", out}).out,
+                HasSubstr("warning: " + dir + ": records.csv was changed after the run"));
+    EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("was changed after the run"));
+    EXPECT_THAT(mockGfxrepro({"export", dir, "--out", artifact}).out, HasSubstr(warning));
+    EXPECT_THAT(manifest(artifact)["notes"].dump(),
+                HasSubstr("records.csv was changed after the run"));
+    EXPECT_EQ(manifest(artifact)["sha256"], manifest(dir)["sha256"]);
+}
+
+TEST_F(Seal, AResumedRunIsSealedAnewAndKeepsTheNote) {
+    run();
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out, Not(HasSubstr("warning")));
+    changeRecords();
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out, HasSubstr(warning));
+    EXPECT_EQ(manifest(dir)["notes"].size(), 1U);
+}
+
+TEST_F(Seal, ARunThatIsUnderWayHasNone) {
+    run();
+    nlohmann::json open = manifest(dir);
+    open.erase("sha256");
+    writeFileAtomic(dir + "/manifest.json", open.dump());
+    changeRecords();
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out, Not(HasSubstr("warning")));
+}
+
+TEST_F(Seal, AMergeSaysWhichShardWasChanged) {
+    const std::string file = config(6);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--shard", "1/1", "--out", dir})
+                  .exitCode,
+              0);
+    changeRecords();
+    const std::string merged = folder.path() / "merged";
+    EXPECT_EQ(mockGfxrepro({"merge", merged, dir}).exitCode, 0);
+    EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(dir + ": records.csv was changed"));
+    EXPECT_EQ(manifest(merged)["sha256"].size(), 2U);
+    const ProcessResult table = mockGfxrepro({"table", merged});
+    EXPECT_THAT(table.out, HasSubstr("warning: " + dir + ": records.csv was changed"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
