@@ -32,7 +32,8 @@ struct Options {
     std::string name;                 // of list; a run directory; a shell
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
-    std::string out;  // of export
+    std::vector<std::string> configs;  // that claims judges by
+    std::string out;                   // of export
     std::string lane = "quality";
     bool asJson = false;
     std::function<int()> command;
@@ -172,7 +173,13 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
             [&o, function] { o.command = [&o, function] { return function(o.name); }; });
     };
     addResult("table", "make a run's tables again from its records", table);
-    addResult("claims", "judge a run's claims again", claims);
+    CLI::App* claimsApp = app.add_subcommand("claims", "judge a run's claims again");
+    addRunDirectory(claimsApp, o.name);
+    claimsApp
+        ->add_option("--config", o.configs,
+                     "by these instead of those that it was measured with; into judged-afterwards/")
+        ->option_text("CONFIG");
+    claimsApp->callback([&o] { o.command = [&o] { return claims(o.name, o.configs); }; });
     CLI::App* reportApp =
         app.add_subcommand("report", "make a run's report.html again, or one of several runs");
     reportApp->add_option("runs", o.shards, "run directories, or kept results")
@@ -234,7 +241,9 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
         ->option_text("RUN");
     compareApp->add_flag("--binaries", options.areBinaries,
                          "OLD and NEW are programs; they measure the configs by turns");
-    compareApp->add_option("--rounds", options.rounds, "of each program")
+    compareApp
+        ->add_option("--rounds", options.rounds,
+                     "of each program, up to three times while undecided (default 20)")
         ->check(CLI::Range(2, 1000))
         ->option_text("N");
     addProfile(compareApp, options.profile);

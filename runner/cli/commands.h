@@ -81,7 +81,7 @@ struct DescribeOptions {
 struct CompareOptions {
     std::vector<std::string> inputs;
     bool areBinaries = false;
-    int rounds = 10;  // of each program
+    int rounds = 20;  // of each program a look; up to three looks
     std::string profile = "quick";
     std::string device = "auto";
     std::string assets;
@@ -108,7 +108,8 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
 int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);
 int table(const std::string& runDir);
-int claims(const std::string& runDir);
+/// By the configs that the run was measured with; or by `configs`, written apart.
+int claims(const std::string& runDir, const std::vector<std::string>& configs);
 /// Of several folders side by side: to `out`, or report.html where one is.
 int report(const std::vector<std::string>& runDirs, const std::string& out);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);

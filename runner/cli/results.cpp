@@ -8,7 +8,9 @@
 
 #include "runner/batch/report_runs.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
+#include "runner/report/report.h"
 
 namespace gfxrepro::cli {
 
@@ -86,6 +88,38 @@ int sayClaims(const std::vector<report::ClaimResult>& claims) {
     return anyFails ? kExitClaimFailed : kExitOk;
 }
 
+/// Judges the records by configs that are not those that the run froze before it measured. What
+/// comes of it stands apart and says so.
+int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs) {
+    const batch::StoredRun run = batch::readRun(runDir);
+    batch::Request request = run.plan.request;
+    request.configs = findPaperConfigs(configs);
+    const std::vector<config::Experiment> experiments = loadExperiments(request, run.plan.profile);
+    for (const config::Experiment& experiment : experiments) {
+        const bool isMeasured = std::ranges::any_of(
+            run.plan.experiments, [&](const auto& own) { return own.id == experiment.id; });
+        if (isMeasured) continue;
+        throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
+                                experiment.id, runDir.string()));
+    }
+    std::vector<report::Table> tables = report::buildTables(experiments, run.records);
+    const std::string mark = "judged after the run, by a config that it did not know";
+    for (report::Table& table : tables) table.notes.insert(table.notes.begin(), mark);
+    const report::ReportContext context = batch::reportContext(run.manifest);
+    std::vector<report::ClaimResult> claims = report::evaluateClaims(experiments, tables, context);
+    for (report::ClaimResult& claim : claims) {
+        claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
+    }
+    const fs::path folder = runDir / "judged-afterwards";
+    fs::remove_all(folder);
+    report::writeTables(folder, tables);
+    report::writeClaims(folder, claims, context);
+    const int code = sayClaims(claims);
+    sayNotes(run.manifest);
+    fmt::print("judged after the run: {}\n", (folder / "claims.csv").string());
+    return code;
+}
+
 void sayReport(const fs::path& runDir) {
     fmt::print("report: {}\n", (runDir / "report.html").string());
 }
@@ -117,7 +151,8 @@ int table(const std::string& runDir) {
     return completenessCode(run);
 }
 
-int claims(const std::string& runDir) {
+int claims(const std::string& runDir, const std::vector<std::string>& configs) {
+    if (!configs.empty()) return judgeAfterwards(runDir, configs);
     const batch::StoredRun run = batch::readRun(runDir);
     const int verdict = sayClaims(
         batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false}));

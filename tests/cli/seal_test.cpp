@@ -1,4 +1,4 @@
-// Records that are changed after the run.
+// Records that are changed after the run, and claims that are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -109,6 +109,26 @@ TEST_F(Seal, AMergeSaysWhichShardWasChanged) {
     EXPECT_EQ(manifest(merged)["sha256"].size(), 2U);
     const ProcessResult table = mockGfxrepro({"table", merged});
     EXPECT_THAT(table.out, HasSubstr("warning: " + dir + ": records.csv was changed"));
+}
+
+TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
+    run();
+    const std::string before = readFile(dir + "/claims.csv");
+    const ProcessResult result = mockGfxrepro({"claims", dir, "--config", config(2)});
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_THAT(result.out,
+                HasSubstr("sweep/mock small: fails; judged after the run, by a config that it did "
+                          "not know; one sample\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("judged after the run: " + dir + "/judged-afterwards/claims.csv\n"));
+    EXPECT_EQ(readFile(dir + "/claims.csv"), before);
+    EXPECT_THAT(readFile(dir + "/judged-afterwards/claims.csv"), HasSubstr(",fails,3,"));
+    EXPECT_THAT(readFile(dir + "/judged-afterwards/tables/sweep-mock.md"),
+                HasSubstr("Note: judged after the run, by a config that it did not know"));
+    const std::string other =
+        folder.write("other.yaml", "sweep_of: other\ntitle: t\ntechnique: mock\n");
+    EXPECT_EQ(mockGfxrepro({"claims", dir, "--config", other}).err,
+              "gfxrepro: " + other + ": sweep/other is not among what " + dir + " measured\n");
 }
 
 }  // namespace
