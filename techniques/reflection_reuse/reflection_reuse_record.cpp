@@ -130,7 +130,7 @@ void ReflectionReuse::recordRecomputeFit(technique::Recorder& recorder, const Re
     if (frame_ + 1 < frameCount_) return;
     const std::optional<LinearFit> fit = linearFit(recomputed_);
     if (!fit) return;
-    recorder.metric("recompute_fit_r_squared", fit->rSquared, "1");
+    recorder.metric("recompute_time_r_squared", fit->rSquared, "1");
     recorder.metric("recompute_fit_us_per_sample", 1e3 * fit->slope, "us");
     recorder.metric("recompute_fit_fixed_ms", fit->intercept, "ms");
 }

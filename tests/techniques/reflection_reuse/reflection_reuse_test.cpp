@@ -319,19 +319,19 @@ TEST_F(ReflectionReuseTest, FitsRecomputingOnceAfterTheLastFrame) {
                         method),
             &room_, 5, 2);
         for (std::size_t i = 0; i < 4; ++i) {
-            EXPECT_FALSE(frames[i].metrics.contains("recompute_fit_r_squared"));
+            EXPECT_FALSE(frames[i].metrics.contains("recompute_time_r_squared"));
         }
         const auto& last = frames[4].metrics;
-        EXPECT_GE(last.at("recompute_fit_r_squared"), 0.0);
-        EXPECT_LE(last.at("recompute_fit_r_squared"), 1.0);
+        EXPECT_GE(last.at("recompute_time_r_squared"), 0.0);
+        EXPECT_LE(last.at("recompute_time_r_squared"), 1.0);
         EXPECT_TRUE(last.contains("recompute_fit_us_per_sample"));
         EXPECT_TRUE(last.contains("recompute_fit_fixed_ms"));
     }
     // Two frames behind a key frame lie on any line.
     const auto few = recorded("{recompute_fit: true, threshold: 1, path_frames: 20}", &room_, 3);
-    EXPECT_FALSE(few[2].metrics.contains("recompute_fit_r_squared"));
+    EXPECT_FALSE(few[2].metrics.contains("recompute_time_r_squared"));
     EXPECT_FALSE(recorded("{threshold: 1, path_frames: 20}", &room_, 5)[4].metrics.contains(
-        "recompute_fit_r_squared"));
+        "recompute_time_r_squared"));
 }
 
 TEST_F(ReflectionReuseTest, ShowsPicturesOfEveryStep) {
