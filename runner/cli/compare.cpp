@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "runner/batch/child_process.h"
 #include "runner/batch/run.h"
@@ -27,12 +29,24 @@ struct Measured {
     regression::SeriesMap series;
     std::string machine;
     std::string commit;
+    bool isSoftware = false;
+    std::map<std::string, std::string> configs;  // absolute path by table
+    std::vector<std::string> notes;
 };
 
 Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    return {regression::seriesOf(run.records), batch::machineName(run.manifest),
-            run.manifest.at("commit").get<std::string>()};
+    Measured measured{regression::seriesOf(run.records),
+                      batch::machineName(run.manifest),
+                      run.manifest.at("commit").get<std::string>(),
+                      run.plan.deviceClass == "software",
+                      {},
+                      batch::notesOf(run.manifest)};
+    const std::vector<std::string>& configs = run.plan.request.configs;
+    for (std::size_t i = 0; i < std::min(configs.size(), run.plan.experiments.size()); ++i) {
+        measured.configs[run.plan.experiments[i].id] = configs[i];
+    }
+    return measured;
 }
 
 void requireSameMachine(const Measured& a, const Measured& b) {
@@ -55,56 +69,86 @@ class Turns {
     Turns(const CompareOptions& options, fs::path folder)
         : options_(options), folder_(std::move(folder)) {}
 
-    /// Measures `options.rounds` more rounds.
-    std::vector<Difference> measure() {
-        Measured sides[2];
-        for (int round = 0; round < options_.rounds; ++round, ++roundCount_) {
-            const int first = round % 2;
-            for (const int side : {first, 1 - first}) take(side, sides[side]);
-        }
-        requireSameMachine(sides[0], sides[1]);
-        last_ = sides[1];
-        return regression::compare(sides[0].series, sides[1].series, Pairing::ByTurns);
+    /// Measures until all is decided, and alarms once more.
+    std::vector<Difference> compare() {
+        return regression::compareByTurns(
+            [&](regression::Sides& sides, const std::set<std::string>& tables) {
+                if (!tables.empty() && sides.before.empty()) fmt::print("alarm; measuring again\n");
+                for (int i = 0; i < options_.rounds; ++i) takeRound(sides, tables);
+            });
     }
-    /// The newer program's last measurement.
-    const Measured& last() const { return last_; }
+    /// The newer program's rounds, without those that confirm.
+    const Measured& newer() const { return newer_; }
 
   private:
-    void take(int side, Measured& measured) const {
+    void takeRound(regression::Sides& sides, const std::set<std::string>& tables) {
+        const std::size_t first = static_cast<std::size_t>(roundCount_ % 2);
+        Measured measured[2];
+        for (const std::size_t side : {first, 1 - first}) measured[side] = take(side, tables);
+        ++roundCount_;
+        requireSameMachine(measured[0], measured[1]);
+        sides.isSoftware = measured[1].isSoftware;
+        regression::append(sides.before, measured[0].series);
+        regression::append(sides.after, measured[1].series);
+        if (!tables.empty()) return;
+        regression::append(newer_.series, measured[1].series);
+        measured[1].series = std::move(newer_.series);
+        newer_ = std::move(measured[1]);
+    }
+
+    /// One run of a side's program, of `tables` alone where there are some.
+    Measured take(std::size_t side, const std::set<std::string>& tables) const {
         const std::string dir =
             folder_ / fmt::format("{}-{:02}", side == 0 ? "old" : "new", roundCount_);
-        std::vector<std::string> arguments = {
-            fs::absolute(options_.inputs[static_cast<std::size_t>(side)]), "run", "--quiet"};
+        std::vector<std::string> arguments = {fs::absolute(options_.inputs[side]), "run",
+                                              "--quiet"};
         for (const auto& [option, value] :
              {std::pair{"--out", dir}, std::pair{"--profile", options_.profile},
               std::pair{"--device", options_.device}, std::pair{"--assets", options_.assets}}) {
             if (!value.empty()) arguments.insert(arguments.end(), {option, value});
         }
-        arguments.insert(arguments.end(), options_.inputs.begin() + 2, options_.inputs.end());
+        if (tables.empty()) {
+            arguments.insert(arguments.end(), options_.inputs.begin() + 2, options_.inputs.end());
+        }
+        for (const std::string& table : tables) arguments.push_back(newer_.configs.at(table));
         runProgram(arguments);
-        Measured run = readMeasured(dir);
-        regression::SeriesMap all = std::move(measured.series);
-        regression::append(all, run.series);
-        measured = {std::move(all), run.machine, run.commit};
+        return readMeasured(dir);
     }
 
     const CompareOptions& options_;
     fs::path folder_;
     int roundCount_ = 0;
-    Measured last_;
+    Measured newer_;
 };
 
-/// Appends to the history; prints the steps in the series of this machine.
-void keepHistory(const std::string& path, const Measured& measured) {
-    regression::appendNight(path,
-                            {batch::utcTime(), measured.commit, measured.machine, measured.series});
-    for (const auto& [key, values] : regression::readHistory(path, measured.machine)) {
-        if (!key.isTime()) continue;
-        const std::optional<regression::Step> step = regression::findStep(values);
-        if (!step) continue;
-        fmt::print("step in {}: × {:.3f} since night {} of {} (chance {:.4f})\n", key.title(),
-                   step->ratio, step->first + 1, values.size(), step->chance);
+/// Appends to the history, and gives the steps in the series of this machine.
+std::vector<regression::SeriesStep> keepHistory(const std::string& path, const Measured& measured) {
+    regression::SeriesMap night = measured.series, same = measured.series;
+    regression::chooseTimes(night, same, measured.isSoftware);
+    regression::appendNight(path, {batch::utcTime(), measured.commit, measured.machine, night});
+    return regression::findSteps(regression::readHistory(path, measured.machine));
+}
+
+/// What two runs say that were measured for themselves.
+std::vector<Difference> compareRuns(const Measured& older, const Measured& newer) {
+    requireSameMachine(older, newer);
+    return regression::compare(older.series, newer.series, Pairing::Apart,
+                               {.isSoftware = newer.isSoftware});
+}
+
+void say(const regression::Comparison& comparison, const fs::path& folder) {
+    for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
+    for (const Difference& difference : comparison.differences) {
+        if (!difference.isAlarm()) continue;
+        fmt::print("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
+                   regression::verdictName(difference.verdict), difference.ratio,
+                   difference.interval.low, difference.interval.high);
     }
+    for (const regression::SeriesStep& step : comparison.steps) {
+        fmt::print("{}\n", regression::stepLine(step));
+    }
+    fmt::print("{}; {}\n", regression::summaryLine(comparison.differences),
+               (folder / "comparison.md").string());
 }
 
 }  // namespace
@@ -117,35 +161,29 @@ int compare(const CompareOptions& options) {
     }
     const fs::path folder =
         options.out.empty() ? batch::defaultRunPath("compare") : fs::path(options.out);
-    std::vector<Difference> differences;
+    regression::Comparison comparison;
     Measured newer;
     if (options.areBinaries) {
         Turns turns(options, folder);
-        differences = turns.measure();
-        if (std::ranges::any_of(differences, &Difference::isAlarm)) {
-            fmt::print("alarm; measuring again\n");
-            regression::confirm(differences, turns.measure());
-        }
-        newer = turns.last();
+        comparison.differences = turns.compare();
+        newer = turns.newer();
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
-        requireSameMachine(older, newer);
-        differences = regression::compare(older.series, newer.series, Pairing::Apart);
+        comparison.differences = compareRuns(older, newer);
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (const std::string& note : (i == 0 ? older : newer).notes) {
+                comparison.notes.push_back(options.inputs[i] + ": " + note);
+            }
+        }
     }
-    writeFileAtomic(folder / "comparison.md", regression::markdown(differences));
-    writeFileAtomic(folder / "junit.xml", regression::junitXml(differences));
-    writeFileAtomic(folder / "benchmark.json", regression::smallerIsBetterJson(differences));
-    if (!options.history.empty()) keepHistory(options.history, newer);
-    for (const Difference& difference : differences) {
-        if (!difference.isAlarm()) continue;
-        fmt::print("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
-                   regression::verdictName(difference.verdict), difference.ratio,
-                   difference.interval.low, difference.interval.high);
-    }
-    fmt::print("{}; {}\n", regression::summaryLine(differences),
-               (folder / "comparison.md").string());
-    return std::ranges::any_of(differences, &Difference::isAlarm) ? kExitClaimFailed : kExitOk;
+    if (!options.history.empty()) comparison.steps = keepHistory(options.history, newer);
+    writeFileAtomic(folder / "comparison.md", regression::markdown(comparison));
+    writeFileAtomic(folder / "junit.xml", regression::junitXml(comparison));
+    writeFileAtomic(folder / "benchmark.json",
+                    regression::smallerIsBetterJson(comparison.differences));
+    say(comparison, folder);
+    return comparison.isAlarm() ? kExitClaimFailed : kExitOk;
 }
 
 }  // namespace gfxrepro::cli

@@ -4,20 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numeric>
 
 #include "runner/core/error.h"
-#include "runner/core/random.h"
+#include "runner/regression/rank_tests.h"
 
 namespace gfxrepro::regression {
 
 namespace {
 
-constexpr int kDraws = 4000;  // enough for the tails that Bonferroni asks for
-constexpr std::uint64_t kSeed = 1;
-
 double medianOf(const Series& values) {
     return metrics::summarize(values, metrics::Statistic::Median);
+}
+
+Series logarithms(const Series& values) {
+    Series logs;
+    for (const double value : values) logs.push_back(std::log(value));
+    return logs;
 }
 
 /// log(time after / time before) for each pair of rounds.
@@ -29,29 +32,26 @@ Series logRatios(const Series& before, const Series& after) {
     return ratios;
 }
 
-/// Resampled log ratios of medians.
-Series draws(const Series& before, const Series& after, Pairing pairing) {
-    if (pairing == Pairing::ByTurns) {
-        return metrics::bootstrap(logRatios(before, after), metrics::Statistic::Median, kDraws,
-                                  kSeed);
-    }
-    const Series a = metrics::bootstrap(before, metrics::Statistic::Median, kDraws, kSeed);
-    const Series b = metrics::bootstrap(after, metrics::Statistic::Median, kDraws, kSeed + 1);
-    return logRatios(a, b);
-}
-
 bool arePositive(const Series& values) {
     return std::ranges::all_of(values, [](double value) { return value > 0.0; });
+}
+
+bool areWhole(const Series& values) {
+    return std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
 }
 
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
                          const Rules& rules) {
     Difference result{.key = key, .before = medianOf(before), .after = medianOf(after)};
-    result.ratio = result.before == 0.0 ? 1.0 : result.after / result.before;
+    const bool isRatio = result.before != 0.0 && std::isfinite(result.before);
+    result.ratio = isRatio ? result.after / result.before : 1.0;
     result.interval = {result.ratio, result.ratio};
-    result.floor = rules.qualityTolerance;
+    result.floor = areWhole(before) && areWhole(after) ? 0.0 : rules.valueTolerance;
     const double scale = std::max(std::abs(result.before), std::abs(result.after));
-    const bool isSame = std::abs(result.after - result.before) <= rules.qualityTolerance * scale;
+    // Two infinities are the same; their difference is not a number.
+    const bool isSame =
+        result.after == result.before ||
+        (std::isfinite(scale) && std::abs(result.after - result.before) <= result.floor * scale);
     result.verdict = isSame ? Verdict::Same : Verdict::Changed;
     return result;
 }
@@ -61,6 +61,120 @@ Difference missing(const SeriesKey& key, const Series& values, bool isBefore) {
     (isBefore ? result.before : result.after) = medianOf(values);
     result.reason = isBefore ? "measured before only" : "measured after only";
     return result;
+}
+
+/// A time of both sides, and how it was tested.
+struct TestedTime {
+    Difference difference;
+    RankTest test;
+    std::size_t rounds[2] = {0, 0};  // by turns: of pairs, twice the same
+};
+
+TestedTime testTime(const SeriesKey& key, const Series& before, const Series& after,
+                    Pairing pairing, const Rules& rules) {
+    TestedTime time{{.key = key, .before = medianOf(before), .after = medianOf(after)}, {}};
+    Difference& difference = time.difference;
+    if (!arePositive(before) || !arePositive(after)) {
+        difference.reason = "a time of zero or less";
+        return time;
+    }
+    if (pairing == Pairing::ByTurns && before.size() != after.size()) {
+        difference.reason =
+            fmt::format("measured in {} and {} rounds: no pairs", before.size(), after.size());
+        return time;
+    }
+    if (pairing == Pairing::ByTurns) {
+        const Series ratios = logRatios(before, after);
+        time.rounds[0] = time.rounds[1] = ratios.size();
+        time.test = signedRank(ratios);
+        difference.floor = detectableChange(before, rules);
+    } else {
+        time.rounds[0] = before.size();
+        time.rounds[1] = after.size();
+        time.test = rankSum(logarithms(before), logarithms(after));
+        difference.floor = rules.driftApart;
+    }
+    difference.ratio = std::exp(time.test.shift);
+    difference.interval = {std::exp(time.test.interval.low), std::exp(time.test.interval.high)};
+    return time;
+}
+
+/// Whether the chances are too small for none, all together [Holm 1979].
+std::vector<bool> rejections(const std::vector<TestedTime*>& times, double level) {
+    std::vector<std::size_t> order(times.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return times[i]->test.chance; });
+    std::vector<bool> isRejected(times.size(), false);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const double own = level / static_cast<double>(order.size() - i);
+        if (times[order[i]]->test.chance > own) break;
+        isRejected[order[i]] = true;
+    }
+    return isRejected;
+}
+
+std::string whyUndecided(const TestedTime& time, std::size_t seriesCount, Pairing pairing,
+                         double level) {
+    const std::string among =
+        seriesCount == 1 ? "one series" : fmt::format("{} series", seriesCount);
+    const bool isTooFew = time.test.attainable > level / static_cast<double>(seriesCount);
+    if (pairing == Pairing::Apart) {
+        if (isTooFew) {
+            return fmt::format("{} and {} processes cannot decide among {}", time.rounds[0],
+                               time.rounds[1], among);
+        }
+        return fmt::format("measured apart: a machine may drift by {:.0f} %",
+                           100.0 * time.difference.floor);
+    }
+    if (isTooFew) return fmt::format("{} rounds cannot decide among {}", time.rounds[0], among);
+    return "the interval is too wide";
+}
+
+void judgeTime(TestedTime& time, bool isRejected, std::size_t seriesCount, Pairing pairing,
+               double level, const Rules& rules) {
+    Difference& difference = time.difference;
+    const double same = rules.sameWithin;
+    if (isRejected && difference.ratio > 1.0 + difference.floor) {
+        difference.verdict = Verdict::Slower;
+    } else if (isRejected && difference.ratio < 1.0 / (1.0 + difference.floor)) {
+        difference.verdict = Verdict::Faster;
+    } else if (pairing == Pairing::ByTurns && difference.interval.low >= 1.0 / (1.0 + same) &&
+               difference.interval.high <= 1.0 + same) {
+        difference.verdict = Verdict::Same;
+    } else {
+        difference.reason = whyUndecided(time, seriesCount, pairing, level);
+    }
+}
+
+void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& rules) {
+    std::vector<TestedTime*> tested;
+    for (TestedTime& time : times) {
+        if (time.difference.reason.empty()) tested.push_back(&time);
+    }
+    const std::size_t looks = pairing == Pairing::Apart ? 1 : rules.looks;
+    const double level = rules.familyError / static_cast<double>(looks);
+    const std::vector<bool> isRejected = rejections(tested, level);
+    for (std::size_t i = 0; i < tested.size(); ++i) {
+        judgeTime(*tested[i], isRejected[i], tested.size(), pairing, level, rules);
+    }
+}
+
+/// Measures until every time is told, or the looks are used up.
+std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
+                                            const std::set<std::string>& tables,
+                                            const Rules& rules) {
+    Sides sides;
+    std::vector<Difference> differences;
+    for (std::size_t look = 0; look < rules.looks; ++look) {
+        measure(sides, tables);
+        Rules own = rules;
+        own.isSoftware = sides.isSoftware;
+        differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
+        const bool isDecided = std::ranges::none_of(
+            differences, [](const Difference& one) { return one.verdict == Verdict::CannotTell; });
+        if (isDecided) break;
+    }
+    return differences;
 }
 
 }  // namespace
@@ -89,70 +203,33 @@ double detectableChange(const Series& values, const Rules& rules) {
         even.push_back(values[i]);
         odd.push_back(values[i + 1]);
     }
-    if (even.size() < 2 || !arePositive(values)) return rules.effectFloor;
-    const metrics::Interval interval = metrics::centralInterval(draws(even, odd, Pairing::ByTurns));
+    if (even.empty() || !arePositive(values)) return rules.effectFloor;
+    const metrics::Interval interval = signedRank(logRatios(even, odd)).interval;
+    if (!std::isfinite(interval.high - interval.low)) return rules.effectFloor;
     // Half as many pairs as a comparison has: its interval is narrower by the square root of two.
     const double half = 0.5 * (interval.high - interval.low) / std::sqrt(2.0);
     return std::max(rules.effectFloor, std::expm1(half));
-}
-
-Difference compareTimes(const SeriesKey& key, const Series& before, const Series& after,
-                        Pairing pairing, double confidence, const Rules& rules) {
-    Difference result{.key = key, .before = medianOf(before), .after = medianOf(after)};
-    if (!arePositive(before) || !arePositive(after)) {
-        result.reason = "a time of zero or less";
-        return result;
-    }
-    // A rate is the reciprocal of a time: the sides change places.
-    const Series& denominator = key.isRate() ? after : before;
-    const Series& numerator = key.isRate() ? before : after;
-    result.ratio = pairing == Pairing::ByTurns
-                       ? std::exp(medianOf(logRatios(denominator, numerator)))
-                       : medianOf(numerator) / medianOf(denominator);
-    result.floor = detectableChange(before, rules);
-    const std::size_t count = std::min(before.size(), after.size());
-    if (count < rules.fewestProcesses) {
-        result.interval = {result.ratio, result.ratio};
-        result.reason = fmt::format("{} {} a side; {} are needed", count,
-                                    count == 1 ? "process" : "processes", rules.fewestProcesses);
-        return result;
-    }
-    const metrics::Interval logs =
-        metrics::centralInterval(draws(denominator, numerator, pairing), confidence);
-    result.interval = {std::exp(logs.low), std::exp(logs.high)};
-    const double same = std::max(result.floor, rules.sameWithin);
-    if (result.interval.low > 1.0 && result.ratio > 1.0 + result.floor) {
-        result.verdict = Verdict::Slower;
-    } else if (result.interval.high < 1.0 && result.ratio < 1.0 / (1.0 + result.floor)) {
-        result.verdict = Verdict::Faster;
-    } else if (result.interval.low >= 1.0 / (1.0 + same) && result.interval.high <= 1.0 + same) {
-        result.verdict = Verdict::Same;
-    } else {
-        result.reason = "the interval is too wide";
-    }
-    return result;
 }
 
 std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& allAfter,
                                 Pairing pairing, const Rules& rules) {
     SeriesMap before = allBefore, after = allAfter;
     matchParams(before, after);
-    const auto timeCount = std::ranges::count_if(
-        before, [](const auto& entry) { return entry.first.isTime() || entry.first.isRate(); });
-    const double confidence =
-        1.0 - rules.familyError / static_cast<double>(std::max<std::ptrdiff_t>(timeCount, 1));
+    chooseTimes(before, after, rules.isSoftware);
     std::vector<Difference> differences;
+    std::vector<TestedTime> times;
     for (const auto& [key, values] : before) {
         const auto found = after.find(key);
         if (found == after.end()) {
             differences.push_back(missing(key, values, true));
-        } else if (key.isTime() || key.isRate()) {
-            differences.push_back(
-                compareTimes(key, values, found->second, pairing, confidence, rules));
+        } else if (key.isTime()) {
+            times.push_back(testTime(key, values, found->second, pairing, rules));
         } else {
             differences.push_back(compareValues(key, values, found->second, rules));
         }
     }
+    judgeTimes(times, pairing, rules);
+    for (TestedTime& time : times) differences.push_back(std::move(time.difference));
     for (const auto& [key, values] : after) {
         if (!before.contains(key)) differences.push_back(missing(key, values, false));
     }
@@ -169,6 +246,16 @@ void confirm(std::vector<Difference>& differences, const std::vector<Difference>
             fmt::format("{} once, not when measured again", verdictName(difference.verdict));
         difference.verdict = Verdict::CannotTell;
     }
+}
+
+std::vector<Difference> compareByTurns(const MeasureRounds& measure, const Rules& rules) {
+    std::vector<Difference> differences = measureUntilDecided(measure, {}, rules);
+    std::set<std::string> tables;
+    for (const Difference& difference : differences) {
+        if (difference.isAlarm()) tables.insert(difference.key.table);
+    }
+    if (!tables.empty()) confirm(differences, measureUntilDecided(measure, tables, rules));
+    return differences;
 }
 
 }  // namespace gfxrepro::regression

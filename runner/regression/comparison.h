@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,43 +23,60 @@ std::string_view verdictName(Verdict verdict);
 enum class Pairing { ByTurns, Apart };
 
 struct Rules {
-    double effectFloor = 0.02;       // a change of time below it is none, whatever the interval
-    double sameWithin = 0.05;        // `same` needs the interval inside of ± this
-    double familyError = 0.05;       // chance of one false alarm among all series
-    double qualityTolerance = 1e-6;  // relative, of metrics that are no times
-    std::size_t fewestProcesses = 5;
+    double effectFloor = 0.02;  // a change of time below it is none, however sure
+    double sameWithin = 0.1;    // `same` needs the 95 % interval inside of ± this
+    double familyError = 0.05;  // chance of one false alarm among all series and looks
+    /// Runs that were measured apart differ by what the machine does over hours, which no number of
+    /// processes tells from a change of the build: only what is larger can be.
+    double driftApart = 0.5;
+    /// Relative, of values that are no times; whole numbers (counts) are compared exactly. The
+    /// order in which parallel work draws instances at one depth and sums floats moves the errors
+    /// of pictures by 1e-5, and no table prints a fifth digit.
+    double valueTolerance = 1e-4;
+    bool isSoftware = false;  // the device: see chooseTimes
+    std::size_t looks = 3;    // at most, each after as many further rounds
 };
 
-/// What became of one series. `ratio` is time after / time before (rates count as their
-/// reciprocal): above 1 is slower; of other metrics value after / before.
+/// What became of one series. `ratio` is after / before, of times: above 1 is slower.
 struct Difference {
     SeriesKey key;
     double before = 0.0;  // median over processes
     double after = 0.0;
     double ratio = 1.0;
-    metrics::Interval interval{1.0, 1.0};
-    double floor = 0.0;  // the smallest change that counts, relative
+    metrics::Interval interval{1.0, 1.0};  // of the ratio, at 95 %
+    double floor = 0.0;                    // the smallest change that counts, relative
     Verdict verdict = Verdict::CannotTell;
     std::string reason{};  // of CannotTell and Missing
 
     bool isAlarm() const { return verdict == Verdict::Slower || verdict == Verdict::Changed; }
 };
 
-/// The smallest relative change that `values`, measured in turn, can show: half the interval of the
-/// median ratio of neighbours (A/A), at least `rules.effectFloor`.
+/// The smallest relative change that `values`, measured in turn, can show: half the 95 % interval
+/// of the ratio of neighbours (A/A), at least `rules.effectFloor`; that alone below 12 values.
 double detectableChange(const Series& values, const Rules& rules);
 
-/// Slower: the interval of the ratio lies above 1 and the ratio above 1 + floor; faster likewise.
-/// Same: the interval lies within ± max(floor, sameWithin).
-Difference compareTimes(const SeriesKey& key, const Series& before, const Series& after,
-                        Pairing pairing, double confidence, const Rules& rules);
-
-/// Every series of both sides, after matchParams, in the order of their keys.
+/// Every series of both sides, after matchParams and chooseTimes, in the order of their keys.
+/// Times: the exact chance of such a difference without a change (signed ranks of the log ratios of
+/// rounds by turns, rank sums apart) is held against familyError / looks over all series [Holm
+/// 1979]; slower and faster, when the ratio lies beyond the floor too. Otherwise same, where the
+/// interval says so, or cannot tell.
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
                                 const Rules& rules = {});
 
 /// An alarm counts when measuring once more in fresh processes gives it again; else it becomes
 /// CannotTell with the reason. Other verdicts stay. Both in the order of their keys.
 void confirm(std::vector<Difference>& differences, const std::vector<Difference>& again);
+
+/// What both sides have given so far.
+struct Sides {
+    SeriesMap before, after;
+    bool isSoftware = false;  // the device, as in Rules
+};
+/// Appends further rounds by turns; of `tables` alone where there are some.
+using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;
+
+/// Measures and compares, up to `rules.looks` times, until every time is slower, faster or the
+/// same; then measures the tables with alarms in the same way once more, and confirms.
+std::vector<Difference> compareByTurns(const MeasureRounds& measure, const Rules& rules = {});
 
 }  // namespace gfxrepro::regression

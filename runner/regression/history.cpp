@@ -6,13 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <numeric>
 #include <span>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
-#include "runner/core/random.h"
 #include "runner/metrics/statistics.h"
+#include "runner/regression/rank_tests.h"
 #include "runner/report/csv.h"
 
 namespace gfxrepro::regression {
@@ -23,7 +22,7 @@ constexpr std::string_view kHeader =
     "time,commit,machine,table,technique,method,scene,params,pass,metric,unit,value\n";
 constexpr std::size_t kColumns = 12;
 constexpr std::size_t kFewestNights = 5;
-constexpr int kPermutations = 2000;
+constexpr std::size_t kMostNights = 100;
 
 double medianOf(std::span<const double> values) {
     return metrics::summarize(values, metrics::Statistic::Median);
@@ -36,23 +35,6 @@ double numberFrom(const std::string& field, const SourceLocation& location) {
         throw Error(location, fmt::format("'{}' is no number", field));
     }
     return value;
-}
-
-/// 1 … n, the mean of their places where values are equal.
-std::vector<double> ranksOf(const Series& values) {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
-    std::vector<double> ranks(values.size());
-    for (std::size_t begin = 0; begin < order.size();) {
-        std::size_t end = begin + 1;
-        while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
-        for (std::size_t i = begin; i < end; ++i) {
-            ranks[order[i]] = 0.5 * static_cast<double>(begin + 1 + end);
-        }
-        begin = end;
-    }
-    return ranks;
 }
 
 struct Split {
@@ -116,25 +98,33 @@ SeriesMap readHistory(const std::filesystem::path& path, const std::string& mach
 
 std::optional<Step> findStep(const Series& nights, double significance, double effectFloor) {
     if (nights.size() < 2 * kFewestNights) return std::nullopt;
-    std::vector<double> ranks = ranksOf(nights);
-    const Split best = clearestSplit(ranks);
+    const std::size_t skipped = nights.size() - std::min(nights.size(), kMostNights);
+    const std::span<const double> all = std::span(nights).subspan(skipped);
+    const Split best = clearestSplit(ranksOf(all));
     if (best.first == 0) return std::nullopt;
-    const std::span<const double> all(nights);
-    const double before = medianOf(all.first(best.first));
-    const double after = medianOf(all.subspan(best.first));
+    const std::span<const double> first = all.first(best.first), rest = all.subspan(best.first);
+    const double before = medianOf(first), after = medianOf(rest);
     if (before <= 0.0 || after <= 0.0) return std::nullopt;
     if (std::abs(std::log(after / before)) < std::log1p(effectFloor)) return std::nullopt;
-    Random random(1);
-    int asClear = 0;
-    for (int i = 0; i < kPermutations; ++i) {
-        for (std::size_t j = ranks.size() - 1; j > 0; --j) {
-            std::swap(ranks[j], ranks[random.index(static_cast<std::uint32_t>(j + 1))]);
-        }
-        if (clearestSplit(ranks).score >= best.score) ++asClear;
-    }
-    const double chance = (asClear + 1.0) / (kPermutations + 1.0);
+    const auto splits = static_cast<double>(all.size() - 2 * kFewestNights + 1);
+    const double chance = std::min(1.0, splits * rankSumChance(first, rest));
     if (chance > significance) return std::nullopt;
-    return Step{best.first, after / before, chance};
+    return Step{skipped + best.first, after / before, chance};
+}
+
+std::vector<SeriesStep> findSteps(const SeriesMap& history, const StepRules& rules) {
+    const auto count =
+        std::ranges::count_if(history, [](const auto& entry) { return entry.first.isTime(); });
+    const double significance =
+        rules.familyError / (static_cast<double>(count) * rules.nightsAYear);
+    std::vector<SeriesStep> steps;
+    for (const auto& [key, nights] : history) {
+        if (!key.isTime()) continue;
+        if (const auto step = findStep(nights, significance, rules.effectFloor)) {
+            steps.push_back({key, nights.size(), *step});
+        }
+    }
+    return steps;
 }
 
 }  // namespace gfxrepro::regression

@@ -31,13 +31,33 @@ SeriesMap readHistory(const std::filesystem::path& path, const std::string& mach
 struct Step {
     std::size_t first = 0;  // the first night of the new level
     double ratio = 1.0;     // of the medians, after / before
-    double chance = 1.0;    // that the same nights in another order show as clear a step
+    double chance = 1.0;    // of as clear a step there or elsewhere without a change: a bound
 };
 
-/// The clearest step of a series with at least five nights on either side: the largest rank-sum
-/// score [Mann and Whitney 1947], its chance by 2000 permutations. None when the chance exceeds
-/// `significance` or the change of level is below `effectFloor`.
-std::optional<Step> findStep(const Series& nights, double significance = 0.01,
-                             double effectFloor = 0.02);
+/// What a step must pass.
+struct StepRules {
+    /// Chance of one false alarm a year, among all series and nights.
+    double familyError = 0.05;
+    int nightsAYear = 365;
+    double effectFloor = 0.05;  // nights differ by more than the rounds of one
+};
+
+/// The clearest step of the last 100 nights with at least five on either side: the largest rank-sum
+/// score [Mann and Whitney 1947]. Its chance is the exact one of that split times the number of
+/// splits. None where it exceeds `significance`, or the change of level is below `effectFloor`.
+/// Assumes nights without a change to be exchangeable.
+std::optional<Step> findStep(const Series& nights, double significance, double effectFloor);
+
+struct SeriesStep {
+    SeriesKey key;
+    std::size_t nights = 0;
+    Step step;
+
+    bool isAlarm() const { return step.ratio > 1.0; }
+};
+
+/// The steps of all times, at familyError / (series × nightsAYear) each: of 20 series 7e-6, which
+/// nights of 13 and 13 without an overlap attain, and no 24 nights can.
+std::vector<SeriesStep> findSteps(const SeriesMap& history, const StepRules& rules = {});
 
 }  // namespace gfxrepro::regression

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -12,21 +14,36 @@ namespace gfxrepro::regression {
 
 namespace {
 
-/// Repeats by frame.
-using Frames = std::map<int, std::vector<double>>;
+/// Repeats by frame; a later value of a repeat replaces an earlier one.
+using Frames = std::map<int, std::map<int, double>>;
 
 double meanOfMedians(const Frames& frames) {
     double sum = 0.0;
+    std::size_t count = 0;
     for (const auto& [frame, repeats] : frames) {
-        sum += metrics::summarize(repeats, metrics::Statistic::Median);
+        if (frame == report::kSetup && frames.size() > 1) continue;
+        Series values;
+        for (const auto& [repeat, value] : repeats) values.push_back(value);
+        sum += metrics::summarize(values, metrics::Statistic::Median);
+        ++count;
     }
-    return sum / static_cast<double>(frames.size());
+    return sum / static_cast<double>(count);
 }
 
-/// Memory of the process, and what rounding and the order of parallel work change.
+/// Memory of the process, and what rounding and the order of parallel work change. The names
+/// without "work_" are those of older records.
 bool isOfTheMachine(const std::string& metric) {
-    return metric == "peak_memory_bytes" || metric == "baseline_memory_bytes" ||
-           metric == "image_digest" || metric == "fragments";
+    static constexpr std::array kNames = {"peak_memory_bytes", "baseline_memory_bytes",
+                                          "work_fragments",    "work_image_digest",
+                                          "fragments",         "image_digest"};
+    return std::ranges::find(kNames, metric) != kNames.end();
+}
+
+/// A time, or made from times: no two measurements give the same.
+bool isMadeOfTimes(const report::Record& record) {
+    static constexpr std::array kUnits = {"s", "ms", "us", "ns"};
+    return std::ranges::find(kUnits, record.unit) != kUnits.end() || record.unit.ends_with("/s") ||
+           record.metric.find("time") != std::string::npos;
 }
 
 using Json = nlohmann::ordered_json;
@@ -78,9 +95,10 @@ SeriesMap seriesOf(const std::vector<report::Record>& records) {
         if (record.status != report::Status::Ok || record.isControl()) continue;
         const SeriesKey key{record.table,  record.technique, record.method, record.scene,
                             record.params, record.pass,      record.metric, record.unit};
-        if ((key.isTime() || key.isRate()) && record.lane != "timing") continue;
+        const bool isOfFrame = key.isTime() && key.pass.empty() && record.lane == "timing";
+        if (isMadeOfTimes(record) && !isOfFrame) continue;
         if (isOfTheMachine(record.metric)) continue;
-        gathered[key][record.process][record.frame].push_back(record.value);
+        gathered[key][record.process][record.frame][record.repeat] = record.value;
     }
     SeriesMap series;
     for (const auto& [key, processes] : gathered) {
@@ -104,6 +122,20 @@ void matchParams(SeriesMap& before, SeriesMap& after) {
     if (!shortBefore || !shortAfter) return;
     before = *shortBefore;
     after = *shortAfter;
+}
+
+void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware) {
+    const SeriesMap allBefore = before, allAfter = after;
+    const auto isChosen = [&](const SeriesKey& key) {
+        SeriesKey process = key;
+        process.metric = "process_time_ms";
+        const bool isByProcess =
+            isSoftware && allBefore.contains(process) && allAfter.contains(process);
+        return !key.isTime() || key.isProcessTime() == isByProcess;
+    };
+    for (SeriesMap* side : {&before, &after}) {
+        std::erase_if(*side, [&](const auto& entry) { return !isChosen(entry.first); });
+    }
 }
 
 }  // namespace gfxrepro::regression

@@ -23,10 +23,10 @@ struct SeriesKey {
 
     auto operator<=>(const SeriesKey&) const = default;
 
-    bool isTime() const { return metric.ends_with("_time_ms"); }
-    bool isRate() const { return metric.ends_with("frame_rate"); }
-    /// "zju2005/2.1 TECHNIQUE worksheet models/duck gpu_time_ms/synthesis"; parameters are left
-    /// away.
+    /// The time of a frame, by the clock or of all the process's threads.
+    bool isTime() const { return metric == "wall_time_ms" || isProcessTime(); }
+    bool isProcessTime() const { return metric == "process_time_ms"; }
+    /// "zju2005/2.1 TECHNIQUE worksheet models/duck wall_time_ms"; parameters are left away.
     std::string title() const;
 };
 
@@ -34,8 +34,12 @@ struct SeriesKey {
 using Series = std::vector<double>;
 using SeriesMap = std::map<SeriesKey, Series>;
 
-/// The series of `ok` rows. Times and rates of the quality lane are left out, and so is what is
-/// about the machine (memory of the process).
+/// The series of `ok` rows; of two rows of one place the last, as tables have it. Of times there is
+/// the frame's of each case in the timing lane, no more: every further series asks for more rounds
+/// of all, a pass that matters shows in its frame, a rate is a reciprocal, and loading and setting
+/// up depend on what the disk has in its cache. Left out, too, are numbers made from times (of a
+/// unit of time or a rate, or "time" in the name) and what is about the machine (memory of the
+/// process, counts that the order of parallel work changes).
 SeriesMap seriesOf(const std::vector<report::Record>& records);
 
 /// Puts `more`'s processes behind those of `series`: rounds of alternating runs.
@@ -45,5 +49,10 @@ void append(SeriesMap& series, const SeriesMap& more);
 /// a new parameter can be compared with the one before. Not where keys of a side would fall
 /// together: then the new parameter was varied.
 void matchParams(SeriesMap& before, SeriesMap& after);
+
+/// Leaves one time of each case, the same on both sides. On a software device that is the CPU time
+/// of the process where both have it, for the clock counts what else the machine did; else the
+/// clock's.
+void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware);
 
 }  // namespace gfxrepro::regression

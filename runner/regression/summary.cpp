@@ -40,8 +40,26 @@ std::string summaryLine(const std::vector<Difference>& differences) {
     return text.empty() ? "nothing to compare" : text;
 }
 
-std::string markdown(const std::vector<Difference>& differences) {
+std::string stepLine(const SeriesStep& found) {
+    return fmt::format("step in {}: × {:.3f} since night {} of {} (chance {:.1g})",
+                       found.key.title(), found.step.ratio, found.step.first + 1, found.nights,
+                       found.step.chance);
+}
+
+bool Comparison::isAlarm() const {
+    return std::ranges::any_of(differences, &Difference::isAlarm) ||
+           std::ranges::any_of(steps, &SeriesStep::isAlarm);
+}
+
+std::string markdown(const Comparison& comparison) {
+    const std::vector<Difference>& differences = comparison.differences;
     std::string text = fmt::format("# Comparison\n\n{}\n\n", summaryLine(differences));
+    for (const std::string& note : comparison.notes) {
+        text += fmt::format("Note: {}\n\n", report::escapeMarkdown(note));
+    }
+    for (const SeriesStep& step : comparison.steps) {
+        text += fmt::format("{}\n\n", report::escapeMarkdown(stepLine(step)));
+    }
     text += "| what | before | after | time after / before | floor | verdict |\n";
     text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
     for (const Difference& difference : differences) {
@@ -54,15 +72,16 @@ std::string markdown(const std::vector<Difference>& differences) {
     return text;
 }
 
-std::string junitXml(const std::vector<Difference>& differences) {
-    const std::size_t failures =
-        static_cast<std::size_t>(std::ranges::count_if(differences, &Difference::isAlarm));
+std::string junitXml(const Comparison& comparison) {
+    const std::vector<Difference>& differences = comparison.differences;
+    const auto failures = std::ranges::count_if(differences, &Difference::isAlarm) +
+                          std::ranges::count_if(comparison.steps, &SeriesStep::isAlarm);
     const std::size_t skipped =
         countOf(differences, Verdict::CannotTell) + countOf(differences, Verdict::Missing);
     std::string text = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<testsuite name=\"regression\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
-        differences.size(), failures, skipped);
+        differences.size() + comparison.steps.size(), failures, skipped);
     for (const Difference& difference : differences) {
         text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"",
                             report::escapeXml(difference.key.table),
@@ -77,6 +96,13 @@ std::string junitXml(const std::vector<Difference>& differences) {
                             difference.isAlarm() ? "failure" : "skipped",
                             report::escapeXml(fmt::format("{} {}", verdictText(difference),
                                                           ratioText(difference))));
+    }
+    for (const SeriesStep& step : comparison.steps) {
+        text += fmt::format("  <testcase classname=\"{}\" name=\"history of {}\"",
+                            report::escapeXml(step.key.table), report::escapeXml(step.key.title()));
+        text += step.isAlarm() ? fmt::format("><failure message=\"{}\"/></testcase>\n",
+                                             report::escapeXml(stepLine(step)))
+                               : "/>\n";
     }
     return text + "</testsuite>\n";
 }

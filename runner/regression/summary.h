@@ -5,17 +5,31 @@
 #include <vector>
 
 #include "runner/regression/comparison.h"
+#include "runner/regression/history.h"
 
 namespace gfxrepro::regression {
 
 /// One line: "2 slower, 1 faster, 40 same, 3 cannot tell".
 std::string summaryLine(const std::vector<Difference>& differences);
 
-/// A table of everything that is not the same, and the summary line.
-std::string markdown(const std::vector<Difference>& differences);
+/// "step in zju2005/2.1 …: × 1.102 since night 18 of 30 (chance 1e-07)".
+std::string stepLine(const SeriesStep& step);
+
+/// What was compared: differences, steps of the history, and what a reader must know of the runs.
+struct Comparison {
+    std::vector<Difference> differences;
+    std::vector<SeriesStep> steps{};
+    std::vector<std::string> notes{};
+
+    /// Something got slower or changed, now or since some night.
+    bool isAlarm() const;
+};
+
+/// A table of everything that is not the same, the summary line, steps and notes.
+std::string markdown(const Comparison& comparison);
 
 /// Alarms are failures; what could not be told is skipped.
-std::string junitXml(const std::vector<Difference>& differences);
+std::string junitXml(const Comparison& comparison);
 
 /// [{"name", "unit", "value", "range"}]: the times after, in the form `customSmallerIsBetter` of
 /// GitHub's benchmark action.

@@ -53,27 +53,71 @@ Series nights(std::uint64_t seed, int count, int first, double change, double no
     return values;
 }
 
+constexpr StepRules kRules{};
+
 TEST(History, FindsWhenALevelChanged) {
-    const std::optional<Step> step = findStep(nights(1, 30, 18, 1.1, 0.03));
+    const std::optional<Step> step = findStep(nights(1, 30, 17, 1.1, 0.03), 1e-5, 0.02);
     ASSERT_TRUE(step);
-    EXPECT_NEAR(static_cast<double>(step->first), 18.0, 1.0);
+    EXPECT_NEAR(static_cast<double>(step->first), 17.0, 1.0);
     EXPECT_NEAR(step->ratio, 1.1, 0.03);
-    EXPECT_LE(step->chance, 0.01);
+    EXPECT_LE(step->chance, 1e-5);
 }
 
-TEST(History, FindsNoStepInNoise) {
-    int found = 0;
-    for (std::uint64_t seed = 0; seed < 100; ++seed) {
-        if (findStep(nights(seed, 30, 30, 1.0, 0.15))) ++found;
+TEST(History, TheChanceOfAStepIsExact) {
+    // 5 and 5 without an overlap: 2 of the 252 ways to choose; the only split that is looked at.
+    const std::optional<Step> step = findStep({1, 2, 3, 4, 5, 16, 17, 18, 19, 20}, 0.01, 0.02);
+    ASSERT_TRUE(step);
+    EXPECT_NEAR(step->chance, 2.0 / 252.0, 1e-12);
+    EXPECT_FALSE(findStep({1, 2, 3, 4, 5, 16, 17, 18, 19, 20}, 0.001, 0.02));
+}
+
+TEST(History, AYearOfNoiseHasNoStep) {
+    int alarms = 0;
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        SeriesMap history;
+        for (int method = 0; method < 20; ++method) {
+            Series& own = history[test::timeOf(std::to_string(method))];
+            own = nights(100 * seed + static_cast<std::uint64_t>(method), 120, 120, 1.0, 0.15);
+        }
+        for (std::size_t night = 10; night <= 120; night += 10) {
+            SeriesMap until = history;
+            for (auto& [key, values] : until) values.resize(night);
+            alarms += static_cast<int>(findSteps(until).size());
+        }
     }
-    EXPECT_LE(found, 4);  // one expected; more than four by chance: 0.4 %
+    EXPECT_EQ(alarms, 0);
+}
+
+TEST(History, FindsTheStepOfOneSeriesOfTwenty) {
+    SeriesMap history;
+    for (int method = 0; method < 20; ++method) {
+        const int first = method == 7 ? 20 : 40;
+        history[test::timeOf(std::to_string(method))] =
+            nights(static_cast<std::uint64_t>(method), 40, first, 1.15, 0.03);
+    }
+    SeriesKey quality = test::timeOf("q");
+    quality.metric = "psnr_db";
+    history[quality] = nights(1, 40, 20, 2.0, 0.0);
+    const std::vector<SeriesStep> steps = findSteps(history);
+    ASSERT_EQ(steps.size(), 1U);
+    EXPECT_EQ(steps[0].key.method, "7");
+    EXPECT_EQ(steps[0].nights, 40U);
+    EXPECT_NEAR(static_cast<double>(steps[0].step.first), 20.0, 2.0);
+    EXPECT_TRUE(steps[0].isAlarm());
 }
 
 TEST(History, NeedsNightsOnEitherSideAndAnEffect) {
-    EXPECT_FALSE(findStep(nights(1, 9, 4, 2.0, 0.0)));
-    EXPECT_FALSE(findStep(nights(1, 30, 15, 1.01, 0.0)));
-    EXPECT_FALSE(findStep(Series(30, 1.0)));
-    EXPECT_FALSE(findStep({}));
+    const auto found = [](const Series& values) {
+        return findStep(values, 0.01, kRules.effectFloor).has_value();
+    };
+    EXPECT_FALSE(found(nights(1, 9, 4, 2.0, 0.0)));
+    EXPECT_FALSE(found(nights(1, 30, 15, 1.01, 0.0)));
+    EXPECT_FALSE(found(Series(30, 1.0)));
+    EXPECT_FALSE(found({}));
+    // Among 20 series, 24 nights cannot tell and 26 can.
+    const double significance = kRules.familyError / (20 * kRules.nightsAYear);
+    EXPECT_FALSE(findStep(nights(1, 24, 12, 2.0, 0.01), significance, 0.02));
+    EXPECT_TRUE(findStep(nights(1, 26, 13, 2.0, 0.01), significance, 0.02));
 }
 
 }  // namespace

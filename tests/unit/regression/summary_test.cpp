@@ -22,28 +22,45 @@ std::vector<Difference> differences() {
 TEST(Summary, SaysHowManyAndWhich) {
     EXPECT_EQ(summaryLine(differences()), "1 slower, 1 same, 1 cannot tell");
     EXPECT_EQ(summaryLine({}), "nothing to compare");
-    EXPECT_EQ(markdown(differences()),
+    EXPECT_EQ(markdown({differences(), {}, {"it was <changed>"}}),
               "# Comparison\n\n1 slower, 1 same, 1 cannot tell\n\n"
+              "Note: it was \\<changed\\>\n\n"
               "| what | before | after | time after / before | floor | verdict |\n"
               "| --- | ---: | ---: | ---: | ---: | --- |\n"
-              "| p/1 mock \\<a\\> gpu\\_time\\_ms | 10 | 12 ms | 1.200 [1.100, 1.300] | 0.02 | "
+              "| p/1 mock \\<a\\> wall\\_time\\_ms | 10 | 12 ms | 1.200 [1.100, 1.300] | 0.02 | "
               "slower |\n"
-              "| p/1 mock c gpu\\_time\\_ms | 10 | 10 ms | 1.000 [0.500, 2.000] | 0.02 | "
+              "| p/1 mock c wall\\_time\\_ms | 10 | 10 ms | 1.000 [0.500, 2.000] | 0.02 | "
               "cannot tell: the interval is too wide |\n");
 }
 
 TEST(Summary, JUnitFailsOnAlarmsOnly) {
-    const std::string xml = junitXml(differences());
+    const std::string xml = junitXml({differences()});
     EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" skipped=\"1\""), std::string::npos) << xml;
     EXPECT_NE(xml.find("<failure message=\"slower 1.200 [1.100, 1.300]\"/>"), std::string::npos)
         << xml;
-    EXPECT_NE(xml.find("name=\"p/1 mock &lt;a&gt; gpu_time_ms\""), std::string::npos) << xml;
+    EXPECT_NE(xml.find("name=\"p/1 mock &lt;a&gt; wall_time_ms\""), std::string::npos) << xml;
+}
+
+TEST(Summary, AStepToSlowerIsAnAlarm) {
+    const SeriesStep slower{test::timeOf("a"), 30, {18, 1.1, 2e-7}};
+    SeriesStep faster = slower;
+    faster.step.ratio = 0.9;
+    EXPECT_EQ(stepLine(slower),
+              "step in p/1 mock a wall_time_ms: × 1.100 since night 19 of 30 "
+              "(chance 2e-07)");
+    EXPECT_TRUE((Comparison{{}, {slower}}).isAlarm());
+    EXPECT_FALSE((Comparison{{}, {faster}}).isAlarm());
+    EXPECT_TRUE((Comparison{differences()}).isAlarm());
+    const Comparison both{{}, {slower, faster}};
+    EXPECT_NE(markdown(both).find("since night 19 of 30"), std::string::npos) << markdown(both);
+    EXPECT_NE(junitXml(both).find("tests=\"2\" failures=\"1\" skipped=\"0\""), std::string::npos)
+        << junitXml(both);
 }
 
 TEST(Summary, JsonHoldsTimes) {
     const auto json = nlohmann::json::parse(smallerIsBetterJson(differences()));
     ASSERT_EQ(json.size(), 3U);
-    EXPECT_EQ(json[0]["name"], "p/1 mock <a> gpu_time_ms {}");
+    EXPECT_EQ(json[0]["name"], "p/1 mock <a> wall_time_ms {}");
     EXPECT_EQ(json[0]["value"], 12.0);
     EXPECT_EQ(json[0]["unit"], "ms");
 }
