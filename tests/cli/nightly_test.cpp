@@ -1,0 +1,126 @@
+// Nights of a fast and a slow build, as scripts/nightly measures them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Nightly : public ::testing::Test {
+  protected:
+    /// A bundle of the mock program, slower by `extraMs` in each iteration.
+    std::string bundle(int extraMs) const {
+        const std::string name = "bundle-" + std::to_string(extraMs);
+        fs::create_directories(folder.path() / name);
+        const fs::path program = folder.write(
+            name + "/gfxrepro", "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
+                                    " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
+        fs::permissions(program, fs::perms::owner_all);
+        return program.parent_path();
+    }
+    ProcessResult night(int extraMs, bool isFix = false) const {
+        std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
+                                              GFXREPRO_SOURCE "/scripts/nightly"};
+        if (isFix) arguments.emplace_back("--fix");
+        const fs::path config = writeMockConfig(folder,
+                                                "params: {busy_ms: 30}\n"
+                                                "measure: {lane: timing, warmup: 0, repeats: 2}\n");
+        arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraMs), config});
+        return runProgram(arguments);
+    }
+    /// The program that later nights are compared with.
+    std::string landed() const { return readFile(state + "/landed/gfxrepro"); }
+    void letAWeekPass() const {
+        fs::last_write_time(state + "/fixed-compared",
+                            fs::file_time_type::clock::now() - std::chrono::hours(24 * 8));
+    }
+
+    TemporaryFolder folder;
+    std::string state = folder.path() / "state";
+};
+
+TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
+    const ProcessResult first = night(0);
+    EXPECT_EQ(first.exitCode, 0) << first.err;
+    EXPECT_EQ(first.out, "nightly: tonight's build is what later nights are compared with\n");
+    EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
+    EXPECT_FALSE(fs::exists(state + "/history.csv"));
+}
+
+TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    const ProcessResult same = night(1);
+    EXPECT_EQ(same.exitCode, 0) << same.out << same.err;
+    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "30 and 31 ms are the same";
+    EXPECT_TRUE(fs::exists(state + "/history.csv"));
+    const ProcessResult slow = night(15);
+    EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
+    EXPECT_NE(slow.out.find("alarm; measuring again\n"), std::string::npos) << slow.out;
+    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "a slower build does not land";
+    // As it is meant to be slower:
+    const ProcessResult fixed = night(15, true);
+    EXPECT_EQ(fixed.exitCode, 0) << fixed.err;
+    EXPECT_NE(landed().find("EXTRA_MS=15 "), std::string::npos);
+    EXPECT_FALSE(fs::exists(state + "/history.csv")) << "begins anew";
+}
+
+TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeek) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    // As if many nights had landed under the floor.
+    fs::remove_all(state + "/landed");
+    fs::copy(bundle(15), state + "/landed", fs::copy_options::recursive);
+    const ProcessResult weekday = night(15);
+    EXPECT_EQ(weekday.exitCode, 0) << weekday.out << weekday.err;
+    letAWeekPass();
+    const ProcessResult week = night(15);
+    EXPECT_EQ(week.exitCode, 1) << week.out << week.err;
+    EXPECT_NE(week.out.find("nightly: with the fixed build\nalarm; measuring again\n"),
+              std::string::npos)
+        << week.out;
+}
+
+TEST_F(Nightly, AStepInTheHistoryIsAnAlarm) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    ASSERT_EQ(night(0).exitCode, 0);
+    // Thirteen nights at half the time, and thirteen as tonight's, without an overlap.
+    const std::string history = readFile(state + "/history.csv");
+    const std::size_t header = history.find('\n') + 1;
+    const std::size_t begin = history.find("_time_ms,ms,") + 12;
+    ASSERT_LT(begin, history.size());
+    const std::size_t end = history.find('\n', begin);
+    const std::size_t row = history.rfind('\n', begin) + 1;
+    ASSERT_GE(row, header);
+    const double value = std::stod(history.substr(begin, end - begin));
+    std::string rows;
+    for (int i = 0; i < 26; ++i) {
+        const double own = (i < 13 ? 0.5 : 1.0) * value * (1.0 + 0.001 * i);
+        rows += history.substr(row, begin - row) + std::to_string(own) + '\n';
+    }
+    writeFileAtomic(state + "/history.csv", history.substr(0, header) + rows);
+    const ProcessResult result = night(0);
+    EXPECT_EQ(result.exitCode, 1) << result.out << result.err;
+    EXPECT_NE(result.out.find("since night 14 of 27"), std::string::npos) << result.out;
+}
+
+TEST_F(Nightly, SaysWhatIsMissing) {
+    const ProcessResult result = runProgram({GFXREPRO_SOURCE "/scripts/nightly", "--rounds"});
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_NE(result.err.find("--rounds needs a number"), std::string::npos) << result.err;
+}
+
+TEST(NightlyConfigs, EveryTechniqueIsWatched) {
+    const fs::path source = GFXREPRO_SOURCE;
+    for (const fs::directory_entry& entry : fs::directory_iterator(source / "techniques")) {
+        const std::string name = entry.path().filename();
+        if (!entry.is_directory() || name == "shared" || name == "template") continue;
+        EXPECT_TRUE(fs::exists(source / "configs/nightly" / (name + ".yaml"))) << name;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
