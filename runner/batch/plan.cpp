@@ -4,8 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "runner/batch/case_scenes.h"
+#include "runner/batch/ledger.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "runner/report/case_records.h"
 
 namespace gfxrepro::batch {
 
@@ -15,16 +18,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int kPlanSchema = 1;
-
-/// A user's own scene file is named relative to the config; a worker gets the absolute path.
-config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
-    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
-    const fs::path path = reference.text();
-    if (!path.has_extension() || path.is_absolute()) return reference;
-    const fs::path folder = fs::path(reference.location().file).parent_path();
-    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
-                                reference.location());
-}
 
 /// The first 12 digits of the hash of everything that the case's results depend on.
 std::string contentId(const Case& item, const std::string& sceneKey, const Plan& plan) {
@@ -80,10 +73,38 @@ config::Measure measureFrom(const config::Node& node) {
     return measure;
 }
 
+/// Value and unit of the assumptions that are bound to the cases.
+Json assumedJson(const config::Experiment& experiment) {
+    Json json = Json::object();
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        if (!assumption.isBound) continue;
+        json[assumption.name] = {{"value", assumption.value.text()}, {"unit", assumption.unit}};
+    }
+    return json;
+}
+
+void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
+    for (config::Assumption& assumption : experiment.assumptions) {
+        const config::Node* bound = assumed.find(assumption.name);
+        if (!bound) continue;
+        assumption.isBound = true;
+        assumption.value = required(*bound, "value");
+        assumption.unit = required(*bound, "unit").text();
+    }
+}
+
 std::vector<std::string> textsFrom(const config::Node& list) {
     std::vector<std::string> texts;
     for (const config::Node& item : list.items()) texts.push_back(item.text());
     return texts;
+}
+
+const technique::TechniqueInfo& techniqueOf(const config::Experiment& experiment,
+                                            std::span<const technique::TechniqueInfo> techniques) {
+    const config::Node* named = experiment.document.find("technique");
+    return technique::findTechnique(
+        techniques, experiment.technique,
+        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
 }
 
 }  // namespace
@@ -94,6 +115,7 @@ std::string Case::title() const {
     for (const auto& [name, value] : axes.entries()) {
         title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
     }
+    if (!standsFor.isNull()) title += " (" + scene.text() + ")";
     return title;
 }
 
@@ -111,20 +133,28 @@ std::string Case::method() const {
 Json Case::recordedParams() const {
     Json json = params.toJson();
     json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
+    addSceneTo(json);
     return json;
 }
 
+void Case::addSceneTo(Json& json) const {
+    if (!standsFor.isNull()) json[report::kStandsFor] = standsFor.toJson();
+    if (sceneSample) json[report::kSceneSample] = *sceneSample;
+}
+
 Json Case::toJson() const {
-    return {{"id", id},
-            {"experiment", experiment},
-            {"technique", technique},
-            {"scene", scene.toJson()},
-            {"given", given.toJson()},
-            {"params", params.toJson()},
-            {"axes", axes.toJson()},
-            {"output", {outputWidthPx, outputHeightPx}},
-            {"measure", batch::toJson(measure)},
-            {"seed", std::to_string(seed)}};
+    Json json = {{"id", id},
+                 {"experiment", experiment},
+                 {"technique", technique},
+                 {"scene", scene.toJson()},
+                 {"given", given.toJson()},
+                 {"params", params.toJson()},
+                 {"axes", axes.toJson()},
+                 {"output", {outputWidthPx, outputHeightPx}},
+                 {"measure", batch::toJson(measure)},
+                 {"seed", std::to_string(seed)}};
+    addSceneTo(json);
+    return json;
 }
 
 Case Case::fromJson(const config::Node& node) {
@@ -142,6 +172,10 @@ Case Case::fromJson(const config::Node& node) {
     item.outputHeightPx = static_cast<int>(output[1].asInteger());
     item.measure = measureFrom(required(node, "measure"));
     item.seed = std::stoull(required(node, "seed").text());
+    if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
+    if (const config::Node* sample = node.find(report::kSceneSample)) {
+        item.sceneSample = static_cast<int>(sample->asInteger());
+    }
     return item;
 }
 
@@ -171,8 +205,9 @@ Json Plan::toJson() const {
                  {"cases", Json::array()}};
     for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
     for (const config::Experiment& experiment : experiments) {
-        json["experiments"].push_back(
-            {{"file", experiment.file.string()}, {"document", experiment.document.toJson()}});
+        json["experiments"].push_back({{"file", experiment.file.string()},
+                                       {"document", experiment.document.toJson()},
+                                       {"assumed", assumedJson(experiment)}});
     }
     for (const Case& item : cases) json["cases"].push_back(item.toJson());
     if (shard) {
@@ -207,6 +242,9 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     for (const config::Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
             required(item, "document"), fs::path(required(item, "file").text())));
+        if (const config::Node* assumed = item.find("assumed")) {
+            takeAssumed(*assumed, plan.experiments.back());
+        }
     }
     for (const config::Node& item : required(node, "cases").items()) {
         plan.cases.push_back(Case::fromJson(item));
@@ -224,10 +262,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
     if (experiment.technique.empty()) return {};  // only printed
-    const config::Node* named = experiment.document.find("technique");
-    const technique::TechniqueInfo& info = technique::findTechnique(
-        techniques, experiment.technique,
-        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
+    const technique::TechniqueInfo& info = techniqueOf(experiment, techniques);
     std::vector<Case> cases;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
         config::Params params(spec.params, "technique '" + std::string(info.name) + "'");
@@ -236,7 +271,6 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         Case item;
         item.experiment = experiment.id;
         item.technique = experiment.technique;
-        item.scene = absoluteReference(spec.scene, catalog);
         item.given = spec.params;
         item.params = params.resolved();
         item.axes = config::Node::map({});
@@ -245,9 +279,11 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
-        if (!item.scene.isNull()) catalog.resolve(item.scene);  // throws when it is not at hand
-        cases.push_back(std::move(item));
+        for (Case& taken : withScenes(item, spec.scene, experiment, catalog)) {
+            cases.push_back(std::move(taken));
+        }
     }
+    requireTaken(experiment, cases, catalog);
     return cases;
 }
 
@@ -262,12 +298,14 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     plan.experiments = experiments;
     std::set<std::string> experimentIds;
     std::set<std::string> caseIds;
-    for (const config::Experiment& experiment : experiments) {
+    for (config::Experiment& experiment : plan.experiments) {
         if (!experimentIds.insert(experiment.id).second) {
             throw Error(experiment.file.string() + ": the experiment '" + experiment.id +
                         "' is given twice");
         }
-        for (Case& item : resolveCases(experiment, catalog, techniques, seed)) {
+        std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
+        bindAssumptions(experiment, cases, catalog, techniques);
+        for (Case& item : cases) {
             std::string sceneKey;
             if (!item.scene.isNull()) {
                 std::string& known = plan.sceneKeys[item.scene.text()];

@@ -120,7 +120,7 @@ std::vector<Outcome> readSensitivity(const fs::path& file, const std::string& ba
         if (fields[Claim].empty()) continue;
         ClaimResult& claim = outcomes.back().claims.emplace_back();
         claim.id = fields[Claim];
-        claim.verdict = report::verdictFromName(fields[Word], reader.location());
+        claim.verdict = report::verdictAt(reader.location(), fields[Word]);
         claim.measured = fields[Measured];
         claim.required = fields[Required];
         claim.margin = fields[Margin];
