@@ -261,7 +261,7 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
         ->option_text("N");
     sensitivityApp->add_option("--budget", s.budget, "begin no run after this time (15m)")
         ->option_text("TIME");
-    sensitivityApp->add_flag("--times", s.hasTimes, "tables of the timing lane, too");
+    sensitivityApp->add_flag("--times", s.hasTimes, "claims about times, too (slow)");
     sensitivityApp->add_option("--from", s.from, "run that has the tables as configured")
         ->option_text("RUN");
     sensitivityApp->add_option("--keep", s.keep, "copies of the summaries (results/sensitivity)")

@@ -94,7 +94,7 @@ struct SensitivityOptions {
     Selection selection;
     int points = 3;         // of a range of numbers
     std::string budget;     // "15m": no further run after it; empty: all
-    bool hasTimes = false;  // tables of the timing lane, too
+    bool hasTimes = false;  // claims about times, too
     std::string from;       // a run that has measured the tables as configured
     std::string keep;       // folder that the summaries go to, too
     std::string out;        // folder of the summaries and of the runs

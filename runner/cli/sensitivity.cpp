@@ -26,6 +26,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Of a table of times its other claims alone: in the quality lane a time is none.
+const std::vector<std::string> kOnceForQuality = {"measure.lane=quality", "measure.warmup=0",
+                                                  "measure.processes=1", "measure.repeats=1"};
+
 using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point begin) {
@@ -39,6 +43,7 @@ struct Study {
     batch::Variations variations;
     std::string basis;
     fs::path folder;
+    std::vector<std::string> sets = {};         // of every run
     std::vector<batch::Outcome> outcomes = {};  // of the first runs
     double spentS = 0.0;
 
@@ -73,6 +78,7 @@ batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
         arguments.insert(arguments.end(), {"--only", only});
     }
     std::vector<std::string> sets = selection.sets;
+    sets.insert(sets.end(), study.sets.begin(), study.sets.end());
     sets.insert(sets.end(), variation.sets.begin(), variation.sets.end());
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
     const batch::ProgramEnd end = batch::runToEnd(arguments);
@@ -122,12 +128,15 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
                 .basis = {},
                 .folder = {}};
     const config::Experiment& experiment = study.experiment();
+    const auto isOfTime = [](const config::ClaimSpec& claim) { return claim.timeKind.has_value(); };
     const bool isTimed = experiment.measure.lane == config::Measure::Lane::Timing;
-    if (experiment.claims.empty() || (isTimed && !options.hasTimes)) {
-        fmt::print(stderr, "{}: {}\n", experiment.id,
-                   experiment.claims.empty() ? "has no claims" : "left out, its lane is timing");
+    if (std::ranges::all_of(experiment.claims, isOfTime) &&
+        (experiment.claims.empty() || !options.hasTimes)) {
+        fmt::print(stderr, "{}: left out, {}\n", experiment.id,
+                   experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
         return std::nullopt;
     }
+    if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;
     study.variations = batch::variationsOf(experiment, study.plan.cases, options.points);
     study.basis = batch::basisOf(study.plan, experiment);
     study.folder = folder / experiment.slug();
