@@ -24,7 +24,8 @@ struct Variation {
 
 struct Variations {
     /// The config as it is; then the first other value of each assumption, the second of each, …:
-    /// whatever is left out at the end, all assumptions are tried alike.
+    /// whatever is left out at the end, all assumptions are tried alike. Scenes come first: they
+    /// are the least known and decide most.
     std::vector<Variation> runs;
     /// Assumptions that no run can vary, and why not.
     std::vector<std::pair<std::string, std::string>> fixed;
