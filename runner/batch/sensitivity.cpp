@@ -22,7 +22,12 @@ using report::Verdict;
 
 std::string textOf(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
-    if (value.is_number()) return report::shortestText(value.get<double>());
+    if (value.is_number()) {
+        // 100000, not 1e+05, which is no integer to a config.
+        const auto number = value.get<double>();
+        const bool isWhole = number == std::round(number) && std::abs(number) < 1e15;
+        return isWhole ? fmt::format("{:.0f}", number) : report::shortestText(number);
+    }
     return value.dump();
 }
 

@@ -157,7 +157,7 @@ void print(const Study& study) {
     const batch::Outcome& base = study.outcomes.front();
     if (!base.error.empty()) fmt::print("{}: {}\n", study.experiment().id, base.error);
     for (std::size_t i = 0; i < base.claims.size(); ++i) {
-        fmt::print("{} {}: {}; rests on {}\n", study.experiment().id, base.claims[i].id,
+        fmt::print("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
                    batch::dependence(study.outcomes, i), batch::restsOn(study.outcomes, i));
     }
     fmt::print("{}\n", (study.folder / "sensitivity.md").string());

@@ -103,10 +103,10 @@ TEST(Ledger, RefusesWhatIsNotTheParameters) {
 TEST(Ledger, RefusesRangesThatACaseCannotTake) {
     const Ledger ledger;
     EXPECT_EQ(ledger.errorOf("assumptions:\n  bias: {range: [0.5, 5], why: open}\n"),
-              "DIR/t.yaml:5:22: bias is 5; allowed: 0 … 1");
+              "DIR/t.yaml:5:23: bias is 5; allowed: 0 … 1");
     EXPECT_EQ(ledger.errorOf("sweep: {static: [false, true]}\n"
                              "assumptions:\n  bias: {range: [0.5, 0], why: open}\n"),
-              "DIR/t.yaml:6:22: bias is 0, but static needs one");
+              "DIR/t.yaml:6:23: bias is 0, but static needs one");
     EXPECT_EQ(
         ledger.errorOf("assumptions:\n  static: {range: either, why: open}\n"),
         "DIR/t.yaml:5:19: assumption 'static': range is either; allowed: a list of values, or "
