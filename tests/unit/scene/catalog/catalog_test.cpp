@@ -37,7 +37,7 @@ TEST(Catalog, TakesAGeneratedSceneAtAnotherSeed) {
     folders.entry(
         "scene: m/x\ndoc: an x\nsources:\n"
         "  - file: x/full.obj\n"
-        "  - {generator: grass, params: {triangles: 2000}, seed: 4}\n");
+        "  - {generator: grass, params: {triangles: 12000}, seed: 4}\n");
     const Catalog catalog = folders.catalog();
     const Scene own = catalog.load(reference("m/x"));
     const Scene same = catalog.load(reference("m/x@4"));
@@ -47,7 +47,7 @@ TEST(Catalog, TakesAGeneratedSceneAtAnotherSeed) {
     EXPECT_EQ(catalog.load(reference("m/x@5")).meshes.front().positions,
               other.meshes.front().positions);
     EXPECT_EQ(other.name, "m/x@5");
-    EXPECT_EQ(other.origin.description, "generator grass, seed 5: {triangles: 2000}");
+    EXPECT_EQ(other.origin.description, "generator grass, seed 5: {triangles: 12000}");
     EXPECT_EQ(catalog.contentKey(reference("m/x@4")), catalog.contentKey(reference("m/x")));
     EXPECT_NE(catalog.contentKey(reference("m/x@5")), catalog.contentKey(reference("m/x")));
     EXPECT_EQ(withSeed(reference("m/x@5"), 7).text(), "m/x@7");
