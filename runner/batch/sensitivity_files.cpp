@@ -188,6 +188,7 @@ std::string sensitivityIndex(const fs::path& folder, const std::string& command)
                 resting.push_back(fmt::format("{}: {}", id, rests));
             }
         }
+        if (firm.empty() && resting.empty()) continue;
         text += fmt::format(
             "| [{}]({}) | {} | {} |\n", file.stem().string(),
             fs::path(file).replace_extension(".md").lexically_relative(folder).generic_string(),

@@ -113,7 +113,9 @@ void takeBase(const batch::StoredRun& run, Study& study) {
         }
         const std::vector<report::Table> tables = report::buildTables({experiment}, run.records);
         study.outcomes.push_back(
-            {study.next(), report::evaluateClaims(experiment, tables.front(), reportContext(run))});
+            {study.next(), report::evaluateClaims(experiment, tables.front(),
+                                                  batch::reportContext(run.manifest))});
+        write(study, "");
     }
 }
 
