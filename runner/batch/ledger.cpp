@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runner/batch/case_variation.h"
 #include "runner/core/text.h"
 #include "runner/report/case_records.h"
 
@@ -138,14 +139,16 @@ void requireScenes(const config::Experiment& experiment, const Assumption& assum
 }
 
 /// Makes every case with the value; the technique refuses what it cannot take.
-void requireTaken(const config::Experiment& experiment, const Assumption& assumption,
-                  const technique::TechniqueInfo& info) {
+void requireReadable(const config::Experiment& experiment, const Assumption& assumption,
+                     const technique::TechniqueInfo& info) {
     const std::vector<config::CaseSpec> specs = config::expandCases(experiment);
     for (const Node& value : listOf(assumption)) {
-        for (const config::CaseSpec& spec : specs) {
-            Node given = spec.params;
-            given.set(assumption.name, value);
-            config::Params params(given, "technique '" + std::string(info.name) + "'");
+        for (config::CaseSpec spec : specs) {
+            spec.axes.clear();  // of a swept one, too
+            Case item;
+            takeInstead(spec, Node::map({{assumption.name, value}}), item);
+            config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+            if (!item.offered.isNull()) params.offer(item.offered);
             info.create(params);
         }
     }
@@ -189,8 +192,8 @@ void requireRanges(const config::Experiment& experiment, const scene::Catalog& c
         } else if (assumption.name == config::kSceneAssumption) {
             requireScenes(experiment, assumption, catalog);
         } else {
-            requireTaken(experiment, assumption,
-                         technique::findTechnique(techniques, experiment.technique, {}));
+            requireReadable(experiment, assumption,
+                            technique::findTechnique(techniques, experiment.technique, {}));
         }
     }
 }

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "runner/batch/case_scenes.h"
+#include "runner/batch/case_variation.h"
 #include "runner/batch/ledger.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
@@ -153,6 +153,7 @@ Json Case::toJson() const {
                  {"output", {outputWidthPx, outputHeightPx}},
                  {"measure", batch::toJson(measure)},
                  {"seed", std::to_string(seed)}};
+    if (!offered.isNull()) json["offered"] = offered.toJson();
     addSceneTo(json);
     return json;
 }
@@ -172,6 +173,7 @@ Case Case::fromJson(const config::Node& node) {
     item.outputHeightPx = static_cast<int>(output[1].asInteger());
     item.measure = measureFrom(required(node, "measure"));
     item.seed = std::stoull(required(node, "seed").text());
+    if (const config::Node* offered = node.find("offered")) item.offered = *offered;
     if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
     if (const config::Node* sample = node.find(report::kSceneSample)) {
         item.sceneSample = static_cast<int>(sample->asInteger());
@@ -265,13 +267,14 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
     const technique::TechniqueInfo& info = techniqueOf(experiment, techniques);
     std::vector<Case> cases;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        config::Params params(spec.params, "technique '" + std::string(info.name) + "'");
+        Case item;
+        takeInstead(spec, experiment.paramsInstead, item);
+        config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+        if (!item.offered.isNull()) params.offer(item.offered);
         info.create(params);
         params.finish();
-        Case item;
         item.experiment = experiment.id;
         item.technique = experiment.technique;
-        item.given = spec.params;
         item.params = params.resolved();
         item.axes = config::Node::map({});
         for (const auto& [name, value] : spec.axes) item.axes.set(name, value);

@@ -25,9 +25,10 @@ struct Case {
     config::Node scene;              // null or a reference: what is loaded
     config::Node standsFor;          // what the config calls it, where that is another; else null
     std::optional<int> sceneSample;  // from 0, where several seeds are measured
-    config::Node given;   // the parameters that the config gives: a technique is made from these
-    config::Node params;  // every declared parameter with its value: what records say
-    config::Node axes;    // the swept ones
+    config::Node given;    // the parameters that the config gives: a technique is made from these
+    config::Node offered;  // null, or values that take the place of the technique's defaults
+    config::Node params;   // every declared parameter with its value: what records say
+    config::Node axes;     // the swept ones
     int outputWidthPx = 0;
     int outputHeightPx = 0;
     config::Measure measure;

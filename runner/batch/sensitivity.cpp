@@ -49,7 +49,7 @@ std::vector<std::string> setsOf(const std::string& name, const std::string& valu
     if (name == config::kOutputAssumption)
         return {"output.width=" + value, "output.height=" + value};
     if (name == config::kSceneSeedAssumption) return {"scene_seed=" + value};
-    return {"params." + name + "=" + value};
+    return {"params_instead." + name + "=" + value};
 }
 
 /// Why the assumption is not varied; empty if it is.

@@ -138,8 +138,8 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key : {"scene", "scene_seed", "scene_instead", "params", "output", "sweep",
-                            "measure", "layout", "claims", "plots"}) {
+    for (const char* key : {"scene", "scene_seed", "scene_instead", "params", "params_instead",
+                            "output", "sweep", "measure", "layout", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -166,6 +166,11 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     experiment.params = section("params");
     if (experiment.params.isNull()) experiment.params = Node::map({}, document.location());
     if (!experiment.params.isMap()) throwNotAllowed(experiment.params, "params", "a map");
+    experiment.paramsInstead = section("params_instead");
+    if (experiment.paramsInstead.isNull()) experiment.paramsInstead = Node::map({});
+    if (!experiment.paramsInstead.isMap()) {
+        throwNotAllowed(experiment.paramsInstead, "params_instead", "a map");
+    }
     experiment.scene = section("scene");
     if (const Node* seed = document.find("scene_seed")) experiment.sceneSeed = sceneSeed(*seed);
     experiment.sceneInstead = section("scene_instead");

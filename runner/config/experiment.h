@@ -185,8 +185,9 @@ struct Experiment {
     std::string title;
     std::filesystem::path file;
     std::string technique;
-    Node params;                         // a map, before the sweep is laid over it
-    Node scene;                          // null, or a reference
+    Node params;         // a map, before the sweep is laid over it
+    Node paramsInstead;  // a map: in cases that take them, instead of values and defaults
+    Node scene;          // null, or a reference
     std::optional<long long> sceneSeed;  // of generated scenes, instead of the catalogue's
     Node sceneInstead;  // null, or a map: catalogued scene → the one that takes its place
     int outputWidthPx = 512;

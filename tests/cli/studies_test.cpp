@@ -54,10 +54,12 @@ TEST(Sensitivity, GoesOnAfterAVariationThatCannotBeMeasured) {
                                    "tried\n"));
     EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.csv"),
                 HasSubstr(",pause_ms,100000,,,,,,\"exit code 2: gfxrepro: command line, "
-                          "params.pause_ms=100000: pause_ms is 100000; allowed: 0 … 60000\"\n"));
+                          "params_instead.pause_ms=100000: technique 'mock': pause_ms is 100000; "
+                          "allowed: a whole number, 0 … 60000 ms\"\n"));
     EXPECT_EQ(mockGfxrepro({"check", config}).err, "gfxrepro: " + config +
-                                                       ":17:22: pause_ms is 100000; allowed: 0 … "
-                                                       "60000\n");
+                                                       ":17:22: technique 'mock': pause_ms is "
+                                                       "100000; allowed: a whole number, 0 … "
+                                                       "60000 ms\n");
 }
 
 TEST(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {

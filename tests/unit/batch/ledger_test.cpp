@@ -17,7 +17,10 @@ class Still : public technique::Technique {
   public:
     explicit Still(config::Params& params) {
         const double bias = params.getDouble("bias", 0.5, {"taken from the depth", "texels", 0, 1});
-        if (params.getBool("static", false, {"drawn once"}) && bias == 0.0) {
+        const bool isStatic = params.getBool("static", false, {"drawn once"});
+        params.getInt("last", 0, {"frame that is drawn"});
+        if (!isStatic) params.refuseGiven({"last"}, "'static: true'");
+        if (isStatic && bias == 0.0) {
             throw Error(params.locationOf("bias"), "bias is 0, but static needs one");
         }
     }
@@ -103,7 +106,7 @@ TEST(Ledger, RefusesWhatIsNotTheParameters) {
 TEST(Ledger, RefusesRangesThatACaseCannotTake) {
     const Ledger ledger;
     EXPECT_EQ(ledger.errorOf("assumptions:\n  bias: {range: [0.5, 5], why: open}\n"),
-              "DIR/t.yaml:5:23: bias is 5; allowed: 0 … 1");
+              "DIR/t.yaml:5:23: technique 'still': bias is 5; allowed: a number, 0 … 1 texels");
     EXPECT_EQ(ledger.errorOf("sweep: {static: [false, true]}\n"
                              "assumptions:\n  bias: {range: [0.5, 0], why: open}\n"),
               "DIR/t.yaml:6:23: bias is 0, but static needs one");
@@ -127,6 +130,25 @@ TEST(Ledger, RefusesRangesThatACaseCannotTake) {
                              "  bias: {range: [0, 1], why: open}\n"
                              "  scene: {range: [tree, tree@2], why: open}\n"),
               "no error");
+}
+
+TEST(Cases, TakeParametersInsteadOfValuesAndDefaults) {
+    const Ledger ledger;
+    const auto bias = [&](const std::string& lines) {
+        return ledger.cases(ledger.load(lines)).front().params.find("bias")->text();
+    };
+    EXPECT_EQ(bias("params: {bias: 0.1}\nparams_instead: {bias: 0.2}\n"), "0.2");
+    EXPECT_EQ(bias("params_instead: {bias: 0.2}\n"), "0.2");
+    // What nothing reads is refused where it is given, not where it takes a default's place.
+    EXPECT_EQ(test::errorText([&] { bias("params: {last: 1}\n"); }, ledger.folder.path()),
+              "DIR/t.yaml:4:16: 'last' needs 'static: true'");
+    EXPECT_EQ(bias("params_instead: {last: 1}\n"), "0.5");
+    EXPECT_EQ(
+        test::errorText([&] { bias("params_instead: {biass: 1}\n"); }, ledger.folder.path()),
+        "DIR/t.yaml:4:18: technique 'still': unknown parameter 'biass'; did you mean 'bias'?");
+    EXPECT_EQ(test::errorText([&] { bias("sweep: {bias: [0.1]}\nparams_instead: {bias: 1}\n"); },
+                              ledger.folder.path()),
+              "DIR/t.yaml:5:18: 'params_instead': 'bias' is swept here");
 }
 
 TEST(Cases, TakeSeedsAndOtherScenes) {

@@ -62,8 +62,8 @@ TEST(Sensitivity, VariesWhatIsBoundByTurns) {
         ElementsAre("as configured", "bias = 0", "size = 16", "kind = point", "output = 256",
                     "box = [3,4]", "bias = 0.04", "size = 256", "output = 384", "size = 4096"));
     EXPECT_THAT(variations.runs[4].sets, ElementsAre("output.width=256", "output.height=256"));
-    EXPECT_THAT(variations.runs[1].sets, ElementsAre("params.bias=0"));
-    EXPECT_THAT(variations.runs[5].sets, ElementsAre("params.box=[3,4]"));
+    EXPECT_THAT(variations.runs[1].sets, ElementsAre("params_instead.bias=0"));
+    EXPECT_THAT(variations.runs[5].sets, ElementsAre("params_instead.box=[3,4]"));
     EXPECT_THAT(variations.fixed,
                 ElementsAre(Pair("place", "no parameter of the technique"),
                             Pair("method", "an axis of the table: it is varied there"),

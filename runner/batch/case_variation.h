@@ -1,4 +1,4 @@
-// Which scenes a case takes: the config's, at another seed, or another in its place.
+// What a case takes instead of what its config says: other parameters, seeds, scenes.
 #pragma once
 
 #include <vector>
@@ -6,6 +6,11 @@
 #include "runner/batch/plan.h"
 
 namespace gfxrepro::batch {
+
+/// Fills in what a technique is made from: the parameters that `spec` gives with those of `instead`
+/// in their place; what it does not give is offered, so that a case which does not read the
+/// parameter refuses nothing. Throws Error for one that is swept.
+void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item);
 
 /// The case with its scene, which the config calls `reference` (null: none); of a generated one,
 /// once for each of its seeds. Throws Error when the scene is not at hand.

@@ -1,4 +1,4 @@
-#include "runner/batch/case_scenes.h"
+#include "runner/batch/case_variation.h"
 
 #include <algorithm>
 
@@ -29,6 +29,19 @@ config::Node insteadOf(const config::Node& reference, const config::Experiment& 
 }
 
 }  // namespace
+
+void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item) {
+    item.given = spec.params;
+    for (const auto& [name, value] : instead.entries()) {
+        for (const auto& [axis, swept] : spec.axes) {
+            if (axis != name) continue;
+            throw Error(instead.keyLocation(name),
+                        "'params_instead': '" + name + "' is swept here");
+        }
+        config::Node& map = item.given.find(name) ? item.given : item.offered;
+        map.set(name, value, instead.keyLocation(name));
+    }
+}
 
 std::vector<Case> withScenes(const Case& item, const config::Node& reference,
                              const config::Experiment& experiment, const scene::Catalog& catalog) {
