@@ -171,6 +171,9 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     if (!experiment.paramsInstead.isMap()) {
         throwNotAllowed(experiment.paramsInstead, "params_instead", "a map");
     }
+    for (const auto& [name, value] : experiment.paramsInstead.entries()) {
+        if (Node* given = experiment.params.find(name)) *given = value;
+    }
     experiment.scene = section("scene");
     if (const Node* seed = document.find("scene_seed")) experiment.sceneSeed = sceneSeed(*seed);
     experiment.sceneInstead = section("scene_instead");
