@@ -4,32 +4,6 @@
 
 namespace gfxrepro::batch {
 
-namespace fs = std::filesystem;
-
-namespace {
-
-/// A user's own scene file is named relative to the config; a worker gets the absolute path.
-config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
-    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
-    const fs::path path = reference.text();
-    if (!path.has_extension() || path.is_absolute()) return reference;
-    const fs::path folder = fs::path(reference.location().file).parent_path();
-    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
-                                reference.location());
-}
-
-/// The scene that takes the place of `reference`, which may be none.
-config::Node insteadOf(const config::Node& reference, const config::Experiment& experiment,
-                       const scene::Catalog& catalog) {
-    if (!reference.isScalar() || experiment.sceneInstead.isNull()) {
-        return absoluteReference(reference, catalog);
-    }
-    const config::Node* other = experiment.sceneInstead.find(reference.text());
-    return absoluteReference(other ? *other : reference, catalog);
-}
-
-}  // namespace
-
 void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item) {
     item.given = spec.params;
     for (const auto& [name, value] : instead.entries()) {
@@ -43,11 +17,13 @@ void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case
     }
 }
 
-std::vector<Case> withScenes(const Case& item, const config::Node& reference,
-                             const config::Experiment& experiment, const scene::Catalog& catalog) {
+std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
+                             const scene::Catalog& catalog) {
+    if (item.scene.isNull()) return {item};
     Case first = item;
-    first.scene = insteadOf(reference, experiment, catalog);
-    if (first.scene.isNull()) return {first};
+    const config::Node& instead = experiment.sceneInstead;
+    const config::Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
+    if (other) first.scene = *other;
     const scene::SceneSource source = catalog.resolve(first.scene);
     const std::uint64_t seed =
         experiment.sceneSeed ? static_cast<std::uint64_t>(*experiment.sceneSeed) : source.seed;
@@ -59,8 +35,7 @@ std::vector<Case> withScenes(const Case& item, const config::Node& reference,
         if (source.isSeeded() && (i > 0 || experiment.sceneSeed)) {
             taken.scene = scene::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
         }
-        const bool isOther = taken.scene.text() != absoluteReference(reference, catalog).text();
-        if (isOther) taken.standsFor = reference;
+        if (taken.scene.text() != item.scene.text()) taken.standsFor = item.scene;
     }
     return cases;
 }

@@ -12,10 +12,10 @@ namespace gfxrepro::batch {
 /// parameter refuses nothing. Throws Error for one that is swept.
 void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item);
 
-/// The case with its scene, which the config calls `reference` (null: none); of a generated one,
-/// once for each of its seeds. Throws Error when the scene is not at hand.
-std::vector<Case> withScenes(const Case& item, const config::Node& reference,
-                             const config::Experiment& experiment, const scene::Catalog& catalog);
+/// The case, whose scene is the config's, with what takes its place; with a generated one, once for
+/// each of its seeds. Throws Error when the scene is not at hand.
+std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
+                             const scene::Catalog& catalog);
 
 /// Throws Error for a `scene_seed` or an entry of `scene_instead` that no case takes: it would be
 /// ignored. `cases` are the experiment's.

@@ -19,6 +19,16 @@ namespace {
 
 constexpr int kPlanSchema = 1;
 
+/// A user's own scene file is named relative to the config; a worker gets the absolute path.
+config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
+    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
+    const fs::path path = reference.text();
+    if (!path.has_extension() || path.is_absolute()) return reference;
+    const fs::path folder = fs::path(reference.location().file).parent_path();
+    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
+                                reference.location());
+}
+
 /// The first 12 digits of the hash of everything that the case's results depend on.
 std::string contentId(const Case& item, const std::string& sceneKey, const Plan& plan) {
     Json content = item.toJson();
@@ -97,14 +107,6 @@ std::vector<std::string> textsFrom(const config::Node& list) {
     std::vector<std::string> texts;
     for (const config::Node& item : list.items()) texts.push_back(item.text());
     return texts;
-}
-
-const technique::TechniqueInfo& techniqueOf(const config::Experiment& experiment,
-                                            std::span<const technique::TechniqueInfo> techniques) {
-    const config::Node* named = experiment.document.find("technique");
-    return technique::findTechnique(
-        techniques, experiment.technique,
-        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
 }
 
 }  // namespace
@@ -264,7 +266,10 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
     if (experiment.technique.empty()) return {};  // only printed
-    const technique::TechniqueInfo& info = techniqueOf(experiment, techniques);
+    const config::Node* named = experiment.document.find("technique");
+    const technique::TechniqueInfo& info = technique::findTechnique(
+        techniques, experiment.technique,
+        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
     std::vector<Case> cases;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
         Case item;
@@ -275,6 +280,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         params.finish();
         item.experiment = experiment.id;
         item.technique = experiment.technique;
+        item.scene = absoluteReference(spec.scene, catalog);
         item.params = params.resolved();
         item.axes = config::Node::map({});
         for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
@@ -282,9 +288,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
-        for (Case& taken : withScenes(item, spec.scene, experiment, catalog)) {
-            cases.push_back(std::move(taken));
-        }
+        for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
     }
     requireTaken(experiment, cases, catalog);
     return cases;
