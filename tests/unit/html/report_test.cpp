@@ -180,7 +180,7 @@ TEST(Report, KeptVerdictsStandBesideARun) {
         kept.write("claims.csv",
                    "claim,table,device,profile,verdict,measured,required,margin,reason,rests_on\n"
                    "A,zju2005/9.9,gpu,quick,fails,12,draw_ms ≤ 10,-2,,bias (of 3 tried)\n"
-                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,\n");  // kept before the last column was
+                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,,\n");
     ReportRun other;
     other.folder = kept.path();
     other.context = kContext;
