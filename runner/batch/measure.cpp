@@ -187,6 +187,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     const technique::TechniqueInfo& info =
         technique::findTechnique(context.techniques, item.technique, {});
     config::Params params(item.given, "technique '" + item.technique + "'");
+    if (!item.offered.isNull()) params.offer(item.offered);
 
     const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();
     context.scenes.beginCase(sceneName);

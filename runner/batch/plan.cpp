@@ -4,8 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "runner/batch/case_variation.h"
+#include "runner/batch/ledger.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "runner/report/case_records.h"
 
 namespace gfxrepro::batch {
 
@@ -80,6 +83,26 @@ config::Measure measureFrom(const config::Node& node) {
     return measure;
 }
 
+/// Value and unit of the assumptions that are bound to the cases.
+Json assumedJson(const config::Experiment& experiment) {
+    Json json = Json::object();
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        if (!assumption.isBound) continue;
+        json[assumption.name] = {{"value", assumption.value.text()}, {"unit", assumption.unit}};
+    }
+    return json;
+}
+
+void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
+    for (config::Assumption& assumption : experiment.assumptions) {
+        const config::Node* bound = assumed.find(assumption.name);
+        if (!bound) continue;
+        assumption.isBound = true;
+        assumption.value = required(*bound, "value");
+        assumption.unit = required(*bound, "unit").text();
+    }
+}
+
 std::vector<std::string> textsFrom(const config::Node& list) {
     std::vector<std::string> texts;
     for (const config::Node& item : list.items()) texts.push_back(item.text());
@@ -94,6 +117,7 @@ std::string Case::title() const {
     for (const auto& [name, value] : axes.entries()) {
         title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
     }
+    if (!standsFor.isNull()) title += " (" + scene.text() + ")";
     return title;
 }
 
@@ -111,20 +135,29 @@ std::string Case::method() const {
 Json Case::recordedParams() const {
     Json json = params.toJson();
     json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
+    addSceneTo(json);
     return json;
 }
 
+void Case::addSceneTo(Json& json) const {
+    if (!standsFor.isNull()) json[report::kStandsFor] = standsFor.toJson();
+    if (sceneSample) json[report::kSceneSample] = *sceneSample;
+}
+
 Json Case::toJson() const {
-    return {{"id", id},
-            {"experiment", experiment},
-            {"technique", technique},
-            {"scene", scene.toJson()},
-            {"given", given.toJson()},
-            {"params", params.toJson()},
-            {"axes", axes.toJson()},
-            {"output", {outputWidthPx, outputHeightPx}},
-            {"measure", batch::toJson(measure)},
-            {"seed", std::to_string(seed)}};
+    Json json = {{"id", id},
+                 {"experiment", experiment},
+                 {"technique", technique},
+                 {"scene", scene.toJson()},
+                 {"given", given.toJson()},
+                 {"params", params.toJson()},
+                 {"axes", axes.toJson()},
+                 {"output", {outputWidthPx, outputHeightPx}},
+                 {"measure", batch::toJson(measure)},
+                 {"seed", std::to_string(seed)}};
+    if (!offered.isNull()) json["offered"] = offered.toJson();
+    addSceneTo(json);
+    return json;
 }
 
 Case Case::fromJson(const config::Node& node) {
@@ -142,6 +175,11 @@ Case Case::fromJson(const config::Node& node) {
     item.outputHeightPx = static_cast<int>(output[1].asInteger());
     item.measure = measureFrom(required(node, "measure"));
     item.seed = std::stoull(required(node, "seed").text());
+    if (const config::Node* offered = node.find("offered")) item.offered = *offered;
+    if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
+    if (const config::Node* sample = node.find(report::kSceneSample)) {
+        item.sceneSample = static_cast<int>(sample->asInteger());
+    }
     return item;
 }
 
@@ -171,8 +209,9 @@ Json Plan::toJson() const {
                  {"cases", Json::array()}};
     for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
     for (const config::Experiment& experiment : experiments) {
-        json["experiments"].push_back(
-            {{"file", experiment.file.string()}, {"document", experiment.document.toJson()}});
+        json["experiments"].push_back({{"file", experiment.file.string()},
+                                       {"document", experiment.document.toJson()},
+                                       {"assumed", assumedJson(experiment)}});
     }
     for (const Case& item : cases) json["cases"].push_back(item.toJson());
     if (shard) {
@@ -207,6 +246,9 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     for (const config::Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
             required(item, "document"), fs::path(required(item, "file").text())));
+        if (const config::Node* assumed = item.find("assumed")) {
+            takeAssumed(*assumed, plan.experiments.back());
+        }
     }
     for (const config::Node& item : required(node, "cases").items()) {
         plan.cases.push_back(Case::fromJson(item));
@@ -230,14 +272,15 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
     std::vector<Case> cases;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        config::Params params(spec.params, "technique '" + std::string(info.name) + "'");
+        Case item;
+        takeInstead(spec, experiment.paramsInstead, item);
+        config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+        if (!item.offered.isNull()) params.offer(item.offered);
         info.create(params);
         params.finish();
-        Case item;
         item.experiment = experiment.id;
         item.technique = experiment.technique;
         item.scene = absoluteReference(spec.scene, catalog);
-        item.given = spec.params;
         item.params = params.resolved();
         item.axes = config::Node::map({});
         for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
@@ -245,9 +288,9 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
-        if (!item.scene.isNull()) catalog.resolve(item.scene);  // throws when it is not at hand
-        cases.push_back(std::move(item));
+        for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
     }
+    requireTaken(experiment, cases, catalog);
     return cases;
 }
 
@@ -262,12 +305,14 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     plan.experiments = experiments;
     std::set<std::string> experimentIds;
     std::set<std::string> caseIds;
-    for (const config::Experiment& experiment : experiments) {
+    for (config::Experiment& experiment : plan.experiments) {
         if (!experimentIds.insert(experiment.id).second) {
             throw Error(experiment.file.string() + ": the experiment '" + experiment.id +
                         "' is given twice");
         }
-        for (Case& item : resolveCases(experiment, catalog, techniques, seed)) {
+        std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
+        bindAssumptions(experiment, cases, catalog, techniques);
+        for (Case& item : cases) {
             std::string sceneKey;
             if (!item.scene.isNull()) {
                 std::string& known = plan.sceneKeys[item.scene.text()];

@@ -22,10 +22,13 @@ struct Case {
     std::string id;          // 12 hexadecimal digits of the content hash
     std::string experiment;  // "zju2005/2.1"
     std::string technique;
-    config::Node scene;   // null or a reference
-    config::Node given;   // the parameters that the config gives: a technique is made from these
-    config::Node params;  // every declared parameter with its value: what records say
-    config::Node axes;    // the swept ones
+    config::Node scene;              // null or a reference: what is loaded
+    config::Node standsFor;          // what the config calls it, where that is another; else null
+    std::optional<int> sceneSample;  // from 0, where several seeds are measured
+    config::Node given;    // the parameters that the config gives: a technique is made from these
+    config::Node offered;  // null, or values that take the place of the technique's defaults
+    config::Node params;   // every declared parameter with its value: what records say
+    config::Node axes;     // the swept ones
     int outputWidthPx = 0;
     int outputHeightPx = 0;
     config::Measure measure;
@@ -34,9 +37,10 @@ struct Case {
     std::string title() const;   // "zju2005/2.1 scene=models/duck"
     std::string slug() const;    // "zju2005-2.1": for file names
     std::string method() const;  // the parameter of that name; empty when there is none
-    /// `params` with the size of the output: what records and images say.
+    /// `params` with the size of the output and which scene it is: what records and images say.
     nlohmann::ordered_json recordedParams() const;
     nlohmann::ordered_json toJson() const;
+    void addSceneTo(nlohmann::ordered_json& json) const;
     static Case fromJson(const config::Node& node);
 };
 
@@ -78,8 +82,9 @@ struct Plan {
     static Plan fromJsonFile(const std::filesystem::path& path);
 };
 
-/// The cases of one experiment with every parameter resolved; ids are still empty. Throws Error for
-/// unknown techniques, parameters and scenes. Needs no device.
+/// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
+/// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.
+/// Needs no device.
 std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed);

@@ -86,8 +86,7 @@ std::string commandOf(const Case& item, const Plan& plan) {
 
 html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
     html::ReportRun result{
-        runDir, reportContext(run.manifest), run.manifest, run.plan.experiments, run.records, {},
-        {}};
+        runDir, reportContext(run), run.manifest, run.plan.experiments, run.records, {}, {}};
     auto logs = caseLogs(runDir);
     for (const Case& item : run.plan.cases) {
         result.cases.push_back({item.id, item.experiment, item.title(), commandOf(item, run.plan),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runner/batch/report_runs.h"
+#include "runner/batch/sensitivity.h"
 #include "runner/core/files.h"
 #include "runner/report/report.h"
 
@@ -123,9 +124,15 @@ Completeness completeness(const StoredRun& run) {
     return counts;
 }
 
+report::ReportContext reportContext(const StoredRun& run) {
+    report::ReportContext context = reportContext(run.manifest);
+    context.tried = keptSensitivity(run.plan);
+    return context;
+}
+
 std::vector<report::ClaimResult> writeResults(const fs::path& runDir, const StoredRun& run,
                                               const Results& which) {
-    const report::ReportContext context = reportContext(run.manifest);
+    const report::ReportContext context = reportContext(run);
     std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
     const std::vector<std::string> notes = notesOf(run.manifest);
     for (report::Table& table : tables) {

@@ -37,6 +37,9 @@ struct StoredRun {
 /// (noteChanges).
 StoredRun readRun(const std::filesystem::path& runDir);
 
+/// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
+report::ReportContext reportContext(const StoredRun& run);
+
 /// Units without a row of any kind, and units that did not end `ok`; the A/A pair, which enters no
 /// cell, is not counted.
 struct Completeness {

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "runner/batch/ledger.h"
 #include "runner/core/text.h"
 #include "runner/report/csv.h"
 #include "runner/report/markup.h"
@@ -21,7 +22,12 @@ using report::Verdict;
 
 std::string textOf(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
-    if (value.is_number()) return report::shortestText(value.get<double>());
+    if (value.is_number()) {
+        // 100000, not 1e+05, which is no integer to a config.
+        const auto number = value.get<double>();
+        const bool isWhole = number == std::round(number) && std::abs(number) < 1e15;
+        return isWhole ? fmt::format("{:.0f}", number) : report::shortestText(number);
+    }
     return value.dump();
 }
 
@@ -39,49 +45,66 @@ std::vector<double> pointsOf(double low, double high, int points, bool isInteger
     return values;
 }
 
-/// What `--set` calls it; nothing for a name that is neither a parameter nor `output`.
-std::vector<std::string> keysOf(const std::string& name, const Case& item) {
-    if (name == "output") return {"output.width", "output.height"};
-    if (item.params.find(name)) return {"params." + name};
-    return {};
-}
-
-Json currentValue(const std::string& name, const Case& item) {
-    if (name == "output") return item.outputWidthPx;
-    return item.params.find(name)->toJson();
+std::vector<std::string> setsOf(const std::string& name, const std::string& value) {
+    if (name == config::kOutputAssumption)
+        return {"output.width=" + value, "output.height=" + value};
+    if (name == config::kSceneSeedAssumption) return {"scene_seed=" + value};
+    return {"params_instead." + name + "=" + value};
 }
 
 /// Why the assumption is not varied; empty if it is.
-std::string whyFixed(const config::Assumption& assumption, const Case& item) {
-    if (keysOf(assumption.name, item).empty()) return "no parameter of the technique";
+std::string whyFixed(const config::Assumption& assumption, const std::vector<Case>& cases) {
+    if (!assumption.isBound) return "no parameter of the technique";
+    const bool isScene = assumption.name == config::kSceneAssumption;
     for (const std::string& axis : {assumption.name, assumption.name + ".width"}) {
-        if (item.axes.find(axis)) return "an axis of the table: it is varied there";
+        const auto isSwept = [&](const Case& item) { return item.axes.find(axis) != nullptr; };
+        if (!isScene && std::ranges::any_of(cases, isSwept)) {
+            return "an axis of the table: it is varied there";
+        }
     }
-    const Json range = assumption.range.toJson();
-    if (!range.is_array() || range.size() < 2) return "its range is no list";
+    if (assumption.range.isNull()) return "it has no range";
+    if (isScene && alternativesOf(assumption, sceneNames(cases)).empty()) {
+        return "no other scene for those of the table";
+    }
+    if (assumption.name == config::kSceneSeedAssumption && assumption.value.text() == "none") {
+        return "no scene of the table is generated";
+    }
     return "";
 }
 
-std::vector<Variation> variationsOf(const config::Assumption& assumption, const Case& item,
-                                    int points) {
+std::vector<Variation> sceneVariations(const config::Assumption& assumption,
+                                       const std::vector<Case>& cases) {
+    std::vector<Variation> variations;
+    for (const auto& [name, other] : alternativesOf(assumption, sceneNames(cases))) {
+        variations.push_back({assumption.name,
+                              fmt::format("{} for {}", other.text(), name),
+                              std::nullopt,
+                              {fmt::format("scene_instead={{{}: {}}}", name, other.text())}});
+    }
+    return variations;
+}
+
+/// The values of the range but for the one that the cases take.
+std::vector<Variation> variationsOf(const config::Assumption& assumption,
+                                    const std::vector<Case>& cases, int points) {
+    if (assumption.name == config::kSceneAssumption) return sceneVariations(assumption, cases);
     const Json range = assumption.range.toJson();
-    const Json current = currentValue(assumption.name, item);
+    const config::Node* current = cases.front().params.find(assumption.name);
     std::vector<Json> values(range.begin(), range.end());
     if (range.size() == 2 && range[0].is_number() && range[1].is_number()) {
         values.clear();
-        for (const double value : pointsOf(range[0].get<double>(), range[1].get<double>(), points,
-                                           current.is_number_integer())) {
+        const bool isInteger = !current || current->tryInteger().has_value();
+        for (const double value :
+             pointsOf(range[0].get<double>(), range[1].get<double>(), points, isInteger)) {
             values.emplace_back(value);
         }
     }
     std::vector<Variation> variations;
     for (const Json& value : values) {
         Variation variation{assumption.name, textOf(value), std::nullopt, {}};
-        if (variation.value == textOf(current)) continue;
+        if (variation.value == assumption.value.text()) continue;
         if (value.is_number()) variation.number = value.get<double>();
-        for (const std::string& key : keysOf(assumption.name, item)) {
-            variation.sets.push_back(key + "=" + variation.value);
-        }
+        variation.sets = setsOf(assumption.name, variation.value);
         variations.push_back(std::move(variation));
     }
     return variations;
@@ -103,6 +126,21 @@ std::optional<double> flipBetween(const Outcome& a, const Outcome& b, std::size_
 
 bool holds(const Outcome& outcome, std::size_t claim) {
     return outcome.claims[claim].verdict == Verdict::Holds;
+}
+
+bool isJudged(const Outcome& outcome, std::size_t claim) {
+    if (claim >= outcome.claims.size()) return false;
+    const Verdict verdict = outcome.claims[claim].verdict;
+    return verdict != Verdict::NotApplicable && verdict != Verdict::Unmeasured;
+}
+
+/// The runs that judge the claim; the config as it is comes first, or none do.
+std::vector<Outcome> judged(const std::vector<Outcome>& outcomes, std::size_t claim) {
+    if (outcomes.empty() || !isJudged(outcomes.front(), claim)) return {};
+    std::vector<Outcome> kept;
+    std::ranges::copy_if(outcomes, std::back_inserter(kept),
+                         [&](const Outcome& outcome) { return isJudged(outcome, claim); });
+    return kept;
 }
 
 /// "bias is 0.03 or 0.1 (flips between 0.003 and 0.03, near 0.012)": the values under which the
@@ -138,21 +176,33 @@ Variations variationsOf(const config::Experiment& experiment, const std::vector<
                         int points) {
     Variations result;
     result.runs.push_back({});
+    std::vector<std::vector<Variation>> byAssumption;
     for (const config::Assumption& assumption : experiment.assumptions) {
         const std::string why =
-            cases.empty() ? "the table has no cases" : whyFixed(assumption, cases.front());
+            cases.empty() ? "the table has no cases" : whyFixed(assumption, cases);
         if (!why.empty()) {
             result.fixed.emplace_back(assumption.name, why);
             continue;
         }
-        for (Variation& variation : variationsOf(assumption, cases.front(), points)) {
-            result.runs.push_back(std::move(variation));
+        byAssumption.push_back(variationsOf(assumption, cases, points));
+    }
+    std::ranges::stable_partition(byAssumption, [](const std::vector<Variation>& variations) {
+        return !variations.empty() &&
+               variations.front().assumption.starts_with(config::kSceneAssumption);
+    });
+    std::size_t most = 0;
+    for (const auto& variations : byAssumption) most = std::max(most, variations.size());
+    for (std::size_t i = 0; i < most; ++i) {
+        for (const auto& variations : byAssumption) {
+            if (i < variations.size()) result.runs.push_back(variations[i]);
         }
     }
     return result;
 }
 
-std::string dependence(const std::vector<Outcome>& outcomes, std::size_t claim) {
+std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
+    const std::vector<Outcome> outcomes = judged(all, claim);
+    if (outcomes.empty()) return "not judged as configured";
     const auto holding =
         std::ranges::count_if(outcomes, [&](const Outcome& o) { return holds(o, claim); });
     if (static_cast<std::size_t>(holding) == outcomes.size()) {
@@ -181,55 +231,23 @@ std::string dependence(const std::vector<Outcome>& outcomes, std::size_t claim) 
                        joined(conditions, ", or "));
 }
 
-std::string sensitivityMarkdown(const config::Experiment& experiment,
-                                const std::vector<Outcome>& outcomes,
-                                const Variations& variations) {
-    using report::escapeMarkdown;
-    const std::vector<ClaimResult>& claims = outcomes.front().claims;
-    std::string text = fmt::format(
-        "# Sensitivity of {}\n\n{}\n\nEach assumption alone takes the values of its range; {} "
-        "runs.\n\n| claim | says | as configured | under the assumptions |\n| --- | --- | --- | "
-        "--- "
-        "|\n",
-        escapeMarkdown(experiment.id), escapeMarkdown(experiment.title), outcomes.size());
-    for (std::size_t i = 0; i < claims.size(); ++i) {
-        text += fmt::format("| {} | {} | {} | {} |\n", escapeMarkdown(claims[i].id),
-                            escapeMarkdown(claims[i].text), report::verdictName(claims[i].verdict),
-                            escapeMarkdown(dependence(outcomes, i)));
-    }
-    text += "\n| run |";
-    for (const ClaimResult& claim : claims) text += fmt::format(" {} |", escapeMarkdown(claim.id));
-    text += "\n| --- |";
-    for (std::size_t i = 0; i < claims.size(); ++i) text += " --- |";
-    text += '\n';
+std::string restsOn(const std::vector<Outcome>& all, std::size_t claim) {
+    const std::vector<Outcome> outcomes = judged(all, claim);
+    std::vector<std::string> tried, deciding;
+    const auto note = [](std::vector<std::string>& names, const std::string& name) {
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    };
     for (const Outcome& outcome : outcomes) {
-        text += fmt::format("| {} |", escapeMarkdown(outcome.variation.title()));
-        for (const ClaimResult& claim : outcome.claims) {
-            text += fmt::format(" {}: {} |", report::verdictName(claim.verdict),
-                                escapeMarkdown(claim.measured));
-        }
-        text += '\n';
+        const std::string& name = outcome.variation.assumption;
+        if (name.empty()) continue;
+        note(tried, name);
+        const bool isOther =
+            outcome.claims[claim].verdict != outcomes.front().claims[claim].verdict;
+        if (isOther) note(deciding, name);
     }
-    if (variations.fixed.empty()) return text;
-    text += "\nNot varied:\n";
-    for (const auto& [name, why] : variations.fixed) {
-        text += fmt::format("- {}: {}\n", escapeMarkdown(name), why);
-    }
-    return text;
-}
-
-std::string sensitivityCsv(const std::vector<Outcome>& outcomes) {
-    std::string text = "assumption,value,claim,verdict,measured,required,margin\n";
-    for (const Outcome& outcome : outcomes) {
-        for (const ClaimResult& claim : outcome.claims) {
-            report::CsvRow row(text);
-            row.text(outcome.variation.assumption).text(outcome.variation.value).text(claim.id);
-            row.text(report::verdictName(claim.verdict)).text(claim.measured);
-            row.text(claim.required).text(claim.margin);
-            row.end();
-        }
-    }
-    return text;
+    if (tried.empty()) return "not tried";
+    if (deciding.empty()) return fmt::format("none of the {} tried", tried.size());
+    return fmt::format("{} (of {} tried)", joined(deciding), tried.size());
 }
 
 }  // namespace gfxrepro::batch

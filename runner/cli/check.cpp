@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "runner/batch/ledger.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/report/claims.h"
@@ -11,9 +12,12 @@ int check(const Context& context, const Selection& selection) {
     batch::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
     for (const std::string& file : selection.names) {
         request.configs = {file};
-        const config::Experiment experiment = loadExperiments(request, selection.profile).front();
-        const std::size_t caseCount =
-            batch::resolveCases(experiment, catalog, context.techniques, 1).size();
+        config::Experiment experiment = loadExperiments(request, selection.profile).front();
+        const std::vector<batch::Case> cases =
+            batch::resolveCases(experiment, catalog, context.techniques, 1);
+        batch::bindAssumptions(experiment, cases, catalog, context.techniques);
+        batch::requireRanges(experiment, catalog, context.techniques);
+        const std::size_t caseCount = cases.size();
         report::requireProvenance(experiment, report::buildTable(experiment, {}));
         fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
                    caseCount == 1 ? "" : "s", experiment.claims.size(),

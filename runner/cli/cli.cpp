@@ -260,14 +260,21 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
     SensitivityOptions& s = o.sensitivity;
     CLI::App* sensitivityApp =
         app.add_subcommand("sensitivity", "how claims depend on what the paper left open");
-    sensitivityApp->add_option("names", s.selection.names, "PAPER/TABLE or config files")
+    sensitivityApp->add_option("names", s.selection.names, "PAPER, PAPER/TABLE or config files")
         ->required()
-        ->option_text("TABLE");
+        ->option_text("TABLE...");
     addSelection(sensitivityApp, s.selection);
     s.selection.profile = "quick";
     sensitivityApp->add_option("--points", s.points, "values of a range of numbers (default 3)")
         ->check(CLI::Range(2, 100))
         ->option_text("N");
+    sensitivityApp->add_option("--budget", s.budget, "begin no run after this time (15m)")
+        ->option_text("TIME");
+    sensitivityApp->add_flag("--times", s.hasTimes, "claims about times, too (slow)");
+    sensitivityApp->add_option("--from", s.from, "run that has the tables as configured")
+        ->option_text("RUN");
+    sensitivityApp->add_option("--keep", s.keep, "copies of the summaries (results/sensitivity)")
+        ->option_text("DIR");
     sensitivityApp->add_option("--out", s.out, "folder (default runs/<time>-sensitivity)")
         ->option_text("DIR");
     sensitivityApp->callback(

@@ -92,8 +92,12 @@ struct CompareOptions {
 /// Tables, measured once for each value of their assumptions.
 struct SensitivityOptions {
     Selection selection;
-    int points = 3;   // of a range of numbers
-    std::string out;  // folder of the summaries and of the runs
+    int points = 3;         // of a range of numbers
+    std::string budget;     // "15m": no further run after it; empty: all
+    bool hasTimes = false;  // claims about times, too
+    std::string from;       // a run that has measured the tables as configured
+    std::string keep;       // folder that the summaries go to, too
+    std::string out;        // folder of the summaries and of the runs
 };
 
 /// What `list` lists, as its help has it.

@@ -99,8 +99,10 @@ void describeExperiment(const config::Experiment& experiment) {
         fmt::print("claim      {}: {}\n", claim.id, claim.text);
     }
     for (const config::Assumption& assumption : experiment.assumptions) {
-        fmt::print("assumed    {} = {}: {}\n", assumption.name, assumption.value.toFlowText(),
-                   assumption.why);
+        // A parameter's value is the cases'.
+        const bool isFreeText = !assumption.value.isNull();
+        fmt::print("assumed    {}{}{}: {}\n", assumption.name, isFreeText ? " = " : "",
+                   isFreeText ? assumption.value.toFlowText() : "", assumption.why);
     }
 }
 

@@ -1,24 +1,56 @@
-// How a table's claims depend on its assumptions: the table is measured once for each of their
-// values.
+// How tables' claims depend on their assumptions: each table is measured once for each of their
+// values, by turns, so that a budget serves all tables alike.
 #include "runner/batch/sensitivity.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <limits>
+#include <optional>
 
+#include "runner/batch/budget.h"
 #include "runner/batch/child_process.h"
 #include "runner/batch/manifest.h"
 #include "runner/batch/run.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/report/report.h"
 
 namespace gfxrepro::cli {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Of a table of times its other claims alone: in the quality lane a time is none.
+const std::vector<std::string> kOnceForQuality = {"measure.lane=quality", "measure.warmup=0",
+                                                  "measure.processes=1", "measure.repeats=1"};
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// A table under study.
+struct Study {
+    std::string file;
+    batch::Plan plan;
+    batch::Variations variations;
+    std::string basis;
+    fs::path folder;
+    std::vector<std::string> sets = {};         // of every run
+    std::vector<batch::Outcome> outcomes = {};  // of the first runs
+    double spentS = 0.0;
+
+    const config::Experiment& experiment() const { return plan.experiments.front(); }
+    std::size_t left() const { return variations.runs.size() - outcomes.size(); }
+    const batch::Variation& next() const { return variations.runs[outcomes.size()]; }
+};
 
 /// A name for a folder: what is no letter, digit or point becomes '_'.
 std::string folderName(std::string title) {
@@ -27,66 +59,151 @@ std::string folderName(std::string title) {
     return title;
 }
 
-/// Measures in a process of its own; a run that is there already goes on.
-std::vector<report::ClaimResult> claimsUnder(const batch::Variation& variation,
-                                             const std::string& file, const Selection& selection,
-                                             const fs::path& dir) {
-    std::vector<std::string> arguments = {"/proc/self/exe", "run",      file,
+/// Measures in a process of its own; a run that is there already goes on. What goes wrong is the
+/// outcome.
+batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
+    const batch::Variation& variation = study.next();
+    const fs::path dir = study.folder / folderName(variation.title());
+    std::vector<std::string> arguments = {"/proc/self/exe", "run",      study.file,
                                           "--quiet",        "--resume", dir.string()};
     for (const auto& [option, value] :
          {std::pair{"--profile", selection.profile}, std::pair{"--device", selection.device},
           std::pair{"--assets", selection.assets}}) {
         if (!value.empty()) arguments.insert(arguments.end(), {option, value});
     }
+    for (const std::string& sweep : selection.sweeps) {
+        arguments.insert(arguments.end(), {"--sweep", sweep});
+    }
+    for (const std::string& only : selection.only) {
+        arguments.insert(arguments.end(), {"--only", only});
+    }
     std::vector<std::string> sets = selection.sets;
+    sets.insert(sets.end(), study.sets.begin(), study.sets.end());
     sets.insert(sets.end(), variation.sets.begin(), variation.sets.end());
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
     const batch::ProgramEnd end = batch::runToEnd(arguments);
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
-        throw Error(
-            fmt::format("{}: exit code {}: {}", variation.title(), end.exitCode, end.output));
+        const std::string said(trimmed(end.output));
+        return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
-    return batch::writeResults(dir, batch::readRun(dir),
-                               {.tables = true, .claims = true, .report = false});
+    const batch::StoredRun run = batch::readRun(dir);
+    return {variation,
+            batch::writeResults(dir, run, {.tables = true, .claims = true, .report = false})};
 }
 
-void analyse(const Context& context, const std::string& file, const SensitivityOptions& options,
-             const fs::path& folder) {
-    const batch::Request request = requestOf(options.selection, {file});
-    const batch::Plan plan = planFor(context, request, options.selection.profile,
-                                     options.selection.assets, deviceClassFor(options.selection));
-    const config::Experiment& experiment = plan.experiments.front();
-    if (experiment.claims.empty()) {
-        fmt::print("{}: has no claims\n", experiment.id);
-        return;
+void write(const Study& study, const std::string& keep) {
+    const std::string markdown = batch::sensitivityMarkdown(study.experiment(), study.outcomes,
+                                                            study.variations, study.left());
+    const std::string csv = batch::sensitivityCsv(study.outcomes, study.basis);
+    writeFileAtomic(study.folder / "sensitivity.md", markdown);
+    writeFileAtomic(study.folder / "sensitivity.csv", csv);
+    if (keep.empty()) return;
+    const fs::path kept = batch::keptFolder(keep, study.plan);
+    writeFileAtomic(kept / (study.experiment().slug() + ".md"), markdown);
+    writeFileAtomic(kept / (study.experiment().slug() + ".csv"), csv);
+}
+
+/// The verdicts as configured, where `run` has measured the same.
+void takeBase(const batch::StoredRun& run, Study& study) {
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        if (experiment.id != study.experiment().id) continue;
+        if (run.plan.deviceClass != study.plan.deviceClass ||
+            batch::basisOf(run.plan, experiment) != study.basis) {
+            continue;
+        }
+        const std::vector<report::Table> tables = report::buildTables({experiment}, run.records);
+        study.outcomes.push_back(
+            {study.next(), report::evaluateClaims(experiment, tables.front(),
+                                                  batch::reportContext(run.manifest))});
+        write(study, "");
     }
-    const batch::Variations variations =
-        batch::variationsOf(experiment, plan.cases, options.points);
-    const fs::path own = folder / experiment.slug();
-    std::vector<batch::Outcome> outcomes;
-    for (const batch::Variation& variation : variations.runs) {
-        const fs::path dir = own / folderName(variation.title());
-        outcomes.push_back({variation, claimsUnder(variation, file, options.selection, dir)});
-        fmt::print(stderr, "[{}/{}] {} {}\n", outcomes.size(), variations.runs.size(),
-                   experiment.id, variation.title());
+}
+
+std::optional<Study> studyOf(const Context& context, const std::string& file,
+                             const SensitivityOptions& options, const std::string& deviceClass,
+                             const fs::path& folder) {
+    const Selection& selection = options.selection;
+    Study study{.file = file,
+                .plan = planFor(context, requestOf(selection, {file}), selection.profile,
+                                selection.assets, deviceClass),
+                .variations = {},
+                .basis = {},
+                .folder = {}};
+    const config::Experiment& experiment = study.experiment();
+    const auto isOfTime = [](const config::ClaimSpec& claim) { return claim.timeKind.has_value(); };
+    const bool isTimed = experiment.measure.lane == config::Measure::Lane::Timing;
+    if (std::ranges::all_of(experiment.claims, isOfTime) &&
+        (experiment.claims.empty() || !options.hasTimes)) {
+        fmt::print(stderr, "{}: left out, {}\n", experiment.id,
+                   experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
+        return std::nullopt;
     }
-    writeFileAtomic(own / "sensitivity.md",
-                    batch::sensitivityMarkdown(experiment, outcomes, variations));
-    writeFileAtomic(own / "sensitivity.csv", batch::sensitivityCsv(outcomes));
-    for (std::size_t i = 0; i < outcomes.front().claims.size(); ++i) {
-        fmt::print("{} {}: {}\n", experiment.id, outcomes.front().claims[i].id,
-                   batch::dependence(outcomes, i));
+    if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;
+    study.variations = batch::variationsOf(experiment, study.plan.cases, options.points);
+    study.basis = batch::basisOf(study.plan, experiment);
+    study.folder = folder / experiment.slug();
+    return study;
+}
+
+/// The table that had least time so far, of those with runs left.
+Study* nextOf(std::vector<Study>& studies) {
+    Study* next = nullptr;
+    for (Study& study : studies) {
+        if (study.left() > 0 && (!next || study.spentS < next->spentS)) next = &study;
     }
-    fmt::print("{}\n", (own / "sensitivity.md").string());
+    return next;
+}
+
+void print(const Study& study) {
+    if (study.outcomes.empty()) return;
+    const batch::Outcome& base = study.outcomes.front();
+    if (!base.error.empty()) fmt::print("{}: {}\n", study.experiment().id, base.error);
+    for (std::size_t i = 0; i < base.claims.size(); ++i) {
+        fmt::print("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
+                   batch::dependence(study.outcomes, i), batch::restsOn(study.outcomes, i));
+    }
+    fmt::print("{}\n", (study.folder / "sensitivity.md").string());
 }
 
 }  // namespace
 
 int sensitivity(const Context& context, const SensitivityOptions& options) {
+    const Clock::time_point begin = Clock::now();
+    const double budgetS = options.budget.empty() ? std::numeric_limits<double>::infinity()
+                                                  : batch::parseBudgetS(options.budget);
     const fs::path folder =
         options.out.empty() ? batch::defaultRunPath("sensitivity") : fs::path(options.out);
+    const std::string deviceClass = deviceClassFor(options.selection);
+    std::vector<Study> studies;
+    std::size_t total = 0, made = 0;
     for (const std::string& file : findPaperConfigs(options.selection.names)) {
-        analyse(context, file, options, folder);
+        auto study = studyOf(context, file, options, deviceClass, folder);
+        if (!study) continue;
+        total += study->variations.runs.size();
+        studies.push_back(std::move(*study));
+    }
+    if (!options.from.empty()) {
+        const batch::StoredRun run = batch::readRun(options.from);
+        for (Study& study : studies) takeBase(run, study);
+    }
+    while (Study* study = nextOf(studies)) {
+        if (secondsSince(begin) >= budgetS) break;
+        const Clock::time_point start = Clock::now();
+        const batch::Outcome& outcome =
+            study->outcomes.emplace_back(outcomeOf(*study, options.selection));
+        study->spentS += secondsSince(start);
+        write(*study, options.keep);
+        fmt::print(stderr, "[{}/{}] {} {}{}\n", ++made, total, study->experiment().id,
+                   outcome.variation.title(), outcome.error.empty() ? "" : ": " + outcome.error);
+        // Without verdicts as configured there is nothing to compare with.
+        if (outcome.variation.assumption.empty() && !outcome.error.empty()) {
+            study->variations.runs.resize(1);
+        }
+    }
+    for (const Study& study : studies) print(study);
+    if (!options.keep.empty() && fs::is_directory(options.keep)) {
+        writeFileAtomic(fs::path(options.keep) / "README.md",
+                        batch::sensitivityIndex(options.keep, context.commandLine));
     }
     return kExitOk;
 }

@@ -124,7 +124,10 @@ std::vector<Assumption> readAssumptions(const Node& node) {
         requireKeys(entry, what, keysOf("assumption"));
         const Node* why = entry.find("why");
         if (!why) throw Error(node.keyLocation(name), what + " needs 'why'");
-        Assumption assumption{name, {}, {}, {}, lineOf(*why, what + ": why")};
+        Assumption assumption;
+        assumption.name = name;
+        assumption.why = lineOf(*why, what + ": why");
+        assumption.location = node.keyLocation(name);
         if (const Node* value = entry.find("value")) assumption.value = *value;
         if (const Node* range = entry.find("range")) assumption.range = *range;
         if (const Node* unit = entry.find("unit")) assumption.unit = lineOf(*unit, what + ": unit");
@@ -135,8 +138,8 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key :
-         {"scene", "params", "output", "sweep", "measure", "layout", "claims", "plots"}) {
+    for (const char* key : {"scene", "scene_seed", "scene_instead", "params", "params_instead",
+                            "output", "sweep", "measure", "layout", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -148,6 +151,12 @@ void requireOnlyPrinted(const Node& document) {
     }
 }
 
+long long sceneSeed(const Node& node) {
+    const auto seed = node.tryInteger();
+    if (!seed || *seed < 0) throwNotAllowed(node, "scene_seed", "a whole number, at least 0");
+    return *seed;
+}
+
 void readMeasurement(const Node& document, Experiment& experiment) {
     const auto section = [&](const char* key) {
         const Node* node = document.find(key);
@@ -157,7 +166,20 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     experiment.params = section("params");
     if (experiment.params.isNull()) experiment.params = Node::map({}, document.location());
     if (!experiment.params.isMap()) throwNotAllowed(experiment.params, "params", "a map");
+    experiment.paramsInstead = section("params_instead");
+    if (experiment.paramsInstead.isNull()) experiment.paramsInstead = Node::map({});
+    if (!experiment.paramsInstead.isMap()) {
+        throwNotAllowed(experiment.paramsInstead, "params_instead", "a map");
+    }
+    for (const auto& [name, value] : experiment.paramsInstead.entries()) {
+        if (Node* given = experiment.params.find(name)) *given = value;
+    }
     experiment.scene = section("scene");
+    if (const Node* seed = document.find("scene_seed")) experiment.sceneSeed = sceneSeed(*seed);
+    experiment.sceneInstead = section("scene_instead");
+    if (!experiment.sceneInstead.isNull() && !experiment.sceneInstead.isMap()) {
+        throwNotAllowed(experiment.sceneInstead, "scene_instead", "a map {scene: scene}");
+    }
     experiment.sweep = section("sweep");
     Params output(section("output"), "output");
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
@@ -228,6 +250,13 @@ Measure readMeasure(Params& params) {
                       {"runs of the case, each in a process of its own", "", 1, kMax});
     measure.frames = params.getInt("frames", measure.frames,
                                    {"frames of a path; each is repeated", "", 1, kMax});
+    measure.sceneSeeds = params.getInt(
+        "scene_seeds", measure.sceneSeeds,
+        {"seeds of a generated scene, from the catalogue's on: a case each", "", 1, 1000});
+    if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
+        throw Error(params.locationOf("scene_seeds"),
+                    "'scene_seeds' needs the quality lane: a time varies by the process");
+    }
     measure.timeLimitS =
         params.getDouble("time_limit_s", measure.timeLimitS,
                          {"of the whole case, scene loading included", "seconds", 1e-3, 1e9});

@@ -38,10 +38,11 @@ std::vector<AxisPoint> expandSweep(const Node& sweep);
 struct Measure {
     enum class Lane { Quality, Timing };
     Lane lane = Lane::Quality;
-    int warmup = 0;     // iterations before the first measured one
-    int repeats = 1;    // measured iterations in one process
-    int processes = 1;  // times the case is run, in a process of its own each if more than 1
-    int frames = 1;     // frames of a path; each is repeated
+    int warmup = 0;      // iterations before the first measured one
+    int repeats = 1;     // measured iterations in one process
+    int processes = 1;   // times the case is run, in a process of its own each if more than 1
+    int frames = 1;      // frames of a path; each is repeated
+    int sceneSeeds = 1;  // samples of a generated scene: its seed and those that follow it
     double timeLimitS = 120.0;       // of the whole case, scene loading included
     long long memoryLimitBytes = 0;  // resident; 0: none
 };
@@ -160,13 +161,21 @@ struct PlotSpec {
     SourceLocation location;
 };
 
-/// `assumptions:` — what the paper left open.
+/// The assumptions that are bound to what a case has beside its parameters.
+inline constexpr const char* kOutputAssumption = "output";
+inline constexpr const char* kSceneAssumption = "scene";
+inline constexpr const char* kSceneSeedAssumption = "scene_seed";
+
+/// `assumptions:` — what the paper left open. One that names a parameter of the technique,
+/// `output`, `scene` or `scene_seed` is bound to it: value and unit are those of the cases.
 struct Assumption {
-    std::string name;  // a parameter, `scene`, or free text
-    Node value;
+    std::string name;
+    Node value;  // bound: filled in when the cases are resolved
     Node range;
     std::string unit;
     std::string why;
+    bool isBound = false;
+    SourceLocation location = {};  // of the name
 };
 
 struct Experiment {
@@ -176,8 +185,11 @@ struct Experiment {
     std::string title;
     std::filesystem::path file;
     std::string technique;
-    Node params;  // a map, before the sweep is laid over it
-    Node scene;   // null, or a reference
+    Node params;         // a map, before the sweep is laid over it
+    Node paramsInstead;  // a map: in cases that take them, instead of values and defaults
+    Node scene;          // null, or a reference
+    std::optional<long long> sceneSeed;  // of generated scenes, instead of the catalogue's
+    Node sceneInstead;  // null, or a map: catalogued scene → the one that takes its place
     int outputWidthPx = 512;
     int outputHeightPx = 512;
     Node sweep;

@@ -108,7 +108,8 @@ Params::Params(Node values, std::string owner)
 const Node* Params::declare(std::string_view name, ParamInfo info) {
     for (const ParamInfo& known : declared_) GFXREPRO_ASSERT(known.name != name);
     declared_.push_back(std::move(info));
-    return values_.find(name);
+    const Node* given = values_.find(name);
+    return given ? given : offered_.find(name);
 }
 
 int Params::getInt(std::string_view name, int fallback, const ParamSpec& spec) {
@@ -232,6 +233,7 @@ std::size_t Params::getChoice(std::string_view name, std::size_t fallback,
 
 SourceLocation Params::locationOf(std::string_view name) const {
     const Node* given = values_.find(name);
+    if (!given) given = offered_.find(name);
     return given ? given->location() : values_.location();
 }
 
@@ -250,13 +252,15 @@ void Params::refuseGiven(std::initializer_list<std::string_view> names,
 void Params::finish() const {
     std::vector<std::string> names;
     for (const ParamInfo& info : declared_) names.push_back(info.name);
-    for (const auto& [key, value] : values_.entries()) {
-        if (std::find(names.begin(), names.end(), key) != names.end()) continue;
-        const std::string near = suggestion(key, names);
-        const std::string hint = !near.empty()   ? near
-                                 : names.empty() ? "; it has none"
-                                                 : "; allowed: " + joined(names);
-        throw Error(values_.keyLocation(key), owner_ + ": unknown parameter '" + key + "'" + hint);
+    for (const Node* map : {&values_, &offered_}) {
+        for (const auto& [key, value] : map->entries()) {
+            if (std::find(names.begin(), names.end(), key) != names.end()) continue;
+            const std::string near = suggestion(key, names);
+            const std::string hint = !near.empty()   ? near
+                                     : names.empty() ? "; it has none"
+                                                     : "; allowed: " + joined(names);
+            throw Error(map->keyLocation(key), owner_ + ": unknown parameter '" + key + "'" + hint);
+        }
     }
 }
 

@@ -55,6 +55,10 @@ class Params {
     /// 'marching'").
     Params(Node values, std::string owner);
 
+    /// Values that take the place of declared defaults. They count as not given: a parameter that
+    /// nothing reads is not refused for them.
+    void offer(Node defaults) { offered_ = std::move(defaults); }
+
     int getInt(std::string_view name, int fallback, const ParamSpec& spec);
     double getDouble(std::string_view name, double fallback, const ParamSpec& spec);
     bool getBool(std::string_view name, bool fallback, const ParamSpec& spec);
@@ -102,6 +106,7 @@ class Params {
     const Node* declare(std::string_view name, ParamInfo info);
 
     Node values_;
+    Node offered_ = Node::map({});
     std::string owner_;
     Node resolved_;
     std::vector<ParamInfo> declared_;

@@ -54,7 +54,18 @@ SchemaSection content() {
          {"technique", "name", "none", "what measures; without it the file is only `printed`",
           text()},
          {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
+         {"scene_seed",
+          "whole number",
+          "the catalogue's",
+          "of every generated scene",
+          {{"type", "integer"}, {"minimum", 0}}},
+         {"scene_instead", "{scene: scene}", "{}",
+          "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
+          mapOf(text())},
          {"params", "{name: value}", "{}", "of the technique: `gfxrepro describe TECHNIQUE`",
+          mapOf(anything())},
+         {"params_instead", "{name: value}", "{}",
+          "takes the place of a parameter's value or default in the cases that take it",
           mapOf(anything())},
          {"output", "map", "512 × 512", "size of the image", refTo("output")},
          {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
@@ -67,7 +78,7 @@ SchemaSection content() {
          {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
           listOf(refTo("plot"))},
          {"assumptions", "{NAME: assumption}", "{}",
-          "what the paper left open: a parameter, `scene`, or free text",
+          "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, or free text",
           mapOf(refTo("assumption_part"))}}};
 }
 
@@ -177,10 +188,11 @@ SchemaSection assumption() {
     return {"assumption",
             "assumptions.NAME.",
             "",
-            {{"value", "value", "none", "what is taken", anything()},
-             {"range", "[values] | [first, last]", "none",
-              "what `gfxrepro sensitivity` tries instead", anything()},
-             {"unit", "line", "none", "of value and range", text()},
+            {{"value", "value", "the cases'",
+              "what is taken: of free text alone, a parameter's is filled in", anything()},
+             {"range", "[values] | [first, last] | {scene: [scenes]}", "none",
+              "what `gfxrepro sensitivity` tries instead; a parameter's as it allows", anything()},
+             {"unit", "line", "the parameter's", "of value and range: of free text alone", text()},
              {"why", "line", "required", "why this value", text()}},
             false};
 }

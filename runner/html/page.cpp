@@ -69,7 +69,7 @@ std::string claimsHtml(const Page& page, const Model& model) {
     if (model.isComparison()) html += "<th>run</th>";
     html +=
         "<th>verdict</th><th>whose</th><th>what it says</th><th>required</th><th>measured</th>"
-        "<th>why</th></tr></thead>\n<tbody>\n";
+        "<th>why</th><th>rests on</th></tr></thead>\n<tbody>\n";
     for (const report::ClaimResult* claim : claims) {
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
             for (const report::ClaimResult& result : page.parts[run].claims) {
@@ -78,10 +78,10 @@ std::string claimsHtml(const Page& page, const Model& model) {
                 if (model.isComparison()) html += fmt::format("<td>{}</td>", Model::letter(run));
                 html += fmt::format(
                     "<td>{}{}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"measured\">{}</td>"
-                    "<td class=\"soft\">{}</td></tr>\n",
+                    "<td class=\"soft\">{}</td><td class=\"soft\">{}</td></tr>\n",
                     verdictBadge(result.verdict), newsHtml(result), whoseHtml(result),
                     escapeXml(result.text), requiredHtml(result), escapeXml(result.measured),
-                    whyHtml(result));
+                    whyHtml(result), escapeXml(result.restsOn));
             }
         }
     }

@@ -1,5 +1,6 @@
 #include "runner/report/case_records.h"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -37,19 +38,22 @@ std::optional<std::string> valueIn(const Json& params, const std::string& axis) 
     return jsonText(*value);
 }
 
-AxisValues axesOf(const Record& record, const std::vector<std::string>& axes) {
-    Json params;
-    if (!record.params.empty()) {
-        try {
-            params = Json::parse(record.params);
-        } catch (const Json::exception& error) {
-            throw Error("case " + record.caseId + " of " + record.table +
-                        ": its params are not JSON: " + error.what());
-        }
+Json paramsOf(const Record& record) {
+    if (record.params.empty()) return {};
+    try {
+        return Json::parse(record.params);
+    } catch (const Json::exception& error) {
+        throw Error("case " + record.caseId + " of " + record.table +
+                    ": its params are not JSON: " + error.what());
     }
+}
+
+AxisValues axesOf(const Record& record, const Json& params, const std::vector<std::string>& axes) {
     AxisValues values;
     for (const std::string& axis : axes) {
-        if (axis == "scene" && !record.scene.empty()) {
+        if (const auto named = valueIn(params, kStandsFor); axis == "scene" && named) {
+            values.push_back(named);
+        } else if (axis == "scene" && !record.scene.empty()) {
             values.emplace_back(record.scene);
         } else if (axis == "method" && !record.method.empty()) {
             values.emplace_back(record.method);
@@ -58,6 +62,22 @@ AxisValues axesOf(const Record& record, const std::vector<std::string>& axes) {
         }
     }
     return values;
+}
+
+/// What of a case's identity stays when its scene is taken at another seed; and that seed's number.
+struct Family {
+    std::string name;
+    std::optional<int> sample;
+};
+
+Family familyOf(const Record& record, Json params) {
+    const Json* sample = findPath(params, kSceneSample);
+    if (!sample) return {record.caseId, std::nullopt};
+    const int number = sample->get<int>();
+    const std::string scene = valueIn(params, kStandsFor).value_or(record.scene);
+    params.erase(kSceneSample);
+    params.erase(kStandsFor);
+    return {scene + params.dump(), number};
 }
 
 std::optional<std::string> plannedValue(const config::CaseSpec& spec, const Json& params,
@@ -95,19 +115,48 @@ std::vector<const Record*> CaseRecords::Attempt::values(std::string_view metric,
 
 std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,
                                      const std::vector<std::string>& axes) {
+    constexpr int kMostProcesses = 1'000'000;  // of a case: config::readMeasure
+    struct Place {
+        std::size_t index;  // in `cases`
+        int firstProcess;
+    };
     std::vector<CaseRecords> cases;
-    std::unordered_map<std::string_view, std::size_t> indices;
+    std::vector<bool> isSeeded;
+    std::unordered_map<std::string, std::size_t> families;
+    std::unordered_map<std::string_view, Place> places;
+    int seedCount = 1;
     for (const Record& record : records) {
         if (record.table != table || record.isControl()) continue;
-        const auto [found, isNew] = indices.try_emplace(record.caseId, cases.size());
-        if (isNew) cases.push_back({record.caseId, axesOf(record, axes), {}});
-        CaseRecords::Attempt& attempt = cases[found->second].processes[record.process];
+        const auto [found, isNew] = places.try_emplace(record.caseId, Place{0, 0});
+        if (isNew) {
+            const Json params = paramsOf(record);
+            const Family family = familyOf(record, params);
+            const auto [known, isFirst] = families.try_emplace(family.name, cases.size());
+            if (isFirst) {
+                cases.push_back({record.caseId, axesOf(record, params, axes), {}});
+                isSeeded.push_back(family.sample.has_value());
+            }
+            found->second = {known->second, family.sample.value_or(0) * kMostProcesses};
+            seedCount = std::max(seedCount, family.sample.value_or(0) + 1);
+        }
+        const Place& place = found->second;
+        CaseRecords::Attempt& attempt =
+            cases[place.index].processes[place.firstProcess + record.process];
         if (record.status != Status::Ok && std::isnan(record.value)) {
             attempt.rows.clear();
             attempt.failure = &record;
         } else {
             attempt.failure = nullptr;
             attempt.rows[{record.metric, record.pass, record.frame, record.repeat}] = &record;
+        }
+    }
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (isSeeded[i]) continue;
+        const auto once = cases[i].processes;
+        for (int seed = 1; seed < seedCount; ++seed) {
+            for (const auto& [process, attempt] : once) {
+                cases[i].processes[seed * kMostProcesses + process] = attempt;
+            }
         }
     }
     return cases;

@@ -14,13 +14,20 @@
 
 namespace gfxrepro::report {
 
+/// In a record's params: the scene of the table whose place the record's scene takes, and which of
+/// the seeds of a generated scene it has, from 0.
+inline constexpr const char* kStandsFor = "stands_for";
+inline constexpr const char* kSceneSample = "scene_sample";
+
 /// One text for one value, however it is spelt: 64 and 64.0, or a scene as text or as a map.
 std::string canonicalText(const config::Node& value);
 
 /// The values of a case beside a list of axes; empty where the case has none, or it is not known.
 using AxisValues = std::vector<std::optional<std::string>>;
 
-/// A case that was run, with the last attempt of each of its processes.
+/// A case that was run, with the last attempt of each of its processes. Where scenes were taken at
+/// several seeds, a seed is to a case what a process is to a time: cases that differ by it alone
+/// are one, whose process k has the k-th seed.
 struct CaseRecords {
     struct Place {
         std::string_view metric;
@@ -43,6 +50,7 @@ struct CaseRecords {
 
 /// The cases of `table` in the order of their first records, which must outlive the result. A later
 /// row of a case replaces an earlier one of the same place; a failure replaces all before it.
+/// Beside cases at several seeds those without a seed count at each.
 std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,
                                      const std::vector<std::string>& axes);
 

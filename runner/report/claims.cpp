@@ -166,6 +166,17 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
     return result;
 }
 
+/// Kept results tell nothing of a verdict that they do not start from.
+std::string restsOn(const ClaimResult& result, const KeptSensitivity& tried) {
+    if (result.verdict == Verdict::NotApplicable || result.verdict == Verdict::Unmeasured) {
+        return "";
+    }
+    const auto found = tried.find({result.table, result.id});
+    if (found == tried.end()) return "not tried";
+    if (found->second.verdict == result.verdict) return found->second.restsOn;
+    return fmt::format("not tried: {} then", verdictName(found->second.verdict));
+}
+
 }  // namespace
 
 Verdict verdictFromName(std::string_view name) {
@@ -200,6 +211,7 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, co
     for (const ClaimSpec& claim : experiment.claims) {
         results.push_back(claim.across ? evaluate(claim, tableFor(claim, table), context)
                                        : evaluate(claim, table, context));
+        results.back().restsOn = restsOn(results.back(), context.tried);
     }
     return results;
 }

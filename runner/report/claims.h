@@ -1,9 +1,11 @@
 // Claims: what the paper says must follow from its table, judged on the measured one.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runner/config/experiment.h"
@@ -17,13 +19,22 @@ std::string_view verdictName(Verdict verdict);
 /// Throws Error for a name that is none.
 Verdict verdictFromName(std::string_view name);
 
-/// Where the run took place, as far as claims ask.
+/// What kept results of `gfxrepro sensitivity` say of a claim.
+struct TriedClaim {
+    Verdict verdict = Verdict::Unmeasured;  // as configured, when it was tried
+    std::string restsOn;                    // "bias, scene_seed (of 5 tried)"
+};
+/// By table and claim.
+using KeptSensitivity = std::map<std::pair<std::string, std::string>, TriedClaim>;
+
+/// Where the run took place, as far as claims ask, and what is known of them.
 struct ReportContext {
     std::string device;       // renderer, for people: "llvmpipe (LLVM 15.0.6, 256 bits)"
     std::string deviceClass;  // "software" | "gpu"
     std::string profile;      // "quick" | "full" | "paper"
     std::string commit;       // of the program
     std::string command;      // of the whole run, for people
+    KeptSensitivity tried = {};
 };
 
 struct ClaimResult {
@@ -50,6 +61,10 @@ struct ClaimResult {
         return (verdict == Verdict::Holds && known == Verdict::Fails) ||
                (verdict == Verdict::Fails && known == Verdict::Holds);
     }
+
+    /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not
+    /// tried"; empty where there is no verdict.
+    std::string restsOn = {};
 };
 
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required

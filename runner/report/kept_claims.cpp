@@ -10,8 +10,6 @@
 
 namespace gfxrepro::report {
 
-namespace {
-
 Verdict verdictAt(const SourceLocation& where, const std::string& name) {
     try {
         return verdictFromName(name);
@@ -19,6 +17,8 @@ Verdict verdictAt(const SourceLocation& where, const std::string& name) {
         throw Error(where, error.what());
     }
 }
+
+namespace {
 
 /// The enumerator whose name it is; none for an empty or unknown one.
 template <class Value, std::size_t kCount>
@@ -54,6 +54,7 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
         claim.margin = row["margin"];
         claim.reason = row["reason"];
         claim.because = row["because"];
+        claim.restsOn = row["rests_on"];
         if (!row["known"].empty()) claim.known = verdictAt(reader.location(), row["known"]);
         claim.origin =
             valueOf<Spec::Origin>(config::kOrigins, row["origin"]).value_or(claim.origin);

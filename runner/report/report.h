@@ -29,14 +29,17 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
                                         const ReportContext& context);
 
 /// The columns of claims.csv.
-inline constexpr std::array<std::string_view, 14> kClaimsColumns = {
-    "claim",   "table", "device",   "profile",  "origin", "bound_from", "kind",
-    "verdict", "known", "measured", "required", "margin", "reason",     "because"};
+inline constexpr std::array<std::string_view, 15> kClaimsColumns = {
+    "claim", "table",    "device",   "profile", "origin", "bound_from", "kind",    "verdict",
+    "known", "measured", "required", "margin",  "reason", "because",    "rests_on"};
 
 /// claims.csv (kClaimsColumns) and junit.xml (a failed claim is a failure, one that could not be
 /// judged is skipped).
 void writeClaims(const std::filesystem::path& runDir, const std::vector<ClaimResult>& results,
                  const ReportContext& context);
+
+/// The verdict of that name. Throws Error at `where` for a name that is none.
+Verdict verdictAt(const SourceLocation& where, const std::string& name);
 
 /// claims.csv as writeClaims() wrote it, in older forms too (then nothing is known of a claim's
 /// origin); what a claim says is not kept there. Throws Error with file and line.

@@ -128,7 +128,7 @@ std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportConte
         row.text(config::originName(result.origin)).text(bound).text(kind);
         row.text(verdictName(result.verdict)).text(verdictName(result.known));
         row.text(result.measured).text(result.required).text(result.margin).text(result.reason);
-        row.text(result.because).end();
+        row.text(result.because).text(result.restsOn).end();
     }
     return text;
 }

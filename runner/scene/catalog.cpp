@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "runner/config/schema.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
 #include "runner/image/png_io.h"
+#include "runner/scene/catalog_entry.h"
 #include "runner/scene/generators.h"
 #include "runner/scene/generators_terrain.h"
 #include "runner/scene/load.h"
@@ -20,177 +20,6 @@ namespace fs = std::filesystem;
 using config::Node;
 
 namespace {
-
-void requireKeys(const Node& map, const std::string& what, std::string_view section) {
-    if (!map.isMap()) {
-        throw Error(map.location(), what + " is " + map.kindName() + ", but must be a map");
-    }
-    const std::vector<std::string> names = config::keysOf(section);
-    for (const auto& [key, value] : map.entries()) {
-        if (std::find(names.begin(), names.end(), key) != names.end()) continue;
-        throw Error(map.keyLocation(key), what + ": unknown key '" + key + "'" +
-                                              suggestion(key, names) +
-                                              " (allowed: " + joined(names) + ")");
-    }
-}
-
-const Node& required(const Node& map, const std::string& what, std::string_view key) {
-    const Node* value = map.find(key);
-    if (!value) throw Error(map.location(), what + ": '" + std::string(key) + "' is missing");
-    return *value;
-}
-
-std::optional<long long> readCount(const Node& source, const std::string& key,
-                                   const std::string& of) {
-    const Node* node = source.find(key);
-    if (!node) return std::nullopt;
-    const long long count = node->asInteger();
-    if (count < 1) {
-        throw Error(node->location(),
-                    key + " is " + node->text() + "; allowed: a number of " + of + ", at least 1");
-    }
-    return count;
-}
-
-SceneSource readFileSource(const Node& node) {
-    requireKeys(node, "source", "file_source");
-    SceneSource source;
-    const Node& file = required(node, "source", "file");
-    source.file = file.text();
-    if (source.file.empty() || fs::path(source.file).is_absolute()) {
-        throw Error(file.location(),
-                    "file is '" + source.file + "', but must be a path within the assets folder");
-    }
-    source.refineTo = readCount(node, "refine_to", "triangles");
-    source.points = readCount(node, "points", "points");
-    if (const Node* up = node.find("up")) {
-        if (up->text() != "y" && up->text() != "z") {
-            throw Error(up->location(), "up is '" + up->text() + "'; allowed: y | z");
-        }
-        source.isZUp = up->text() == "z";
-    }
-    if (source.refineTo || source.points) source.kind = Origin::Kind::StandIn;
-    return source;
-}
-
-float readPositive(const Node& node, const std::string& key) {
-    const double value = node.asDouble();
-    if (value > 0.0 && value <= 1e6) return static_cast<float>(value);
-    throw Error(node.location(),
-                fmt::format("{} is {}; allowed: above 0, at most 1e6", key, node.text()));
-}
-
-SceneSource readHeightMapSource(const Node& node) {
-    requireKeys(node, "source", "height_map_source");
-    SceneSource source;
-    const Node& file = required(node, "source", "height_map");
-    source.file = file.text();
-    if (source.file.empty() || fs::path(source.file).is_absolute()) {
-        throw Error(file.location(),
-                    fmt::format("height_map is '{}', but must be a path within the assets folder",
-                                source.file));
-    }
-    HeightMapSource map;
-    map.units.spacingM = readPositive(required(node, "source", "spacing_m"), "spacing_m");
-    if (const Node* scale = node.find("height_scale_m")) {
-        map.units.heightScaleM = readPositive(*scale, "height_scale_m");
-    }
-    if (const Node* noData = node.find("no_data")) {
-        map.units.noData = static_cast<float>(noData->asDouble());
-    }
-    if (const auto samples = readCount(node, "resample_to", "samples")) {
-        if (*samples > kMaxHeightMapSide) {
-            throw Error(
-                node.find("resample_to")->location(),
-                fmt::format("resample_to is {}; allowed: 1 to {}", *samples, kMaxHeightMapSide));
-        }
-        map.resampleTo = static_cast<int>(*samples);
-        source.kind = Origin::Kind::StandIn;
-    }
-    if (const Node* detail = node.find("detail_m")) {
-        if (!map.resampleTo) {
-            throw Error(detail->location(), "detail_m needs resample_to, whose gaps it fills");
-        }
-        map.detailM = readPositive(*detail, "detail_m");
-    }
-    if (const Node* seed = node.find("seed")) {
-        source.seed = static_cast<std::uint64_t>(seed->asInteger());
-    }
-    if (const Node* colours = node.find("colour_map")) {
-        map.colourMap = colours->text();
-        if (map.colourMap.empty() || fs::path(map.colourMap).is_absolute()) {
-            throw Error(colours->location(),
-                        fmt::format("colour_map is '{}', but must be a path within the assets "
-                                    "folder",
-                                    map.colourMap));
-        }
-    }
-    source.heightMap = map;
-    return source;
-}
-
-SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
-    requireKeys(node, "source", "generator_source");
-    SceneSource source;
-    const Node& generator = required(node, "source", "generator");
-    source.generator = findGenerator(generator.text(), generator.location()).name;
-    if (const Node* params = node.find("params")) source.params = *params;
-    if (const Node* seed = node.find("seed")) {
-        const long long value = seed->asInteger();
-        if (value < 0) {
-            throw Error(seed->location(), "seed is " + seed->text() + "; allowed: at least 0");
-        }
-        source.seed = static_cast<std::uint64_t>(value);
-    }
-    source.points = readCount(node, "points", "points");
-    source.kind = isGenerated ? Origin::Kind::Generated : Origin::Kind::StandIn;
-    return source;
-}
-
-SceneSource readSource(const Node& node, bool isGenerated) {
-    if (!node.isMap()) {
-        throw Error(node.location(), "source is " + node.kindName() + ", but must be a map");
-    }
-    if (node.find("file") && node.find("generator")) {
-        throw Error(node.location(), "source: 'file' and 'generator' exclude each other");
-    }
-    const bool isFile = node.find("generator") == nullptr;
-    if (isFile && isGenerated) {
-        throw Error(node.location(), "source: a file cannot be the source of a generated scene");
-    }
-    const bool isHeightMap = isFile && node.find("height_map") != nullptr;
-    SceneSource source = isHeightMap ? readHeightMapSource(node)
-                         : isFile    ? readFileSource(node)
-                                     : readGeneratorSource(node, isGenerated);
-    source.where = node.location();
-    return source;
-}
-
-SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
-    const Node root = config::parseYamlFile(path);
-    requireKeys(root, "scene entry", "scene");
-    SceneEntry entry;
-    entry.path = path;
-    const Node& name = required(root, "scene entry", "scene");
-    entry.name = name.text();
-    if (entry.name != expectedName) {
-        throw Error(name.location(), "scene is '" + entry.name +
-                                         "', but the file's place names it '" + expectedName + "'");
-    }
-    entry.doc = required(root, "scene entry", "doc").text();
-    if (const Node* canonical = root.find("canonical")) entry.canonical = canonical->text();
-    if (const Node* licence = root.find("licence")) entry.licence = licence->text();
-    const Node* generated = root.find("generated");
-    const bool isGenerated = generated && generated->asBool();
-    const Node& sources = required(root, "scene entry", "sources");
-    for (const Node& source : sources.items()) {
-        entry.sources.push_back(readSource(source, isGenerated));
-    }
-    if (entry.sources.empty()) {
-        throw Error(sources.location(), "sources is empty; an entry needs at least one");
-    }
-    return entry;
-}
 
 /// "file, refined to N triangles" or "generator g, seed n: {params}".
 std::string descriptionOf(const SceneSource& source) {
@@ -285,6 +114,9 @@ std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source
                                  how.resampleTo.value_or(0), how.detailM, source.seed);
 }
 
+/// Stands between the name of a scene and its seed.
+constexpr char kSeedMark = '@';
+
 bool isUserFile(const std::string& reference) {
     return fs::path(reference).has_extension();
 }
@@ -317,7 +149,43 @@ const SceneEntry& Catalog::entryNamed(const Node& reference) const {
                                           " (`gfxrepro list scenes` prints all)");
 }
 
+bool SceneSource::isSeeded() const {
+    if (!generator.empty()) return findGenerator(generator, where).isSeeded;
+    return heightMap && heightMap->detailM > 0.0F;
+}
+
+Node withSeed(const Node& reference, std::uint64_t seed) {
+    const std::string& text = reference.text();
+    return Node::scalar(
+        fmt::format("{}{}{}", text.substr(0, text.find(kSeedMark)), kSeedMark, seed),
+        reference.location());
+}
+
 SceneSource Catalog::resolve(const Node& reference) const {
+    const std::string& text = reference.text();
+    const std::size_t mark = text.find(kSeedMark);
+    if (mark == std::string::npos || isUserFile(text)) return sourceOf(reference);
+    const std::string name = text.substr(0, mark), seed = text.substr(mark + 1);
+    const auto number = parseInteger(seed);
+    if (!number || *number < 0) {
+        throw Error(
+            reference.location(),
+            fmt::format("the seed of scene '{}' is '{}'; allowed: a whole number, at least 0", name,
+                        seed));
+    }
+    SceneSource source = sourceOf(Node::scalar(name, reference.location()));
+    if (!source.isSeeded()) {
+        throw Error(
+            reference.location(),
+            fmt::format("scene '{}' has no seed: it is {}", name,
+                        source.file.empty() ? "the only one of generator " + source.generator
+                                            : "the file " + source.file));
+    }
+    source.seed = static_cast<std::uint64_t>(*number);
+    return source;
+}
+
+SceneSource Catalog::sourceOf(const Node& reference) const {
     const std::string& name = reference.text();
     if (isUserFile(name)) {
         SceneSource source;

@@ -38,7 +38,14 @@ struct SceneSource {
     std::uint64_t seed = 1;
     Origin::Kind kind = Origin::Kind::Real;
     SourceLocation where;
+
+    /// Whether another seed makes another scene.
+    bool isSeeded() const;
 };
+
+/// The generated scene at another seed than the catalogue's: "outdoor/city@3". A seed that
+/// `reference` has already is replaced.
+config::Node withSeed(const config::Node& reference, std::uint64_t seed);
 
 struct SceneEntry {
     std::string name;  // "models/dragon" = configs/scenes/models/dragon.yaml
@@ -57,7 +64,8 @@ class Catalog {
     const std::map<std::string, SceneEntry>& entries() const { return entries_; }
 
     /// The source that load() would take: the first whose file is there, or a generator.
-    /// A reference with a file extension is a user's own file, relative to the file that names it.
+    /// A reference with a file extension is a user's own file, relative to the file that names it;
+    /// one with a seed ("outdoor/city@3") is a generated scene of that seed instead of its own.
     /// Throws Error for unknown names (with the nearest) and for entries none of whose sources is
     /// at hand (with where it looked and how to get it).
     SceneSource resolve(const config::Node& reference) const;
@@ -75,6 +83,7 @@ class Catalog {
         std::string sha256;
     };
     const SceneEntry& entryNamed(const config::Node& reference) const;
+    SceneSource sourceOf(const config::Node& reference) const;
 
     std::filesystem::path assetsFolder_;
     std::map<std::string, SceneEntry> entries_;

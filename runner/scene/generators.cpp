@@ -197,7 +197,7 @@ constexpr GeneratorInfo kGenerators[] = {
     {"bathroom", "a bathroom with 15 reflectors: tub, basin, toilet, taps, mirrors", &bathroom},
     {"bird_nest", "twigs woven into a bowl, with eggs, on a branch", &birdNest},
     {"city", "a downtown seen from above: streets, towers, houses, trees and cars", &city},
-    {"four_objects", "four boxes, one of which two views do not see", &fourObjects},
+    {"four_objects", "four boxes, one of which two views do not see", &fourObjects, false},
     {"grass", "bent blades on uneven ground", &grass},
     {"living_room", "a furnished room with 25 reflective objects", &livingRoom},
     {"object_on_plane", "a shape that stands on a plane, and plates close above it",

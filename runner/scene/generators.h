@@ -19,6 +19,7 @@ struct GeneratorInfo {
     std::string_view name;
     std::string_view summary;
     Scene (*generate)(config::Params& params, std::uint64_t seed);
+    bool isSeeded = true;  // false: every seed makes the same scene
 };
 
 std::span<const GeneratorInfo> generators();

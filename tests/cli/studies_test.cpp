@@ -16,27 +16,101 @@ const char* const kClaim =
     "layout:\n  rows: behaviour\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n"
     "claims:\n  small: {says: the number is small, bound: n, below: 6}\n"
     "  any: {says: the number is there, bound: n, above: -1}\n"
-    "assumptions:\n  number: {value: 3, range: [0, 10], why: left open}\n"
-    "  scene: {value: none, range: any, why: left open}\n";
+    "assumptions:\n  number: {range: [0, 10], why: left open}\n"
+    "  place: {value: none, range: any, why: left open}\n";
+
+std::vector<std::string> sensitivityCommand(const std::string& config, const std::string& out) {
+    return {"sensitivity", config, "--device", "software", "--profile", "full", "--out", out};
+}
 
 TEST(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, kClaim);
     const std::string out = folder.path() / "out";
-    const std::vector<std::string> command = {"sensitivity", config, "--device", "software",
-                                              "--profile",   "full", "--out",    out};
+    const std::vector<std::string> command = sensitivityCommand(config, out);
     const ProcessResult run = mockGfxrepro(command);
     EXPECT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out,
               "sweep/mock small: holds unless number is 10 (flips between 5 and 10, near "
-              "6)\nsweep/mock any: holds under all 4\n" +
+              "6); rests on: number (of 1 tried)\n"
+              "sweep/mock any: holds under all 4; rests on: none of the 1 tried\n" +
                   out + "/sweep-mock/sensitivity.md\n");
     EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.csv"),
-                HasSubstr("number,10,small,fails,10,"));
+                HasSubstr(",number,10,small,fails,10,"));
     EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.md"),
-                HasSubstr("- scene: no parameter of the technique\n"));
+                HasSubstr("- place: no parameter of the technique\n"));
     // Again: the runs are there and only read.
     EXPECT_EQ(mockGfxrepro(command).out, run.out);
+}
+
+TEST(Sensitivity, GoesOnAfterAVariationThatCannotBeMeasured) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, std::string(kClaim) + "  pause_ms: {range: [100000, 20, 30], why: left open}\n");
+    const std::string out = folder.path() / "out";
+    const ProcessResult run = mockGfxrepro(sensitivityCommand(config, out));
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("sweep/mock any: holds under all 6; rests on: none of the 2 "
+                                   "tried\n"));
+    EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.csv"),
+                HasSubstr(",pause_ms,100000,,,,,,\"exit code 2: gfxrepro: command line, "
+                          "params_instead.pause_ms=100000: technique 'mock': pause_ms is 100000; "
+                          "allowed: a whole number, 0 … 60000 ms\"\n"));
+    EXPECT_EQ(mockGfxrepro({"check", config}).err, "gfxrepro: " + config +
+                                                       ":17:22: technique 'mock': pause_ms is "
+                                                       "100000; allowed: a whole number, 0 … "
+                                                       "60000 ms\n");
+}
+
+TEST(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, kClaim);
+    const std::string run = folder.path() / "run", out = folder.path() / "out";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", run}).exitCode, 0);
+    std::vector<std::string> command = sensitivityCommand(config, out);
+    command.insert(command.end(), {"--from", run, "--budget", "0.001s"});
+    const ProcessResult none = mockGfxrepro(command);
+    EXPECT_EQ(none.exitCode, 0) << none.err;
+    EXPECT_THAT(none.out, HasSubstr("sweep/mock any: holds under all 1; rests on: not tried\n"));
+    command.resize(command.size() - 2);
+    const ProcessResult all = mockGfxrepro(command);
+    EXPECT_THAT(all.out, HasSubstr("sweep/mock any: holds under all 4; rests on: none of the 1 "
+                                   "tried\n"));
+    EXPECT_FALSE(fs::exists(out + "/sweep-mock/as_configured"));
+}
+
+TEST(Sensitivity, ReportsShowWhatIsKept) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, kClaim);
+    // Kept results lie beside the configs.
+    folder.write("configs/scenes/readme", "");
+    const std::string keep = folder.path() / "results/sensitivity";
+    const std::string out = folder.path() / "out", run = folder.path() / "run";
+    std::vector<std::string> command = sensitivityCommand(config, out);
+    command.insert(command.end(), {"--keep", keep});
+    ASSERT_EQ(mockGfxrepro(command).exitCode, 0);
+    EXPECT_EQ(readFile(keep + "/software/full/sweep-mock.csv"),
+              readFile(out + "/sweep-mock/sensitivity.csv"));
+    EXPECT_THAT(readFile(keep + "/README.md"),
+                HasSubstr("## software/full\n| table | none | rests on |\n| --- | --- | --- |\n"
+                          "| [sweep-mock](software/full/sweep-mock.md) | any | small: number (of 1 "
+                          "tried) |\n"));
+    const std::vector<std::string> environment = {"GFXREPRO_DATA=" + folder.path().string()};
+    const auto claims = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments = {
+            GFXREPRO_MOCK_PROGRAM, "reproduce", config,  "--quiet", "--device", "software",
+            "--profile",           "full",      "--out", run};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        fs::remove_all(run);
+        const ProcessResult result = runProgram(arguments, environment);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return readFile(run + "/claims.csv");
+    };
+    EXPECT_THAT(claims({}), HasSubstr("one sample,,number (of 1 tried)\n"));
+    EXPECT_THAT(readFile(run + "/report.html"),
+                HasSubstr("<td class=\"soft\">number (of 1 tried)</td>"));
+    // Of another case they say nothing.
+    EXPECT_THAT(claims({"--set", "number=4"}), HasSubstr("one sample,,not tried\n"));
 }
 
 TEST(Budget, TablesThatDoNotFitAreLeftOutAndNamed) {

@@ -178,9 +178,9 @@ TEST(Report, KeptVerdictsStandBesideARun) {
     const test::TemporaryFolder a, kept;
     const auto file =
         kept.write("claims.csv",
-                   "claim,table,device,profile,verdict,measured,required,margin,reason\n"
-                   "A,zju2005/9.9,gpu,quick,fails,12,draw_ms ≤ 10,-2,\n"
-                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,\n");
+                   "claim,table,device,profile,verdict,measured,required,margin,reason,rests_on\n"
+                   "A,zju2005/9.9,gpu,quick,fails,12,draw_ms ≤ 10,-2,,bias (of 3 tried)\n"
+                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,,\n");
     ReportRun other;
     other.folder = kept.path();
     other.context = kContext;
@@ -192,6 +192,7 @@ TEST(Report, KeptVerdictsStandBesideARun) {
     EXPECT_THAT(html,
                 HasSubstr("<b>A</b> <span class=\"soft\">a &lt; b &amp; &quot;c&quot;</span>"));
     EXPECT_THAT(html, HasSubstr("<section class=\"page\" id=\"zju2005-1.1\">"));
+    EXPECT_THAT(html, HasSubstr("<td class=\"soft\">bias (of 3 tried)</td>"));
 }
 
 TEST(Report, RefusesVerdictsThatAreNone) {

@@ -76,16 +76,20 @@ TEST(Writers, TableFiles) {
 TEST(Writers, ClaimFiles) {
     const Written run;
     const auto tables = buildTables({experiment()}, records());
-    const auto results = evaluateClaims({experiment()}, tables, kContext);
+    ReportContext context = kContext;
+    context.tried[{"zju2005/9.9", "A"}] = {Verdict::Holds, "none of the 5 tried"};
+    context.tried[{"zju2005/9.9", "B"}] = {Verdict::Holds, "bias (of 5 tried)"};
+    const auto results = evaluateClaims({experiment()}, tables, context);
     writeClaims(run.folder.path(), results, kContext);
     EXPECT_EQ(run.read("claims.csv"),
               "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
-              "margin,reason,because\n"
-              "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,8,draw_ms ≤ 10,2,one sample,\n"
+              "margin,reason,because,rests_on\n"
+              "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,8,draw_ms ≤ 10,2,one sample,,"
+              "none of the 5 tried\n"
               "B,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,8,draw_ms ≤ 1,-7,"
-              "one sample,\"slow, measured\"\n"
+              "one sample,\"slow, measured\",not tried: holds then\n"
               "C,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
-              "scene=models/lost: crash (signal <11>),\n");
+              "scene=models/lost: crash (signal <11>),,\n");
     const auto kept = readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
     EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
@@ -93,6 +97,7 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(kept[1].timeKind, config::ClaimSpec::TimeKind::Algorithmic);
     EXPECT_EQ(kept[1].known, Verdict::Fails);
     EXPECT_EQ(kept[1].because, "slow, measured");
+    EXPECT_EQ(kept[1].restsOn, "not tried: holds then");
     EXPECT_EQ(run.read("junit.xml"),
               "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
               "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"

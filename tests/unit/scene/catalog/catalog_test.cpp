@@ -32,6 +32,40 @@ struct Folders {
     }
 };
 
+TEST(Catalog, TakesAGeneratedSceneAtAnotherSeed) {
+    const Folders folders;
+    folders.entry(
+        "scene: m/x\ndoc: an x\nsources:\n"
+        "  - file: x/full.obj\n"
+        "  - {generator: grass, params: {triangles: 12000}, seed: 4}\n");
+    const Catalog catalog = folders.catalog();
+    const Scene own = catalog.load(reference("m/x"));
+    const Scene same = catalog.load(reference("m/x@4"));
+    const Scene other = catalog.load(reference("m/x@5"));
+    EXPECT_EQ(same.meshes.front().positions, own.meshes.front().positions);
+    EXPECT_NE(other.meshes.front().positions, own.meshes.front().positions);
+    EXPECT_EQ(catalog.load(reference("m/x@5")).meshes.front().positions,
+              other.meshes.front().positions);
+    EXPECT_EQ(other.name, "m/x@5");
+    EXPECT_EQ(other.origin.description, "generator grass, seed 5: {triangles: 12000}");
+    EXPECT_EQ(catalog.contentKey(reference("m/x@4")), catalog.contentKey(reference("m/x")));
+    EXPECT_NE(catalog.contentKey(reference("m/x@5")), catalog.contentKey(reference("m/x")));
+    EXPECT_EQ(withSeed(reference("m/x@5"), 7).text(), "m/x@7");
+
+    const auto errorOf = [&](const std::string& name) {
+        return test::errorText([&] { catalog.resolve(reference(name)); });
+    };
+    EXPECT_EQ(
+        errorOf("m/x@-1"),
+        "table.yaml:5:8: the seed of scene 'm/x' is '-1'; allowed: a whole number, at least 0");
+    EXPECT_EQ(errorOf("m/y@1"),
+              "table.yaml:5:8: unknown scene 'm/y'; did you mean 'm/x'? (`gfxrepro list scenes` "
+              "prints all)");
+    folders.folder.write("assets/x/full.obj", kTriangle);
+    EXPECT_EQ(errorOf("m/x@1"),
+              "table.yaml:5:8: scene 'm/x' has no seed: it is the file x/full.obj");
+}
+
 TEST(Catalog, TakesTheFirstSourceAtHand) {
     const Folders folders;
     folders.entry(

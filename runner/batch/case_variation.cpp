@@ -1,0 +1,64 @@
+#include "runner/batch/case_variation.h"
+
+#include <algorithm>
+
+namespace gfxrepro::batch {
+
+void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item) {
+    item.given = spec.params;
+    for (const auto& [name, value] : instead.entries()) {
+        for (const auto& [axis, swept] : spec.axes) {
+            if (axis != name) continue;
+            throw Error(instead.keyLocation(name),
+                        "'params_instead': '" + name + "' is swept here");
+        }
+        config::Node& map = item.given.find(name) ? item.given : item.offered;
+        map.set(name, value, instead.keyLocation(name));
+    }
+}
+
+std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
+                             const scene::Catalog& catalog) {
+    if (item.scene.isNull()) return {item};
+    Case first = item;
+    const config::Node& instead = experiment.sceneInstead;
+    const config::Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
+    if (other) first.scene = *other;
+    const scene::SceneSource source = catalog.resolve(first.scene);
+    const std::uint64_t seed =
+        experiment.sceneSeed ? static_cast<std::uint64_t>(*experiment.sceneSeed) : source.seed;
+    const int count = source.isSeeded() ? experiment.measure.sceneSeeds : 1;
+    std::vector<Case> cases;
+    for (int i = 0; i < count; ++i) {
+        Case& taken = cases.emplace_back(first);
+        if (count > 1) taken.sceneSample = i;
+        if (source.isSeeded() && (i > 0 || experiment.sceneSeed)) {
+            taken.scene = scene::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
+        }
+        if (taken.scene.text() != item.scene.text()) taken.standsFor = item.scene;
+    }
+    return cases;
+}
+
+void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases,
+                  const scene::Catalog& catalog) {
+    const auto isSeeded = [&](const Case& item) {
+        return !item.scene.isNull() && catalog.resolve(item.scene).isSeeded();
+    };
+    if (experiment.sceneSeed && std::ranges::none_of(cases, isSeeded)) {
+        throw Error(experiment.document.find("scene_seed")->location(),
+                    "'scene_seed': no scene of " + experiment.id + " is generated");
+    }
+    if (experiment.sceneInstead.isNull()) return;
+    for (const auto& [name, other] : experiment.sceneInstead.entries()) {
+        const auto isTaken = [&](const Case& item) {
+            return !item.standsFor.isNull() && item.standsFor.text() == name;
+        };
+        if (std::ranges::any_of(cases, isTaken)) continue;
+        throw Error(
+            experiment.sceneInstead.keyLocation(name),
+            "'scene_instead': no case of " + experiment.id + " has the scene '" + name + "'");
+    }
+}
+
+}  // namespace gfxrepro::batch

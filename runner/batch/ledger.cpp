@@ -1,0 +1,225 @@
+#include "runner/batch/ledger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/batch/case_variation.h"
+#include "runner/core/text.h"
+#include "runner/report/case_records.h"
+
+namespace gfxrepro::batch {
+
+namespace {
+
+using config::Assumption;
+using config::Node;
+
+constexpr std::size_t kMostShown = 12;
+
+std::vector<config::ParamInfo> declaredBy(const config::Experiment& experiment,
+                                          std::span<const technique::TechniqueInfo> techniques) {
+    config::Params none(Node::map({}), "technique '" + experiment.technique + "'");
+    technique::findTechnique(techniques, experiment.technique, {}).create(none);
+    return none.declared();
+}
+
+const config::ParamInfo* findInfo(const std::vector<config::ParamInfo>& declared,
+                                  const std::string& name) {
+    const auto found = std::ranges::find(declared, name, &config::ParamInfo::name);
+    return found == declared.end() ? nullptr : &*found;
+}
+
+bool isOfCases(const std::string& name) {
+    return name == config::kOutputAssumption || name == config::kSceneAssumption ||
+           name == config::kSceneSeedAssumption;
+}
+
+std::string valueIn(const Case& item, const std::string& name, const scene::Catalog& catalog) {
+    if (name == config::kOutputAssumption) {
+        return item.outputWidthPx == item.outputHeightPx
+                   ? std::to_string(item.outputWidthPx)
+                   : fmt::format("{} × {}", item.outputWidthPx, item.outputHeightPx);
+    }
+    if (name == config::kSceneAssumption) return item.scene.isNull() ? "" : item.scene.text();
+    if (name == config::kSceneSeedAssumption) {
+        if (item.scene.isNull()) return "";
+        const scene::SceneSource source = catalog.resolve(item.scene);
+        return source.isSeeded() ? std::to_string(source.seed) : "";
+    }
+    const Node* value = item.params.find(name);
+    return value ? report::canonicalText(*value) : "";
+}
+
+/// Each value once, in the order of the cases.
+std::string valuesOf(const std::string& name, const std::vector<Case>& cases,
+                     const scene::Catalog& catalog) {
+    std::vector<std::string> values;
+    for (const Case& item : cases) {
+        std::string value = valueIn(item, name, catalog);
+        const bool isKnown = std::ranges::find(values, value) != values.end();
+        if (!value.empty() && !isKnown) values.push_back(std::move(value));
+    }
+    if (values.empty()) return "none";
+    if (values.size() > kMostShown) {
+        return fmt::format("{}, …, {} ({} values)", values.front(), values.back(), values.size());
+    }
+    return joined(values);
+}
+
+std::string unitOf(const std::string& name, const config::ParamInfo* info) {
+    if (name == config::kOutputAssumption) return "pixels";
+    return info && info->unit != "1" ? info->unit : "";
+}
+
+void requireFreeText(const Assumption& assumption, const config::Experiment& experiment,
+                     const std::vector<config::ParamInfo>& declared) {
+    if (!assumption.value.isNull()) return;
+    std::vector<std::string> names;
+    for (const config::ParamInfo& info : declared) names.push_back(info.name);
+    throw Error(
+        assumption.location,
+        fmt::format("assumption '{}' needs 'value': it is no parameter of technique '{}'{}",
+                    assumption.name, experiment.technique, suggestion(assumption.name, names)));
+}
+
+[[noreturn]] void refuseRange(const Assumption& assumption, const Node& value,
+                              const std::string& allowed) {
+    throw Error(value.location(),
+                fmt::format("assumption '{}': range is {}; allowed: {}", assumption.name,
+                            value.isNull() ? "empty" : value.toFlowText(), allowed));
+}
+
+const Node::Sequence& listOf(const Assumption& assumption) {
+    if (!assumption.range.isSequence() || assumption.range.items().empty()) {
+        refuseRange(assumption, assumption.range, "a list of values, or [first, last]");
+    }
+    return assumption.range.items();
+}
+
+void requireWhole(const Assumption& assumption, long long low, long long high) {
+    for (const Node& value : listOf(assumption)) {
+        const auto number = value.tryInteger();
+        if (number && *number >= low && *number <= high) continue;
+        refuseRange(assumption, value, fmt::format("whole numbers, {} … {}", low, high));
+    }
+}
+
+void requireCatalogued(const Assumption& assumption, const Node& name,
+                       const scene::Catalog& catalog) {
+    const std::string text = name.isScalar() ? name.text() : "";
+    std::vector<std::string> known;
+    for (const auto& [entry, source] : catalog.entries()) known.push_back(entry);
+    if (catalog.entries().contains(text.substr(0, text.find('@')))) return;
+    refuseRange(assumption, name, "catalogued scenes" + suggestion(text, known));
+}
+
+void requireScenes(const config::Experiment& experiment, const Assumption& assumption,
+                   const scene::Catalog& catalog) {
+    const Node& range = assumption.range;
+    if (range.isMap()) {
+        for (const auto& [scene, others] : range.entries()) {
+            requireCatalogued(assumption, Node::scalar(scene, range.keyLocation(scene)), catalog);
+            if (!others.isSequence()) refuseRange(assumption, others, "a list of scenes");
+            for (const Node& other : others.items()) requireCatalogued(assumption, other, catalog);
+        }
+        return;
+    }
+    for (const Node& other : listOf(assumption)) requireCatalogued(assumption, other, catalog);
+    std::vector<std::string> names;
+    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
+        const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+    if (names.size() > 1) {
+        refuseRange(
+            assumption, range,
+            fmt::format("{{scene: [scenes]}}, as {} has {} scenes", experiment.id, names.size()));
+    }
+}
+
+/// Makes every case with the value; the technique refuses what it cannot take.
+void requireReadable(const config::Experiment& experiment, const Assumption& assumption,
+                     const technique::TechniqueInfo& info) {
+    const std::vector<config::CaseSpec> specs = config::expandCases(experiment);
+    for (const Node& value : listOf(assumption)) {
+        for (config::CaseSpec spec : specs) {
+            spec.axes.clear();  // of a swept one, too
+            Case item;
+            takeInstead(spec, Node::map({{assumption.name, value}}), item);
+            config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+            if (!item.offered.isNull()) params.offer(item.offered);
+            info.create(params);
+        }
+    }
+}
+
+}  // namespace
+
+void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& cases,
+                     const scene::Catalog& catalog,
+                     std::span<const technique::TechniqueInfo> techniques) {
+    if (experiment.technique.empty()) return;  // only printed
+    const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
+    for (Assumption& assumption : experiment.assumptions) {
+        const config::ParamInfo* info = findInfo(declared, assumption.name);
+        if (!info && !isOfCases(assumption.name)) {
+            requireFreeText(assumption, experiment, declared);
+            continue;
+        }
+        const auto refuse = [&](const SourceLocation& where, const char* key) {
+            throw Error(where, fmt::format("assumption '{}': '{}' is filled in from the cases; "
+                                           "allowed: range, why",
+                                           assumption.name, key));
+        };
+        if (!assumption.value.isNull()) refuse(assumption.value.location(), "value");
+        if (!assumption.unit.empty()) refuse(assumption.location, "unit");
+        assumption.isBound = true;
+        assumption.value = Node::scalar(valuesOf(assumption.name, cases, catalog));
+        assumption.unit = unitOf(assumption.name, info);
+    }
+}
+
+void requireRanges(const config::Experiment& experiment, const scene::Catalog& catalog,
+                   std::span<const technique::TechniqueInfo> techniques) {
+    constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000;
+    for (const Assumption& assumption : experiment.assumptions) {
+        if (!assumption.isBound || assumption.range.isNull()) continue;
+        if (assumption.name == config::kOutputAssumption) {
+            requireWhole(assumption, 1, kMaxOutputPx);
+        } else if (assumption.name == config::kSceneSeedAssumption) {
+            requireWhole(assumption, 0, kMaxSeed);
+        } else if (assumption.name == config::kSceneAssumption) {
+            requireScenes(experiment, assumption, catalog);
+        } else {
+            requireReadable(experiment, assumption,
+                            technique::findTechnique(techniques, experiment.technique, {}));
+        }
+    }
+}
+
+std::vector<std::pair<std::string, Node>> alternativesOf(const Assumption& assumption,
+                                                         const std::vector<std::string>& scenes) {
+    std::vector<std::pair<std::string, Node>> alternatives;
+    for (const std::string& name : scenes) {
+        const Node* others =
+            assumption.range.isMap() ? assumption.range.find(name) : &assumption.range;
+        if (!others || !others->isSequence()) continue;
+        for (const Node& other : others->items()) {
+            if (other.text() != name) alternatives.emplace_back(name, other);
+        }
+    }
+    return alternatives;
+}
+
+std::vector<std::string> sceneNames(const std::vector<Case>& cases) {
+    std::vector<std::string> names;
+    for (const Case& item : cases) {
+        const Node& scene = item.standsFor.isNull() ? item.scene : item.standsFor;
+        if (scene.isNull()) continue;
+        if (std::ranges::find(names, scene.text()) == names.end()) names.push_back(scene.text());
+    }
+    return names;
+}
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,15 @@
+// Reads the file of a catalogued scene; private to this module.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/scene/catalog.h"
+
+namespace gfxrepro::scene {
+
+/// Throws Error, at its place, for anything that is wrong in the file, and for a scene of another
+/// name than `expectedName`.
+SceneEntry readEntry(const std::filesystem::path& path, const std::string& expectedName);
+
+}  // namespace gfxrepro::scene

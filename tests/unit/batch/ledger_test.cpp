@@ -1,0 +1,211 @@
+#include "runner/batch/ledger.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runner/report/case_records.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::batch {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+class Still : public technique::Technique {
+  public:
+    explicit Still(config::Params& params) {
+        const double bias = params.getDouble("bias", 0.5, {"taken from the depth", "texels", 0, 1});
+        const bool isStatic = params.getBool("static", false, {"drawn once"});
+        params.getInt("last", 0, {"frame that is drawn"});
+        if (!isStatic) params.refuseGiven({"last"}, "'static: true'");
+        if (isStatic && bias == 0.0) {
+            throw Error(params.locationOf("bias"), "bias is 0, but static needs one");
+        }
+    }
+    void setup(technique::SetupContext&) override {}
+    void render(technique::FrameContext&) override {}
+    void record(technique::Recorder&) override {}
+};
+
+const technique::TechniqueInfo kTechniques[] = {
+    {"still", "measures nothing",
+     [](config::Params& params) -> std::unique_ptr<technique::Technique> {
+         return std::make_unique<Still>(params);
+     }}};
+
+/// A config with two generated scenes and one of a file; it ends with `lines`.
+struct Ledger {
+    test::TemporaryFolder folder;
+
+    Ledger() {
+        for (const char* name : {"grass", "tree"}) {
+            folder.write(std::string("configs/scenes/") + name + ".yaml",
+                         std::string("scene: ") + name + "\ndoc: d\nsources:\n  - {generator: " +
+                             name + ", params: {triangles: 3000}, seed: 3}\n");
+        }
+        folder.write("configs/scenes/scan.yaml",
+                     "scene: scan\ndoc: d\nsources:\n  - file: s.obj\n");
+        folder.write("assets/s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    }
+    scene::Catalog catalog() const {
+        return {folder.path() / "configs/scenes", folder.path() / "assets"};
+    }
+    config::Experiment load(const std::string& lines) const {
+        const auto file =
+            folder.write("t.yaml", "sweep_of: t\ntitle: t\ntechnique: still\n" + lines);
+        return config::loadExperiment(file, {}, folder.path() / "configs");
+    }
+    std::vector<Case> cases(const config::Experiment& experiment) const {
+        return resolveCases(experiment, catalog(), kTechniques, 1);
+    }
+    config::Experiment bound(const std::string& lines) const {
+        config::Experiment experiment = load(lines);
+        bindAssumptions(experiment, cases(experiment), catalog(), kTechniques);
+        return experiment;
+    }
+    std::string errorOf(const std::string& lines) const {
+        return test::errorText([&] { requireRanges(bound(lines), catalog(), kTechniques); },
+                               folder.path());
+    }
+};
+
+TEST(Ledger, TakesValueAndUnitFromTheCases) {
+    const config::Experiment experiment = Ledger().bound(
+        "sweep: {scene: [grass, scan], bias: [0.1, 0.2]}\noutput: {width: 64, height: 32}\n"
+        "assumptions:\n  bias: {range: [0, 1], why: open}\n  static: {why: open}\n"
+        "  scene: {range: {grass: [tree]}, why: open}\n  scene_seed: {range: [1, 5], why: open}\n"
+        "  output: {why: open}\n  place: {value: 3, unit: m, why: open}\n");
+    std::vector<std::pair<std::string, std::string>> values;
+    for (const config::Assumption& each : experiment.assumptions) {
+        values.emplace_back(each.value.text(), each.unit);
+    }
+    EXPECT_THAT(values,
+                ElementsAre(Pair("0.1, 0.2", "texels"), Pair("false", ""), Pair("grass, scan", ""),
+                            Pair("3", ""), Pair("64 × 32", "pixels"), Pair("3", "m")));
+    EXPECT_TRUE(experiment.assumptions.front().isBound);
+    EXPECT_FALSE(experiment.assumptions.back().isBound);
+}
+
+TEST(Ledger, RefusesWhatIsNotTheParameters) {
+    const Ledger ledger;
+    EXPECT_EQ(
+        ledger.errorOf("assumptions:\n  bias: {value: 0.5, why: open}\n"),
+        "DIR/t.yaml:5:17: assumption 'bias': 'value' is filled in from the cases; allowed: range, "
+        "why");
+    EXPECT_EQ(
+        ledger.errorOf("assumptions:\n  bias: {unit: m, why: open}\n"),
+        "DIR/t.yaml:5:3: assumption 'bias': 'unit' is filled in from the cases; allowed: range, "
+        "why");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {range: [0, 1], why: open}\n"),
+              "DIR/t.yaml:5:3: assumption 'biass' needs 'value': it is no parameter of technique "
+              "'still'; did you mean 'bias'?");
+}
+
+TEST(Ledger, RefusesRangesThatACaseCannotTake) {
+    const Ledger ledger;
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  bias: {range: [0.5, 5], why: open}\n"),
+              "DIR/t.yaml:5:23: technique 'still': bias is 5; allowed: a number, 0 … 1 texels");
+    EXPECT_EQ(ledger.errorOf("sweep: {static: [false, true]}\n"
+                             "assumptions:\n  bias: {range: [0.5, 0], why: open}\n"),
+              "DIR/t.yaml:6:23: bias is 0, but static needs one");
+    EXPECT_EQ(
+        ledger.errorOf("assumptions:\n  static: {range: either, why: open}\n"),
+        "DIR/t.yaml:5:19: assumption 'static': range is either; allowed: a list of values, or "
+        "[first, last]");
+    EXPECT_EQ(
+        ledger.errorOf("assumptions:\n  output: {range: [0, 512], why: open}\n"),
+        "DIR/t.yaml:5:20: assumption 'output': range is 0; allowed: whole numbers, 1 … 16384");
+    EXPECT_EQ(
+        ledger.errorOf("scene: grass\nassumptions:\n  scene: {range: [tee], why: open}\n"),
+        "DIR/t.yaml:6:19: assumption 'scene': range is tee; allowed: catalogued scenes; did you "
+        "mean 'tree'?");
+    EXPECT_EQ(
+        ledger.errorOf("sweep: {scene: [grass, scan]}\n"
+                       "assumptions:\n  scene: {range: [tree], why: open}\n"),
+        "DIR/t.yaml:6:18: assumption 'scene': range is [tree]; allowed: {scene: [scenes]}, as "
+        "sweep/t has 2 scenes");
+    EXPECT_EQ(ledger.errorOf("scene: grass\nassumptions:\n"
+                             "  bias: {range: [0, 1], why: open}\n"
+                             "  scene: {range: [tree, tree@2], why: open}\n"),
+              "no error");
+}
+
+TEST(Cases, TakeParametersInsteadOfValuesAndDefaults) {
+    const Ledger ledger;
+    const auto bias = [&](const std::string& lines) {
+        return ledger.cases(ledger.load(lines)).front().params.find("bias")->text();
+    };
+    EXPECT_EQ(bias("params: {bias: 0.1}\nparams_instead: {bias: 0.2}\n"), "0.2");
+    EXPECT_EQ(bias("params_instead: {bias: 0.2}\n"), "0.2");
+    // What nothing reads is refused where it is given, not where it takes a default's place.
+    EXPECT_EQ(test::errorText([&] { bias("params: {last: 1}\n"); }, ledger.folder.path()),
+              "DIR/t.yaml:4:16: 'last' needs 'static: true'");
+    EXPECT_EQ(bias("params_instead: {last: 1}\n"), "0.5");
+    EXPECT_EQ(
+        test::errorText([&] { bias("params_instead: {biass: 1}\n"); }, ledger.folder.path()),
+        "DIR/t.yaml:4:18: technique 'still': unknown parameter 'biass'; did you mean 'bias'?");
+    EXPECT_EQ(test::errorText([&] { bias("sweep: {bias: [0.1]}\nparams_instead: {bias: 1}\n"); },
+                              ledger.folder.path()),
+              "DIR/t.yaml:5:18: 'params_instead': 'bias' is swept here");
+}
+
+TEST(Cases, TakeSeedsAndOtherScenes) {
+    const Ledger ledger;
+    const auto scenes = [&](const std::string& lines) {
+        std::vector<std::pair<std::string, std::string>> result;
+        for (const Case& item : ledger.cases(ledger.load(lines))) {
+            result.emplace_back(item.scene.text(),
+                                item.standsFor.isNull() ? "" : item.standsFor.text());
+        }
+        return result;
+    };
+    const std::string swept = "sweep: {scene: [grass, scan]}\n";
+    EXPECT_THAT(scenes(swept + "scene_seed: 8\n"),
+                ElementsAre(Pair("grass@8", "grass"), Pair("scan", "")));
+    EXPECT_THAT(scenes(swept + "scene_instead: {grass: tree}\n"),
+                ElementsAre(Pair("tree", "grass"), Pair("scan", "")));
+    EXPECT_THAT(scenes(swept + "measure: {scene_seeds: 3}\n"),
+                ElementsAre(Pair("grass", ""), Pair("grass@4", "grass"), Pair("grass@5", "grass"),
+                            Pair("scan", "")));
+    const auto errorOf = [&](const std::string& lines) {
+        return test::errorText([&] { scenes(lines); }, ledger.folder.path());
+    };
+    EXPECT_EQ(errorOf("scene: scan\nscene_seed: 8\n"),
+              "DIR/t.yaml:5:13: 'scene_seed': no scene of sweep/t is generated");
+    EXPECT_EQ(errorOf("scene: scan\nscene_instead: {grass: tree}\n"),
+              "DIR/t.yaml:5:17: 'scene_instead': no case of sweep/t has the scene 'grass'");
+    EXPECT_EQ(errorOf("scene: scan\nscene_seed: -1\n"),
+              "DIR/t.yaml:5:13: scene_seed is -1; allowed: a whole number, at least 0");
+    EXPECT_EQ(
+        errorOf("scene: grass\nmeasure: {lane: timing, scene_seeds: 5}\n"),
+        "DIR/t.yaml:5:38: 'scene_seeds' needs the quality lane: a time varies by the process");
+}
+
+TEST(Cases, SayWhichSceneTheyTake) {
+    const Ledger ledger;
+    const std::vector<Case> cases =
+        ledger.cases(ledger.load("scene: grass\nmeasure: {scene_seeds: 2}\n"));
+    const nlohmann::ordered_json params = cases[1].recordedParams();
+    EXPECT_EQ(params.at(report::kStandsFor), "grass");
+    EXPECT_EQ(params.at(report::kSceneSample), 1);
+    EXPECT_EQ(cases[1].title(), "sweep/t (grass@4)");
+    EXPECT_FALSE(cases[0].recordedParams().contains(report::kStandsFor));
+}
+
+TEST(Plan, KeepsWhatIsAssumed) {
+    const Ledger ledger;
+    const Plan plan = makePlan({ledger.load("params: {bias: 0.25}\n"
+                                            "assumptions:\n  bias: {range: [0, 1], why: open}\n")},
+                               ledger.catalog(), kTechniques, "full", "software", 1);
+    const auto file = ledger.folder.write("plan.json", plan.toJson().dump());
+    const config::Assumption kept =
+        Plan::fromJsonFile(file).experiments.front().assumptions.front();
+    EXPECT_EQ(kept.value.text(), "0.25");
+    EXPECT_EQ(kept.unit, "texels");
+    EXPECT_TRUE(kept.isBound);
+}
+
+}  // namespace
+}  // namespace gfxrepro::batch
