@@ -80,6 +80,21 @@ config::Measure measureFrom(const config::Node& node) {
     return measure;
 }
 
+Json paperToJson(const config::Experiment& experiment) {
+    Json cases = Json::array();
+    for (const config::PaperCase& item : experiment.paperCases) {
+        cases.push_back({{"scene", item.scene}, {"params", item.params.toJson()}});
+    }
+    return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
+}
+
+void readPaper(const config::Node& node, config::Experiment& experiment) {
+    experiment.paperDocument = required(node, "document");
+    for (const config::Node& item : required(node, "cases").items()) {
+        experiment.paperCases.push_back({required(item, "scene").text(), required(item, "params")});
+    }
+}
+
 std::vector<std::string> textsFrom(const config::Node& list) {
     std::vector<std::string> texts;
     for (const config::Node& item : list.items()) texts.push_back(item.text());
@@ -173,6 +188,9 @@ Json Plan::toJson() const {
     for (const config::Experiment& experiment : experiments) {
         json["experiments"].push_back(
             {{"file", experiment.file.string()}, {"document", experiment.document.toJson()}});
+        if (!experiment.paperCases.empty()) {
+            json["experiments"].back()["paper"] = paperToJson(experiment);
+        }
     }
     for (const Case& item : cases) json["cases"].push_back(item.toJson());
     if (shard) {
@@ -207,6 +225,9 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     for (const config::Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
             required(item, "document"), fs::path(required(item, "file").text())));
+        if (const config::Node* paper = item.find("paper")) {  // older plans have none
+            readPaper(*paper, plan.experiments.back());
+        }
     }
     for (const config::Node& item : required(node, "cases").items()) {
         plan.cases.push_back(Case::fromJson(item));
@@ -220,9 +241,10 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     return plan;
 }
 
-std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
-                               std::span<const technique::TechniqueInfo> techniques,
-                               std::uint64_t seed) {
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed) {
     if (experiment.technique.empty()) return {};  // only printed
     const config::Node* named = experiment.document.find("technique");
     const technique::TechniqueInfo& info = technique::findTechnique(
@@ -245,8 +267,17 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
-        if (!item.scene.isNull()) catalog.resolve(item.scene);  // throws when it is not at hand
         cases.push_back(std::move(item));
+    }
+    return cases;
+}
+
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed) {
+    std::vector<Case> cases = resolveParameters(experiment, catalog, techniques, seed);
+    for (const Case& item : cases) {
+        if (!item.scene.isNull()) catalog.resolve(item.scene);  // throws when it is not at hand
     }
     return cases;
 }
@@ -260,6 +291,9 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     plan.seed = seed;
     plan.buildId = programBuildId();
     plan.experiments = experiments;
+    for (config::Experiment& experiment : plan.experiments) {
+        experiment.paperCases = resolvePaperCases(experiment, catalog, techniques);
+    }
     std::set<std::string> experimentIds;
     std::set<std::string> caseIds;
     for (const config::Experiment& experiment : experiments) {

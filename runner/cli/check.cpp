@@ -15,6 +15,7 @@ int check(const Context& context, const Selection& selection) {
         const std::size_t caseCount =
             batch::resolveCases(experiment, catalog, context.techniques, 1).size();
         report::requireProvenance(experiment, report::buildTable(experiment, {}));
+        batch::resolvePaperCases(experiment, catalog, context.techniques);
         fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
                    caseCount == 1 ? "" : "s", experiment.claims.size(),
                    experiment.claims.size() == 1 ? "" : "s");
