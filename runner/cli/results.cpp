@@ -72,6 +72,12 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
     }
 }
 
+/// How much of the tables was measured as it is printed.
+void sayPrintedCells(const report::PrintedCells& count) {
+    const std::string line = report::printedCellsLine(count);
+    if (!line.empty()) fmt::print("{}\n", line);
+}
+
 void sayReport(const fs::path& runDir) {
     fmt::print("report: {}\n", (runDir / "report.html").string());
 }
@@ -79,10 +85,10 @@ void sayReport(const fs::path& runDir) {
 }  // namespace
 
 int conclude(const fs::path& runDir) {
-    const std::vector<report::ClaimResult> claims =
-        batch::writeResults(runDir, batch::readRun(runDir), {});
-    const std::size_t failing = sayFailing(claims);
-    sayVerdicts(claims);
+    const batch::Conclusion conclusion = batch::writeResults(runDir, batch::readRun(runDir), {});
+    const std::size_t failing = sayFailing(conclusion.claims);
+    sayVerdicts(conclusion.claims);
+    sayPrintedCells(conclusion.printedCells);
     fmt::print("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     sayReport(runDir);
     return failing > 0 ? kExitClaimFailed : kExitOk;
@@ -90,23 +96,27 @@ int conclude(const fs::path& runDir) {
 
 int table(const std::string& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    batch::writeResults(runDir, run, {.tables = true, .claims = false, .report = false});
+    const batch::Conclusion conclusion =
+        batch::writeResults(runDir, run, {.tables = true, .claims = false, .report = false});
     for (const config::Experiment& experiment : run.plan.experiments) {
         fmt::print("{}: tables/{}.csv .md .tex\n", experiment.id, experiment.slug());
     }
+    sayPrintedCells(conclusion.printedCells);
     return completenessCode(run);
 }
 
 int claims(const std::string& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    const std::vector<report::ClaimResult> results =
+    const batch::Conclusion conclusion =
         batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false});
+    const std::vector<report::ClaimResult>& results = conclusion.claims;
     for (const report::ClaimResult& claim : results) {
         fmt::print("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
                    claim.isNews() ? " (news)" : "",
                    claim.reason.empty() ? "" : "; " + claim.reason);
     }
     fmt::print("{}\n", report::originSummaryLine(results));
+    sayPrintedCells(conclusion.printedCells);
     const bool anyFails = std::any_of(results.begin(), results.end(), [](const auto& claim) {
         return claim.verdict == report::Verdict::Fails;
     });

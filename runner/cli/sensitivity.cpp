@@ -47,7 +47,8 @@ std::vector<report::ClaimResult> claimsUnder(const batch::Variation& variation,
             fmt::format("{}: exit code {}: {}", variation.title(), end.exitCode, end.output));
     }
     return batch::writeResults(dir, batch::readRun(dir),
-                               {.tables = true, .claims = true, .report = false});
+                               {.tables = true, .claims = true, .report = false})
+        .claims;
 }
 
 void analyse(const Context& context, const std::string& file, const SensitivityOptions& options,

@@ -36,16 +36,18 @@ std::optional<std::string> valueIn(const Json& params, const std::string& axis) 
     return jsonText(*value);
 }
 
-AxisValues axesOf(const Record& record, const std::vector<std::string>& axes) {
-    Json params;
-    if (!record.params.empty()) {
-        try {
-            params = Json::parse(record.params);
-        } catch (const Json::exception& error) {
-            throw Error("case " + record.caseId + " of " + record.table +
-                        ": its params are not JSON: " + error.what());
-        }
+Json paramsOf(const Record& record) {
+    if (record.params.empty()) return {};
+    try {
+        return Json::parse(record.params);
+    } catch (const Json::exception& error) {
+        throw Error("case " + record.caseId + " of " + record.table +
+                    ": its params are not JSON: " + error.what());
     }
+}
+
+AxisValues axesOf(const Record& record, const std::vector<std::string>& axes) {
+    const Json params = paramsOf(record);
     AxisValues values;
     for (const std::string& axis : axes) {
         if (axis == "scene" && !record.scene.empty()) {
@@ -83,7 +85,9 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
     for (const Record& record : records) {
         if (record.table != table || record.isControl()) continue;
         const auto [found, isNew] = indices.try_emplace(record.caseId, cases.size());
-        if (isNew) cases.push_back({record.caseId, axesOf(record, axes), {}});
+        if (isNew) {
+            cases.push_back({record.caseId, axesOf(record, axes), {}, record.scene, record.params});
+        }
         CaseRecords::Attempt& attempt = cases[found->second].processes[record.process];
         if (record.status != Status::Ok && std::isnan(record.value)) {
             attempt.rows.clear();
@@ -94,6 +98,13 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
         }
     }
     return cases;
+}
+
+CaseRecords unmeasured(const config::PaperCase& item, const std::vector<std::string>& axes) {
+    Record record;
+    record.scene = item.scene;
+    record.params = item.params.toJson().dump();
+    return {"", axesOf(record, axes), {}, record.scene, record.params};
 }
 
 std::vector<PlannedCase> planCases(const config::Experiment& experiment,

@@ -37,12 +37,17 @@ struct CaseRecords {
     std::string id;
     AxisValues axes;
     std::map<int, Attempt> processes;
+    std::string scene;   // as its records say it
+    std::string params;  // likewise: JSON
 };
 
 /// The cases of `table` in the order of their first records, which must outlive the result. A later
 /// row of a case replaces an earlier one of the same place; a failure replaces all before it.
 std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,
                                      const std::vector<std::string>& axes);
+
+/// A case of the profile `paper` as if it had been run, without an attempt.
+CaseRecords unmeasured(const config::PaperCase& item, const std::vector<std::string>& axes);
 
 /// A case of the sweep, run or not.
 struct PlannedCase {
