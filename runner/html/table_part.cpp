@@ -128,6 +128,12 @@ std::string ratioHtml(const Cell& cell) {
                        cell.values[0].value / printed);
 }
 
+/// What pointing at a cell tells: why it has no value, or why it is no multiple of what is printed.
+std::string titleOf(const Cell& cell) {
+    if (!cell.message.empty() || cell.departures.empty()) return cell.message;
+    return "at " + report::departuresText(cell.departures);
+}
+
 std::string cellHtml(const Cell* cell, std::size_t run) {
     if (!cell || !cell->isPlanned) return "<td></td>";
     std::string anchors;
@@ -135,8 +141,8 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
     if (!anchors.empty()) anchors.pop_back();
     std::string attributes =
         anchors.empty() ? "" : fmt::format(" data-cases=\"{}\"", escapeXml(anchors));
-    if (!cell->message.empty()) {
-        attributes += fmt::format(" title=\"{}\"", escapeXml(cell->message));
+    if (const std::string title = titleOf(*cell); !title.empty()) {
+        attributes += fmt::format(" title=\"{}\"", escapeXml(title));
     }
     if (!cell->isOk()) {
         return fmt::format("<td class=\"num\"{}><span class=\"status\">{}</span></td>", attributes,

@@ -210,17 +210,6 @@ std::string valuesText(const std::vector<std::string>& values) {
     return fmt::format("{} / {} / … / {}", values[0], values[1], values.back());
 }
 
-/// "output 128×128 (printed 512×512), light_grid 4 (16)".
-std::string departuresText(const std::vector<Departure>& departures) {
-    std::vector<std::string> parts;
-    for (const Departure& departure : departures) {
-        parts.push_back(fmt::format("{} {} ({}{})", departure.parameter,
-                                    valuesText(departure.measured), parts.empty() ? "printed " : "",
-                                    valuesText(departure.printed)));
-    }
-    return joined(parts);
-}
-
 std::string sentence(const Tally& tally) {
     if (tally.alone == tally.count()) {
         return "Measured where the profile paper has no case";
@@ -252,6 +241,16 @@ std::string line(const Table& table, std::span<const TableRow> rows) {
 }
 
 }  // namespace
+
+std::string departuresText(const std::vector<Departure>& departures) {
+    std::vector<std::string> parts;
+    for (const Departure& departure : departures) {
+        parts.push_back(fmt::format("{} {} ({}{})", departure.parameter,
+                                    valuesText(departure.measured), parts.empty() ? "printed " : "",
+                                    valuesText(departure.printed)));
+    }
+    return joined(parts);
+}
 
 PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     if (experiment.paperCases.empty()) return;

@@ -54,6 +54,9 @@ PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
 /// when nothing is printed.
 std::string printedCellsLine(const PrintedCells& count);
 
+/// "output 128×128 (printed 512×512), light_grid 4 (16)".
+std::string departuresText(const std::vector<Departure>& departures);
+
 /// At which parameters the table was measured, and which of them differ from the printed ones:
 /// "Measured at output 128×128 (printed 512×512), light_grid 4 (16)." Of the cells beside a printed
 /// value or, where there are none, of all that were measured. Empty for what is not published.

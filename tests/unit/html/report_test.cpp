@@ -116,6 +116,7 @@ TEST(Report, NoRatioAtOtherParameters) {
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
     EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light_grid none (printed "
                                 "16).</p>\n<div"));
+    EXPECT_THAT(html, HasSubstr(" title=\"at light_grid none (printed 16)\">8.0"));
     EXPECT_THAT(html, HasSubstr("printed parameters: 0 of 2, beside a measurement: 2 of 2</p>"));
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
