@@ -103,6 +103,21 @@ void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
     }
 }
 
+Json paperToJson(const config::Experiment& experiment) {
+    Json cases = Json::array();
+    for (const config::PaperCase& item : experiment.paperCases) {
+        cases.push_back({{"scene", item.scene}, {"params", item.params.toJson()}});
+    }
+    return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
+}
+
+void readPaper(const config::Node& node, config::Experiment& experiment) {
+    experiment.paperDocument = required(node, "document");
+    for (const config::Node& item : required(node, "cases").items()) {
+        experiment.paperCases.push_back({required(item, "scene").text(), required(item, "params")});
+    }
+}
+
 std::vector<std::string> textsFrom(const config::Node& list) {
     std::vector<std::string> texts;
     for (const config::Node& item : list.items()) texts.push_back(item.text());
@@ -212,6 +227,9 @@ Json Plan::toJson() const {
         json["experiments"].push_back({{"file", experiment.file.string()},
                                        {"document", experiment.document.toJson()},
                                        {"assumed", assumedJson(experiment)}});
+        if (!experiment.paperCases.empty()) {
+            json["experiments"].back()["paper"] = paperToJson(experiment);
+        }
     }
     for (const Case& item : cases) json["cases"].push_back(item.toJson());
     if (shard) {
@@ -249,6 +267,9 @@ Plan Plan::fromJsonFile(const fs::path& path) {
         if (const config::Node* assumed = item.find("assumed")) {
             takeAssumed(*assumed, plan.experiments.back());
         }
+        if (const config::Node* paper = item.find("paper")) {  // older plans have none
+            readPaper(*paper, plan.experiments.back());
+        }
     }
     for (const config::Node& item : required(node, "cases").items()) {
         plan.cases.push_back(Case::fromJson(item));
@@ -262,9 +283,10 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     return plan;
 }
 
-std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
-                               std::span<const technique::TechniqueInfo> techniques,
-                               std::uint64_t seed) {
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed) {
     if (experiment.technique.empty()) return {};  // only printed
     const config::Node* named = experiment.document.find("technique");
     const technique::TechniqueInfo& info = technique::findTechnique(
@@ -288,6 +310,16 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
+        cases.push_back(std::move(item));
+    }
+    return cases;
+}
+
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed) {
+    std::vector<Case> cases;
+    for (const Case& item : resolveParameters(experiment, catalog, techniques, seed)) {
         for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
     }
     requireTaken(experiment, cases, catalog);
@@ -303,6 +335,9 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     plan.seed = seed;
     plan.buildId = programBuildId();
     plan.experiments = experiments;
+    for (config::Experiment& experiment : plan.experiments) {
+        experiment.paperCases = resolvePaperCases(experiment, catalog, techniques);
+    }
     std::set<std::string> experimentIds;
     std::set<std::string> caseIds;
     for (config::Experiment& experiment : plan.experiments) {

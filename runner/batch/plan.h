@@ -72,7 +72,7 @@ struct Plan {
     std::map<std::string, std::string> sceneKeys;  // scene reference → identity of its content
     std::vector<Case> cases;
     /// The experiments as loaded (file text after merging), so that tables can be made again from
-    /// the run directory alone.
+    /// the run directory alone; with their cases under the profile `paper`, which no worker sees.
     std::vector<config::Experiment> experiments;
     std::optional<Shard> shard;  // none: all cases
 
@@ -88,6 +88,19 @@ struct Plan {
 std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed);
+
+/// The same, with scenes that need not be at hand.
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed);
+
+/// The cases of the experiment under the profile `paper`: what tables compare a run's parameters
+/// with. None where nothing is published. Scenes need not be at hand. Throws Error as resolveCases,
+/// and for a name in `printed.at` that is no parameter.
+std::vector<config::PaperCase> resolvePaperCases(
+    const config::Experiment& experiment, const scene::Catalog& catalog,
+    std::span<const technique::TechniqueInfo> techniques);
 
 /// Expands, constructs each technique once a case (which validates all parameters), resolves
 /// scenes, and hashes. Throws Error for anything that is wrong in a config.

@@ -130,25 +130,25 @@ report::ReportContext reportContext(const StoredRun& run) {
     return context;
 }
 
-std::vector<report::ClaimResult> writeResults(const fs::path& runDir, const StoredRun& run,
-                                              const Results& which) {
+Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Results& which) {
     const report::ReportContext context = reportContext(run);
     std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
     const std::vector<std::string> notes = notesOf(run.manifest);
     for (report::Table& table : tables) {
         table.notes.insert(table.notes.begin(), notes.begin(), notes.end());
     }
-    std::vector<report::ClaimResult> claims;
+    Conclusion conclusion;
+    conclusion.printedCells = report::countPrintedCells(run.plan.experiments, tables);
     if (which.tables) report::writeTables(runDir, tables);
     if (which.claims) {
-        claims = report::evaluateClaims(run.plan.experiments, tables, context);
-        report::writeClaims(runDir, claims, context);
+        conclusion.claims = report::evaluateClaims(run.plan.experiments, tables, context);
+        report::writeClaims(runDir, conclusion.claims, context);
     }
     if (which.report) {
         const html::ReportRun shown = reportRun(runDir, run);
         html::writeReport(runDir / "report.html", {&shown, 1});
     }
-    return claims;
+    return conclusion;
 }
 
 }  // namespace gfxrepro::batch

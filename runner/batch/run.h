@@ -12,6 +12,7 @@
 #include "runner/batch/run_directory.h"
 #include "runner/batch/scheduler.h"
 #include "runner/report/claims.h"
+#include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::batch {
 
@@ -54,9 +55,13 @@ struct Results {
     bool claims = true;
     bool report = true;
 };
-/// Makes tables/, claims.csv with junit.xml, report.html again from the records; gives the claims'
-/// verdicts (empty unless asked for).
-std::vector<report::ClaimResult> writeResults(const std::filesystem::path& runDir,
-                                              const StoredRun& run, const Results& which);
+/// What a run came to.
+struct Conclusion {
+    std::vector<report::ClaimResult> claims;  // empty unless asked for
+    report::PrintedCells printedCells;
+};
+/// Makes tables/, claims.csv with junit.xml, report.html again from the records.
+Conclusion writeResults(const std::filesystem::path& runDir, const StoredRun& run,
+                        const Results& which);
 
 }  // namespace gfxrepro::batch

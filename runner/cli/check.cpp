@@ -19,6 +19,7 @@ int check(const Context& context, const Selection& selection) {
         batch::requireRanges(experiment, catalog, context.techniques);
         const std::size_t caseCount = cases.size();
         report::requireProvenance(experiment, report::buildTable(experiment, {}));
+        batch::resolvePaperCases(experiment, catalog, context.techniques);
         fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
                    caseCount == 1 ? "" : "s", experiment.claims.size(),
                    experiment.claims.size() == 1 ? "" : "s");

@@ -120,6 +120,12 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     return code;
 }
 
+/// How much of the tables was measured as it is printed.
+void sayPrintedCells(const report::PrintedCells& count) {
+    const std::string line = report::printedCellsLine(count);
+    if (!line.empty()) fmt::print("{}\n", line);
+}
+
 void sayReport(const fs::path& runDir) {
     fmt::print("report: {}\n", (runDir / "report.html").string());
 }
@@ -132,10 +138,11 @@ void sayNotes(const batch::Json& manifest) {
 
 int conclude(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    const std::vector<report::ClaimResult> claims = batch::writeResults(runDir, run, {});
+    const batch::Conclusion conclusion = batch::writeResults(runDir, run, {});
     sayNotes(run.manifest);
-    const std::size_t failing = sayFailing(claims);
-    sayVerdicts(claims);
+    const std::size_t failing = sayFailing(conclusion.claims);
+    sayVerdicts(conclusion.claims);
+    sayPrintedCells(conclusion.printedCells);
     fmt::print("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     sayReport(runDir);
     return failing > 0 ? kExitClaimFailed : kExitOk;
@@ -143,10 +150,12 @@ int conclude(const fs::path& runDir) {
 
 int table(const std::string& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    batch::writeResults(runDir, run, {.tables = true, .claims = false, .report = false});
+    const batch::Conclusion conclusion =
+        batch::writeResults(runDir, run, {.tables = true, .claims = false, .report = false});
     for (const config::Experiment& experiment : run.plan.experiments) {
         fmt::print("{}: tables/{}.csv .md .tex\n", experiment.id, experiment.slug());
     }
+    sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
     return completenessCode(run);
 }
@@ -154,8 +163,10 @@ int table(const std::string& runDir) {
 int claims(const std::string& runDir, const std::vector<std::string>& configs) {
     if (!configs.empty()) return judgeAfterwards(runDir, configs);
     const batch::StoredRun run = batch::readRun(runDir);
-    const int verdict = sayClaims(
-        batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false}));
+    const batch::Conclusion conclusion =
+        batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false});
+    const int verdict = sayClaims(conclusion.claims);
+    sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
     const int code = completenessCode(run);
     return verdict == kExitOk ? code : verdict;

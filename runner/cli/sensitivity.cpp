@@ -88,7 +88,7 @@ batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
     }
     const batch::StoredRun run = batch::readRun(dir);
     return {variation,
-            batch::writeResults(dir, run, {.tables = true, .claims = true, .report = false})};
+            batch::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
 }
 
 void write(const Study& study, const std::string& keep) {

@@ -187,6 +187,19 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     experiment.measure = readMeasure(measure);
 }
 
+/// `printed.at` is of all cases alike.
+void requireNotSwept(const Printed& printed, const std::vector<AxisPoint>& points) {
+    for (const auto& [name, value] : printed.at) {
+        for (const AxisPoint& point : points) {
+            for (const auto& [axis, swept] : point) {
+                if (axis != name) continue;
+                throw Error(value.location(),
+                            "printed.at: '" + name + "' is swept; allowed: what all cases share");
+            }
+        }
+    }
+}
+
 /// Layout, and what is checked against it: printed values, claims, plots.
 void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const Node* printed = document.find("printed");
@@ -209,6 +222,7 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     experiment.layout = readLayout(*layout, vocabulary);
     const TableNames names = tableNames(experiment.layout, vocabulary);
     if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
+    if (isComplete) requireNotSwept(experiment.printed, points);
     if (claims) experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty());
     if (plots) experiment.plots = readPlots(*plots, names);
 }
@@ -298,6 +312,10 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
 
 Experiment experimentFromDocument(const Node& document, const std::filesystem::path& file) {
     return readExperiment(document, file, false);
+}
+
+bool Experiment::isPublished() const {
+    return !technique.empty() && (kind != Kind::Sweep || !printed.rows.empty());
 }
 
 std::string Experiment::slug() const {

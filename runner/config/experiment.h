@@ -83,6 +83,9 @@ struct Printed {
     /// format writes it; empty where lost.
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;
+    /// What the paper measured at where the profile `paper` departs from it: a parameter,
+    /// `output.width`, `output.height`, `measure.frames` or `scene`, with the printed value.
+    std::vector<std::pair<std::string, Node>> at;
     SourceLocation location;
 };
 
@@ -178,6 +181,12 @@ struct Assumption {
     SourceLocation location = {};  // of the name
 };
 
+/// A case of the profile `paper`, every parameter resolved: what measured cases are compared with.
+struct PaperCase {
+    std::string scene;  // empty for none
+    Node params;        // with `output`, as records say them
+};
+
 struct Experiment {
     enum class Kind { Table, Figure, Section, Sweep };
     Kind kind = Kind::Table;
@@ -201,6 +210,13 @@ struct Experiment {
     std::vector<Assumption> assumptions;
     std::vector<std::string> profiles;  // those that the file declares
     Node document;                      // merged and profile applied, as it stands before expansion
+    /// Likewise with the profile `paper` and without overrides. Null where there is nothing to
+    /// compare with print: in a sweep that prints nothing, and without a technique.
+    Node paperDocument;
+    std::vector<PaperCase> paperCases;  // its cases; a plan fills them in
+
+    /// Whether what is measured stands for something published: all but sweeps without `printed`.
+    bool isPublished() const;
 
     /// "zju2005-2.1": for file names.
     std::string slug() const;

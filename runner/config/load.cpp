@@ -235,6 +235,15 @@ void applySets(const std::vector<Override>& sets, Node& document) {
     document = merged(Node::map({}, document.location()), document);
 }
 
+Node withProfile(const Node& document, const std::vector<std::pair<std::string, Node>>& overlays,
+                 const std::string& profile) {
+    Node result = document;
+    for (const auto& [name, overlay] : overlays) {
+        if (name == profile) result = merged(result, overlay);
+    }
+    return result;
+}
+
 }  // namespace
 
 Override parseOverride(const std::string& text) {
@@ -267,17 +276,20 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     resolveScenes(asItStands);
     Experiment experiment = readExperiment(asItStands, file, true);
 
-    bool isChanged = !options.sets.empty() || !options.sweeps.empty();
-    for (const auto& [name, overlay] : overlays) {
-        if (name != profile) continue;
-        document = merged(document, overlay);
-        isChanged = true;
+    if (experiment.isPublished()) {
+        experiment.paperDocument = withProfile(document, overlays, "paper");
+        resolveScenes(experiment.paperDocument);
     }
+    bool isChanged = !options.sets.empty() || !options.sweeps.empty();
+    for (const auto& [name, overlay] : overlays) isChanged |= name == profile;
     if (!isChanged) return experiment;
+    document = withProfile(document, overlays, profile);
     applySweeps(options.sweeps, document);
     applySets(options.sets, document);
     resolveScenes(document);
-    return readExperiment(document, file, false);
+    Experiment changed = readExperiment(document, file, false);
+    changed.paperDocument = std::move(experiment.paperDocument);
+    return changed;
 }
 
 }  // namespace gfxrepro::config

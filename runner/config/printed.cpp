@@ -19,9 +19,9 @@ std::vector<std::string> cellsOf(const std::string& line) {
     return cells;
 }
 
-template <class Range>
-bool contains(const Range& range, const std::string& name) {
-    return std::find(range.begin(), range.end(), name) != range.end();
+template <class Range, class Value>
+bool contains(const Range& range, const Value& value) {
+    return std::find(range.begin(), range.end(), value) != range.end();
 }
 
 void requireHeader(const std::vector<std::string>& header, const TableNames* names,
@@ -73,6 +73,27 @@ void requireLabels(const std::vector<std::string>& row, const std::vector<std::s
     }
 }
 
+/// Parameters of the technique are known to the plan alone, which checks their names.
+std::vector<std::pair<std::string, Node>> readAt(const Node& at) {
+    if (!at.isMap()) throwNotAllowed(at, "printed.at", "a map {parameter: printed value}");
+    constexpr const char* kSizes[] = {"output.width", "output.height", "measure.frames"};
+    std::vector<std::pair<std::string, Node>> values;
+    for (const auto& [name, value] : at.entries()) {
+        const bool isSize =
+            std::find(std::begin(kSizes), std::end(kSizes), name) != std::end(kSizes);
+        if (!isSize && contains(name, '.')) {
+            throw Error(at.keyLocation(name), "printed.at: '" + name +
+                                                  "'; allowed: a parameter, scene, output.width, "
+                                                  "output.height, measure.frames");
+        }
+        if (isSize && value.tryInteger().value_or(0) < 1) {
+            throwNotAllowed(value, "printed.at: " + name, "a whole number, at least 1");
+        }
+        values.emplace_back(name, value);
+    }
+    return values;
+}
+
 }  // namespace
 
 Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names) {
@@ -81,6 +102,10 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     printed.location = node.location();
     if (const Node* hardware = node.find("hardware")) printed.hardware = hardware->text();
     if (const Node* remark = node.find("remark")) printed.remark = trimmed(remark->text());
+    if (const Node* at = node.find("at")) {
+        if (!layout) throw Error(node.keyLocation("at"), "printed: 'at' without 'technique'");
+        printed.at = readAt(*at);
+    }
     const Node* values = node.find("values");
     if (!values) return printed;
     printed.location = values->location();

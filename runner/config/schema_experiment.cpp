@@ -164,7 +164,11 @@ SchemaSection printed() {
               "CSV block",
               "none",
               "a header of row axes and columns, then the rows",
-              {{"type", "string"}}}}};
+              {{"type", "string"}}},
+             {"at", "{parameter: value}", "{}",
+              "what the paper measured at, where the profile paper departs from it: a parameter, "
+              "scene, output.width, output.height, measure.frames",
+              pairs()}}};
 }
 
 SchemaSection plot() {

@@ -7,6 +7,7 @@
 #include "runner/config/schema.h"
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
+#include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::html {
 
@@ -156,6 +157,24 @@ std::string newsHtml(const Model& model) {
     }
     if (items.empty()) return "";
     return fmt::format("<h3>What is news</h3>\n<ul>\n{}</ul>\n", items);
+}
+
+/// A line a run: how many printed numbers of tables were measured, and at the printed parameters.
+std::string printedHtml(const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < model.runs.size(); ++run) {
+        report::PrintedCells count;
+        for (const Page& page : model.pages) {
+            const RunPart& part = page.parts[run];
+            if (part.experiment) count.add(*part.experiment, part.table);
+        }
+        const std::string line = report::printedCellsLine(count);
+        if (line.empty()) continue;
+        const std::string letter =
+            model.isComparison() ? fmt::format("<b>{}</b> ", Model::letter(run)) : "";
+        html += fmt::format("<p class=\"parameters\">{}{}</p>\n", letter, escapeXml(line));
+    }
+    return html;
 }
 
 /// What the script filters the grid by; without it there is nothing to press.
@@ -317,7 +336,7 @@ std::string runName(const ReportRun& run) {
 
 std::string overviewHtml(const Model& model) {
     return "<section class=\"page\" id=\"overview\">\n<h1>Published tables, measured again</h1>\n" +
-           countsHtml(model) + filtersHtml(model) +
+           countsHtml(model) + printedHtml(model) + filtersHtml(model) +
            (model.isComparison() ? gridOfSeveralHtml(model) : gridOfOneHtml(model)) +
            newsHtml(model) + missingHtml(model) + "<h3>What ran on what</h3>\n" + factsHtml(model) +
            "</section>\n";

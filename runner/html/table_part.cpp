@@ -5,6 +5,7 @@
 
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
+#include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::html {
 
@@ -116,14 +117,22 @@ std::string headHtml(const Overlay& overlay, bool isComparison) {
     return head + "</thead>\n";
 }
 
-/// "×1.2" of the printed number; a rate of what was, not a comparison of machines.
+/// "×1.2" of the printed number, where both are of the same parameters; a rate of what was, not a
+/// comparison of machines.
 std::string ratioHtml(const Cell& cell) {
+    if (!cell.isAtPrintedParameters) return "";
     if (cell.values.empty() || cell.printedValues.empty() || !cell.printedValues[0]) return "";
     const double printed = *cell.printedValues[0];
     if (std::isinf(cell.values[0].value)) return "";
     if (printed == 0.0) return "";
     return fmt::format("<span class=\"ratio\" title=\"measured ÷ printed\">×{:.3g}</span>",
                        cell.values[0].value / printed);
+}
+
+/// What pointing at a cell tells: why it has no value, or why it is no multiple of what is printed.
+std::string titleOf(const Cell& cell) {
+    if (!cell.message.empty() || cell.departures.empty()) return cell.message;
+    return "at " + report::departuresText(cell.departures);
 }
 
 std::string cellHtml(const Cell* cell, std::size_t run) {
@@ -133,8 +142,8 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
     if (!anchors.empty()) anchors.pop_back();
     std::string attributes =
         anchors.empty() ? "" : fmt::format(" data-cases=\"{}\"", escapeXml(anchors));
-    if (!cell->message.empty()) {
-        attributes += fmt::format(" title=\"{}\"", escapeXml(cell->message));
+    if (const std::string title = titleOf(*cell); !title.empty()) {
+        attributes += fmt::format(" title=\"{}\"", escapeXml(title));
     }
     if (!cell->isOk()) {
         return fmt::format("<td class=\"num\"{}><span class=\"status\">{}</span></td>", attributes,
@@ -184,10 +193,25 @@ std::string rowHtml(const Overlay& overlay, const std::vector<std::string>& labe
 
 }  // namespace
 
+/// At which parameters each run measured; before the table, that nobody reads its numbers without.
+std::string parametersHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        if (!page.parts[run].experiment) continue;
+        const std::string line = report::parametersLine(page.parts[run].table);
+        if (line.empty()) continue;
+        const std::string letter =
+            model.isComparison() ? fmt::format("<b>{}</b> ", Model::letter(run)) : "";
+        html += fmt::format("<p class=\"parameters\">{}{}</p>\n", letter, escapeXml(line));
+    }
+    return html;
+}
+
 std::string tableHtml(const Page& page, const Model& model) {
     const Overlay overlay(page);
     if (overlay.isEmpty()) return "";
-    std::string html = "<div class=\"scroll\"><table class=\"results\">\n" +
+    std::string html = parametersHtml(page, model) +
+                       "<div class=\"scroll\"><table class=\"results\">\n" +
                        headHtml(overlay, model.isComparison()) + "<tbody>\n";
     bool hasStandIn = false;
     for (const std::vector<std::string>& labels : overlay.rows()) {
@@ -197,8 +221,9 @@ std::string tableHtml(const Page& page, const Model& model) {
     html += "</tbody></table></div>\n";
     if (!overlay.isOnlyPrinted()) {
         html +=
-            "<p class=\"soft small\">Under a number: its 95 % interval, and × what is printed. "
-            "Point at a row for its cases; click to keep them.</p>\n";
+            "<p class=\"soft small\">Under a number: its 95 % interval and, where it was measured "
+            "at the printed parameters, × what is printed. Point at a row for its cases; click to "
+            "keep them.</p>\n";
     }
     if (hasStandIn) {
         html +=

@@ -133,7 +133,8 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
             const Family family = familyOf(record, params);
             const auto [known, isFirst] = families.try_emplace(family.name, cases.size());
             if (isFirst) {
-                cases.push_back({record.caseId, axesOf(record, params, axes), {}});
+                cases.push_back(
+                    {record.caseId, axesOf(record, params, axes), {}, record.scene, record.params});
                 isSeeded.push_back(family.sample.has_value());
             }
             found->second = {known->second, family.sample.value_or(0) * kMostProcesses};
@@ -160,6 +161,13 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
         }
     }
     return cases;
+}
+
+CaseRecords unmeasured(const config::PaperCase& item, const std::vector<std::string>& axes) {
+    Record record;
+    record.scene = item.scene;
+    record.params = item.params.toJson().dump();
+    return {"", axesOf(record, paramsOf(record), axes), {}, record.scene, record.params};
 }
 
 std::vector<PlannedCase> planCases(const config::Experiment& experiment,

@@ -46,6 +46,8 @@ struct CaseRecords {
     std::string id;
     AxisValues axes;
     std::map<int, Attempt> processes;
+    std::string scene;   // as its records say it
+    std::string params;  // likewise: JSON
 };
 
 /// The cases of `table` in the order of their first records, which must outlive the result. A later
@@ -53,6 +55,9 @@ struct CaseRecords {
 /// Beside cases at several seeds those without a seed count at each.
 std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,
                                      const std::vector<std::string>& axes);
+
+/// A case of the profile `paper` as if it had been run, without an attempt.
+CaseRecords unmeasured(const config::PaperCase& item, const std::vector<std::string>& axes);
 
 /// A case of the sweep, run or not.
 struct PlannedCase {

@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::string_view kDefaultFormat = "{median:.4g}";
 
-using Where = std::map<std::string, std::vector<std::string>>;
-
 void layOver(const config::Selection& part, config::Selection& selection, Where& where) {
     if (part.metric) selection.metric = part.metric;
     if (part.pass) selection.pass = part.pass;
@@ -214,6 +212,23 @@ void fillValues(const CellQuery& query, const Samples& samples, std::uint64_t se
 bool isTimeMetric(std::string_view metric) {
     return metric.ends_with("_ms") || metric.ends_with("frame_rate") ||
            metric.ends_with("_per_second") || metric.find("_us_per_") != std::string_view::npos;
+}
+
+Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
+    config::Selection selection;
+    Where where;
+    layOver(layout.cell, selection, where);
+    layKeyOver(layout.rows, row, selection, where);
+    layKeyOver(layout.columns, column, selection, where);
+    return where;
+}
+
+std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases) {
+    std::vector<const CaseRecords*> found;
+    for (const CaseRecords& run : cases.run) {
+        if (matches(run.axes, cases, where, false)) found.push_back(&run);
+    }
+    return found;
 }
 
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {

@@ -14,6 +14,12 @@
 
 namespace gfxrepro::report {
 
+/// Which cases a layout asks for: axis → any of these values.
+using Where = std::map<std::string, std::vector<std::string>>;
+Where whereOf(const config::Layout& layout, const Key& row, const Key& column);
+/// Those of the cases that were run.
+std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases);
+
 /// What a cell shows, after the parts of its column, its row and `cell` are laid over one another.
 struct CellQuery {
     std::string metric;
@@ -21,7 +27,7 @@ struct CellQuery {
     CellFormat format;
     double scale = 1.0;
     bool isScaled = false;
-    std::map<std::string, std::vector<std::string>> where;  // axis → any of these values
+    Where where;
 };
 
 /// Throws Error at the selection's place when no part gives a metric, or for a bad format.

@@ -6,6 +6,7 @@
 
 #include "runner/core/text.h"
 #include "runner/report/markup.h"
+#include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::report {
 
@@ -54,6 +55,7 @@ class LatexWriter {
 
     std::string write() {
         writeHead();
+        if (!parameters_.empty()) set(table_.id, parameters_);
         for (std::size_t row = 0; row < table_.rows.size(); ++row) {
             for (std::size_t i = 0; i < table_.columns.size(); ++i) {
                 writeNumbers(table_.rows[row].cells[i], key(row, i));
@@ -61,7 +63,9 @@ class LatexWriter {
         }
         writeColumns();
         for (std::size_t row = 0; row < table_.rows.size(); ++row) writeRow(row);
-        return std::move(text_) + "\\bottomrule\n\\end{tabular}\n";
+        text_ += "\\bottomrule\n\\end{tabular}\n";
+        writeParameters();
+        return std::move(text_);
     }
 
   private:
@@ -90,6 +94,9 @@ class LatexWriter {
                 cite(example), example);
         }
         text_ += fmt::format("%   {}  as printed\n", cite(example + "/printed"));
+        if (!parameters_.empty()) {
+            text_ += fmt::format("%   {}  at which parameters it was measured\n", cite(table_.id));
+        }
         text_ += kMacros;
     }
 
@@ -158,7 +165,14 @@ class LatexWriter {
                            cite(key + "/high"));
     }
 
+    /// Below the table, in its own paragraph.
+    void writeParameters() {
+        if (parameters_.empty()) return;
+        text_ += fmt::format("\\par{{\\footnotesize {}\\par}}\n", cite(table_.id));
+    }
+
     const Table& table_;
+    const std::string parameters_ = parametersLine(table_);
     std::vector<std::string> rowKeys_;     // beside the rows
     std::vector<std::string> columnKeys_;  // beside the columns
     std::string text_;

@@ -19,7 +19,9 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
                                const std::vector<Record>& records);
 
 /// tables/<slug>.csv (every column printed, measured, low, high, status at full precision), .md
-/// (printed beside measured) and .tex (booktabs, a macro a number) for each.
+/// (printed beside measured) and .tex (booktabs, a macro a number) for each. All say at which
+/// parameters was measured and which differ from the printed ones: the CSV of each row (column
+/// `parameters`) and of each cell (`…_at_printed`: yes or no).
 void writeTables(const std::filesystem::path& runDir, const std::vector<Table>& tables);
 
 /// The claims of all experiments, in order; `tables` lies beside `experiments`. Throws Error as the

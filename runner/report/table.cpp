@@ -8,6 +8,7 @@
 #include "runner/report/cell_builder.h"
 #include "runner/report/csv.h"
 #include "runner/report/default_layout.h"
+#include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::report {
 
@@ -26,7 +27,7 @@ std::vector<std::string> axisNames(const std::vector<config::LayoutAxis>& axes) 
 }
 
 void buildCells(const config::Layout& layout, const LayoutCases& cases,
-                const std::vector<Key>& columns, Table& table) {
+                const PrintedParameters& printed, const std::vector<Key>& columns, Table& table) {
     std::vector<std::set<std::string>> units(columns.size());
     std::uint64_t seed = 0;  // one a cell, so that the draws of cells are independent
     for (TableRow& row : table.rows) {
@@ -34,6 +35,7 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
         for (std::size_t i = 0; i < columns.size(); ++i) {
             row.cells.push_back(
                 buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed));
+            printed.compare(layout, row.labels, columns[i], cases, row.cells.back());
             const std::string& unit = row.cells.back().unit;
             if (!unit.empty()) units[i].insert(unit);
         }
@@ -232,7 +234,10 @@ Table buildTable(const config::Experiment& given, const std::vector<Record>& rec
     for (Key& row : collectKeys(layout.rows, cases)) {
         table.rows.push_back({std::move(row), SceneSource::Unknown, {}});
     }
-    buildCells(layout, cases, columns, table);
+    const PrintedParameters printed(experiment);
+    table.isPublished = experiment.isPublished();
+    table.knowsPrintedParameters = printed.isKnown();
+    buildCells(layout, cases, printed, columns, table);
     layPrintedBeside(experiment, columns, table);
     return table;
 }

@@ -25,6 +25,17 @@ struct Measured {
 /// Whether a metric is a time or a number per time: what claims of a `kind` are about.
 bool isTimeMetric(std::string_view metric);
 
+/// A parameter at which a cell was measured otherwise than printed, with its values in the cases
+/// behind it. `cases`, with their numbers, where each parameter has its printed values but not all
+/// go together as printed.
+struct Departure {
+    std::string parameter;
+    std::vector<std::string> measured;
+    std::vector<std::string> printed;
+
+    bool operator==(const Departure&) const = default;
+};
+
 /// What stands at a row and a column.
 struct Cell {
     bool isPlanned = true;   // the sweep has such cases; if not, the cell is blank, not missing
@@ -40,6 +51,11 @@ struct Cell {
     std::string metric;   // what it shows; empty, as its unit, where it is scaled
     bool isTime = false;  // a time, or a rate of time
     std::string unit;     // of the records, if they agree
+    /// It was measured at what the paper measured at (printed_parameters.h). Never without a
+    /// measurement, nor in a run whose plan does not know the printed parameters.
+    bool isAtPrintedParameters = false;
+    /// Why it was not; empty also for a cell that has no counterpart in the profile `paper`.
+    std::vector<Departure> departures;
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
@@ -71,6 +87,8 @@ struct Table {
     std::string hardware;  // that the paper's numbers come from
     std::string remark;
     bool isOnlyPrinted = false;  // nothing is measured for it
+    bool isPublished = false;    // what is measured stands for something that a paper shows
+    bool knowsPrintedParameters = false;  // not so in runs of before these were kept
     std::vector<std::string> rowAxes;
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;

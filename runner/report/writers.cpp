@@ -9,6 +9,7 @@
 #include "runner/report/csv.h"
 #include "runner/report/latex.h"
 #include "runner/report/markup.h"
+#include "runner/report/printed_parameters.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::report {
@@ -31,6 +32,12 @@ std::vector<std::string> statisticsOf(const Table& table, std::size_t column) {
     return names;
 }
 
+/// Nothing where there is nothing to say it of.
+std::string_view atPrintedWord(const Table& table, const Cell& cell) {
+    if (cell.values.empty() || !table.knowsPrintedParameters) return "";
+    return cell.isAtPrintedParameters ? "yes" : "no";
+}
+
 std::string tableCsv(const Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
@@ -46,7 +53,9 @@ std::string tableCsv(const Table& table) {
             header.text(name + "_measured").text(name + "_low").text(name + "_high");
         }
         header.text(label + "_status");
+        if (table.isPublished) header.text(label + "_at_printed");
     }
+    if (table.isPublished) header.text("parameters");
     header.end();
     for (const TableRow& row : table.rows) {
         CsvRow line(text);
@@ -65,7 +74,9 @@ std::string tableCsv(const Table& table) {
                 }
             }
             line.text(cell.isPlanned ? statusName(cell.status) : "");
+            if (table.isPublished) line.text(atPrintedWord(table, cell));
         }
+        if (table.isPublished) line.text(parametersLine(table, row));
         line.end();
     }
     return text;
@@ -87,6 +98,8 @@ std::string tableMarkdown(const Table& table) {
                                 : "Printed → measured [95 % interval].";
     if (!table.hardware.empty())
         text += fmt::format(" Printed: {}.", escapeMarkdown(table.hardware));
+    if (const std::string parameters = parametersLine(table); !parameters.empty())
+        text += "\n\n" + escapeMarkdown(parameters);
     text += "\n\n|";
     std::string rule = "|";
     for (const std::string& axis : table.rowAxes) {

@@ -43,6 +43,7 @@ claims:
 assumptions:
   view: {{value: front, range: [front, back], why: the paper does not say}}
 """
+QUICKER = "profiles: {quick: {params: {pause_ms: 1}}}\n"  # of the second table, which is thus not at what is printed
 
 
 def run(*arguments, data):
@@ -79,7 +80,8 @@ class Report(unittest.TestCase):
         (cls.data / "configs" / "scenes").mkdir(parents=True)
         (cls.data / "configs" / "demo2026").mkdir()
         for number in (1, 2):
-            (cls.data / "configs" / "demo2026" / f"table-{number}.yaml").write_text(TABLE.format(number=number))
+            (cls.data / "configs" / "demo2026" / f"table-{number}.yaml").write_text(
+                TABLE.format(number=number) + (QUICKER if number == 2 else ""))
         (cls.data / "shaders").mkdir()
         cls.folder = make_run(cls.data, OUT / "run")
         # Left A is darker than its truth, right it is equal; "other" is brighter on the left.
@@ -113,6 +115,17 @@ class Report(unittest.TestCase):
         self.assertEqual(self.shown(".page"), 1)
         self.assertEqual(self.shown("b"), 0, "a title's markup must stay text")
         self.browser.screenshot(OUT / "overview.png")
+
+    def test_a_number_is_a_multiple_of_print_at_the_printed_parameters_alone(self):
+        self.open()
+        text = "return document.querySelector(arguments[0]).textContent"
+        self.assertEqual(self.browser.script(text, "#overview .parameters"),
+                         "cells measured at the printed parameters: 2 of 4, beside a measurement: 4 of 4")
+        for slug, line, ratios in (("demo2026-1", "Measured at the printed parameters.", 2),
+                                   ("demo2026-2", "Measured at pause_ms 1 (printed 0).", 0)):
+            self.open("#" + slug)
+            self.assertEqual(self.browser.script(text, f"#{slug} .parameters"), line)
+            self.assertEqual(self.shown(f"#{slug} .ratio"), ratios)
 
     def test_filters_choose_by_verdict_words_and_paper(self):
         self.open()

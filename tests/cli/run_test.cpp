@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "runner/core/files.h"
@@ -61,6 +62,81 @@ TEST(Run, TableThatIsOnlyPrinted) {
               "\\begin{tabular}{lr}\n\\toprule\nfunction & dimensions \\\\\n\\midrule\n"
               "{panorama} & \\gfxrepro{p/1/panorama/dimensions/printed} \\\\\n"
               "\\bottomrule\n\\end{tabular}\n");
+}
+
+/// A table whose profiles differ, with a printed value a row.
+std::string printedConfig(const TemporaryFolder& folder, const std::string& more = "") {
+    return folder.write(
+        "table-2.yaml",
+        "table: demo2026/2\ntitle: A demonstration\ntechnique: mock\n"
+        "output: {width: 8, height: 8}\nparams: {pause_ms: 2}\nsweep: {number: [1, 2]}\n"
+        "layout:\n  rows: number\n  columns: {n: {metric: number}}\n  cell: \"{median:.0f}\"\n"
+        "printed:\n  values: |\n    number,n\n    1,1\n    2,4\n"
+        "profiles:\n  quick: {params: {pause_ms: 1}, output: {width: 4}}\n" +
+            more);
+}
+
+/// The line of parameters in the Markdown table of a run with these arguments.
+std::string parametersOf(const std::string& config, const std::string& dir,
+                         const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = {"run", config, "--device", "software", "--out", dir};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    EXPECT_EQ(mockGfxrepro(all).exitCode, 0);
+    EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    const std::string text = readFile(dir + "/tables/demo2026-2.md");
+    const std::size_t start = text.find("\n\n", text.find("Printed →")) + 2;
+    return text.substr(start, text.find("\n\n", start) - start);
+}
+
+TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
+    const TemporaryFolder folder;
+    const std::string config = printedConfig(folder);
+    const std::string whole = folder.path() / "whole";
+    EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the printed parameters.");
+    EXPECT_EQ(gfxrepro({"table", whole}).out,
+              "demo2026/2: tables/demo2026-2.csv .md .tex\n"
+              "cells measured at the printed parameters: 2 of 2, beside a measurement: 2 of 2\n");
+    EXPECT_EQ(parametersOf(config, folder.path() / "quick", {"--profile", "quick"}),
+              "Measured at output 4×8 (printed 8×8), pause\\_ms 1 (2).");
+    EXPECT_EQ(parametersOf(config, folder.path() / "set", {"--set", "pause_ms=3"}),
+              "Measured at pause\\_ms 3 (printed 2).");
+    EXPECT_EQ(parametersOf(config, folder.path() / "swept", {"--sweep", "number=2,3"}),
+              "Measured at the printed parameters.")
+        << "the printed cell; 3 is not printed";
+    EXPECT_EQ(parametersOf(config, folder.path() / "only", {"--only", "number=1"}),
+              "Measured at the printed parameters.");
+    const std::string at = printedConfig(folder,
+                                         "  paper: {printed: {at: {measure.frames: 500}}, "
+                                         "measure: {frames: 3}}\n");
+    EXPECT_EQ(parametersOf(at, folder.path() / "at", {"--profile", "paper"}),
+              "Measured at frames 3 (printed 500).");
+}
+
+/// A plan of before printed parameters were kept is read as before.
+TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
+    const TemporaryFolder folder;
+    const std::string dir = folder.path() / "run";
+    parametersOf(printedConfig(folder), dir, {});
+    auto plan = nlohmann::ordered_json::parse(readFile(dir + "/plan.json"));
+    ASSERT_EQ(plan["experiments"][0].erase("paper"), 1U);
+    EXPECT_FALSE(plan["cases"][0].contains("paper")) << "what workers are told";
+    writeFileAtomic(dir + "/plan.json", plan.dump());
+    EXPECT_EQ(gfxrepro({"table", dir}).out,
+              "demo2026/2: tables/demo2026-2.csv .md .tex\n"
+              "cells measured at the printed parameters: 0 of 2, beside a measurement: 2 of 2\n");
+    EXPECT_NE(readFile(dir + "/tables/demo2026-2.md")
+                  .find("Whether it was measured at the printed parameters is not known"),
+              std::string::npos);
+}
+
+TEST(Run, PrintedParametersHaveToBeParameters) {
+    const TemporaryFolder folder;
+    const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause: 500}}}\n");
+    const ProcessResult check = mockGfxrepro({"check", config});
+    EXPECT_EQ(check.exitCode, 2);
+    EXPECT_EQ(check.err, "gfxrepro: " + config +
+                             ":18:33: printed.at: 'pause' is no parameter; did you mean "
+                             "'pause_ms'?\n");
 }
 
 TEST(Run, SecondRunIntoOneFolderIsRefused) {

@@ -116,6 +116,57 @@ TEST_F(ExperimentTest, BadPrintedValues) {
               "DIR/zju/a.yaml:7:11: printed: values has no rows");
 }
 
+TEST_F(ExperimentTest, PrintedParameters) {
+    const std::string table =
+        "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], grid: [4, 8]}\n"
+        "layout: {rows: scene, columns: {aa: m}}\n";
+    const auto at = [&](const std::string& values) {
+        return table + "printed: {at: " + values + "}\n";
+    };
+    const Experiment read = load(at("{measure.frames: 500, output.width: 1024, depth: deep}"));
+    ASSERT_EQ(read.printed.at.size(), 3U);
+    EXPECT_EQ(read.printed.at[0].first, "measure.frames");
+    EXPECT_EQ(read.printed.at[0].second.asInteger(), 500);
+    EXPECT_EQ(read.printed.at[2].second.text(), "deep");
+    EXPECT_EQ(loadError(at("500")),
+              "DIR/zju/a.yaml:6:15: printed.at is 500; allowed: a map {parameter: printed value}");
+    EXPECT_EQ(loadError(at("{measure.repeats: 5}")),
+              "DIR/zju/a.yaml:6:16: printed.at: 'measure.repeats'; allowed: a parameter, scene, "
+              "output.width, output.height, measure.frames");
+    EXPECT_EQ(loadError(at("{measure.frames: all}")),
+              "DIR/zju/a.yaml:6:32: printed.at: measure.frames is all; allowed: a whole number, at "
+              "least 1");
+    EXPECT_EQ(loadError(at("{grid: 16}")),
+              "DIR/zju/a.yaml:6:22: printed.at: 'grid' is swept; allowed: what all cases share");
+    EXPECT_EQ(loadError("table: p/1\ntitle: t\nprinted: {values: \"a\\n1\", at: {grid: 1}}\n"),
+              "DIR/zju/a.yaml:3:27: printed: 'at' without 'technique'");
+}
+
+/// What the paper measured at does not depend on what is asked for.
+TEST_F(ExperimentTest, PaperDocumentIsTheProfileWithoutOverrides) {
+    const std::string body =
+        "title: t\ntechnique: x\nparams: {grid: 8}\nsweep: {scene: [s]}\n"
+        "layout: {rows: scene, columns: {aa: m}}\n";
+    const std::string profiles =
+        "profiles: {quick: {params: {grid: 4}}, paper: {params: {grid: 16}}}\n";
+    const auto gridOf = [](const Node& document) {
+        return document.find("params")->find("grid")->asInteger();
+    };
+    ExperimentOptions quick;
+    quick.profile = "quick";
+    quick.sets = {parseOverride("depth=1")};
+    quick.sweeps = {parseOverride("scene=t,u")};
+    const Experiment table = load("table: p/1\n" + body + profiles, quick);
+    EXPECT_EQ(gridOf(table.document), 4);
+    EXPECT_EQ(gridOf(table.paperDocument), 16);
+    EXPECT_FALSE(table.paperDocument.find("params")->find("depth"));
+    EXPECT_EQ(table.paperDocument.find("sweep")->toFlowText(), "{scene: [s]}");
+    EXPECT_EQ(gridOf(load("figure: p/1\n" + body, quick).paperDocument), 8) << "no such profile";
+    EXPECT_TRUE(load("sweep_of: p\n" + body + profiles, quick).paperDocument.isNull());
+    const std::string printed = "printed: {values: \"scene,aa\\ns,1\"}\n";
+    EXPECT_EQ(gridOf(load("sweep_of: p\n" + body + printed, quick).paperDocument), 8);
+}
+
 TEST_F(ExperimentTest, ColumnsOfSeveralAxesAreJoined) {
     const std::string text =
         "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], method: [nr, dp], size: [512, "

@@ -22,7 +22,7 @@ const report::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
                                      "gfxrepro reproduce"};
 
 config::Experiment experiment() {
-    return report::experimentFrom(R"(
+    return report::withPaperCases(report::experimentFrom(R"(
 sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
 layout:
   rows: scene
@@ -40,7 +40,8 @@ claims:
   C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
 assumptions:
   padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
-)");
+)"),
+                                  {{"models/duck", "{}"}, {"<b>&|_%", "{}"}});
 }
 
 std::vector<report::Record> records(double drawMs = 8.0) {
@@ -93,6 +94,9 @@ TEST(Report, IsOneSafeFile) {
              "gfxrepro reproduce zju2005/9.9 --profile quick",
              "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
              "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
+             "<p class=\"parameters\">cells measured at the printed parameters: 2 of 2, beside a "
+             "measurement: 2 of 2</p>",
+             "<p class=\"parameters\">Measured at the printed parameters.</p>\n<div",
          }) {
         EXPECT_THAT(html, HasSubstr(part));
     }
@@ -100,6 +104,28 @@ TEST(Report, IsOneSafeFile) {
                                   "href=\"http", "url(http", "@import", "<link rel=\"style"}) {
         EXPECT_THAT(html, Not(HasSubstr(forbidden)));
     }
+}
+
+/// A number of other parameters is no multiple of what is printed.
+TEST(Report, NoRatioAtOtherParameters) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
+    writeReport(folder.path() / "report.html", {&run, 1});
+    std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light_grid none (printed "
+                                "16).</p>\n<div"));
+    EXPECT_THAT(html, HasSubstr(" title=\"at light_grid none (printed 16)\">8.0"));
+    EXPECT_THAT(html, HasSubstr("printed parameters: 0 of 2, beside a measurement: 2 of 2</p>"));
+
+    run.experiments[0].paperCases.clear();  // of a plan of before they were kept
+    writeReport(folder.path() / "report.html", {&run, 1});
+    html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Whether it was measured at the printed "
+                                "parameters is not known: the run&#39;s plan does not have "
+                                "them.</p>"));
 }
 
 TEST(Report, CellsNameTheirCases) {
@@ -165,12 +191,23 @@ TEST(Report, LargeGalleriesLieBesideThePage) {
 
 TEST(Report, RunsStandSideBySide) {
     const test::TemporaryFolder a, b, out;
-    const std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
+    std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
+    runs[1].experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
     writeReport(out.path() / "both.html", runs);
     const std::string html = readFile(out.path() / "both.html");
     EXPECT_THAT(html, HasSubstr("<th class=\"sub\">printed</th><th class=\"sub\">A</th>"
                                 "<th class=\"sub\">B</th>"));
     EXPECT_THAT(html, HasSubstr("class=\"differs\"><td>zju2005</td>"));  // claim A, 8 against 12
+    for (const char* part : {
+             "<p class=\"parameters\"><b>A</b> cells measured at the printed parameters: 2 of 2",
+             "<p class=\"parameters\"><b>B</b> cells measured at the printed parameters: 0 of 2",
+             "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
+             "<p class=\"parameters\"><b>B</b> Measured at light_grid none (printed 16).</p>",
+             "×0.5</span>",  // 8 of 16
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    EXPECT_THAT(html, Not(HasSubstr("×0.75</span>"))) << "12 of 16, at other parameters";
     EXPECT_THAT(html, HasSubstr("<b>A</b> quick, llvmpipe"));
 }
 

@@ -14,6 +14,15 @@ config::Experiment experimentFrom(const std::string& body) {
     return config::loadExperiment(file, {}, folder.path());
 }
 
+config::Experiment withPaperCases(
+    config::Experiment experiment,
+    std::initializer_list<std::pair<const char*, const char*>> cases) {
+    for (const auto& [scene, params] : cases) {
+        experiment.paperCases.push_back({scene, config::parseYaml(params, "paper case")});
+    }
+    return experiment;
+}
+
 RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string& params) {
     current_ = Record{};
     current_.caseId = "case:" + scene + params;

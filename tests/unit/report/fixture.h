@@ -16,6 +16,11 @@ namespace gfxrepro::report {
 /// The experiment "zju2005/9.9" of technique `voxelization` with `body` below these keys.
 config::Experiment experimentFrom(const std::string& body);
 
+/// The same with these cases under the profile `paper`, as a plan finds them: scene, parameters as
+/// JSON.
+config::Experiment withPaperCases(config::Experiment experiment,
+                                  std::initializer_list<std::pair<const char*, const char*>> cases);
+
 /// Makes records of "zju2005/9.9"; a case is known by its scene and params.
 class RecordMaker {
   public:

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 const ReportContext kContext{"llvmpipe", "software", "quick", "abc123", "gfxrepro reproduce"};
 
 config::Experiment experiment() {
-    return experimentFrom(R"(
+    return withPaperCases(experimentFrom(R"(
 sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
 layout:
   rows: scene
@@ -33,14 +33,17 @@ claims:
   C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
 assumptions:
   padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
-)");
+)"),
+                          {{"models/duck", "{}"}, {"<b>&|_%", "{light_grid: 16}"}});
 }
 
 std::vector<Record> records() {
     RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
     maker.add("scene_source", {1.0}, "", "enum");
-    maker.beginCase("<b>&|_%").add("error", {2.5}).add("gpu_time_ms", {1.0 / 3.0});
+    maker.beginCase("<b>&|_%", R"({"light_grid": 4})")
+        .add("error", {2.5})
+        .add("gpu_time_ms", {1.0 / 3.0});
     maker.beginCase("models/lost").fail(Status::Crash, "signal <11>");
     return maker.records();
 }
@@ -57,19 +60,27 @@ TEST(Writers, TableFiles) {
     EXPECT_THAT(csv, testing::StartsWith(
                          "scene,source,error_printed,error_mean_measured,error_mean_low,"
                          "error_mean_high,error_max_measured,error_max_low,error_max_high,"
-                         "error_status,draw_ms_printed,draw_ms_measured,draw_ms_low,draw_ms_high,"
-                         "draw_ms_status\nmodels/duck,stand-in,3.00/106,2,1,"));
-    EXPECT_THAT(csv, HasSubstr(",ok,9.0,8,8,8,ok\n"));
+                         "error_status,error_at_printed,draw_ms_printed,draw_ms_measured,"
+                         "draw_ms_low,draw_ms_high,draw_ms_status,draw_ms_at_printed,parameters\n"
+                         "models/duck,stand-in,3.00/106,2,1,"));
+    EXPECT_THAT(csv, HasSubstr(",ok,yes,9.0,8,8,8,ok,yes,Measured at the printed parameters\n"));
     EXPECT_THAT(csv, HasSubstr("0.3333333333333333,"));
-    EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,crash,,,,,crash\n"));
+    EXPECT_THAT(csv, HasSubstr(",ok,no,Measured at light_grid 4 (printed 16)\n"));
+    EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,crash,,,,,,crash,,\n"));
     const std::string markdown = run.read("tables/zju2005-9.9.md");
     EXPECT_THAT(markdown, HasSubstr("# Table 9.9. A table\n"));
+    EXPECT_THAT(markdown, HasSubstr("\n\nMeasured at the printed parameters.\n\n| scene |"))
+        << "of the printed cells: the other row has none";
     EXPECT_THAT(markdown, HasSubstr("| models/duck | stand-in | 3.00/106 → 2.00/4 ["));
     EXPECT_THAT(markdown, HasSubstr("| \\<b\\>&amp;\\|\\_% |"));
     EXPECT_THAT(markdown, HasSubstr("| 9.0 → 8.0 |"));
     EXPECT_THAT(markdown, HasSubstr("| models/lost |  | crash | crash |"));
     const std::string latex = run.read("tables/zju2005-9.9.tex");
     EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{llrrrr}\n\\toprule\n"));
+    EXPECT_THAT(latex,
+                HasSubstr("\\gfxreproset{zju2005/9.9}{Measured at the printed parameters.}\n"));
+    EXPECT_THAT(latex, testing::EndsWith("\\end{tabular}\n"
+                                         "\\par{\\footnotesize \\gfxrepro{zju2005/9.9}\\par}\n"));
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
 }
 
