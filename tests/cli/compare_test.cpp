@@ -36,7 +36,7 @@ class Compare : public ::testing::Test {
 };
 
 TEST_F(Compare, FindsASlowerBuildAndConfirmsIt) {
-    const ProcessResult result = byTurns(15);
+    const ProcessResult result = byTurns(40);
     EXPECT_EQ(result.exitCode, 1) << result.err;
     EXPECT_EQ(result.out.find("alarm; measuring again\n"), 0U) << result.out;
     EXPECT_NE(result.out.find("_time_ms: slower"), std::string::npos) << result.out;

@@ -116,13 +116,14 @@ TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
     const std::string before = readFile(dir + "/claims.csv");
     const ProcessResult result = mockGfxrepro({"claims", dir, "--config", config(2)});
     EXPECT_EQ(result.exitCode, 1) << result.err;
-    EXPECT_THAT(result.out,
-                HasSubstr("sweep/mock small: fails; judged after the run, by a config that it did "
-                          "not know; one sample\n"));
+    EXPECT_THAT(
+        result.out,
+        HasSubstr("sweep/mock small: fails (news); judged after the run, by a config that it did "
+                  "not know; one sample\n"));
     EXPECT_THAT(result.out,
                 HasSubstr("judged after the run: " + dir + "/judged-afterwards/claims.csv\n"));
     EXPECT_EQ(readFile(dir + "/claims.csv"), before);
-    EXPECT_THAT(readFile(dir + "/judged-afterwards/claims.csv"), HasSubstr(",fails,3,"));
+    EXPECT_THAT(readFile(dir + "/judged-afterwards/claims.csv"), HasSubstr(",fails,holds,3,"));
     EXPECT_THAT(readFile(dir + "/judged-afterwards/tables/sweep-mock.md"),
                 HasSubstr("Note: judged after the run, by a config that it did not know"));
     const std::string other =
