@@ -17,8 +17,8 @@ namespace gfxrepro::config {
 using Json = nlohmann::ordered_json;
 
 /// What summarizes the records of a cell.
-inline constexpr std::array<std::string_view, 6> kStatistics = {"median", "mean", "min",
-                                                                "max",    "sum",  "count"};
+inline constexpr std::array<std::string_view, 7> kStatistics = {"median", "mean",  "min", "max",
+                                                                "sum",    "count", "rate"};
 
 /// The words of a claim, in the order of the enums of ClaimSpec.
 inline constexpr std::array<std::string_view, 5> kOrigins = {"document", "derived", "ours",

@@ -53,7 +53,7 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 
 /// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".
 void requireCellFormat(const Node& format);
-/// Throws Error unless it is one of median, mean, min, max, sum, count.
+/// Throws Error unless it is one of median, mean, min, max, sum, count, rate.
 void requireStatistic(const Node& name);
 
 /// `text` of one line that is not empty.

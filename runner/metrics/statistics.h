@@ -1,7 +1,9 @@
 // Summaries of repeated measurements.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -14,13 +16,14 @@ struct Interval {
     double high = 0.0;
 };
 
-/// median | mean | min | max | sum | count.
-enum class Statistic { Median, Mean, Min, Max, Sum, Count };
+/// median | mean | min | max | sum | count | rate. The rate is the harmonic mean: of frame rates,
+/// the frames divided by their total time.
+enum class Statistic { Median, Mean, Min, Max, Sum, Count, Rate };
 /// Throws Error for other names, listing these.
 Statistic statisticFromName(std::string_view name);
 
 /// Of at least one value; Count of none is 0. Median of an even count is the mean of the middle
-/// two.
+/// two. The rate of values of which one is zero is 0.
 double summarize(std::span<const double> values, Statistic statistic);
 
 /// `draws` bootstrap resamples of `values`, each summarized, unsorted; the same seed gives the same
@@ -31,5 +34,27 @@ std::vector<double> bootstrap(std::span<const double> values, Statistic statisti
 /// The central interval that holds `confidence` of the values (linear interpolation between order
 /// statistics).
 Interval centralInterval(std::vector<double> values, double confidence = 0.95);
+
+/// The fewest independent values of which a 95 % interval can be made by ranks: the range of five
+/// misses the median in 2 · 2⁻⁵ = 6 %, that of six in 3 %.
+inline constexpr std::size_t kFewestForInterval = 6;
+
+/// A 95 % interval for the median of the distribution of independent values, whatever its shape:
+/// the narrowest pair of order statistics, as far from either end, that holds it with 95 % or more
+/// (sign test; Conover 1999, Practical Nonparametric Statistics, Sec. 3.2). None for fewer than
+/// kFewestForInterval values. Infinite values are values.
+std::optional<Interval> medianInterval(std::span<const double> values);
+
+/// The middle of a symmetric distribution: the median of the means of all pairs of values, each
+/// with itself too (Hodges and Lehmann 1963). Robust: one value in four may be anything.
+double centre(std::span<const double> values);
+/// Its 95 % interval by Wilcoxon's signed ranks, exact (Hollander, Wolfe and Chicken 2014,
+/// Nonparametric Statistical Methods, Sec. 3.3); for differences of two equally noisy things, whose
+/// distribution is symmetric. None for fewer than kFewestForInterval values, which must be finite.
+std::optional<Interval> centreInterval(std::span<const double> values);
+
+/// Rank correlation of y with x, −1 … 1: concordant less discordant pairs over all pairs of unlike
+/// x (Kendall 1938; a tie in y counts for neither). 0 without such a pair.
+double kendall(std::span<const double> x, std::span<const double> y);
 
 }  // namespace gfxrepro::metrics

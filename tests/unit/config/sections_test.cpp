@@ -70,7 +70,7 @@ TEST_F(ExperimentTest, CellFormats) {
     }
     const std::string head = "DIR/zju/a.yaml:5:46: ";
     EXPECT_EQ(formatError("{avg:.2f}"),
-              head + "statistic is avg; allowed: median, mean, min, max, sum, count");
+              head + "statistic is avg; allowed: median, mean, min, max, sum, count, rate");
     EXPECT_EQ(formatError("{mean:.2d}"),
               head +
                   "format is \"{mean:.2d}\"; allowed: number formats such as {mean:.2f} "
@@ -260,7 +260,7 @@ TEST_F(ExperimentTest, BadClaimScopes) {
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, profile: fast}"),
               head + "46: claim 'C': profile is fast; allowed: quick | full | paper");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, statistic: avg}"),
-              head + "48: statistic is avg; allowed: median, mean, min, max, sum, count");
+              head + "48: statistic is avg; allowed: median, mean, min, max, sum, count, rate");
     EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, above: 1}"),
               head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "runner/core/random.h"
 #include "tests/support/support.h"
@@ -22,12 +23,16 @@ TEST(Statistics, Summaries) {
     EXPECT_EQ(summarize(values, Statistic::Count), 4.0);
     EXPECT_EQ(summarize(std::vector<double>{9.0, 1.0, 4.0}, Statistic::Median), 4.0);
     EXPECT_EQ(summarize({}, Statistic::Count), 0.0);
+    // Two frames at 10 and 40 a second last 125 ms together: 16 a second.
+    EXPECT_DOUBLE_EQ(summarize(std::vector<double>{10.0, 40.0}, Statistic::Rate), 16.0);
+    EXPECT_EQ(summarize(std::vector<double>{10.0, 0.0}, Statistic::Rate), 0.0);
 }
 
 TEST(Statistics, Names) {
     EXPECT_EQ(statisticFromName("max"), Statistic::Max);
+    EXPECT_EQ(statisticFromName("rate"), Statistic::Rate);
     EXPECT_EQ(test::errorText([] { statisticFromName("avg"); }),
-              "unknown statistic 'avg'; allowed: median, mean, min, max, sum, count");
+              "unknown statistic 'avg'; allowed: median, mean, min, max, sum, count, rate");
 }
 
 TEST(Statistics, CentralIntervalInterpolates) {
@@ -38,6 +43,54 @@ TEST(Statistics, CentralIntervalInterpolates) {
     EXPECT_NEAR(interval.high, 97.5, 1e-12);
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_EQ(centralInterval({infinity, infinity}).high, infinity);
+}
+
+std::vector<double> upTo(int n) {
+    std::vector<double> values;
+    for (int i = n; i >= 1; --i) values.push_back(i);
+    return values;
+}
+
+/// Ranks of the ends: tables of the sign test, as in Conover 1999, Table A3.
+TEST(Statistics, MedianIntervalIsOfOrderStatistics) {
+    EXPECT_FALSE(medianInterval(upTo(5)));
+    const auto ends = [](int n) {
+        const Interval interval = *medianInterval(upTo(n));
+        return std::pair(interval.low, interval.high);
+    };
+    EXPECT_EQ(ends(6), std::pair(1.0, 6.0));
+    EXPECT_EQ(ends(8), std::pair(1.0, 8.0));
+    EXPECT_EQ(ends(9), std::pair(2.0, 8.0));
+    EXPECT_EQ(ends(12), std::pair(3.0, 10.0));
+    EXPECT_EQ(ends(20), std::pair(6.0, 15.0));
+    EXPECT_EQ(ends(100), std::pair(40.0, 61.0));
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(medianInterval(std::vector<double>(6, infinity))->low, infinity);
+}
+
+/// Critical values of Wilcoxon's signed ranks at 5 %, two-sided (Hollander, Wolfe and Chicken 2014,
+/// Table A.4): with 6 values none of the 21 means is left out but the outermost stays the end.
+TEST(Statistics, CentreIntervalIsOfSignedRanks) {
+    EXPECT_FALSE(centreInterval(upTo(5)));
+    const auto ends = [](int n) {
+        const Interval interval = *centreInterval(upTo(n));
+        return std::pair(interval.low, interval.high);
+    };
+    EXPECT_EQ(ends(6), std::pair(1.0, 6.0));
+    EXPECT_EQ(ends(8), std::pair(2.0, 7.0));   // the 4th of 36: 1, 1.5, 2, 2
+    EXPECT_EQ(ends(10), std::pair(3.0, 8.0));  // the 9th of 55: 1, 1.5, 2, 2, 2.5, 2.5, 3, 3, 3
+    EXPECT_EQ(centre(upTo(7)), 4.0);
+    // One value that is anything moves it by a step, not away.
+    EXPECT_NEAR(centre(std::vector<double>{1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 1e6}), 1.0, 0.1);
+}
+
+TEST(Statistics, KendallCountsPairs) {
+    const std::vector<double> x = {1.0, 2.0, 3.0, 4.0};
+    EXPECT_EQ(kendall(x, std::vector<double>{1.0, 2.0, 5.0, 7.0}), 1.0);
+    EXPECT_EQ(kendall(x, std::vector<double>{4.0, 3.0, 2.0, 1.0}), -1.0);
+    EXPECT_DOUBLE_EQ(kendall(x, std::vector<double>{1.0, 3.0, 2.0, 4.0}), 4.0 / 6.0);
+    EXPECT_EQ(kendall(x, std::vector<double>(4, 1.0)), 0.0);
+    EXPECT_EQ(kendall(std::vector<double>{1.0, 1.0}, std::vector<double>{1.0, 2.0}), 0.0);
 }
 
 TEST(Statistics, BootstrapIsSeeded) {
