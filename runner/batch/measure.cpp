@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 
 #include "runner/batch/equal_work.h"
 #include "runner/batch/process_memory.h"
@@ -40,10 +41,18 @@ class PhaseScope {
     Clock::time_point begin_ = Clock::now();
 };
 
-void recordPasses(gl::Profiler& profiler, RunRecorder& recorder) {
+/// Where cores are the device their time is recorded, too: of scopes of one name on both clocks
+/// together.
+void recordPasses(gl::Profiler& profiler, bool isSoftware, RunRecorder& recorder) {
+    std::map<std::string, double> processTimesMs;
     for (const gl::PassTime& time : profiler.collect()) {
         const bool isGpu = time.clock == gl::PassTime::Clock::Gpu;
         recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", time.timeMs, "ms", time.pass);
+        processTimesMs[time.pass] += time.processTimeMs;
+    }
+    if (!isSoftware) return;
+    for (const auto& [pass, timeMs] : processTimesMs) {
+        recorder.metric("process_time_ms", timeMs, "ms", pass);
     }
 }
 
@@ -91,7 +100,7 @@ void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
 
 bool isTimeOfFrame(const std::string& metric) {
     return metric == "wall_time_ms" || metric == "frame_rate" || metric == "gpu_time_ms" ||
-           metric == "cpu_time_ms";
+           metric == "cpu_time_ms" || metric == "process_time_ms";
 }
 
 /// What tells whether the repeats of a frame did the same; recorded beside their times.
@@ -144,6 +153,7 @@ class WorkGuard {
 void renderAndRecord(const Case& item, technique::Technique& technique, gl::Profiler& profiler,
                      const MeasureContext& context, RunRecorder& recorder, CaseResult& result) {
     const int frames = item.measure.frames;
+    const bool isSoftware = context.device.info().isSoftware;
     WorkGuard guard(context.device, item.measure.lane == config::Measure::Lane::Timing);
     for (int frame = 0; frame < frames; ++frame) {
         technique::FrameContext frameContext{frame, frames, profiler};
@@ -159,13 +169,16 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
             for (int repeat = 0; repeat < item.measure.repeats; ++repeat) {
                 recorder.setIteration(frame, repeat);
                 guard.beginRepeat();
+                const double processBeginMs = gl::processTimeMs();
                 const Clock::time_point begin = Clock::now();
                 technique.render(frameContext);
                 context.device.finish("rendering");
                 const double wallTimeMs = millisecondsSince(begin);
+                const double processTimeMs = gl::processTimeMs() - processBeginMs;
                 recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
                 recorder.metric("frame_rate", 1000.0 / wallTimeMs, "1/s", "");
-                recordPasses(profiler, recorder);
+                if (isSoftware) recorder.metric("process_time_ms", processTimeMs, "ms", "");
+                recordPasses(profiler, isSoftware, recorder);
                 guard.endRepeat(technique, recorder);
             }
         }
@@ -214,7 +227,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
         technique->setup(setup);
         context.device.finish("setting up");
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
-        recordPasses(profiler, recorder);
+        recordPasses(profiler, context.device.info().isSoftware, recorder);
     }
     renderAndRecord(item, *technique, profiler, context, recorder, result);
     recorder.setIteration(report::kSetup, report::kSetup);

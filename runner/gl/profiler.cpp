@@ -1,5 +1,7 @@
 #include "runner/gl/profiler.h"
 
+#include <time.h>
+
 #include <algorithm>
 
 #include "runner/core/error.h"
@@ -29,13 +31,22 @@ GLuint64 timeNs(GLuint query) {
 
 }  // namespace
 
+double processTimeMs() {
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
 std::size_t Profiler::beginGpu(std::string_view pass) {
     entries_.push_back({std::string(pass), PassTime::Clock::Gpu, {}, {}});
     entries_.back().begin = stamp(isSoftwareDevice_);
+    entries_.back().processTimeMs = -processTimeMs();
     return entries_.size() - 1;
 }
 
 void Profiler::endGpu(std::size_t entry) {
+    if (isSoftwareDevice_) glFinish();  // the pass's work, but not the second stamp's
+    entries_[entry].processTimeMs += processTimeMs();
     entries_[entry].end = stamp(isSoftwareDevice_);
 }
 
@@ -53,8 +64,9 @@ std::vector<PassTime> Profiler::collect() {
         });
         if (same != times.end()) {
             same->timeMs += timeMs;
+            same->processTimeMs += entry.processTimeMs;
         } else {
-            times.push_back({entry.pass, entry.clock, timeMs});
+            times.push_back({entry.pass, entry.clock, timeMs, entry.processTimeMs});
         }
     }
     entries_.clear();
@@ -63,7 +75,10 @@ std::vector<PassTime> Profiler::collect() {
 
 CpuScope::CpuScope(Profiler& profiler, std::string_view pass)
     : profiler_(profiler), entry_(profiler.entries_.size()) {
+    // Pixels that are still being drawn are not this scope's.
+    if (profiler.isSoftwareDevice_) glFinish();
     profiler.entries_.push_back({std::string(pass), PassTime::Clock::Cpu, {}, {}});
+    profiler.entries_.back().processTimeMs = -processTimeMs();
     begin_ = std::chrono::steady_clock::now();
 }
 
@@ -71,6 +86,7 @@ CpuScope::~CpuScope() {
     const std::chrono::duration<double, std::milli> time =
         std::chrono::steady_clock::now() - begin_;
     profiler_.entries_[entry_].cpuTimeMs = time.count();
+    profiler_.entries_[entry_].processTimeMs += processTimeMs();
 }
 
 }  // namespace gfxrepro::gl

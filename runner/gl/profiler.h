@@ -17,11 +17,18 @@ struct PassTime {
     std::string pass;
     Clock clock = Clock::Gpu;
     double timeMs = 0.0;
+    double processTimeMs = 0.0;  // CPU time of all threads of the process meanwhile
 };
+
+/// CPU time, user and system, that all threads of this process have spent
+/// (CLOCK_PROCESS_CPUTIME_ID, POSIX). On a software device it is the work that was done, whoever
+/// else wants the cores.
+double processTimeMs();
 
 /// Collects scopes of one iteration. On a software device everything is finished before and
 /// after each stamp, so that no pass's work is counted with its neighbour (llvmpipe runs vertex
-/// work when the draw is called, and rasterizes and takes the stamp at the next flush).
+/// work when the draw is called, and rasterizes and takes the stamp at the next flush). So the CPU
+/// time of a pass is its own, too.
 class Profiler {
   public:
     explicit Profiler(bool isSoftwareDevice) : isSoftwareDevice_(isSoftwareDevice) {}
@@ -38,6 +45,7 @@ class Profiler {
         PassTime::Clock clock;
         detail::Name<detail::deleteQuery> begin, end;
         double cpuTimeMs = 0.0;
+        double processTimeMs = 0.0;  // less what it was at the begin
     };
     std::size_t beginGpu(std::string_view pass);
     void endGpu(std::size_t entry);

@@ -48,6 +48,9 @@ TEST_F(GlTest, CpuScopeTakesAtLeastItsSleep) {
     const std::vector<PassTime> times = profiler.collect();
     ASSERT_EQ(times.size(), 1U);
     EXPECT_GE(times[0].timeMs, 10.0);
+    // Nothing was done meanwhile, by no thread.
+    EXPECT_GE(times[0].processTimeMs, 0.0);
+    EXPECT_LT(times[0].processTimeMs, times[0].timeMs);
 }
 
 TEST_F(GlTest, AScopeHoldsThePixelWorkOfItsDraw) {
@@ -79,6 +82,7 @@ void main() {
     const std::vector<PassTime> times = profiler.collect();
     ASSERT_EQ(names(times), (std::vector<std::string>{"gpu draw", "gpu nothing"}));
     EXPECT_GT(times[0].timeMs, times[1].timeMs);
+    if (device.info().isSoftware) EXPECT_GT(times[0].processTimeMs, times[1].processTimeMs);
 }
 
 TEST_F(GlTest, AScopeHoldsTheVertexWorkOfItsDraw) {
