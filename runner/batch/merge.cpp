@@ -96,19 +96,30 @@ Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& comm
     manifest["invocations"] = Json::array();
     manifest["merged"] = Json::array();
     beginInvocation(manifest, commandLine);
+    Json rounds = Json::object();  // each table's are of one shard
     for (const ShardRun& shard : shards) {
         const Json& from = shard.run.manifest;
         for (const std::string& note : notesOf(from)) {
             manifest["notes"].push_back(shard.path.string() + ": " + note);
         }
         manifest["scenes"].update(from.at("scenes"));
+        if (from.contains("rounds")) rounds.update(from.at("rounds"));
         manifest["merged"].push_back(
             {{"folder", shard.path.string()},
              {"shard", shard.run.plan.shard ? shard.run.plan.shard->name() : "1/1"},
              {"machine", machineName(from)},
              {"invocations", from.at("invocations")}});
     }
+    manifest["rounds"] = rounds;
     return manifest;
+}
+
+std::vector<report::Record> allRecords(const std::vector<ShardRun>& shards) {
+    std::vector<report::Record> records;
+    for (const ShardRun& shard : shards) {
+        std::ranges::copy(shard.run.records, std::back_inserter(records));
+    }
+    return records;
 }
 
 UnitRows rowsByUnit(const std::vector<ShardRun>& shards) {
@@ -163,11 +174,7 @@ StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& comm
     merged.plan.shard.reset();
     merged.manifest = mergedManifest(shards, commandLine);
     UnitRows rows = rowsByUnit(shards);
-    // Each shard with times has an A/A pair of its own; they come first, as in a run.
-    for (auto& [unit, pair] : rows) {
-        if (unit.second < 0) std::ranges::move(pair, std::back_inserter(merged.records));
-    }
-    for (const Unit& unit : unitsOf(merged.plan)) {
+    for (const Unit& unit : unitsOf(merged.plan, allRecords(shards))) {
         std::ranges::move(rows[{unit.item->id, unit.process}], std::back_inserter(merged.records));
     }
     return merged;
@@ -177,7 +184,7 @@ std::vector<std::string> missingUnits(const StoredRun& run) {
     std::set<std::pair<std::string, int>> recorded;
     for (const report::Record& row : run.records) recorded.emplace(row.caseId, row.process);
     std::vector<std::string> missing;
-    for (const Unit& unit : unitsOf(run.plan)) {
+    for (const Unit& unit : unitsOf(run.plan, run.records)) {
         if (recorded.contains({unit.item->id, unit.process})) continue;
         missing.push_back(unit.item->title());
         if (unit.item->measure.processes > 1) {

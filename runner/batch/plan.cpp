@@ -55,6 +55,9 @@ Json toJson(const config::Measure& measure) {
             {"warmup", measure.warmup},
             {"repeats", measure.repeats},
             {"processes", measure.processes},
+            {"relative_error", measure.relativeError},
+            {"processes_at_most", measure.processesAtMost},
+            {"time_budget_s", measure.timeBudgetS},
             {"frames", measure.frames},
             {"time_limit_s", measure.timeLimitS},
             {"memory_limit_bytes", measure.memoryLimitBytes}};
@@ -77,6 +80,12 @@ config::Measure measureFrom(const config::Node& node) {
     measure.warmup = requiredInt(node, "warmup");
     measure.repeats = requiredInt(node, "repeats");
     measure.processes = requiredInt(node, "processes");
+    // Plans of older versions know of no further rounds.
+    if (node.find("relative_error")) {
+        measure.relativeError = required(node, "relative_error").asDouble();
+        measure.processesAtMost = requiredInt(node, "processes_at_most");
+        measure.timeBudgetS = required(node, "time_budget_s").asDouble();
+    }
     measure.frames = requiredInt(node, "frames");
     measure.timeLimitS = required(node, "time_limit_s").asDouble();
     measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();

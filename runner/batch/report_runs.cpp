@@ -35,7 +35,7 @@ std::string costText(const Json& cost) {
 std::string eventText(const Json& event) {
     const int process = event.value("process", 0);
     std::string text = event.value("time", "");
-    text += process < 0 ? "  A/A pair" : fmt::format("  process {}", process);
+    text += fmt::format("  process {}", process);
     text += fmt::format("  {}", event.value("status", ""));
     if (event.contains("cost")) text += "  " + costText(event["cost"]);
     for (const char* key : {"message", "output"}) {

@@ -8,6 +8,7 @@
 #include "runner/batch/report_runs.h"
 #include "runner/batch/sensitivity.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::batch {
@@ -40,31 +41,31 @@ void rewriteRecords(const RunDirectory& directory, const std::vector<report::Rec
 }  // namespace
 
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
-    std::map<UnitKey, bool> recorded;
-    if (fs::exists(directory.recordsFile())) {
-        const std::vector<report::Record> records = report::readRecords(directory.recordsFile());
-        recorded = recordedUnits(records);
-        std::vector<report::Record> kept;
-        for (const report::Record& row : records) {
-            if (recorded.at({row.caseId, row.process})) kept.push_back(row);
-        }
-        if (kept.size() != records.size()) rewriteRecords(directory, kept);
+    if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
+    const std::vector<report::Record> records = report::readRecords(directory.recordsFile());
+    const std::map<UnitKey, bool> recorded = recordedUnits(records);
+    std::vector<report::Record> kept;
+    for (const report::Record& row : records) {
+        if (recorded.at({row.caseId, row.process})) kept.push_back(row);
     }
-    const auto leftOf = [&](std::vector<Unit> units) {
-        std::erase_if(units, [&](const Unit& unit) {
-            const auto found = recorded.find({unit.item->id, unit.process});
-            return found != recorded.end() && found->second;
-        });
-        return units;
-    };
-    std::vector<Unit> remaining = leftOf(unitsOf(plan));
-    const bool hasTimes = std::ranges::any_of(remaining, [](const Unit& unit) {
-        return unit.item->measure.lane == config::Measure::Lane::Timing;
+    if (kept.size() != records.size()) rewriteRecords(directory, kept);
+    std::vector<Unit> units = unitsOf(plan, records);
+    std::erase_if(units, [&](const Unit& unit) {
+        const auto found = recorded.find({unit.item->id, unit.process});
+        return found != recorded.end() && found->second;
     });
-    if (!hasTimes) return remaining;
-    std::vector<Unit> units = leftOf(controlUnitsOf(plan));
-    units.insert(units.end(), remaining.begin(), remaining.end());
     return units;
+}
+
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory) {
+    std::vector<report::Record> records;
+    if (fs::exists(directory.recordsFile())) records = report::readRecords(directory.recordsFile());
+    std::vector<Json> log;
+    for (const std::string& line : split(readFile(directory.path() / "log.jsonl"), '\n')) {
+        Json event = Json::parse(line, nullptr, false);  // the last line may be torn
+        if (event.is_object()) log.push_back(std::move(event));
+    }
+    return {plan, records, log};
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
@@ -72,7 +73,7 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
     if (!fs::exists(directory.recordsFile())) report::RecordWriter{directory.recordsFile()};
     std::set<std::string> unfinished;
     for (const Unit& unit : remainingUnits(plan, directory)) {
-        if (unit.item->measure.lane != config::Measure::Lane::Timing || unit.isControl()) continue;
+        if (unit.item->measure.lane != config::Measure::Lane::Timing) continue;
         const std::string& experiment = unit.item->experiment;
         if (timingMachine(manifest, experiment) != machine) unfinished.insert(experiment);
     }
@@ -113,7 +114,8 @@ StoredRun readRun(const fs::path& runDir) {
 Completeness completeness(const StoredRun& run) {
     const std::map<UnitKey, bool> recorded = recordedUnits(run.records);
     Completeness counts;
-    for (const Unit& unit : unitsOf(run.plan)) {
+    for (const Unit& unit : unitsOf(run.plan, run.records)) {
+        ++counts.units;
         const auto found = recorded.find({unit.item->id, unit.process});
         if (found == recorded.end()) {
             ++counts.missing;

@@ -16,10 +16,12 @@
 
 namespace gfxrepro::batch {
 
-/// The units that have no complete set of `ok` or `flaky` rows yet, behind the A/A pair where times
-/// are among them. Rows of failed units are taken
-/// out of records.csv: they are about to be made again.
+/// The units, also of further rounds that were begun, that have no complete set of `ok` or `flaky`
+/// rows yet. Rows of failed units are taken out of records.csv: they are about to be made again.
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
+
+/// What was decided so far of the rounds of a run's tables.
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory);
 
 /// A run that goes on on another machine: the times of an experiment are of one machine, so where
 /// some of them are still to be measured, all are measured again. The rows so far go from
@@ -41,9 +43,9 @@ StoredRun readRun(const std::filesystem::path& runDir);
 /// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
 report::ReportContext reportContext(const StoredRun& run);
 
-/// Units without a row of any kind, and units that did not end `ok`; the A/A pair, which enters no
-/// cell, is not counted.
+/// Units, those without a row of any kind, and those that did not end `ok`.
 struct Completeness {
+    int units = 0;
     int missing = 0;
     int failed = 0;
 };

@@ -69,9 +69,10 @@ CaseResult inViewOfFirstTry(const Unit& unit, CaseResult result) {
 
 class Scheduler {
   public:
-    Scheduler(const std::vector<Unit>& units, const RunDirectory& directory,
+    Scheduler(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
               const SchedulerOptions& options, PhaseClock& phases, Observer& observer)
         : waiting_(units.begin(), units.end()),
+          rounds_(rounds),
           directory_(directory),
           options_(options),
           phases_(phases),
@@ -80,8 +81,9 @@ class Scheduler {
           records_(directory.recordsFile()) {}
 
     RunOutcome run() {
-        while (!waiting_.empty() || busyCount() > 0) {
+        while (true) {
             dispatch();
+            if (waiting_.empty() && busyCount() == 0) break;
             if (waitForEvents()) {
                 outcome_.isInterrupted = true;
                 break;
@@ -91,6 +93,7 @@ class Scheduler {
         }
         workers_.clear();
         outcome_.complaints = expectations_.complaints();
+        outcome_.warnings = rounds_.warnings();
         return std::move(outcome_);
     }
 
@@ -102,9 +105,38 @@ class Scheduler {
             std::count_if(workers_.begin(), workers_.end(), [](auto& w) { return w->isBusy(); }));
     }
 
+    /// Whether a unit waits that may run now. When a table of times is through, another round of it
+    /// may come first; when nothing waits at all, one of a table that was left undecided.
+    bool hasNext() {
+        const bool isThrough = waiting_.empty() || waiting_.front().item->experiment != table_;
+        if (isThrough && rounds_.isUndecided(table_)) {
+            if (busyCount() > 0) return false;  // its last unit is running
+            if (addRound(table_)) return true;
+        }
+        while (waiting_.empty() && busyCount() == 0 && !rounds_.undecided().empty()) {
+            addRound(rounds_.undecided().front());
+        }
+        if (!waiting_.empty()) table_ = waiting_.front().item->experiment;
+        return !waiting_.empty();
+    }
+
+    /// Puts the next round of a table first; or says in the log why there is none.
+    bool addRound(const std::string& table) {
+        const std::vector<Unit> more = rounds_.next(table, Clock::now());
+        if (more.empty()) {
+            Json event = {{"event", "rounds"}};
+            event.update(rounds_.ending(table));
+            directory_.log(event);
+            return false;
+        }
+        waiting_.insert(waiting_.begin(), more.begin(), more.end());
+        observer_.unitsAdded(more);
+        return true;
+    }
+
     /// Gives out units in order, as far as the lanes allow.
     void dispatch() {
-        while (!waiting_.empty()) {
+        while (hasNext()) {
             if (const Expectation* skip = expectations_.skipOf(*waiting_.front().item)) {
                 finish(waiting_.front(), skippedResult(*skip), "");
                 waiting_.pop_front();
@@ -123,7 +155,8 @@ class Scheduler {
 
     void start(const Unit& unit) {
         const Lane lane = unit.item->measure.lane;
-        const bool needsOwn = unit.item->measure.processes > 1 || unit.isControl() || unit.firstTry;
+        const bool needsOwn = unit.item->measure.processes > 1 || unit.firstTry;
+        rounds_.begin(unit.item->experiment, Clock::now());
         // Nothing beside a timing unit, and no memory held by the other lane.
         std::erase_if(workers_, [&](auto& w) {
             return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && needsOwn));
@@ -195,19 +228,19 @@ class Scheduler {
 
     /// Images first: a unit whose rows are there is complete.
     void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
-        if (!result.images.empty() && !unit.isControl())
-            report::appendImages(directory_.path(), result.images);
-        records_.append(recordsOf(unit, result));
+        if (!result.images.empty()) report::appendImages(directory_.path(), result.images);
+        const std::vector<report::Record> rows = recordsOf(unit, result);
+        records_.append(rows);
+        rounds_.add(rows);
         logCase("case", unit, result, output);
-        if (!unit.isControl()) {
-            count(*unit.item, result.status);
-            outcome_.voided += result.voidReason.empty() ? 0 : 1;
-        }
+        count(*unit.item, result.status);
+        outcome_.voided += result.voidReason.empty() ? 0 : 1;
         outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
         observer_.unitEnded(unit, result.status, result.message);
     }
 
     void count(const Case& item, report::Status status) {
+        ++outcome_.begun;
         if (status == report::Status::Ok || status == report::Status::Flaky) {
             ++outcome_.finished;
             if (status == report::Status::Flaky) ++outcome_.flaky;
@@ -219,6 +252,8 @@ class Scheduler {
 
     SignalWatch signals_;
     std::deque<Unit> waiting_;
+    Rounds& rounds_;
+    std::string table_;  // of the unit that ran last, or is next
     const RunDirectory& directory_;
     const SchedulerOptions& options_;
     PhaseClock& phases_;
@@ -230,39 +265,6 @@ class Scheduler {
 };
 
 }  // namespace
-
-std::vector<Unit> unitsOf(const Plan& plan) {
-    std::vector<Unit> units;
-    for (std::size_t first = 0, next; first < plan.cases.size(); first = next) {
-        int processes = 0;
-        for (next = first; next < plan.cases.size() &&
-                           plan.cases[next].experiment == plan.cases[first].experiment;
-             ++next) {
-            processes = std::max(processes, plan.cases[next].measure.processes);
-        }
-        for (int process = 0; process < processes; ++process) {
-            for (std::size_t i = first; i < next; ++i) {
-                if (process < plan.cases[i].measure.processes && plan.measures(plan.cases[i])) {
-                    units.push_back({&plan.cases[i], process, {}});
-                }
-            }
-        }
-    }
-    return units;
-}
-
-std::vector<Unit> controlUnitsOf(const Plan& plan) {
-    const auto timed = std::find_if(plan.cases.begin(), plan.cases.end(), [&](const Case& item) {
-        return item.measure.lane == Lane::Timing && plan.measures(item);
-    });
-    if (timed == plan.cases.end()) return {};
-    return {{&*timed, report::kFirstControl, {}}, {&*timed, report::kFirstControl + 1, {}}};
-}
-
-int measuredCount(const std::vector<Unit>& units) {
-    return static_cast<int>(
-        std::count_if(units.begin(), units.end(), [](const Unit& u) { return !u.isControl(); }));
-}
 
 std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lane,
                                        const std::filesystem::path& runDir) {
@@ -286,9 +288,9 @@ gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases) 
     throw NoDeviceError(worker.startProblem());
 }
 
-RunOutcome runUnits(const std::vector<Unit>& units, const RunDirectory& directory,
+RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer) {
-    return Scheduler(units, directory, options, phases, observer).run();
+    return Scheduler(units, rounds, directory, options, phases, observer).run();
 }
 
 std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result) {

@@ -9,6 +9,7 @@
 #include "runner/batch/phase_clock.h"
 #include "runner/batch/plan.h"
 #include "runner/batch/protocol.h"
+#include "runner/batch/rounds.h"
 #include "runner/batch/run_directory.h"
 #include "runner/batch/worker_handle.h"
 
@@ -18,6 +19,8 @@ namespace gfxrepro::batch {
 class Observer {
   public:
     virtual ~Observer() = default;
+    /// A further round was found to be needed.
+    virtual void unitsAdded(const std::vector<Unit>&) {}
     virtual void unitBegan(const Unit& unit) = 0;
     virtual void unitEnded(const Unit& unit, report::Status status, const std::string& message) = 0;
     /// Now and then, for a display that shows time.
@@ -33,26 +36,17 @@ struct SchedulerOptions {
 };
 
 struct RunOutcome {
+    int begun = 0;     // units, those of further rounds too
     int finished = 0;  // units that ended `ok` or `flaky`
     int flaky = 0;     // of these
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others, but for those that were expected
     int expected = 0;  // that failed or were skipped as a list of expectations says
     std::vector<std::string> complaints;  // about expectations
+    std::vector<std::string> warnings;    // about times
     bool isInterrupted = false;           // by SIGINT or SIGTERM
     std::vector<SceneUse> scenes;
 };
-
-/// The units of a plan, or of its shard, in the order in which they run: experiment by experiment,
-/// process 0 of all its cases, then process 1 of all, …
-std::vector<Unit> unitsOf(const Plan& plan);
-
-/// The A/A pair, which runs before them: the first case of the timing lane twice, as processes
-/// report::kFirstControl and the next, each in a worker of its own. None without such a case.
-std::vector<Unit> controlUnitsOf(const Plan& plan);
-
-/// How many are not of the A/A pair.
-int measuredCount(const std::vector<Unit>& units);
 
 /// The command of a worker process: this program, with `worker` and the options.
 std::vector<std::string> workerCommand(const SchedulerOptions& options, config::Measure::Lane lane,
@@ -62,10 +56,10 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, config::
 /// runner with it. Throws NoDeviceError.
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases);
 
-/// Runs `units`, appending records, images and log lines as each ends. A failure that nobody
-/// expects is tried once more, in a fresh worker; what passes then is `flaky`, unless the first
-/// worker was killed from outside.
-RunOutcome runUnits(const std::vector<Unit>& units, const RunDirectory& directory,
+/// Runs `units` and the further rounds that `rounds` asks for, appending records, images and log
+/// lines as each ends. A failure that nobody expects is tried once more, in a fresh worker; what
+/// passes then is `flaky`, unless the first worker was killed from outside.
+RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
 
 /// The rows of one unit: a row a sample, or one row with the status.

@@ -19,9 +19,6 @@ struct Unit {
     int process = 0;
     /// How the first try ended, when this is the second.
     std::optional<CaseResult> firstTry;
-
-    /// One of the A/A pair.
-    bool isControl() const { return process < 0; }
 };
 
 /// A worker process and the unit that it is on.

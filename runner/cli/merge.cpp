@@ -66,11 +66,10 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
     }
     const std::vector<std::string> missing = batch::missingUnits(merged);
     const batch::Completeness counts = batch::completeness(merged);
-    const auto unitCount = static_cast<int>(batch::unitsOf(merged.plan).size());
     printMissing(runs, missing);
     fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing\n", runs.size(),
-               runs.size() == 1 ? "" : "s", out, unitCount - counts.missing - counts.failed,
-               unitCount, counts.failed, counts.missing);
+               runs.size() == 1 ? "" : "s", out, counts.units - counts.missing - counts.failed,
+               counts.units, counts.failed, counts.missing);
     const int verdict = conclude(out);
     if (counts.missing + counts.failed == 0) return verdict;
     fmt::print("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);

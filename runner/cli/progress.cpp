@@ -17,9 +17,11 @@ constexpr std::chrono::milliseconds kDrawInterval{100};
 
 std::string titleOf(const batch::Unit& unit) {
     std::string title = unit.item->title();
-    if (unit.isControl()) return title + " (A/A pair)";
-    if (unit.item->measure.processes > 1) {
-        title += fmt::format(" process {}/{}", unit.process + 1, unit.item->measure.processes);
+    const int processes = unit.item->measure.processes;
+    if (unit.process >= processes) {
+        title += fmt::format(" process {}", unit.process + 1);
+    } else if (processes > 1) {
+        title += fmt::format(" process {}/{}", unit.process + 1, processes);
     }
     return title;
 }
@@ -45,6 +47,11 @@ Progress::Progress(const std::vector<batch::Unit>& units,
 double Progress::timeS(const batch::Unit& unit) const {
     const auto found = unitTimesS_.find(unit.item);
     return found == unitTimesS_.end() ? 1.0 : found->second;
+}
+
+void Progress::unitsAdded(const std::vector<batch::Unit>& units) {
+    unitCount_ += static_cast<int>(units.size());
+    for (const batch::Unit& unit : units) totalS_ += timeS(unit);
 }
 
 void Progress::unitBegan(const batch::Unit& unit) {

@@ -15,6 +15,7 @@ class Progress : public batch::Observer {
     Progress(const std::vector<batch::Unit>& units,
              const std::map<const batch::Case*, double>& unitTimesS, int jobs, bool isQuiet);
 
+    void unitsAdded(const std::vector<batch::Unit>& units) override;
     void unitBegan(const batch::Unit& unit) override;
     void unitEnded(const batch::Unit& unit, report::Status status,
                    const std::string& message) override;

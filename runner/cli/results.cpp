@@ -63,7 +63,7 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
                    report::verdictName(claim.verdict), report::verdictName(claim.known));
     }
     static const std::pair<report::Verdict, const char*> kMeanings[] = {
-        {report::Verdict::Ambiguous, "the 95 % interval holds the bound: more repeats may tell"},
+        {report::Verdict::Ambiguous, "too few rounds or too much noise to tell: more rounds may"},
         {report::Verdict::Unmeasured, "a case that it needs has no result"},
         {report::Verdict::NotApplicable, "asks for a GPU, or for another profile"},
     };

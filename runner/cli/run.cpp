@@ -196,15 +196,17 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
+    batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
     const batch::RunOutcome outcome =
-        batch::runUnits(units, run.directory, run.scheduler, phases, progress);
+        batch::runUnits(units, rounds, run.directory, run.scheduler, phases, progress);
     progress.clear();
     run.directory.log({{"event", outcome.isInterrupted ? "interrupted" : "end"},
                        {"finished", outcome.finished},
                        {"failed", outcome.failed}});
     batch::addScenes(run.manifest, outcome.scenes);
+    run.manifest["rounds"] = rounds.endings();
     saveManifest(context, run, phases);
     const std::string path = run.directory.path().string();
     if (outcome.isInterrupted) {
@@ -213,9 +215,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         return kExitInterrupted;
     }
     for (const std::string& line : outcome.complaints) fmt::print(stderr, "{}\n", line);
-    fmt::print("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished,
-               batch::measuredCount(units), countText(outcome.flaky, "flaky"),
-               countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
+    for (const std::string& line : outcome.warnings) fmt::print(stderr, "warning: {}\n", line);
+    fmt::print("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
+               countText(outcome.flaky, "flaky"), countText(outcome.voided, "with void times"),
+               countText(outcome.failed, "failed"),
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
     if (!results) return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;

@@ -141,7 +141,7 @@ batch::ShardProgress progressOf(const fs::path& folder, int unitCount) {
     if (!fs::exists(folder / "plan.json")) return progress;
     const batch::StoredRun run = batch::readRun(folder);
     const batch::Completeness counts = batch::completeness(run);
-    progress.unitCount = static_cast<int>(batch::unitsOf(run.plan).size());
+    progress.unitCount = counts.units;
     progress.failed = counts.failed;
     progress.finished = progress.unitCount - counts.failed - counts.missing;
     return progress;

@@ -239,6 +239,11 @@ const Names& sectionKeys() {
     return keys;
 }
 
+bool Measure::mayContinue() const {
+    return relativeError > 0.0 && lane == Lane::Timing && processes >= kFewestRounds &&
+           processes < processesAtMost;
+}
+
 std::pair<int, int> readOutput(Params& params) {
     const int width =
         params.getInt("width", 512, {"width of the image", "pixels", 1, kMaxOutputPx});
@@ -261,7 +266,17 @@ Measure readMeasure(Params& params) {
                                     {"measured iterations in one process", "", 1, kMax});
     measure.processes =
         params.getInt("processes", measure.processes,
-                      {"runs of the case, each in a process of its own", "", 1, kMax});
+                      {"rounds: in each every case is run, in a process of its own", "", 1, kMax});
+    measure.relativeError =
+        params.getDouble("relative_error", measure.relativeError,
+                         {"rounds go on until half of each 95 % interval ÷ time is no more; with 6 "
+                          "processes or more in the timing lane; 0: they do not",
+                          "", 0, 1});
+    measure.processesAtMost = params.getInt("processes_at_most", measure.processesAtMost,
+                                            {"rounds, where they go on", "", 1, kMax});
+    measure.timeBudgetS = params.getDouble(
+        "time_budget_s", measure.timeBudgetS,
+        {"of all rounds of the file: none is begun to end later", "seconds", 0, 1e9});
     measure.frames = params.getInt("frames", measure.frames,
                                    {"frames of a path; each is repeated", "", 1, kMax});
     measure.sceneSeeds = params.getInt(

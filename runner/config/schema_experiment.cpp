@@ -142,16 +142,16 @@ SchemaSection layout() {
 }
 
 SchemaSection selection() {
-    return {
-        "selection",
-        "selection.",
-        "A selection is a metric, or a map of these; the column's part wins over the row's, "
-        "the row's over the cell's.",
-        {{"metric", "name", "none", "of the technique's metrics", text()},
-         {"pass", "name", "whole case", "step of the algorithm", text()},
-         {"format", "text", "none", "median mean min max sum count in braces: {mean:.2f}", text()},
-         {"scale", "number", "1", "multiplies every value", number()},
-         {"where", "{axis: value}", "{}", "only these cases", pairs()}}};
+    return {"selection",
+            "selection.",
+            "A selection is a metric, or a map of these; the column's part wins over the row's, "
+            "the row's over the cell's.",
+            {{"metric", "name", "none", "of the technique's metrics", text()},
+             {"pass", "name", "whole case", "step of the algorithm", text()},
+             {"format", "text", "none", "median mean min max sum count rate in braces: {mean:.2f}",
+              text()},
+             {"scale", "number", "1", "multiplies every value", number()},
+             {"where", "{axis: value}", "{}", "only these cases", pairs()}}};
 }
 
 SchemaSection printed() {

@@ -151,9 +151,10 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
     }
     std::string html = fmt::format("<td class=\"num\"{}>{}", attributes, escapeXml(cell->measured));
     std::string below;
-    if (!cell->low.empty() && cell->low != cell->high) {
-        below = fmt::format("<span title=\"95 % interval\">{}–{}</span>", escapeXml(cell->low),
-                            escapeXml(cell->high));
+    if (cell->hasShownBounds()) {
+        const bool isInterval = cell->bounds() == report::Bounds::Interval;
+        below = fmt::format("<span title=\"{}\">{}{}{}</span>", report::boundsName(cell->bounds()),
+                            escapeXml(cell->low), isInterval ? "–" : " … ", escapeXml(cell->high));
     }
     if (const std::string ratio = ratioHtml(*cell); !ratio.empty()) {
         below += (below.empty() ? "" : " ") + ratio;
@@ -221,9 +222,10 @@ std::string tableHtml(const Page& page, const Model& model) {
     html += "</tbody></table></div>\n";
     if (!overlay.isOnlyPrinted()) {
         html +=
-            "<p class=\"soft small\">Under a number: its 95 % interval and, where it was measured "
-            "at the printed parameters, × what is printed. Point at a row for its cases; click to "
-            "keep them.</p>\n";
+            "<p class=\"soft small\">Under a number: its 95 % interval a–b, or, of too few "
+            "processes for one, the range a … b; and, where it was measured at the printed "
+            "parameters, × what is printed. Point at a row for its cases; click to keep "
+            "them.</p>\n";
     }
     if (hasStandIn) {
         html +=

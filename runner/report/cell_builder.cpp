@@ -68,6 +68,19 @@ bool isTiming(const std::string& metric) {
     return metric.ends_with("_time_ms") || metric.ends_with("frame_rate");
 }
 
+/// The same place by the CPU time of the process, where such is recorded.
+std::optional<CellQuery> byProcessTime(const CellQuery& query) {
+    const bool isRate = query.metric == "frame_rate";
+    if (!isRate && query.metric != "wall_time_ms" && query.metric != "gpu_time_ms" &&
+        query.metric != "cpu_time_ms") {
+        return std::nullopt;
+    }
+    CellQuery other = query;
+    other.metric = "process_time_ms";
+    other.isRateOfTime = isRate;
+    return other;
+}
+
 /// What the records of a cell came to.
 struct Gathered {
     Samples samples;
@@ -99,7 +112,8 @@ void takeRow(const Record& record, const CellQuery& query, int unit,
         return;
     }
     gathered.units.insert(record.unit);
-    process[unit].push_back(record.value * query.scale);
+    const double value = query.isRateOfTime ? 1000.0 / record.value : record.value;
+    process[unit].push_back(value * query.scale);
 }
 
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
@@ -116,7 +130,8 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             if (isNew) ++unitCount;
             takeRow(*record, query, unit->second, process, gathered);
         }
-        if (!process.empty()) gathered.samples.processes.push_back(std::move(process));
+        // Process k of all cases is one round: what a cell of several cases shows is of rounds.
+        if (!process.empty()) gathered.samples.processes[number].merge(process);
     }
 }
 
@@ -176,35 +191,49 @@ bool isPlanComplete(const CellQuery& query, const LayoutCases& cases) {
     return true;
 }
 
-void fillValues(const CellQuery& query, const Samples& samples, std::uint64_t seed, Cell& cell) {
-    std::vector<metrics::Statistic> statistics;
+std::vector<Measured> measuredOf(const CellQuery& query, const Samples& samples) {
+    std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
-        statistics.push_back(placeholder.statistic);
+        Measured& measured = values.emplace_back();
+        static_cast<Summary&>(measured) = summarize(samples, placeholder.statistic);
+        measured.statistic = placeholder.name;
     }
-    std::vector<std::vector<double>> draws = drawSummaries(samples, statistics, seed);
+    return values;
+}
+
+void fillValues(const CellQuery& query, const Samples& samples, Cell& cell) {
+    cell.values = measuredOf(query, samples);
     std::vector<double> values, lows, highs;
-    for (std::size_t i = 0; i < statistics.size(); ++i) {
-        Measured measured;
-        measured.statistic = query.format.placeholders()[i].name;
-        measured.value = summarize(samples, statistics[i]);
-        measured.interval = {measured.value, measured.value};
+    for (std::size_t i = 0; i < cell.values.size(); ++i) {
+        Measured& measured = cell.values[i];
         measured.text = query.format.formatOne(i, measured.value);
-        if (!draws[i].empty()) {
-            measured.interval = metrics::centralInterval(draws[i]);
+        if (measured.bounds != Bounds::None) {
             measured.low = query.format.formatOne(i, measured.interval.low);
             measured.high = query.format.formatOne(i, measured.interval.high);
         }
-        measured.draws = std::move(draws[i]);
         values.push_back(measured.value);
         lows.push_back(measured.interval.low);
         highs.push_back(measured.interval.high);
-        cell.values.push_back(std::move(measured));
     }
     cell.measured = query.format.format(values);
-    if (!cell.values[0].draws.empty()) {
+    if (cell.bounds() != Bounds::None) {
         cell.low = query.format.format(lows);
         cell.high = query.format.format(highs);
     }
+}
+
+/// Only where every measurement has its CPU time beside it.
+void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Samples& samples,
+                      Cell& cell) {
+    const std::optional<CellQuery> other = byProcessTime(query);
+    if (!other) return;
+    const Gathered gathered = gather(*other, cases);
+    if (gathered.samples.processes.size() != samples.processes.size()) return;
+    for (const auto& [number, units] : samples.processes) {
+        const auto own = gathered.samples.processes.find(number);
+        if (own == gathered.samples.processes.end() || own->second.size() != units.size()) return;
+    }
+    cell.byProcess = measuredOf(*other, gathered.samples);
 }
 
 }  // namespace
@@ -247,10 +276,11 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
             CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
             selection.scale.value_or(1.0),
             selection.scale.has_value(),
+            false,
             std::move(where)};
 }
 
-Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed) {
+Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
     cell.isTime = isTimeMetric(query.metric);
     Gathered gathered = gather(query, cases);
@@ -274,7 +304,10 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t s
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     }
-    if (hasSamples) fillValues(query, gathered.samples, seed, cell);
+    if (hasSamples) {
+        fillValues(query, gathered.samples, cell);
+        fillProcessTimes(query, cases, gathered.samples, cell);
+    }
     const std::string word(statusName(cell.status));
     const bool isFlaky = hasSamples && cell.status == Status::Flaky;
     cell.isPartial = hasSamples && cell.status != Status::Ok && !isFlaky;

@@ -1,7 +1,6 @@
 // One cell: which records it takes, and what they give.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -27,13 +26,14 @@ struct CellQuery {
     CellFormat format;
     double scale = 1.0;
     bool isScaled = false;
+    bool isRateOfTime = false;  // the records are ms, the cell shows how many a second
     Where where;
 };
 
 /// Throws Error at the selection's place when no part gives a metric, or for a bad format.
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column);
 
-Cell buildCell(const CellQuery& query, const LayoutCases& cases, std::uint64_t seed);
+Cell buildCell(const CellQuery& query, const LayoutCases& cases);
 
 /// Where the scenes come from of the cases that a row takes.
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases);

@@ -27,6 +27,7 @@ ClaimPart orderPart(const config::ClaimSpec& claim) {
     part.requirement.isLowExcluded = true;
     part.requirement.isPercent = true;
     part.requirement.text = joined(claim.operands, " < ");
+    part.onTimes = neighbourGaps(part.requirement);
     return part;
 }
 
@@ -45,10 +46,12 @@ std::vector<ClaimPart> trendParts(const config::ClaimSpec& claim) {
         part.requirement.text = std::string(claim.isStrict ? "strictly " : "") +
                                 (direction > 0 ? "increasing" : "decreasing") + " with " +
                                 claim.over.value_or("");
+        part.onTimes = rising(direction);
         parts.push_back(std::move(part));
     }
     if (claim.low || claim.high) {
         parts.push_back({{0}, exponent, rangeOf(claim, "exponent"), "exponent"});
+        parts.back().onTimes = slope(parts.back().requirement);
     }
     for (ClaimPart& part : parts) {
         part.needsX = true;
@@ -63,6 +66,7 @@ std::vector<ClaimPart> independentParts(const config::ClaimSpec& claim) {
         const std::string name = "spread of " + claim.operands[i];
         parts.push_back({{i}, spread, rangeOf(claim, name, true), "spread"});
         parts.back().minRows = 2;
+        parts.back().onTimes = allAlike(claim.high.value_or(0.0));
     }
     return parts;
 }
@@ -95,9 +99,7 @@ ClaimPart crossoverPart(const config::ClaimSpec& claim) {
     return part;
 }
 
-}  // namespace
-
-std::vector<ClaimPart> partsOf(const config::ClaimSpec& claim) {
+std::vector<ClaimPart> partsByType(const config::ClaimSpec& claim) {
     switch (claim.type) {
         case Type::Order:
             return {orderPart(claim)};
@@ -120,6 +122,24 @@ std::vector<ClaimPart> partsOf(const config::ClaimSpec& claim) {
             return {crossoverPart(claim)};
     }
     return {};
+}
+
+/// Ratios and times scatter evenly on a logarithmic scale; of where curves cross none is known.
+Scale scaleOf(Type type) {
+    if (type == Type::Crossover) return Scale::Ranks;
+    return type == Type::Ratio || type == Type::Bound ? Scale::Logarithmic : Scale::Linear;
+}
+
+}  // namespace
+
+std::vector<ClaimPart> partsOf(const config::ClaimSpec& claim) {
+    std::vector<ClaimPart> parts = partsByType(claim);
+    for (ClaimPart& part : parts) {
+        if (part.onTimes) continue;
+        part.onTimes =
+            asItself(part.measuredName, part.quantity, part.requirement, scaleOf(claim.type));
+    }
+    return parts;
 }
 
 }  // namespace gfxrepro::report

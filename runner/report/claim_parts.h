@@ -6,6 +6,7 @@
 
 #include "runner/config/experiment.h"
 #include "runner/report/claim_quantity.h"
+#include "runner/report/claim_times.h"
 
 namespace gfxrepro::report {
 
@@ -19,6 +20,7 @@ struct ClaimPart {
     bool needsX = false;       // numeric abscissa
     bool needsExpected = false;
     std::size_t minRows = 1;
+    Contrasts onTimes = {};  // what is judged instead where the operands are times
 };
 
 std::vector<ClaimPart> partsOf(const config::ClaimSpec& claim);

@@ -28,7 +28,18 @@ double greater(double a, double b) {
     return std::isnan(a) || b < a ? a : b;
 }
 
-/// The rows in ascending x.
+GroupPoint pointOf(const Group& group, const std::function<double(const Sampled&)>& pick) {
+    GroupPoint point;
+    for (const auto& operand : group.operands) {
+        std::vector<double>& values = point.operands.emplace_back();
+        for (const Sampled& sampled : operand) values.push_back(pick(sampled));
+    }
+    for (const Sampled& sampled : group.x) point.x.push_back(pick(sampled));
+    return point;
+}
+
+}  // namespace
+
 std::vector<std::size_t> rowsByX(const GroupPoint& group) {
     std::vector<std::size_t> order(group.x.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -41,23 +52,19 @@ bool arePositive(const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
 }
 
-GroupPoint pointOf(const Group& group, const std::function<double(const Sampled&)>& pick) {
-    GroupPoint point;
-    for (const auto& operand : group.operands) {
-        std::vector<double>& values = point.operands.emplace_back();
-        for (const Sampled& sampled : operand) values.push_back(pick(sampled));
-    }
-    for (const Sampled& sampled : group.x) point.x.push_back(pick(sampled));
-    return point;
+GroupPoint pointOf(const Group& group, int round) {
+    return pointOf(group, [round](const Sampled& sampled) { return sampled.at(round); });
 }
 
-std::size_t drawCount(const Group& group) {
-    std::size_t count = 0;
-    for (const auto& operand : group.operands) {
-        for (const Sampled& sampled : operand) count = std::max(count, sampled.draws.size());
-    }
-    for (const Sampled& sampled : group.x) count = std::max(count, sampled.draws.size());
-    return count;
+GroupPoint pointOf(const Group& group) {
+    return pointOf(group, [](const Sampled& sampled) { return sampled.point; });
+}
+
+std::vector<int> roundsOf(const Group& group) {
+    std::vector<Sampled> all = group.x;
+    for (const auto& operand : group.operands)
+        all.insert(all.end(), operand.begin(), operand.end());
+    return commonRounds(all);
 }
 
 Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement) {
@@ -78,8 +85,6 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
     if (isAboveLow && isBelowHigh && !isPartlyAbsent) return Verdict::Holds;
     return Verdict::Ambiguous;
 }
-
-}  // namespace
 
 double smallestGap(const GroupPoint& group) {
     double smallest = kInfinity;
@@ -180,28 +185,39 @@ double largestDeviation(const GroupPoint& group) {
 
 Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement) {
     Judgement judgement;
-    const double point = quantity(pointOf(group, [](const Sampled& s) { return s.point; }));
-    if (std::isnan(point)) {
+    const double point = quantity(pointOf(group));
+    std::vector<double> values;
+    for (const int round : roundsOf(group)) values.push_back(quantity(pointOf(group, round)));
+    const auto isNotANumber = [](double value) { return std::isnan(value); };
+    if (std::isnan(point) || std::ranges::any_of(values, isNotANumber)) {
         judgement.measured = "not a number";
         return judgement;
     }
-    std::vector<double> draws;
-    for (std::size_t draw = 0; draw < drawCount(group); ++draw) {
-        const double value = quantity(pointOf(group, [&](const Sampled& s) { return s.at(draw); }));
-        if (!std::isnan(value)) draws.push_back(value);
-    }
-    judgement.isSingleSample = draws.empty();
+    judgement.isSingleSample = values.empty();
     judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(point);
     metrics::Interval interval{point, point};
-    if (!draws.empty()) interval = metrics::centralInterval(draws);
-    judgement.verdict = verdictOf(interval, requirement);
-    judgement.measured = quantityText(point, requirement);
-    if (!draws.empty()) {
-        judgement.measured += " [" + quantityText(interval.low, requirement) + ", " +
-                              quantityText(interval.high, requirement) + "]";
+    Bounds bounds = Bounds::None;
+    const bool isEqual = std::ranges::all_of(values, [&](double value) { return value == point; });
+    if (!isEqual) {
+        const auto told = metrics::medianInterval(values);
+        const auto [low, high] = std::ranges::minmax(values);
+        bounds = told ? Bounds::Interval : Bounds::Range;
+        interval = told.value_or(metrics::Interval{low, high});
     }
+    judgement.verdict = verdictOf(interval, requirement);
+    judgement.measured = boundedText(point, bounds, interval, requirement);
     judgement.margin = std::min(point - requirement.low, requirement.high - point);
+    judgement.marginText = quantityText(judgement.margin, requirement);
     return judgement;
+}
+
+std::string boundedText(double point, Bounds bounds, const metrics::Interval& interval,
+                        const Requirement& requirement) {
+    const std::string text = quantityText(point, requirement);
+    if (bounds == Bounds::None) return text;
+    return fmt::format(fmt::runtime(bounds == Bounds::Interval ? "{} [{}, {}]" : "{} ({} … {})"),
+                       text, quantityText(interval.low, requirement),
+                       quantityText(interval.high, requirement));
 }
 
 std::string quantityText(double value, const Requirement& requirement) {

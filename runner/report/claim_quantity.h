@@ -59,18 +59,40 @@ double largestDifference(const GroupPoint& group);
 /// tolerance: the largest |measured − expected| / |expected|.
 double largestDeviation(const GroupPoint& group);
 
+/// The rows in ascending x.
+std::vector<std::size_t> rowsByX(const GroupPoint& group);
+bool arePositive(const std::vector<double>& values);
+
+/// The group in one round; and by its values alone.
+GroupPoint pointOf(const Group& group, int round);
+GroupPoint pointOf(const Group& group);
+/// The rounds that all of its values have but those that are certain.
+std::vector<int> roundsOf(const Group& group);
+
 /// The verdict on one quantity of one group.
 struct Judgement {
     Verdict verdict = Verdict::Unmeasured;
     std::string measured;
     double margin = 0.0;  // to the nearest bound, negative outside
+    std::string marginText;
     bool isSingleSample = false;
     bool isAbsent = false;  // a crossing that is not there
+    std::string why;        // of an ambiguous verdict on times; empty: the interval tells
 };
+/// What is inside of the range wholly holds, wholly outside fails, else is ambiguous.
+Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement);
+
+/// Of values that are no times, and the same in every run of the program: the quantity itself is
+/// judged, of one sample too. Where it differs between rounds all the same (memory, the order of a
+/// parallel sum), it is judged by what it was in them: their medianInterval, or the range of fewer.
+/// Times are judged by judgeTimes() (claim_times.h).
 Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement);
 
 /// "in [0.3, 1.2]", "≥ 10", "≤ 25 %".
 std::string rangeText(const Requirement& requirement);
+/// "2 [1.9, 2.1]" with an interval, "2 (1.9 … 2.1)" with a range.
+std::string boundedText(double point, Bounds bounds, const metrics::Interval& interval,
+                        const Requirement& requirement);
 /// "0.4123", "41.23 %".
 std::string quantityText(double value, const Requirement& requirement);
 

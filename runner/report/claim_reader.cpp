@@ -117,6 +117,30 @@ bool ClaimReader::readsTime() const {
     return std::ranges::any_of(operands_, isTime);
 }
 
+std::vector<const Cell*> ClaimReader::timeCells() const {
+    std::vector<const Cell*> cells;
+    for (const auto* operands : {&operands_, &overColumn_}) {
+        for (const Operand& operand : *operands) {
+            for (const std::size_t column : operand.columns()) {
+                for (const std::size_t row : rows()) {
+                    const Cell& cell = table_.rows[row].cells[column];
+                    if (cell.isOk() && cell.isTime) cells.push_back(&cell);
+                }
+            }
+        }
+    }
+    return cells;
+}
+
+bool ClaimReader::readByProcess() {
+    const std::vector<const Cell*> cells = timeCells();
+    if (std::ranges::any_of(cells, [](const Cell* cell) { return cell->byProcess.empty(); })) {
+        return false;
+    }
+    clock_ = Clock::Process;
+    return true;
+}
+
 bool ClaimReader::isPlanned(const ClaimPart& part, std::size_t row) const {
     for (const std::size_t operand : part.operands) {
         for (const std::size_t column : operands_[operand].columns()) {
@@ -156,7 +180,7 @@ std::optional<double> ClaimReader::expected(std::size_t operand, std::size_t row
 }
 
 Sampled ClaimReader::abscissa(std::size_t row) {
-    if (!overColumn_.empty()) return overColumn_[0].evaluate(table_.rows[row], statistic_);
+    if (!overColumn_.empty()) return overColumn_[0].evaluate(table_.rows[row], statistic_, clock_);
     if (!overAxis_) fail("expected `over:`, a row axis or a column");
     const std::string& label = table_.rows[row].labels[*overAxis_];
     const auto value = parseDouble(label);
@@ -186,7 +210,7 @@ ClaimReader::Reading ClaimReader::read(const ClaimPart& part, const Rows& rows) 
         }
         for (std::size_t i = 0; i < part.operands.size(); ++i) {
             reading.group.operands[i].push_back(
-                operands_[part.operands[i]].evaluate(table_.rows[row], statistic_));
+                operands_[part.operands[i]].evaluate(table_.rows[row], statistic_, clock_));
         }
         if (part.needsX) reading.group.x.push_back(abscissa(row));
         reading.rows.push_back(row);

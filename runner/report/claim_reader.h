@@ -32,6 +32,11 @@ class ClaimReader {
     };
     Reading read(const ClaimPart& part, const Rows& rows);
 
+    /// Reads times by the process's CPU time from now on; false, and nothing is changed, where one
+    /// of them was not recorded by it.
+    bool readByProcess();
+    Clock clock() const { return clock_; }
+
     /// The labels that the rows share: "scene=models/duck".
     std::string groupName(const Rows& rows) const;
 
@@ -49,6 +54,8 @@ class ClaimReader {
     /// Empty if the operand can be read; else why not.
     std::string problemOf(const Operand& operand, std::size_t row) const;
     bool isPlanned(const ClaimPart& part, std::size_t row) const;
+    /// The cells of times that are read and ok.
+    std::vector<const Cell*> timeCells() const;
     Sampled abscissa(std::size_t row);
 
     const config::ClaimSpec& claim_;
@@ -57,6 +64,7 @@ class ClaimReader {
     std::vector<Operand> operands_;
     std::optional<std::size_t> overAxis_;
     std::vector<Operand> overColumn_;  // one, or none
+    Clock clock_ = Clock::Wall;
 };
 
 }  // namespace gfxrepro::report

@@ -18,23 +18,6 @@ namespace {
 
 using config::ClaimSpec;
 
-/// From best to worst: what a claim comes to is the worst of its groups.
-int severity(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::Holds:
-            return 0;
-        case Verdict::NotApplicable:
-            return 1;
-        case Verdict::Ambiguous:
-            return 2;
-        case Verdict::Unmeasured:
-            return 3;
-        case Verdict::Fails:
-            return 4;
-    }
-    return 4;
-}
-
 /// What one part came to in one group.
 struct Outcome {
     Judgement judgement;
@@ -47,21 +30,28 @@ bool isWorse(const Outcome& a, const Outcome& b) {
     return left != right ? left > right : a.judgement.margin < b.judgement.margin;
 }
 
+/// How times are judged; absent for a claim that reads none.
+struct TimeRule {
+    std::optional<double> noise;  // of the table
+};
+
 Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
-                   const std::string& groupName, std::size_t groupCount) {
+                   const std::string& groupName, bool isNamed,
+                   const std::optional<TimeRule>& times) {
     Outcome outcome;
-    const bool isNamed = groupCount > 1 && !groupName.empty();
     if (!reading.problem.empty()) {
         outcome.reason = reading.problem;
         return outcome;
     }
-    outcome.judgement = judge(reading.group, part.quantity, part.requirement);
+    outcome.judgement = times ? judgeTimes(reading.group, part.onTimes, times->noise)
+                              : judge(reading.group, part.quantity, part.requirement);
     std::vector<std::string> reasons;
     if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
     if (isNamed) reasons.push_back("worst at " + groupName);
     switch (outcome.judgement.verdict) {
         case Verdict::Ambiguous:
-            reasons.emplace_back("the interval straddles the bound");
+            reasons.push_back(outcome.judgement.why.empty() ? "the interval straddles the bound"
+                                                            : outcome.judgement.why);
             break;
         case Verdict::Unmeasured:
             reasons.emplace_back(
@@ -73,18 +63,21 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     }
     if (outcome.judgement.isSingleSample) reasons.emplace_back("one sample");
     outcome.reason = joined(reasons, "; ");
-    if (!part.measuredName.empty() && !outcome.judgement.measured.empty()) {
+    if (!times && !part.measuredName.empty() && !outcome.judgement.measured.empty()) {
         outcome.judgement.measured = part.measuredName + " " + outcome.judgement.measured;
     }
     return outcome;
 }
 
-Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups) {
+Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups,
+                  const std::optional<TimeRule>& times) {
     std::optional<Outcome> worst;
     for (const Rows& rows : groups) {
         const ClaimReader::Reading reading = reader.read(part, rows);
         if (reading.rows.empty() && reading.problem.empty()) continue;
-        Outcome outcome = judgeGroup(part, reading, reader.groupName(rows), groups.size());
+        const std::string name = reader.groupName(rows);
+        const bool isNamed = groups.size() > 1 && !name.empty();
+        Outcome outcome = judgeGroup(part, reading, name, isNamed, times);
         if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
     }
     if (worst) return *worst;
@@ -104,6 +97,15 @@ std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& contex
         return "judged in the profile '" + *claim.profile + "' only";
     }
     return "";
+}
+
+/// What counts of work decide is judged by the work of all cores where they are the device: the
+/// process's CPU time, which waits for no neighbour. Says which clock it is; empty for none.
+std::string chooseClock(const ClaimSpec& claim, const ReportContext& context, ClaimReader& reader) {
+    const bool isAlgorithmic = claim.timeKind == ClaimSpec::TimeKind::Algorithmic;
+    if (!isAlgorithmic || context.deviceClass != "software" || !reader.readsTime()) return "";
+    return reader.readByProcess() ? "by the CPU time of the process"
+                                  : "by the clock: no CPU time was recorded of these";
 }
 
 /// The table as the claim reads it: with `across`, rows for columns.
@@ -148,21 +150,23 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
         result.verdict = Verdict::NotApplicable;
         return result;
     }
+    const std::string clock = chooseClock(claim, context, reader);
+    std::optional<TimeRule> times;
+    if (reader.readsTime()) times = TimeRule{table.noise(reader.clock())};
     const std::vector<Rows> groups = reader.groups();
     std::vector<std::string> measured;
     std::optional<Outcome> worst;
     for (const ClaimPart& part : parts) {
-        Outcome outcome = judgePart(part, reader, groups);
+        Outcome outcome = judgePart(part, reader, groups, times);
         if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
         if (worst && !isWorse(outcome, *worst)) continue;
-        result.margin = outcome.judgement.verdict == Verdict::Unmeasured
-                            ? ""
-                            : quantityText(outcome.judgement.margin, part.requirement);
+        result.margin = outcome.judgement.marginText;
         worst = std::move(outcome);
     }
     result.measured = joined(measured, "; ");
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
+    if (!clock.empty()) result.reason += (result.reason.empty() ? "" : "; ") + clock;
     return result;
 }
 

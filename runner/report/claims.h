@@ -68,8 +68,10 @@ struct ClaimResult {
 };
 
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required
-/// range, computed from the cells' values and again from each of their bootstrap draws: a 95 %
-/// interval wholly inside of the range holds, wholly outside fails, else it is ambiguous. Groups of
+/// range. Of values that are no times it is computed and judged as it is (judge(),
+/// claim_quantity.h); of times in each round, and a 95 % interval over rounds wholly inside of the
+/// range holds, wholly outside fails, else it is ambiguous (judgeTimes(), claim_times.h). On a
+/// software device the times of an algorithmic claim are the CPU times of the process. Groups of
 /// rows are judged apart; the worst verdict counts. Throws Error with the claim's place for an
 /// operand that is no expression over the columns, or an axis that the table has not.
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,

@@ -246,7 +246,7 @@ class FigureMaker {
         } else if (isDrawable(*x, cell.values[0].value)) {
             point.y = cell.values[0].value;
             point.interval = cell.values[0].interval;
-            point.hasInterval = !cell.values[0].draws.empty();
+            point.bounds = cell.bounds();
         } else {
             point.remark = "cannot be drawn";
         }

@@ -11,12 +11,12 @@
 
 namespace gfxrepro::report {
 
-/// A measured value with its 95 % interval. Without `y` there is a gap in the curve.
+/// A measured value with its bounds. Without `y` there is a gap in the curve.
 struct FigurePoint {
     double x = 0.0;
     std::optional<double> y;
     metrics::Interval interval;
-    bool hasInterval = false;
+    Bounds bounds = Bounds::None;
     std::string remark;  // why there is a gap
 };
 

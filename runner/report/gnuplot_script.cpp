@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "runner/core/text.h"
 #include "runner/report/csv.h"
@@ -59,6 +60,24 @@ std::size_t letters(const std::string& text) {
     }));
 }
 
+using BoundsSet = std::set<Bounds>;
+
+BoundsSet boundsOf(const FigureCurve& curve) {
+    BoundsSet bounds;
+    for (const FigurePoint& point : curve.points) {
+        if (point.bounds != Bounds::None) bounds.insert(point.bounds);
+    }
+    return bounds;
+}
+
+/// "95 % interval", "range", or both; where a curve has no bounds, what it would have.
+std::string namesOf(const BoundsSet& bounds) {
+    if (bounds.empty()) return std::string(boundsName(Bounds::Interval));
+    std::vector<std::string> names;
+    for (const Bounds one : bounds) names.emplace_back(boundsName(one));
+    return joined(names, " or ");
+}
+
 /// Writes the script of one figure.
 class ScriptWriter {
   public:
@@ -67,7 +86,7 @@ class ScriptWriter {
             for (const FigureCurve& curve : panel.curves) {
                 hasPrinted_ = hasPrinted_ || !curve.printed.empty();
                 for (const FigurePoint& point : curve.points) {
-                    hasIntervals_ = hasIntervals_ || point.hasInterval;
+                    if (point.bounds != Bounds::None) bounds_.insert(point.bounds);
                 }
             }
         }
@@ -142,9 +161,9 @@ class ScriptWriter {
                             "1.0 title 'printed'",
                             colour));
         }
-        if (hasIntervals_) {
-            entries_.push_back(fmt::format(
-                "keyentry with vectors {} linecolor {} title '95 % interval'", kInterval, colour));
+        if (!bounds_.empty()) {
+            entries_.push_back(fmt::format("keyentry with vectors {} linecolor {} title '{}'",
+                                           kInterval, colour, namesOf(bounds_)));
         }
         longest_ = std::max<std::size_t>(longest_, 13);
         constexpr double kLetter = 6.6, kSample = 52;
@@ -159,10 +178,10 @@ class ScriptWriter {
         for (std::size_t i = 0; i < panel.curves.size(); ++i) {
             const FigureCurve& curve = panel.curves[i];
             if (!curve.points.empty()) {
-                text_ +=
-                    fmt::format("# {}{}{}: x, measured, ends of its 95 % interval\n{} << EOD\n",
-                                oneLine(panel.title), panel.title.empty() ? "" : ", ",
-                                oneLine(curve.name), block(panelIndex, i, false));
+                text_ += fmt::format("# {}{}{}: x, measured, ends of its {}\n{} << EOD\n",
+                                     oneLine(panel.title), panel.title.empty() ? "" : ", ",
+                                     oneLine(curve.name), namesOf(boundsOf(curve)),
+                                     block(panelIndex, i, false));
                 for (const FigurePoint& point : curve.points) writePoint(point);
                 text_ += "EOD\n";
             }
@@ -181,8 +200,8 @@ class ScriptWriter {
     void writePoint(const FigurePoint& point) {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         text_ += fmt::format("{} {} {} {}{}\n", number(point.x), number(point.y.value_or(kNone)),
-                             number(point.hasInterval ? point.interval.low : kNone),
-                             number(point.hasInterval ? point.interval.high : kNone),
+                             number(point.bounds != Bounds::None ? point.interval.low : kNone),
+                             number(point.bounds != Bounds::None ? point.interval.high : kNone),
                              point.remark.empty() ? "" : "  # " + oneLine(point.remark));
     }
 
@@ -219,7 +238,7 @@ class ScriptWriter {
                 for (const FigurePoint& point : *points) {
                     x.push_back(point.x);
                     if (point.y) y.push_back(*point.y);
-                    if (!point.hasInterval) continue;
+                    if (point.bounds == Bounds::None) continue;
                     y.push_back(point.interval.high);
                     if (!figure_.isLogY || point.interval.low > 0) y.push_back(point.interval.low);
                 }
@@ -302,15 +321,15 @@ class ScriptWriter {
                 "pointsize 0.6 title {}",
                 data, style.colour, style.filled, gnuplotQuoted(curve.name)));
         }
-        if (std::any_of(curve.points.begin(), curve.points.end(),
-                        [](const FigurePoint& point) { return point.hasInterval; })) {
+        if (const BoundsSet bounds = boundsOf(curve); !bounds.empty()) {
             // Arrows with flat heads, for below error bars gnuplot clears the ground in white. On a
             // logarithmic axis an interval may reach down to where nothing is.
             const std::string low =
                 figure_.isLogY ? fmt::format("($3 > {0} ? $3 : {0})", number(yLow)) : "$3";
             parts.push_back(fmt::format(
                 "{} using 1:({}):(0):($4 - {}) with vectors {} linecolor rgb '{}' title {}", data,
-                low, low, kInterval, style.colour, gnuplotQuoted(curve.name + ", 95 % interval")));
+                low, low, kInterval, style.colour,
+                gnuplotQuoted(curve.name + ", " + namesOf(bounds))));
         }
         if (!curve.printed.empty()) {
             parts.push_back(fmt::format(
@@ -334,7 +353,7 @@ class ScriptWriter {
     double height_ = 0;
     bool hasOneYLabel_ = true;  // for all panels
     bool hasPrinted_ = false;
-    bool hasIntervals_ = false;
+    BoundsSet bounds_;
     std::string text_;
 };
 

@@ -89,7 +89,9 @@ class LatexWriter {
         if (!table_.isOnlyPrinted) {
             text_ += fmt::format(
                 "%   {}  as measured\n"
-                "%   likewise {}/low and /high, the ends of its 95 % interval,\n"
+                "%   likewise {}/low and /high, the ends of its bounds,\n"
+                "%   and /bounds, what they are: 95 % interval, or the range of too few "
+                "processes;\n"
                 "%   and, of several statistics in a cell, each below the cell's key\n",
                 cite(example), example);
         }
@@ -111,6 +113,7 @@ class LatexWriter {
         if (!cell.low.empty()) {
             set(key + "/low", cell.low);
             set(key + "/high", cell.high);
+            set(key + "/bounds", std::string(boundsName(cell.bounds())));
         }
         if (cell.values.size() < 2) return;
         for (const Measured& measured : cell.values) {
@@ -160,9 +163,11 @@ class LatexWriter {
 
     static std::string measuredCell(const Cell& cell, const std::string& key) {
         if (!cell.isPlanned) return "";
-        if (cell.low.empty() || cell.low == cell.high) return cite(key);
-        return fmt::format("{} {{\\scriptsize[{}, {}]}}", cite(key), cite(key + "/low"),
-                           cite(key + "/high"));
+        if (!cell.hasShownBounds()) return cite(key);
+        return fmt::format(fmt::runtime(cell.bounds() == Bounds::Interval
+                                            ? "{} {{\\scriptsize[{}, {}]}}"
+                                            : "{} {{\\scriptsize({} \\ldots\\ {})}}"),
+                           cite(key), cite(key + "/low"), cite(key + "/high"));
     }
 
     /// Below the table, in its own paragraph.

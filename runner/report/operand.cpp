@@ -93,24 +93,38 @@ double Operand::evaluate(std::span<const double> values) {
     return parser_.Eval();
 }
 
-Sampled Operand::evaluate(const TableRow& row, const std::string& statistic) {
-    std::vector<const Measured*> cells;
+Sampled Operand::evaluate(const TableRow& row, const std::string& statistic, Clock clock) {
+    std::vector<Sampled> cells;
     std::vector<double> values;
-    std::size_t drawCount = 0;
     for (const std::size_t column : columns_) {
-        cells.push_back(row.cells[column].find(statistic));
-        values.push_back(cells.back()->value);
-        drawCount = std::max(drawCount, cells.back()->draws.size());
+        const Cell& cell = row.cells[column];
+        const Measured& measured = *cell.find(statistic, cell.isTime ? clock : Clock::Wall);
+        // A single round tells no more than the value.
+        const bool hasRounds = measured.rounds.size() > 1;
+        cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>()});
+        values.push_back(measured.value);
     }
     Sampled result;
     result.point = evaluate(values);
-    for (std::size_t draw = 0; draw < drawCount; ++draw) {
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            if (!cells[i]->draws.empty()) values[i] = cells[i]->draws[draw];
-        }
-        result.draws.push_back(evaluate(values));
+    for (const int round : commonRounds(cells)) {
+        for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
+        result.rounds[round] = evaluate(values);
     }
     return result;
+}
+
+std::vector<int> commonRounds(std::span<const Sampled> values) {
+    std::map<int, std::size_t> counts;
+    std::size_t sampledCount = 0;
+    for (const Sampled& sampled : values) {
+        sampledCount += sampled.rounds.empty() ? 0 : 1;
+        for (const auto& [round, value] : sampled.rounds) ++counts[round];
+    }
+    std::vector<int> rounds;
+    for (const auto& [round, count] : counts) {
+        if (count == sampledCount) rounds.push_back(round);
+    }
+    return rounds;
 }
 
 }  // namespace gfxrepro::report

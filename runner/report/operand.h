@@ -3,6 +3,7 @@
 
 #include <muParser.h>
 
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,13 +14,16 @@
 
 namespace gfxrepro::report {
 
-/// A value and its bootstrap draws (none: it is taken as certain).
+/// A value, and what it was in each round (none: it is taken as certain).
 struct Sampled {
     double point = 0.0;
-    std::vector<double> draws;
+    std::map<int, double> rounds;
 
-    double at(std::size_t draw) const { return draws.empty() ? point : draws[draw]; }
+    double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };
+
+/// The rounds that all of them have but those that are certain.
+std::vector<int> commonRounds(std::span<const Sampled> values);
 
 class Operand {
   public:
@@ -36,8 +40,9 @@ class Operand {
     const std::vector<std::size_t>& columns() const { return columns_; }
     /// `values` lies beside columns().
     double evaluate(std::span<const double> values);
-    /// On the cells of a row, all of which must have the statistic.
-    Sampled evaluate(const TableRow& row, const std::string& statistic);
+    /// On the cells of a row, all of which must have the statistic by that clock; those that have
+    /// none by the process's are no times. The rounds are those that all cells have.
+    Sampled evaluate(const TableRow& row, const std::string& statistic, Clock clock);
 
   private:
     std::string translated(const Table& table, const SourceLocation& where,

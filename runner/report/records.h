@@ -25,10 +25,6 @@ std::string_view statusName(Status status);
 /// Throws Error for a name that is none.
 Status statusFromName(std::string_view name);
 
-/// Processes −2 and −1 are the A/A pair: a case measured twice for nothing but to see by how much
-/// two equal measurements of this run differ. They enter no cell.
-inline constexpr int kFirstControl = -2;
-
 /// Frame and repeat of what belongs to the whole case (its scene, its set-up, its memory). Of a
 /// metric and pass that frames have values of, too, these are no part.
 inline constexpr int kSetup = -1;
@@ -55,6 +51,8 @@ struct Record {
     Status status = Status::Ok;
     std::string message;
 
+    /// Runs of older versions began with a case measured twice for nothing but to see by how much
+    /// equal measurements differ, as processes −2 and −1. They enter no cell.
     bool isControl() const { return process < 0; }
     bool operator==(const Record&) const = default;
 };

@@ -18,7 +18,8 @@ namespace gfxrepro::report {
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                const std::vector<Record>& records);
 
-/// tables/<slug>.csv (every column printed, measured, low, high, status at full precision), .md
+/// tables/<slug>.csv (every column printed, measured, low, high, what these bounds are, status;
+/// at full precision), .md
 /// (printed beside measured) and .tex (booktabs, a macro a number) for each. All say at which
 /// parameters was measured and which differ from the printed ones: the CSV of each row (column
 /// `parameters`) and of each cell (`…_at_printed`: yes or no).

@@ -1,75 +1,94 @@
 #include "runner/report/sampling.h"
 
-#include "runner/core/random.h"
+#include <algorithm>
+
+#include "runner/core/error.h"
 
 namespace gfxrepro::report {
 
 namespace {
 
-/// The repeats of each unit, over all processes.
-using Pooled = std::map<int, std::vector<double>>;
+using Units = std::map<int, std::vector<double>>;
+using metrics::Statistic;
 
-void addTo(Pooled& pooled, int unit, double value) {
-    pooled[unit].push_back(value);
+double summarizeUnits(const Units& units, Statistic statistic) {
+    if (units.size() == 1) return metrics::summarize(units.begin()->second, statistic);
+    std::vector<double> values;
+    for (const auto& [unit, repeats] : units) {
+        values.push_back(metrics::summarize(repeats, Statistic::Median));
+    }
+    return metrics::summarize(values, statistic);
 }
 
-double summarizePooled(const Pooled& pooled, metrics::Statistic statistic) {
-    if (pooled.size() == 1) return metrics::summarize(pooled.begin()->second, statistic);
-    std::vector<double> units;
-    for (const auto& [unit, repeats] : pooled) {
-        if (repeats.empty()) continue;
-        units.push_back(metrics::summarize(repeats, metrics::Statistic::Median));
+Units pooled(const Samples& samples) {
+    Units units;
+    for (const auto& [process, own] : samples.processes) {
+        for (const auto& [unit, repeats] : own) {
+            std::vector<double>& all = units[unit];
+            all.insert(all.end(), repeats.begin(), repeats.end());
+        }
     }
-    return metrics::summarize(units, statistic);
+    return units;
+}
+
+/// What the first repeat of every unit alone would give, then the second, …
+std::vector<double> byRepeat(const Units& units, Statistic statistic) {
+    std::size_t count = units.begin()->second.size();
+    for (const auto& [unit, repeats] : units) count = std::min(count, repeats.size());
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        Units alone;
+        for (const auto& [unit, repeats] : units) alone[unit] = {repeats[i]};
+        values.push_back(summarizeUnits(alone, statistic));
+    }
+    return values;
+}
+
+metrics::Interval rangeOf(const std::vector<double>& values) {
+    const auto [low, high] = std::ranges::minmax(values);
+    return {low, high};
 }
 
 }  // namespace
 
-bool Samples::isRepeated() const {
-    std::map<int, std::size_t> counts;
-    for (const auto& process : processes) {
-        for (const auto& [unit, repeats] : process) counts[unit] += repeats.size();
+std::string_view boundsName(Bounds bounds) {
+    switch (bounds) {
+        case Bounds::None:
+            return "";
+        case Bounds::Range:
+            return "range";
+        case Bounds::Interval:
+            return "95 % interval";
     }
-    for (const auto& [unit, count] : counts) {
-        if (count > 1) return true;
-    }
-    return false;
+    return "";
 }
 
-double summarize(const Samples& samples, metrics::Statistic statistic) {
-    Pooled pooled;
-    for (const auto& process : samples.processes) {
-        for (const auto& [unit, repeats] : process) {
-            for (const double value : repeats) addTo(pooled, unit, value);
-        }
+Summary summarize(const Samples& samples, Statistic statistic) {
+    const Units all = pooled(samples);
+    GFXREPRO_ASSERT(!all.empty());
+    Summary summary;
+    std::vector<double> values;
+    for (const auto& [process, units] : samples.processes) {
+        if (units.size() < all.size()) continue;
+        values.push_back(summarizeUnits(units, statistic));
+        summary.rounds[process] = values.back();
     }
-    return summarizePooled(pooled, statistic);
-}
-
-std::vector<std::vector<double>> drawSummaries(const Samples& samples,
-                                               const std::vector<metrics::Statistic>& statistics,
-                                               std::uint64_t seed) {
-    std::vector<std::vector<double>> draws(statistics.size());
-    if (!samples.isRepeated()) return draws;
-    Random random(seed);
-    const auto index = [&](std::size_t count) {
-        return random.index(static_cast<std::uint32_t>(count));
-    };
-    for (int draw = 0; draw < kDrawCount; ++draw) {
-        Pooled pooled;
-        for (std::size_t i = 0; i < samples.processes.size(); ++i) {
-            const auto& process = samples.processes[index(samples.processes.size())];
-            for (const auto& [unit, repeats] : process) {
-                for (std::size_t j = 0; j < repeats.size(); ++j) {
-                    addTo(pooled, unit, repeats[index(repeats.size())]);
-                }
-            }
-        }
-        for (std::size_t i = 0; i < statistics.size(); ++i) {
-            draws[i].push_back(summarizePooled(pooled, statistics[i]));
-        }
+    summary.value = values.empty() ? summarizeUnits(all, statistic)
+                                   : metrics::summarize(values, Statistic::Median);
+    summary.interval = {summary.value, summary.value};
+    if (const auto interval = metrics::medianInterval(values)) {
+        summary.bounds = Bounds::Interval;
+        summary.interval = *interval;
+        return summary;
     }
-    return draws;
+    // A sum or a count of repeats is not what one of them gives.
+    const bool isOfRepeats =
+        all.size() == 1 && (statistic == Statistic::Sum || statistic == Statistic::Count);
+    if (values.size() == 1 && !isOfRepeats) values = byRepeat(all, statistic);
+    if (values.size() < 2 || isOfRepeats) return summary;
+    summary.bounds = Bounds::Range;
+    summary.interval = rangeOf(values);
+    return summary;
 }
 
 }  // namespace gfxrepro::report

@@ -1,35 +1,43 @@
 // From repeated measurements to one value with its uncertainty.
 #pragma once
 
-#include <cstdint>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "runner/metrics/statistics.h"
 
 namespace gfxrepro::report {
 
-/// The measurements of one cell: for each process, for each unit (a frame of a case), its repeats.
-/// A process need not have every unit.
+/// The measurements of one cell: of each process (by its number), of each unit (a frame of a case),
+/// its repeats. A process need not have every unit.
 struct Samples {
-    std::vector<std::map<int, std::vector<double>>> processes;
-
-    /// Whether there is more than one measurement of anything, so that an uncertainty can be told.
-    bool isRepeated() const;
+    std::map<int, std::map<int, std::vector<double>>> processes;
 };
 
-/// Bootstrap resamples behind every interval.
-inline constexpr int kDrawCount = 1000;
+/// What the bounds beside a value are. An interval holds, with 95 %, the value that ever more
+/// processes would come to. A range is what the few measurements happened to be, min … max, and
+/// promises nothing.
+enum class Bounds { None, Range, Interval };
+/// "", "range", "95 % interval".
+std::string_view boundsName(Bounds bounds);
 
-/// The statistic over units, each reduced to the median of its repeats over all processes; with a
-/// single unit, over the repeats themselves.
-double summarize(const Samples& samples, metrics::Statistic statistic);
+/// One statistic of a cell.
+struct Summary {
+    double value = 0.0;
+    Bounds bounds = Bounds::None;
+    metrics::Interval interval;    // by `bounds`; of none the value itself
+    std::map<int, double> rounds;  // the statistic in each process that has all units
+};
 
-/// kDrawCount values of `summarize` on resampled measurements: processes with replacement, then in
-/// each the repeats of each unit with replacement. Units are not resampled: a camera path is given,
-/// not drawn. Empty when nothing is repeated.
-std::vector<std::vector<double>> drawSummaries(const Samples& samples,
-                                               const std::vector<metrics::Statistic>& statistics,
-                                               std::uint64_t seed);
+/// In each process the statistic over units, each reduced to the median of its repeats; with a
+/// single unit, over the repeats themselves. Of several processes their median.
+///
+/// The unit of uncertainty is the process: repeats within one share its memory layout, its hour
+/// and its neighbours, and tell nothing of those (Kalibera and Jones 2013, "Rigorous benchmarking
+/// in reasonable time"). With metrics::kFewestForInterval processes or more the bounds are
+/// metrics::medianInterval() of them; with fewer their range; with one process the range of what
+/// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
+Summary summarize(const Samples& samples, metrics::Statistic statistic);
 
 }  // namespace gfxrepro::report

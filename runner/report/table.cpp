@@ -8,6 +8,7 @@
 #include "runner/report/cell_builder.h"
 #include "runner/report/csv.h"
 #include "runner/report/default_layout.h"
+#include "runner/report/frame_times.h"
 #include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::report {
@@ -29,12 +30,10 @@ std::vector<std::string> axisNames(const std::vector<config::LayoutAxis>& axes) 
 void buildCells(const config::Layout& layout, const LayoutCases& cases,
                 const PrintedParameters& printed, const std::vector<Key>& columns, Table& table) {
     std::vector<std::set<std::string>> units(columns.size());
-    std::uint64_t seed = 0;  // one a cell, so that the draws of cells are independent
     for (TableRow& row : table.rows) {
         row.source = sceneSourceOf(layout, row.labels, cases);
         for (std::size_t i = 0; i < columns.size(); ++i) {
-            row.cells.push_back(
-                buildCell(makeQuery(layout, row.labels, columns[i]), cases, ++seed));
+            row.cells.push_back(buildCell(makeQuery(layout, row.labels, columns[i]), cases));
             printed.compare(layout, row.labels, columns[i], cases, row.cells.back());
             const std::string& unit = row.cells.back().unit;
             if (!unit.empty()) units[i].insert(unit);
@@ -43,6 +42,19 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
     for (std::size_t i = 0; i < columns.size(); ++i) {
         if (units[i].size() == 1) table.columns[i].unit = *units[i].begin();
     }
+}
+
+/// The noise of a table of times, what ended its rounds, and what stands out.
+void addTimes(const config::Experiment& experiment, const std::vector<Record>& records,
+              Table& table) {
+    if (experiment.measure.lane != config::Measure::Lane::Timing) return;
+    FrameTimes times;
+    for (const Record& record : records) {
+        if (record.table == table.id) times.add(record);
+    }
+    table.wallNoise = times.noise(Clock::Wall);
+    table.processNoise = times.noise(Clock::Process);
+    table.notes = timeNotes(times, experiment.measure);
 }
 
 /// The columns of `printed` that name row axes and table columns.
@@ -141,8 +153,8 @@ void layPrintedAlone(const config::Printed& printed, Table& table) {
 
 }  // namespace
 
-const Measured* Cell::find(const std::string& statistic) const {
-    for (const Measured& candidate : values) {
+const Measured* Cell::find(const std::string& statistic, Clock clock) const {
+    for (const Measured& candidate : clock == Clock::Wall ? values : byProcess) {
         if (statistic.empty() || candidate.statistic == statistic) return &candidate;
     }
     return nullptr;
@@ -165,6 +177,14 @@ std::string_view sceneSourceName(SceneSource source) {
 bool Table::hasSources() const {
     return std::any_of(rows.begin(), rows.end(),
                        [](const TableRow& row) { return row.source != SceneSource::Unknown; });
+}
+
+bool Table::hasShown(Bounds bounds) const {
+    return std::ranges::any_of(rows, [&](const TableRow& row) {
+        return std::ranges::any_of(row.cells, [&](const Cell& cell) {
+            return cell.hasShownBounds() && cell.bounds() == bounds;
+        });
+    });
 }
 
 std::string Table::rowName(std::size_t row) const {
@@ -238,6 +258,7 @@ Table buildTable(const config::Experiment& given, const std::vector<Record>& rec
     table.isPublished = experiment.isPublished();
     table.knowsPrintedParameters = printed.isKnown();
     buildCells(layout, cases, printed, columns, table);
+    addTimes(experiment, records, table);
     layPrintedBeside(experiment, columns, table);
     return table;
 }

@@ -7,19 +7,16 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
-#include "runner/metrics/statistics.h"
 #include "runner/report/records.h"
+#include "runner/report/sampling.h"
 
 namespace gfxrepro::report {
 
 /// One statistic of a cell, in the unit that is shown (scaled).
-struct Measured {
+struct Measured : Summary {
     std::string statistic;  // "median", "max", … as in the format
-    double value = 0.0;
-    metrics::Interval interval;  // 95 %
-    std::vector<double> draws;   // resampled values; empty when there is one sample
-    std::string text;            // as the format writes the value
-    std::string low, high;       // and the interval's ends; empty without one
+    std::string text;       // as the format writes the value
+    std::string low, high;  // and the ends of its bounds; empty without any
 };
 
 /// Whether a metric is a time or a number per time: what claims of a `kind` are about.
@@ -36,6 +33,9 @@ struct Departure {
     bool operator==(const Departure&) const = default;
 };
 
+/// By which clock a time is told: the one on the wall, or what all threads of the process spent.
+enum class Clock { Wall, Process };
+
 /// What stands at a row and a column.
 struct Cell {
     bool isPlanned = true;   // the sweep has such cases; if not, the cell is blank, not missing
@@ -44,7 +44,7 @@ struct Cell {
     std::string message;              // why it is not ok
     std::vector<Measured> values;     // in the order of the format; empty without a measurement
     std::string measured;             // formatted; the status word without a measurement
-    std::string low, high;            // the interval's ends, formatted likewise; empty without one
+    std::string low, high;            // the ends of the bounds, formatted likewise; or empty
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
     std::vector<std::string> caseIds;                  // whose records it takes
@@ -56,10 +56,17 @@ struct Cell {
     bool isAtPrintedParameters = false;
     /// Why it was not; empty also for a cell that has no counterpart in the profile `paper`.
     std::vector<Departure> departures;
+    /// Of a frame's or a pass's time or rate: the same by the process's CPU time, not formatted.
+    /// Empty where it was not recorded: on a GPU, or of a time that a technique tells itself.
+    std::vector<Measured> byProcess;
 
     bool isOk() const { return status == Status::Ok && !values.empty(); }
+    /// What the bounds beside the cell's numbers are.
+    Bounds bounds() const { return values.empty() ? Bounds::None : values[0].bounds; }
+    /// Bounds that are apart, as the format writes them.
+    bool hasShownBounds() const { return !low.empty() && low != high; }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
-    const Measured* find(const std::string& statistic) const;
+    const Measured* find(const std::string& statistic, Clock clock = Clock::Wall) const;
 };
 
 /// Where a row's scene comes from: metric `scene_source` of its cases (0 real, 1 stand-in, 2
@@ -94,8 +101,16 @@ struct Table {
     std::vector<TableRow> rows;
     std::vector<TableRow> printedRows;  // printed, but not part of this run; no cell is planned
     std::vector<std::string> notes;     // printed rows that found no place, and the like
+    /// By how much two equal cases of this table would differ (frame_times.h), as a share; none
+    /// with too few rounds.
+    std::optional<double> wallNoise, processNoise;
 
     bool hasSources() const;
+    /// Whether a cell shows such bounds.
+    bool hasShown(Bounds bounds) const;
+    std::optional<double> noise(Clock clock) const {
+        return clock == Clock::Wall ? wallNoise : processNoise;
+    }
     /// "scene=models/duck, step=1"; "" for a table of one row.
     std::string rowName(std::size_t row) const;
 };
@@ -108,9 +123,7 @@ Table transposed(const Table& table, std::size_t rowAxis);
 ///
 /// Rows are the combinations of the row axes that the sweep contains, in its order; those without
 /// any record stay, as `missing`. A cell takes the records that the selections of its row, column
-/// and `cell` choose; repeats (over processes) are reduced to their median for each frame, then the
-/// format's statistics are taken over frames. With a single frame they are taken over the repeats.
-/// Intervals are from a bootstrap over processes, then repeats.
+/// and `cell` choose; summarize() (sampling.h) makes one number and its bounds of them.
 ///
 /// An experiment of one's own without a layout gets the default one (default_layout.h).
 ///

@@ -5,7 +5,6 @@
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/report/control_pair.h"
 #include "runner/report/csv.h"
 #include "runner/report/latex.h"
 #include "runner/report/markup.h"
@@ -51,6 +50,7 @@ std::string tableCsv(const Table& table) {
         for (const std::string& statistic : statistics[i]) {
             const std::string name = label + (statistics[i].size() > 1 ? "_" + statistic : "");
             header.text(name + "_measured").text(name + "_low").text(name + "_high");
+            header.text(name + "_bounds");
         }
         header.text(label + "_status");
         if (table.isPublished) header.text(label + "_at_printed");
@@ -69,8 +69,9 @@ std::string tableCsv(const Table& table) {
                 if (measured) {
                     line.number(measured->value);
                     line.number(measured->interval.low).number(measured->interval.high);
+                    line.text(boundsName(measured->bounds));
                 } else {
-                    line.text("").text("").text("");
+                    line.text("").text("").text("").text("");
                 }
             }
             line.text(cell.isPlanned ? statusName(cell.status) : "");
@@ -86,16 +87,26 @@ std::string markdownCell(const Cell& cell, bool isOnlyPrinted) {
     std::string text;
     if (cell.printed) text += escapeMarkdown(*cell.printed) + (isOnlyPrinted ? "" : " → ");
     text += cell.isPlanned ? escapeMarkdown(cell.measured) : "";
-    if (!cell.low.empty() && cell.low != cell.high) {
-        text += fmt::format(" [{}, {}]", escapeMarkdown(cell.low), escapeMarkdown(cell.high));
+    if (cell.hasShownBounds()) {
+        const bool isInterval = cell.bounds() == Bounds::Interval;
+        text += fmt::format(fmt::runtime(isInterval ? " [{}, {}]" : " ({} … {})"),
+                            escapeMarkdown(cell.low), escapeMarkdown(cell.high));
     }
     return text;
 }
 
+/// What the bounds beside the numbers are.
+std::string boundsLegend(const Table& table) {
+    if (!table.hasShown(Bounds::Range)) return "Printed → measured [95 % interval].";
+    const bool hasBoth = table.hasShown(Bounds::Interval);
+    return fmt::format(
+        "Printed → measured {}(range, min … max: too few processes for an interval).",
+        hasBoth ? "[95 % interval] " : "");
+}
+
 std::string tableMarkdown(const Table& table) {
     std::string text = fmt::format("# {}\n\n", escapeMarkdown(table.label + ". " + table.title));
-    text += table.isOnlyPrinted ? "As printed; nothing is measured."
-                                : "Printed → measured [95 % interval].";
+    text += table.isOnlyPrinted ? "As printed; nothing is measured." : boundsLegend(table);
     if (!table.hardware.empty())
         text += fmt::format(" Printed: {}.", escapeMarkdown(table.hardware));
     if (const std::string parameters = parametersLine(table); !parameters.empty())
@@ -181,14 +192,9 @@ std::string junitXml(const std::vector<ClaimResult>& results) {
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                const std::vector<Record>& records) {
-    const std::vector<std::string> controls = controlNotes(records);
     std::vector<Table> tables;
     for (const config::Experiment& experiment : experiments) {
         tables.push_back(buildTable(experiment, records));
-        if (experiment.measure.lane == config::Measure::Lane::Timing) {
-            std::vector<std::string>& notes = tables.back().notes;
-            notes.insert(notes.end(), controls.begin(), controls.end());
-        }
     }
     return tables;
 }

@@ -8,6 +8,7 @@
 namespace gfxrepro::test {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::ElementsAre;
 
 TEST(Faults, EveryFailureBecomesARow) {
@@ -109,7 +110,7 @@ TEST(Faults, APerfectPictureIsInfinitelyGood) {
     EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find("| infinite | ∞ dB |"),
               std::string::npos)
         << readFile(dir + "/tables/sweep-mock.md");
-    EXPECT_NE(readFile(dir + "/tables/sweep-mock.csv").find("infinite,,inf,inf,inf,ok"),
+    EXPECT_NE(readFile(dir + "/tables/sweep-mock.csv").find("infinite,,inf,inf,inf,,ok"),
               std::string::npos)
         << readFile(dir + "/tables/sweep-mock.csv");
     EXPECT_NE(readFile(dir + "/claims.csv").find(",holds,"), std::string::npos);
@@ -169,34 +170,59 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
     EXPECT_NE(table.find("| unequal | ambiguous | 0 |"), std::string::npos) << table;
 }
 
-TEST(Faults, ATimingRunBeginsWithAnAAPair) {
-    const TemporaryFolder folder;
-    const std::string config =
-        writeMockConfig(folder,
-                        "sweep: {number: [1, 2]}\n"
-                        "measure: {lane: timing, repeats: 3}\n"
-                        "layout:\n  rows: number\n  columns:\n"
-                        "    n: {metric: number, format: \"{count:.0f}\"}\n");
-    const std::string dir = folder.path() / "run";
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_EQ(run.out, "2 of 2 finished; records: " + dir + "/records.csv\n");
-    std::vector<int> processes;
-    std::vector<std::string> cases;
-    for (const report::Record& row : report::readRecords(dir + "/records.csv")) {
-        if (row.metric != "number") continue;
-        processes.push_back(row.process);
-        cases.push_back(row.caseId);
+std::vector<std::pair<int, double>> roundsOf(const std::string& dir) {
+    std::vector<std::pair<int, double>> units;
+    for (const report::Record& row : rowsOf(dir, "number")) {
+        units.emplace_back(row.process, row.value);
     }
-    ASSERT_THAT(processes, ElementsAre(-2, -1, 0, 0));
-    EXPECT_EQ(cases[0], cases[2]);
-    EXPECT_EQ(cases[1], cases[2]);
-    EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
-    const std::string table = readFile(dir + "/tables/sweep-mock.md");
-    EXPECT_NE(table.find("| 1 | 1 |"), std::string::npos) << table;
-    EXPECT_NE(table.find("A/A pair at the begin of the run"), std::string::npos) << table;
+    return units;
+}
+
+/// Cases take turns, forth and back, and rounds go on while times are too uncertain.
+TEST(Faults, TimesAreMeasuredInRounds) {
+    const TemporaryFolder folder;
+    const auto measure = [&](const std::string& keys, const std::string& dir) {
+        const std::string config = writeMockConfig(
+            folder,
+            "sweep: {number: [1, 2]}\nparams: {pause_ms: 5}\n"
+            "measure: {lane: timing, " +
+                keys +
+                "}\n"
+                "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");
+        const ProcessResult run =
+            mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+        return readFile(dir + "/tables/sweep-mock.md");
+    };
+    const std::string fixed = folder.path() / "fixed";
+    EXPECT_NE(measure("processes: 3", fixed).find("bounds are a range"), std::string::npos);
+    EXPECT_THAT(roundsOf(fixed),
+                ElementsAre(std::pair(0, 1.0), std::pair(0, 2.0), std::pair(1, 2.0),
+                            std::pair(1, 1.0), std::pair(2, 1.0), std::pair(2, 2.0)));
+    // No time is ever known to a millionth: rounds go on until they are as many as allowed.
+    const std::string dir = folder.path() / "run";
+    const std::string table =
+        measure("processes: 6, relative_error: 0.000001, processes_at_most: 8", dir);
+    EXPECT_NE(table.find("Times of 8 rounds by turns, ended by processes\\_at\\_most"),
+              std::string::npos)
+        << table;
+    EXPECT_NE(table.find("Noise of this table"), std::string::npos) << table;
+    EXPECT_EQ(roundsOf(dir).size(), 16U);
+    EXPECT_GT(rowsOf(dir, "process_time_ms").size(), 0U);
+    const std::string manifest = readFile(dir + "/manifest.json");
+    EXPECT_NE(manifest.find("\"ended_by\": \"processes_at_most\""), std::string::npos) << manifest;
+    // What was decided stays; a unit that is lost is measured again.
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "0 of 0 finished; records: " + dir + "/records.csv\n");
+    std::vector<report::Record> rows = report::readRecords(dir + "/records.csv");
+    const std::string last = rows.back().caseId;
+    std::erase_if(
+        rows, [&](const report::Record& row) { return row.process == 7 && row.caseId == last; });
+    fs::remove(dir + "/records.csv");
+    report::RecordWriter(dir + "/records.csv").append(rows);
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
+              "1 of 1 finished; records: " + dir + "/records.csv\n");
 }
 
 TEST(Faults, NoSuchDevice) {

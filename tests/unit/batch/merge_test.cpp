@@ -43,25 +43,31 @@ TEST(Merge, RecordsAreInTheOrderOfThePlan) {
     EXPECT_FALSE(batch::isOnlyMerged(continued));
 }
 
-TEST(Merge, KeepsThePairOfEveryShard) {
+/// Rounds beyond those asked for are in no list of units but the records'.
+TEST(Merge, KeepsFurtherRounds) {
     batch::Plan plan = makePlan();
-    plan.cases.push_back(makeCase("t/2", "a", 1, Lane::Timing));
-    std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1, 6}),
-                                           makeShard(plan, 2, 2, {2, 3, 4, 5}, "GPU B")};
-    for (batch::ShardRun& shard : shards) {
-        const std::vector<batch::Unit> units = batch::controlUnitsOf(shard.run.plan);
-        ASSERT_EQ(units.size(), 2U);
-        for (int i = 0; i < 2; ++i) {
-            shard.run.records.push_back(makeRow(*units[i].item, -1.0, units[i].process));
+    for (const std::size_t i : {4, 5}) {
+        plan.cases[i].measure.processes = 6;
+        plan.cases[i].measure.relativeError = 0.05;
+    }
+    std::vector<batch::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1}),
+                                           makeShard(plan, 2, 2, {2, 3, 4, 5})};
+    for (int process = 1; process < 8; ++process) {
+        for (const std::size_t i : {5, 4}) {
+            shards[1].run.records.push_back(makeRow(plan.cases[i], 0.0, process));
         }
     }
+    shards[1].run.manifest["rounds"] = {{"t/1", {{"rounds", 8}}}};
     const batch::StoredRun merged = mergeRuns(shards, "merge");
-    ASSERT_EQ(merged.records.size(), 4U + 7U);
-    std::vector<std::string> pairs;
-    for (int i = 0; i < 4; ++i) pairs.push_back(merged.records[i].table);
-    EXPECT_THAT(pairs, ElementsAre("t/1", "t/1", "t/2", "t/2"));
-    EXPECT_DOUBLE_EQ(merged.records[4].value, 0.0);
+    EXPECT_EQ(merged.records.size(), 4U + 16U);
+    EXPECT_EQ(merged.records.back().process, 7);
+    EXPECT_EQ(merged.records.back().caseId, plan.cases[4].id) << "odd rounds go backwards";
+    EXPECT_EQ(merged.manifest["rounds"]["t/1"]["rounds"], 8);
+    EXPECT_EQ(batch::completeness(merged).units, 20);
     EXPECT_EQ(batch::completeness(merged).missing, 0);
+    shards[1].run.records.pop_back();  // round 7 was interrupted
+    EXPECT_THAT(batch::missingUnits(mergeRuns(shards, "merge")),
+                ElementsAre("t/1 method=a size=1 process 8"));
 }
 
 TEST(Merge, NamesWhatIsMissing) {
@@ -169,8 +175,8 @@ TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     const auto replaced = report::readRecords(folder.path() / "records-replaced.csv");
     ASSERT_EQ(replaced.size(), 1U);
     EXPECT_EQ(replaced[0].caseId, plan.cases[4].id);
-    // Two quality cases, both timing cases, and the A/A pair, which was never there.
-    EXPECT_EQ(batch::remainingUnits(plan, directory).size(), 6U);
+    // Two quality cases and both timing cases.
+    EXPECT_EQ(batch::remainingUnits(plan, directory).size(), 4U);
 }
 
 TEST(ForeignTimes, FinishedTablesStay) {

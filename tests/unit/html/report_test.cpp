@@ -48,6 +48,9 @@ std::vector<report::Record> records(double drawMs = 8.0) {
     report::RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {drawMs});
     maker.add("scene_source", {1.0}, "", "enum");
+    for (int process = 1; process < 6; ++process) {
+        maker.process(process).add("gpu_time_ms", {drawMs});
+    }
     maker.beginCase("<b>&|_%").add("error", {2.5}).add("gpu_time_ms", {1.0 / 3.0});
     maker.beginCase("models/lost").fail(Status::Crash, "signal <11>");
     return maker.records();

@@ -34,7 +34,7 @@ FigurePoint point(double x, double y, double halfWidth = 0.0) {
     point.x = x;
     point.y = y;
     point.interval = {y - halfWidth, y + halfWidth};
-    point.hasInterval = halfWidth > 0.0;
+    if (halfWidth > 0.0) point.bounds = Bounds::Interval;
     return point;
 }
 

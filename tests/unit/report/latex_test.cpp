@@ -39,19 +39,21 @@ layout: {rows: scene, columns: {draw_ms: {metric: gpu_time_ms}}, cell: "{median:
 printed: {values: "scene,draw_ms\nmodels/duck,9.0"}
 )",
                                                    maker.records()));
-    EXPECT_THAT(keysOf(latex), testing::ElementsAre("zju2005/9.9",  // its parameters
-                                                    "zju2005/9.9/models-duck/draw_ms/printed",
-                                                    "zju2005/9.9/models-duck/draw_ms",
-                                                    "zju2005/9.9/models-duck/draw_ms/low",
-                                                    "zju2005/9.9/models-duck/draw_ms/high",
-                                                    "zju2005/9.9/models-bunny/draw_ms"));
+    EXPECT_THAT(keysOf(latex),
+                testing::ElementsAre(
+                    "zju2005/9.9",  // its parameters
+                    "zju2005/9.9/models-duck/draw_ms/printed", "zju2005/9.9/models-duck/draw_ms",
+                    "zju2005/9.9/models-duck/draw_ms/low", "zju2005/9.9/models-duck/draw_ms/high",
+                    "zju2005/9.9/models-duck/draw_ms/bounds", "zju2005/9.9/models-bunny/draw_ms"));
     EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw_ms}{9.0}\n"));
     EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-bunny/draw_ms}{crash}\n"));
     EXPECT_THAT(latex,
                 HasSubstr("{models/duck} & \\gfxrepro{zju2005/9.9/models-duck/draw_ms/printed} & "
                           "\\gfxrepro{zju2005/9.9/models-duck/draw_ms} "
-                          "{\\scriptsize[\\gfxrepro{zju2005/9.9/models-duck/draw_ms/low}, "
-                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms/high}]} \\\\\n"));
+                          "{\\scriptsize(\\gfxrepro{zju2005/9.9/models-duck/draw_ms/low} "
+                          "\\ldots\\ "
+                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms/high})} \\\\\n"));
+    EXPECT_THAT(latex, HasSubstr("{zju2005/9.9/models-duck/draw_ms/bounds}{range}\n"));
     EXPECT_THAT(latex, HasSubstr(" & printed & measured \\\\\n\\midrule\n"));
     EXPECT_THAT(latex, HasSubstr("%   \\gfxrepro{zju2005/9.9/models-duck/draw_ms}  as measured\n"));
 }

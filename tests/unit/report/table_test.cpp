@@ -126,12 +126,12 @@ TEST(Table, RowsInSweepOrderMedianOfRepeats) {
     EXPECT_TRUE(bunny.isOk());
     EXPECT_EQ(bunny.measured, "3.0");
     EXPECT_EQ(bunny.values[0].value, 3.0);
-    EXPECT_EQ(bunny.values[0].draws.size(), static_cast<std::size_t>(kDrawCount));
-    // Of three repeats, all three draws are the smallest in 1 of 27: more than 2.5 %.
+    // Three repeats of one process have a range, no interval.
+    EXPECT_EQ(bunny.bounds(), Bounds::Range);
     EXPECT_EQ(bunny.low, "2.0");
     EXPECT_EQ(bunny.high, "4.0");
     EXPECT_EQ(table.rows[1].cells[0].measured, "69451");
-    EXPECT_TRUE(table.rows[1].cells[0].values[0].draws.empty());
+    EXPECT_EQ(table.rows[1].cells[0].bounds(), Bounds::None);
     EXPECT_EQ(table.columns[1].unit, "ms");
     EXPECT_EQ(table.rows[0].source, SceneSource::StandIn);
     EXPECT_EQ(table.rows[1].source, SceneSource::Unknown);
@@ -353,17 +353,67 @@ layout:
     EXPECT_EQ(table.columns[1].unit, "");  // scaled: megabytes are no bytes
 }
 
-TEST(Table, BootstrapResamplesProcessesThenRepeats) {
-    // Two processes that differ by much, repeats that differ by little: the interval must be as
-    // wide as the processes are apart.
-    const Samples samples{{{{0, {10.0, 10.1, 9.9}}}, {{0, {20.0, 20.1, 19.9}}}}};
-    const auto draws = drawSummaries(samples, {metrics::Statistic::Mean}, 1);
-    const metrics::Interval interval = metrics::centralInterval(draws[0]);
-    EXPECT_LT(interval.low, 10.2);
-    EXPECT_GT(interval.high, 19.8);
-    EXPECT_EQ(draws, drawSummaries(samples, {metrics::Statistic::Mean}, 1));
-    EXPECT_TRUE(
-        drawSummaries({{{{0, {10.0}}, {1, {11.0}}}}}, {metrics::Statistic::Mean}, 1)[0].empty());
+TEST(Sampling, AnIntervalIsOverProcesses) {
+    const auto samplesOf = [](std::initializer_list<double> processes) {
+        Samples samples;
+        // Repeats within a process differ by much, and do not count.
+        int number = 0;
+        for (const double value : processes) {
+            samples.processes[number++][0] = {value / 2.0, value, value * 2.0};
+        }
+        return samples;
+    };
+    Summary summary = summarize(samplesOf({10, 11, 12, 13, 14, 19}), metrics::Statistic::Median);
+    EXPECT_EQ(summary.value, 12.5);
+    EXPECT_EQ(summary.bounds, Bounds::Interval);
+    EXPECT_EQ(summary.interval.low, 10.0);
+    EXPECT_EQ(summary.interval.high, 19.0);
+    EXPECT_EQ(summary.rounds.at(5), 19.0);
+    // Five processes cannot give 95 %.
+    summary = summarize(samplesOf({10, 11, 12, 13, 14}), metrics::Statistic::Median);
+    EXPECT_EQ(summary.bounds, Bounds::Range);
+    EXPECT_EQ(summary.interval.high, 14.0);
+    // One process: the range of its repeats, which is none of processes.
+    summary = summarize(samplesOf({10}), metrics::Statistic::Median);
+    EXPECT_EQ(summary.bounds, Bounds::Range);
+    EXPECT_EQ(summary.interval.low, 5.0);
+    EXPECT_EQ(summary.interval.high, 20.0);
+    EXPECT_EQ(summarize(samplesOf({10}), metrics::Statistic::Count).bounds, Bounds::None);
+    const Samples once{{{0, {{0, {10.0}}, {1, {12.0}}}}}};
+    EXPECT_EQ(summarize(once, metrics::Statistic::Mean).bounds, Bounds::None);
+}
+
+TEST(Sampling, FramesAreSummarizedInEachProcess) {
+    Samples samples;
+    for (int process = 0; process < 3; ++process) {
+        samples.processes[process] = {{0, {10.0 + process}}, {1, {40.0}}};
+    }
+    samples.processes[3] = {{0, {99.0}}};  // a frame is missing: no round
+    const Summary mean = summarize(samples, metrics::Statistic::Mean);
+    EXPECT_EQ(mean.value, 25.5);
+    EXPECT_EQ(mean.rounds.size(), 3U);
+    EXPECT_EQ(mean.interval.low, 25.0);
+    EXPECT_EQ(mean.interval.high, 26.0);
+    EXPECT_EQ(summarize(samples, metrics::Statistic::Max).value, 40.0);
+}
+
+/// frames ÷ time, beside the mean of the frames' rates.
+TEST(Table, RateOverAPath) {
+    RecordMaker maker;
+    maker.beginCase("s");
+    const double rates[] = {10.0, 40.0};
+    for (int frame = 0; frame < 2; ++frame) {
+        maker.frame(frame).add("frame_rate", {rates[frame]}, "", "1/s");
+    }
+    const std::string body = R"x(
+scene: s
+measure: {frames: 2}
+layout:
+  rows: scene
+  columns: {fps: {metric: frame_rate, format: "{rate:.1f} ({mean:.1f})"}}
+)x";
+    const Table table = buildTable(experimentFrom(body), maker.records());
+    EXPECT_EQ(table.rows[0].cells[0].measured, "16.0 (25.0)");
 }
 
 TEST(Table, BadParamsNameTheCase) {

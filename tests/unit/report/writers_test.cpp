@@ -41,6 +41,9 @@ std::vector<Record> records() {
     RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
     maker.add("scene_source", {1.0}, "", "enum");
+    for (int process = 1; process < 6; ++process) {
+        maker.process(process).add("gpu_time_ms", {8.0});
+    }
     maker.beginCase("<b>&|_%", R"({"light_grid": 4})")
         .add("error", {2.5})
         .add("gpu_time_ms", {1.0 / 3.0});
@@ -59,19 +62,23 @@ TEST(Writers, TableFiles) {
     const std::string csv = run.read("tables/zju2005-9.9.csv");
     EXPECT_THAT(csv, testing::StartsWith(
                          "scene,source,error_printed,error_mean_measured,error_mean_low,"
-                         "error_mean_high,error_max_measured,error_max_low,error_max_high,"
-                         "error_status,error_at_printed,draw_ms_printed,draw_ms_measured,"
-                         "draw_ms_low,draw_ms_high,draw_ms_status,draw_ms_at_printed,parameters\n"
-                         "models/duck,stand-in,3.00/106,2,1,"));
-    EXPECT_THAT(csv, HasSubstr(",ok,yes,9.0,8,8,8,ok,yes,Measured at the printed parameters\n"));
+                         "error_mean_high,error_mean_bounds,error_max_measured,error_max_low,"
+                         "error_max_high,error_max_bounds,error_status,error_at_printed,"
+                         "draw_ms_printed,draw_ms_measured,draw_ms_low,draw_ms_high,draw_ms_bounds,"
+                         "draw_ms_status,draw_ms_at_printed,parameters\n"
+                         "models/duck,stand-in,3.00/106,2,1,4,range,4,1,4,range,ok,yes,"));
+    EXPECT_THAT(
+        csv,
+        HasSubstr(",ok,yes,9.0,8,8,8,95 % interval,ok,yes,Measured at the printed parameters\n"));
     EXPECT_THAT(csv, HasSubstr("0.3333333333333333,"));
     EXPECT_THAT(csv, HasSubstr(",ok,no,Measured at light_grid 4 (printed 16)\n"));
-    EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,crash,,,,,,crash,,\n"));
+    EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,,,crash,,,,,,,crash,,\n"));
     const std::string markdown = run.read("tables/zju2005-9.9.md");
     EXPECT_THAT(markdown, HasSubstr("# Table 9.9. A table\n"));
     EXPECT_THAT(markdown, HasSubstr("\n\nMeasured at the printed parameters.\n\n| scene |"))
         << "of the printed cells: the other row has none";
-    EXPECT_THAT(markdown, HasSubstr("| models/duck | stand-in | 3.00/106 → 2.00/4 ["));
+    EXPECT_THAT(markdown,
+                HasSubstr("| models/duck | stand-in | 3.00/106 → 2.00/4 (1.00/1 … 4.00/4) |"));
     EXPECT_THAT(markdown, HasSubstr("| \\<b\\>&amp;\\|\\_% |"));
     EXPECT_THAT(markdown, HasSubstr("| 9.0 → 8.0 |"));
     EXPECT_THAT(markdown, HasSubstr("| models/lost |  | crash | crash |"));
@@ -92,15 +99,17 @@ TEST(Writers, ClaimFiles) {
     context.tried[{"zju2005/9.9", "B"}] = {Verdict::Holds, "bias (of 5 tried)"};
     const auto results = evaluateClaims({experiment()}, tables, context);
     writeClaims(run.folder.path(), results, kContext);
-    EXPECT_EQ(run.read("claims.csv"),
-              "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
-              "margin,reason,because,rests_on\n"
-              "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,8,draw_ms ≤ 10,2,one sample,,"
-              "none of the 5 tried\n"
-              "B,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,8,draw_ms ≤ 1,-7,"
-              "one sample,\"slow, measured\",not tried: holds then\n"
-              "C,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
-              "scene=models/lost: crash (signal <11>),,\n");
+    EXPECT_EQ(
+        run.read("claims.csv"),
+        "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
+        "margin,reason,because,rests_on\n"
+        "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,\"8 [8, 8]\",draw_ms ≤ 10,2,,,"
+        "none of the 5 tried\n"
+        "B,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, 8]\",draw_ms "
+        "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
+        "holds then\n"
+        "C,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
+        "scene=models/lost: crash (signal <11>),,\n");
     const auto kept = readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
     EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
@@ -109,16 +118,18 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(kept[1].known, Verdict::Fails);
     EXPECT_EQ(kept[1].because, "slow, measured");
     EXPECT_EQ(kept[1].restsOn, "not tried: holds then");
-    EXPECT_EQ(run.read("junit.xml"),
-              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-              "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
-              "  <testcase classname=\"zju2005/9.9\" name=\"A\"/>\n"
-              "  <testcase classname=\"zju2005/9.9\" name=\"B\"><failure message=\"fails: measured "
-              "8, required draw_ms ≤ 1 (one sample); known: slow, measured\"/></testcase>\n"
-              "  <testcase classname=\"zju2005/9.9\" name=\"C\"><skipped message=\"unmeasured: "
-              "measured nothing, required draw_ms ≤ 1 (draw_ms at scene=models/lost: crash (signal "
-              "&lt;11&gt;))\"/></testcase>\n"
-              "</testsuite>\n");
+    EXPECT_EQ(
+        run.read("junit.xml"),
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"A\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"B\"><failure message=\"fails: measured "
+        "8 [8, 8], required draw_ms ≤ 1 (by the clock: no CPU time was recorded of these); known: "
+        "slow, measured\"/></testcase>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"C\"><skipped message=\"unmeasured: "
+        "measured nothing, required draw_ms ≤ 1 (draw_ms at scene=models/lost: crash (signal "
+        "&lt;11&gt;))\"/></testcase>\n"
+        "</testsuite>\n");
 }
 
 }  // namespace

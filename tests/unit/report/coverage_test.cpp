@@ -1,0 +1,190 @@
+// Whether intervals of times hold the truth as often as they say, by the program's own rules: times
+// that scatter by 10 % between processes and by 5 % within, both log-normal.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "runner/core/random.h"
+#include "runner/report/claim_times.h"
+#include "runner/report/frame_times.h"
+#include "runner/report/sampling.h"
+
+namespace gfxrepro::report {
+namespace {
+
+constexpr double kBetween = 0.10;
+constexpr double kWithin = 0.05;
+constexpr int kTrials = 2000;
+/// 95 % less what 2000 trials leave open (three standard errors: 1.5 %).
+constexpr double kRequired = 0.93;
+
+double normal(Random& random) {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - double{random.uniform()}));
+    return radius * std::cos(2.0 * std::numbers::pi * double{random.uniform()});
+}
+
+/// One process of a case whose true time is `truth`.
+double processTime(double truth, Random& random) {
+    return truth * std::exp(kBetween * normal(random) + kWithin * normal(random));
+}
+
+bool holds(const metrics::Interval& interval, double truth) {
+    return interval.low <= truth && truth <= interval.high;
+}
+
+/// The share of trials in which `trial` is true; printed for people.
+double shareOf(const char* name, int processes, const std::function<bool(Random&)>& trial) {
+    int count = 0;
+    for (int i = 0; i < kTrials; ++i) {
+        Random random(static_cast<std::uint64_t>(1000 * i + processes));
+        count += trial(random) ? 1 : 0;
+    }
+    const double share = static_cast<double>(count) / kTrials;
+    std::printf("  %s, %d processes: %.1f %%\n", name, processes, 100.0 * share);
+    return share;
+}
+
+/// Rows that are measured by turns in `processes` rounds.
+Group groupOf(const std::vector<std::vector<double>>& truths, const std::vector<double>& x,
+              int processes, Random& random) {
+    Group group;
+    for (const std::vector<double>& rows : truths) {
+        std::vector<Sampled>& operand = group.operands.emplace_back();
+        for (const double truth : rows) {
+            std::map<int, double> rounds;
+            for (int i = 0; i < processes; ++i) rounds[i] = processTime(truth, random);
+            operand.push_back({truth, std::move(rounds)});
+        }
+    }
+    for (const double value : x) group.x.push_back({value, {}});
+    return group;
+}
+
+/// Whether the verdict on "quantity in the range" is right or open where the truth lies just inside
+/// of the upper bound, and just outside of the lower: then the interval holds it.
+bool isHeld(const Group& group, const Quantity& quantity, Scale scale, double truth) {
+    Requirement atMost, atLeast;
+    atMost.high = truth;
+    atLeast.low = truth;
+    // Fails only if the interval lies wholly above, or wholly below, the truth.
+    return judgeTimes(group, asItself("", quantity, atMost, scale), {}).verdict != Verdict::Fails &&
+           judgeTimes(group, asItself("", quantity, atLeast, scale), {}).verdict != Verdict::Fails;
+}
+
+class Coverage : public ::testing::TestWithParam<int> {};
+
+TEST_P(Coverage, OfTheMedianOfACell) {
+    for (const int frames : {1, 5}) {
+        const double share =
+            shareOf(frames == 1 ? "cell" : "path", GetParam(), [&](Random& random) {
+                Samples samples;
+                for (int process = 0; process < GetParam(); ++process) {
+                    const double own = std::exp(kBetween * normal(random));
+                    for (int frame = 0; frame < frames; ++frame) {
+                        samples.processes[process][frame] = {10.0 * own *
+                                                             std::exp(kWithin * normal(random))};
+                    }
+                }
+                const Summary summary = summarize(samples, metrics::Statistic::Median);
+                return summary.bounds == Bounds::Interval && holds(summary.interval, 10.0);
+            });
+        EXPECT_GE(share, kRequired);
+    }
+}
+
+TEST_P(Coverage, OfARatio) {
+    const double share = shareOf("ratio", GetParam(), [&](Random& random) {
+        const Group group = groupOf({{30.0}, {10.0}}, {}, GetParam(), random);
+        return isHeld(group, firstRatio, Scale::Logarithmic, 3.0);
+    });
+    EXPECT_GE(share, kRequired);
+}
+
+TEST_P(Coverage, OfAnExponent) {
+    const double share = shareOf("exponent", GetParam(), [&](Random& random) {
+        const Group group =
+            groupOf({{10.0, 20.0, 40.0, 80.0}}, {1.0, 2.0, 4.0, 8.0}, GetParam(), random);
+        return isHeld(group, exponent, Scale::Linear, 1.0);
+    });
+    EXPECT_GE(share, kRequired);
+}
+
+/// Equal times are not said to differ, nor different ones to be equal.
+TEST_P(Coverage, OfWhatIsAlike) {
+    const double share = shareOf("unlike said alike", GetParam(), [&](Random& random) {
+        const Group group = groupOf({{10.0, 12.5}}, {1.0, 2.0}, GetParam(), random);
+        return judgeTimes(group, allAlike(0.25), {}).verdict != Verdict::Holds;
+    });
+    EXPECT_GE(share, kRequired);
+}
+
+/// Two equal cases of a table differ by less than its noise, as it says.
+TEST_P(Coverage, OfTheNoiseOfATable) {
+    const double share = shareOf("noise", GetParam(), [&](Random& random) {
+        FrameTimes times;
+        Group pair;
+        pair.operands.resize(2);
+        for (int item = 0; item < 10; ++item) {
+            Sampled sampled{10.0, {}};
+            for (int process = 0; process < GetParam(); ++process) {
+                Record record;
+                record.caseId = std::to_string(item);
+                record.lane = "timing";
+                record.metric = "wall_time_ms";
+                record.process = process;
+                record.value = processTime(10.0, random);
+                times.add(record);
+                sampled.rounds[process] = record.value;
+            }
+            if (item == 3 || item == 7) pair.operands[item == 3 ? 0 : 1].push_back(sampled);
+        }
+        Requirement any;
+        std::vector<double> logs;
+        for (const int round : roundsOf(pair)) {
+            logs.push_back(std::log(firstRatio(pointOf(pair, round))));
+        }
+        return std::abs(metrics::centre(logs)) <= std::log1p(*times.noise(Clock::Wall));
+    });
+    EXPECT_GE(share, 0.90) << "the median width is not each pair's own";
+}
+
+/// A trend that is there is rarely denied, one that is not is rarely affirmed.
+TEST_P(Coverage, OfADirection) {
+    const double risen = shareOf("flat said to rise", GetParam(), [&](Random& random) {
+        const Group group =
+            groupOf({std::vector<double>(6, 10.0)}, {1, 2, 3, 4, 5, 6}, GetParam(), random);
+        return judgeTimes(group, rising(1), {}).verdict != Verdict::Holds;
+    });
+    EXPECT_GE(risen, 0.95);
+    const double denied = shareOf("plateau denied", GetParam(), [&](Random& random) {
+        const Group group =
+            groupOf({{10.0, 20.0, 40.0, 40.0, 40.0, 40.0}}, {1, 2, 3, 4, 5, 6}, GetParam(), random);
+        return judgeTimes(group, rising(1), 0.12).verdict != Verdict::Fails;
+    });
+    EXPECT_GE(denied, 0.99);
+}
+
+INSTANTIATE_TEST_SUITE_P(Processes, Coverage, ::testing::Values(6, 8, 10));
+
+/// What the rule is for: with fewer processes a range holds the truth more rarely than it would
+/// say.
+TEST(RangeCoverage, ARangeOfThreeWouldNotDo) {
+    const double share = shareOf("range", 3, [](Random& random) {
+        Samples samples;
+        for (int process = 0; process < 3; ++process) {
+            samples.processes[process][0] = {processTime(10.0, random)};
+        }
+        const Summary summary = summarize(samples, metrics::Statistic::Median);
+        return summary.bounds == Bounds::Range && holds(summary.interval, 10.0);
+    });
+    EXPECT_LT(share, 0.80);
+}
+
+}  // namespace
+}  // namespace gfxrepro::report
