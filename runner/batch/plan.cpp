@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "runner/batch/case_variation.h"
 #include "runner/batch/ledger.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
@@ -18,16 +17,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int kPlanSchema = 1;
-
-/// A user's own scene file is named relative to the config; a worker gets the absolute path.
-config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
-    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
-    const fs::path path = reference.text();
-    if (!path.has_extension() || path.is_absolute()) return reference;
-    const fs::path folder = fs::path(reference.location().file).parent_path();
-    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
-                                reference.location());
-}
 
 /// The first 12 digits of the hash of everything that the case's results depend on.
 std::string contentId(const Case& item, const std::string& sceneKey, const Plan& plan) {
@@ -290,49 +279,6 @@ Plan Plan::fromJsonFile(const fs::path& path) {
         }
     }
     return plan;
-}
-
-std::vector<Case> resolveParameters(const config::Experiment& experiment,
-                                    const scene::Catalog& catalog,
-                                    std::span<const technique::TechniqueInfo> techniques,
-                                    std::uint64_t seed) {
-    if (experiment.technique.empty()) return {};  // only printed
-    const config::Node* named = experiment.document.find("technique");
-    const technique::TechniqueInfo& info = technique::findTechnique(
-        techniques, experiment.technique,
-        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
-    std::vector<Case> cases;
-    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        Case item;
-        takeInstead(spec, experiment.paramsInstead, item);
-        config::Params params(item.given, "technique '" + std::string(info.name) + "'");
-        if (!item.offered.isNull()) params.offer(item.offered);
-        info.create(params);
-        params.finish();
-        item.experiment = experiment.id;
-        item.technique = experiment.technique;
-        item.scene = absoluteReference(spec.scene, catalog);
-        item.params = params.resolved();
-        item.axes = config::Node::map({});
-        for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
-        item.outputWidthPx = spec.outputWidthPx;
-        item.outputHeightPx = spec.outputHeightPx;
-        item.measure = experiment.measure;
-        item.seed = seed;
-        cases.push_back(std::move(item));
-    }
-    return cases;
-}
-
-std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
-                               std::span<const technique::TechniqueInfo> techniques,
-                               std::uint64_t seed) {
-    std::vector<Case> cases;
-    for (const Case& item : resolveParameters(experiment, catalog, techniques, seed)) {
-        for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
-    }
-    requireTaken(experiment, cases, catalog);
-    return cases;
 }
 
 Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,

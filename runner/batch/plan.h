@@ -89,7 +89,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed);
 
-/// The same, with scenes that need not be at hand.
+/// The same without what takes a scene's place, its seeds included; it need not be at hand.
 std::vector<Case> resolveParameters(const config::Experiment& experiment,
                                     const scene::Catalog& catalog,
                                     std::span<const technique::TechniqueInfo> techniques,

@@ -94,11 +94,15 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     const batch::StoredRun run = batch::readRun(runDir);
     batch::Request request = run.plan.request;
     request.configs = findPaperConfigs(configs);
-    const std::vector<config::Experiment> experiments = loadExperiments(request, run.plan.profile);
-    for (const config::Experiment& experiment : experiments) {
-        const bool isMeasured = std::ranges::any_of(
-            run.plan.experiments, [&](const auto& own) { return own.id == experiment.id; });
-        if (isMeasured) continue;
+    std::vector<config::Experiment> experiments = loadExperiments(request, run.plan.profile);
+    for (config::Experiment& experiment : experiments) {
+        const auto measured =
+            std::ranges::find(run.plan.experiments, experiment.id, &config::Experiment::id);
+        if (measured != run.plan.experiments.end()) {
+            experiment.paperDocument = measured->paperDocument;
+            experiment.paperCases = measured->paperCases;
+            continue;
+        }
         throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
                                 experiment.id, runDir.string()));
     }

@@ -16,9 +16,6 @@ using Json = nlohmann::ordered_json;
 
 /// What techniques call the parameter that saves pictures and changes no number.
 constexpr const char* kPictures = "pictures";
-/// What records say, beside the parameters, of a scene in place of the table's.
-constexpr const char* kStandsFor = "stands_for";
-constexpr const char* kSceneSample = "scene_sample";
 /// More values of a parameter than these are cut short in a sentence.
 constexpr std::size_t kSaidValues = 4;
 

@@ -1,0 +1,101 @@
+// The cases of an experiment, every parameter resolved by the technique that declares it.
+#include <algorithm>
+
+#include "runner/batch/case_variation.h"
+#include "runner/batch/plan.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A user's own scene file is named relative to the config; a worker gets the absolute path.
+config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
+    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
+    const fs::path path = reference.text();
+    if (!path.has_extension() || path.is_absolute()) return reference;
+    const fs::path folder = fs::path(reference.location().file).parent_path();
+    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
+                                reference.location());
+}
+
+/// Keys with a dot, and `scene`, are checked where `printed.at` is read.
+void requireKnownAt(const config::Printed& printed, const config::Node& params) {
+    std::vector<std::string> known;
+    for (const auto& [name, value] : params.entries()) known.push_back(name);
+    for (const auto& [name, value] : printed.at) {
+        const bool isKnown = name == "scene" || name.find('.') != std::string::npos ||
+                             std::ranges::find(known, name) != known.end();
+        if (isKnown) continue;
+        throw Error(value.location(),
+                    "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
+    }
+}
+
+}  // namespace
+
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed) {
+    if (experiment.technique.empty()) return {};  // only printed
+    const config::Node* named = experiment.document.find("technique");
+    const technique::TechniqueInfo& info = technique::findTechnique(
+        techniques, experiment.technique,
+        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
+    std::vector<Case> cases;
+    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
+        Case item;
+        takeInstead(spec, experiment.paramsInstead, item);
+        config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+        if (!item.offered.isNull()) params.offer(item.offered);
+        info.create(params);
+        params.finish();
+        item.experiment = experiment.id;
+        item.technique = experiment.technique;
+        item.scene = absoluteReference(spec.scene, catalog);
+        item.params = params.resolved();
+        item.axes = config::Node::map({});
+        for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
+        item.outputWidthPx = spec.outputWidthPx;
+        item.outputHeightPx = spec.outputHeightPx;
+        item.measure = experiment.measure;
+        item.seed = seed;
+        cases.push_back(std::move(item));
+    }
+    return cases;
+}
+
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed) {
+    std::vector<Case> cases;
+    for (const Case& item : resolveParameters(experiment, catalog, techniques, seed)) {
+        for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
+    }
+    requireTaken(experiment, cases, catalog);
+    return cases;
+}
+
+std::vector<config::PaperCase> resolvePaperCases(
+    const config::Experiment& experiment, const scene::Catalog& catalog,
+    std::span<const technique::TechniqueInfo> techniques) {
+    if (experiment.paperDocument.isNull()) return {};
+    const config::Experiment paper =
+        config::experimentFromDocument(experiment.paperDocument, experiment.file);
+    std::vector<config::PaperCase> cases;
+    for (const Case& item : resolveParameters(paper, catalog, techniques, 0)) {
+        requireKnownAt(paper.printed, item.params);
+        config::Node params = item.params;
+        params.setPath("output.width", config::Node::number(item.outputWidthPx));
+        params.setPath("output.height", config::Node::number(item.outputHeightPx));
+        const config::Node* axis = item.axes.find("scene");
+        const config::Node& scene = axis ? *axis : item.scene;  // as records say it
+        cases.push_back({scene.isNull() ? "" : scene.text(), std::move(params)});
+    }
+    return cases;
+}
+
+}  // namespace gfxrepro::batch
