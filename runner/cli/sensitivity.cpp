@@ -87,8 +87,9 @@ batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
     const batch::StoredRun run = batch::readRun(dir);
-    return {variation,
-            batch::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
+    return {
+        variation,
+        batch::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
 }
 
 void write(const Study& study, const std::string& keep) {
