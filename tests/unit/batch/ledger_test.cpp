@@ -106,7 +106,7 @@ TEST(Ledger, RefusesWhatIsNotTheParameters) {
 TEST(Ledger, RefusesRangesThatACaseCannotTake) {
     const Ledger ledger;
     EXPECT_EQ(ledger.errorOf("assumptions:\n  bias: {range: [0.5, 5], why: open}\n"),
-              "DIR/t.yaml:5:23: technique 'still': bias is 5; allowed: a number, 0 … 1 texels");
+              "DIR/t.yaml:5:23: technique 'still': bias is 5; allowed: 0 … 1 texels");
     EXPECT_EQ(ledger.errorOf("sweep: {static: [false, true]}\n"
                              "assumptions:\n  bias: {range: [0.5, 0], why: open}\n"),
               "DIR/t.yaml:6:23: bias is 0, but static needs one");

@@ -51,7 +51,7 @@ TEST(Sensitivity, VariesWhatIsBoundByTurns) {
                               assumption("place", "", "[1, 2]"),
                               assumption("method", "a", "[a, b]"),
                               assumption("view", "top", ""),
-                              assumption("box", "[1, 2]", "[[1, 2], [3, 4]]")};
+                              assumption("box", "[1,2]", "[[1, 2], [3, 4]]")};
     const Variations variations = variationsOf(
         experiment,
         {caseWith("{bias: 0.02, size: 1024, kind: spot, method: a, view: top, box: [1, 2]}"),
