@@ -131,11 +131,11 @@ TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
 
 TEST(Run, PrintedParametersHaveToBeParameters) {
     const TemporaryFolder folder;
-    const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause: 500}}}\n");
+    const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause_m: 500}}}\n");
     const ProcessResult check = mockGfxrepro({"check", config});
     EXPECT_EQ(check.exitCode, 2);
     EXPECT_EQ(check.err, "gfxrepro: " + config +
-                             ":18:33: printed.at: 'pause' is no parameter; did you mean "
+                             ":18:35: printed.at: 'pause_m' is no parameter; did you mean "
                              "'pause_ms'?\n");
 }
 
