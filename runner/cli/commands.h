@@ -42,7 +42,7 @@ struct RunOptions {
     std::string resume;
     std::string shard;              // "k/n"; empty: everything
     std::vector<std::string> from;  // runs or a file to predict times from
-    int jobs = 0;                   // 0: one on up to two cores, else half of them
+    int jobs = 0;                   // 0: one a core on up to two cores, else half of them
     bool isQuiet = false;
 };
 

@@ -24,7 +24,7 @@ namespace {
 int jobsOf(const RunOptions& options) {
     if (options.jobs > 0) return options.jobs;
     const unsigned cores = std::thread::hardware_concurrency();
-    return cores <= 2 ? 1 : static_cast<int>(cores / 2);
+    return cores <= 2 ? static_cast<int>(std::max(cores, 1u)) : static_cast<int>(cores / 2);
 }
 
 /// What a run goes by: its plan, its folder, and what is left to do.

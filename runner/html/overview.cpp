@@ -148,7 +148,7 @@ std::string newsHtml(const Model& model) {
             for (const ClaimResult& claim : page.parts[run].claims) {
                 if (!claim.isNews()) continue;
                 items +=
-                    fmt::format("<li>{}<a href=\"#{}\">{}</a> <b>{}</b> {}, known: {}</li>\n",
+                    fmt::format("<li>{}<a href=\"#{}\">{}</a> <strong>{}</strong> {}, known: {}</li>\n",
                                 model.isComparison() ? Model::letter(run) + ": " : "",
                                 escapeXml(page.slug), escapeXml(page.label), escapeXml(claim.id),
                                 verdictName(claim.verdict), verdictName(claim.known));

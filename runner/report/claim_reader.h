@@ -40,6 +40,8 @@ class ClaimReader {
     /// The labels that the rows share: "scene=models/duck".
     std::string groupName(const Rows& rows) const;
 
+    /// Whether the table has a row for it.
+    bool readsAny() const { return !rows().empty(); }
     /// Whether some cell that it may read is a time or a rate of time.
     bool readsTime() const;
 
