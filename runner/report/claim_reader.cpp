@@ -132,6 +132,11 @@ std::vector<const Cell*> ClaimReader::timeCells() const {
     return cells;
 }
 
+bool ClaimReader::isAtPrintedParameters() const {
+    return std::ranges::all_of(timeCells(),
+                               [](const Cell* cell) { return cell->isAtPrintedParameters; });
+}
+
 bool ClaimReader::readByProcess() {
     const std::vector<const Cell*> cells = timeCells();
     if (std::ranges::any_of(cells, [](const Cell* cell) { return cell->byProcess.empty(); })) {

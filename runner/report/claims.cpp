@@ -150,6 +150,12 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
         result.verdict = Verdict::NotApplicable;
         return result;
     }
+    const bool isAbsolute = claim.timeKind == ClaimSpec::TimeKind::Absolute;
+    if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
+        result.verdict = Verdict::NotApplicable;
+        result.reason = "a time as such is judged at the printed parameters only";
+        return result;
+    }
     const std::string clock = chooseClock(claim, context, reader);
     std::optional<TimeRule> times;
     if (reader.readsTime()) times = TimeRule{table.noise(reader.clock())};

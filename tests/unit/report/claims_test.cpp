@@ -231,6 +231,27 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
               "claim 'C' has a 'kind' and reads no time");
 }
 
+TEST(Claims, ATimeAsSuchIsJudgedAtThePrintedParametersAlone) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", R"({"size": 64})");
+    for (int process = 0; process < 6; ++process) maker.process(process).add("gpu_time_ms", {8.0});
+    const config::Experiment experiment = experimentFrom(R"(
+sweep: {scene: [models/duck]}
+layout: {rows: scene, columns: {draw_ms: {metric: gpu_time_ms}}}
+printed: {values: "scene,draw_ms\nmodels/duck,8"}
+claims:
+  V: {says: s, bound: draw_ms, below: 10, origin: document, bound_from: print, kind: absolute}
+)");
+    const auto judgeBeside = [&](const char* printedAt) {
+        const config::Experiment known = withPaperCases(experiment, {{"models/duck", printedAt}});
+        return evaluateClaims(known, buildTable(known, maker.records()), kGpu).at(0);
+    };
+    EXPECT_EQ(judgeBeside(R"({"size": 64})").verdict, Verdict::Holds);
+    const ClaimResult result = judgeBeside(R"({"size": 256})");
+    EXPECT_EQ(result.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(result.reason, "a time as such is judged at the printed parameters only");
+}
+
 TEST(Claims, ExactAndTolerance) {
     const std::string printed = R"(
 printed:
