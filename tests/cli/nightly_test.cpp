@@ -28,7 +28,7 @@ class Nightly : public ::testing::Test {
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         if (isFix) arguments.emplace_back("--fix");
         const fs::path config = writeMockConfig(folder,
-                                                "params: {busy_ms: 30}\n"
+                                                "params: {busy_ms: 80}\n"
                                                 "measure: {lane: timing, warmup: 0, repeats: 2}\n");
         arguments.insert(arguments.end(), {"--rounds", "7", "--program", bundle(extraMs), config});
         return runProgram(arguments);
@@ -56,7 +56,7 @@ TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     ASSERT_EQ(night(0).exitCode, 0);
     const ProcessResult same = night(1);
     EXPECT_EQ(same.exitCode, 0) << same.out << same.err;
-    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "30 and 31 ms are the same";
+    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "80 and 81 ms are the same";
     EXPECT_TRUE(fs::exists(state + "/history.csv"));
     const ProcessResult slow = night(60);
     EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
