@@ -147,11 +147,11 @@ std::string newsHtml(const Model& model) {
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
             for (const ClaimResult& claim : page.parts[run].claims) {
                 if (!claim.isNews()) continue;
-                items +=
-                    fmt::format("<li>{}<a href=\"#{}\">{}</a> <strong>{}</strong> {}, known: {}</li>\n",
-                                model.isComparison() ? Model::letter(run) + ": " : "",
-                                escapeXml(page.slug), escapeXml(page.label), escapeXml(claim.id),
-                                verdictName(claim.verdict), verdictName(claim.known));
+                items += fmt::format(
+                    "<li>{}<a href=\"#{}\">{}</a> <strong>{}</strong> {}, known: {}</li>\n",
+                    model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(page.slug),
+                    escapeXml(page.label), escapeXml(claim.id), verdictName(claim.verdict),
+                    verdictName(claim.known));
             }
         }
     }

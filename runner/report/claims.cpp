@@ -293,7 +293,7 @@ std::string originSummaryLine(const std::vector<ClaimResult>& results) {
                              [&](const ClaimResult& result) { return result.origin == origin; });
         if (!alike.empty()) parts.push_back(fmt::format("{} {}", name, claimSummaryLine(alike)));
     }
-    return joined(parts, "; ");
+    return parts.empty() ? claimSummaryLine(results) : joined(parts, "; ");
 }
 
 }  // namespace gfxrepro::report

@@ -59,7 +59,8 @@ TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
                                     "layout:\n  rows: number\n  columns:\n"
                                     "    n: {metric: number, format: \"{median:.0f}\"}\n");
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out, "2 of 2 finished, 1 flaky; records: " + dir + "/records.csv\n");
     EXPECT_THAT(statusLines(dir),

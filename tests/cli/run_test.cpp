@@ -21,7 +21,7 @@ TEST(Run, SmokeFromConfigToReport) {
     const TemporaryFolder folder;
     const std::string dir = folder.path() / "run";
     const ProcessResult run =
-        gfxrepro({"run", smokeConfig(), "--device", "software", "--out", dir});
+        gfxrepro({"run", smokeConfig(), "--device", "software", "--jobs", "1", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out, "2 of 2 finished; records: " + dir + "/records.csv\n");
     const std::vector<report::Record> rows = rowsOf(dir, "mean_brightness");
