@@ -55,7 +55,10 @@ std::string whyHtml(const report::ClaimResult& claim) {
     const std::string cause =
         claim.because.empty()
             ? ""
-            : fmt::format("{}{}", claim.verdict == claim.known ? "" : "known cause of failing: ",
+            : fmt::format("{}{}",
+                          claim.verdict == claim.known
+                              ? ""
+                              : fmt::format("Where it is {}: ", verdictName(claim.known)),
                           escapeXml(claim.because));
     return escapeXml(claim.reason) + (claim.reason.empty() || cause.empty() ? "" : ". ") + cause;
 }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "runner/core/error.h"
-#include "runner/core/random.h"
 
 namespace gfxrepro::metrics {
 
@@ -117,36 +116,6 @@ double summarize(std::span<const double> values, Statistic statistic) {
             break;
     }
     return static_cast<double>(values.size());
-}
-
-std::vector<double> bootstrap(std::span<const double> values, Statistic statistic, int draws,
-                              std::uint64_t seed) {
-    GFXREPRO_ASSERT(!values.empty());
-    Random random(seed);
-    std::vector<double> resample(values.size());
-    std::vector<double> results(static_cast<std::size_t>(draws));
-    for (double& result : results) {
-        for (double& value : resample) {
-            value = values[random.index(static_cast<std::uint32_t>(values.size()))];
-        }
-        result = summarize(resample, statistic);
-    }
-    return results;
-}
-
-Interval centralInterval(std::vector<double> values, double confidence) {
-    GFXREPRO_ASSERT(!values.empty());
-    std::sort(values.begin(), values.end());
-    const auto quantile = [&](double share) {
-        const double position = share * static_cast<double>(values.size() - 1);
-        const auto below = static_cast<std::size_t>(position);
-        const std::size_t above = std::min(below + 1, values.size() - 1);
-        const double rest = position - static_cast<double>(below);
-        // std::lerp makes not-a-number of an infinite end.
-        if (rest == 0.0 || values[below] == values[above]) return values[below];
-        return std::lerp(values[below], values[above], rest);
-    };
-    return {quantile((1.0 - confidence) / 2.0), quantile((1.0 + confidence) / 2.0)};
 }
 
 std::optional<Interval> medianInterval(std::span<const double> values) {

@@ -26,15 +26,6 @@ Statistic statisticFromName(std::string_view name);
 /// two. The rate of values of which one is zero is 0.
 double summarize(std::span<const double> values, Statistic statistic);
 
-/// `draws` bootstrap resamples of `values`, each summarized, unsorted; the same seed gives the same
-/// draws. One value (or equal ones) gives equal draws. Efron 1979, percentile bootstrap.
-std::vector<double> bootstrap(std::span<const double> values, Statistic statistic, int draws,
-                              std::uint64_t seed);
-
-/// The central interval that holds `confidence` of the values (linear interpolation between order
-/// statistics).
-Interval centralInterval(std::vector<double> values, double confidence = 0.95);
-
 /// The fewest independent values of which a 95 % interval can be made by ranks: the range of five
 /// misses the median in 2 · 2⁻⁵ = 6 %, that of six in 3 %.
 inline constexpr std::size_t kFewestForInterval = 6;

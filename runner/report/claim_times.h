@@ -9,7 +9,11 @@
 // Extreme values (the smallest of many gaps or steps, the spread) move with the number of rows and
 // the noise; times are judged without them, each comparison by its own interval. That all must
 // hold needs no correction for their number (intersection-union test: Berger 1982, "Multiparameter
-// hypothesis testing and acceptance sampling", Technometrics 24).
+// hypothesis testing and acceptance sampling", Technometrics 24). That one fails is the union of
+// theirs: among k comparisons on their bounds, up to k times the 2.5 % of one end.
+//
+// Rounds that end by a relative error are no fixed number: of intervals that happen to be narrow
+// fewer hold the truth than of all.
 #pragma once
 
 #include <functional>

@@ -102,7 +102,8 @@ std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& contex
 /// What counts of work decide is judged by the work of all cores where they are the device: the
 /// process's CPU time, which waits for no neighbour. Says which clock it is; empty for none.
 std::string chooseClock(const ClaimSpec& claim, const ReportContext& context, ClaimReader& reader) {
-    const bool isAlgorithmic = claim.timeKind == ClaimSpec::TimeKind::Algorithmic;
+    using Kind = ClaimSpec::TimeKind;
+    const bool isAlgorithmic = claim.timeKind.value_or(Kind::Algorithmic) == Kind::Algorithmic;
     if (!isAlgorithmic || context.deviceClass != "software" || !reader.readsTime()) return "";
     return reader.readByProcess() ? "by the CPU time of the process"
                                   : "by the clock: no CPU time was recorded of these";

@@ -56,10 +56,12 @@ struct ClaimResult {
 
     /// A statement of the document itself: what counts.
     bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
-    /// Holds where it was known to fail, or fails where it was known to hold.
+    /// Another verdict than the known one. Ambiguous is none, and tells nothing against one.
     bool isNews() const {
-        return (verdict == Verdict::Holds && known == Verdict::Fails) ||
-               (verdict == Verdict::Fails && known == Verdict::Holds);
+        const auto isVerdict = [](Verdict one) {
+            return one != Verdict::Ambiguous && one != Verdict::NotApplicable;
+        };
+        return isVerdict(verdict) && isVerdict(known) && verdict != known;
     }
 
     /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not

@@ -97,11 +97,10 @@ std::string markdownCell(const Cell& cell, bool isOnlyPrinted) {
 
 /// What the bounds beside the numbers are.
 std::string boundsLegend(const Table& table) {
-    if (!table.hasShown(Bounds::Range)) return "Printed → measured [95 % interval].";
-    const bool hasBoth = table.hasShown(Bounds::Interval);
     return fmt::format(
-        "Printed → measured {}(range, min … max: too few processes for an interval).",
-        hasBoth ? "[95 % interval] " : "");
+        "Printed → measured{}{}.", table.hasShown(Bounds::Interval) ? " [95 % interval]" : "",
+        table.hasShown(Bounds::Range) ? " (range, min … max: too few processes for an interval)"
+                                      : "");
 }
 
 std::string tableMarkdown(const Table& table) {

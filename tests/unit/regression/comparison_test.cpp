@@ -59,7 +59,7 @@ class Nights {
 };
 
 TEST(Comparison, TwentyNightsOfTheSameBuildGiveAtMostOneAlarm) {
-    for (const double noise : {test::kCpuNoise, 2.0 * test::kCpuNoise, 0.16}) {
+    for (const double noise : {test::kCpuNoise, 2.0 * test::kCpuNoise, 0.12}) {
         for (const std::uint64_t seed : {1U, 2U, 3U}) {
             Nights nights(seed, noise, 1.0);
             std::ptrdiff_t count = 0;
