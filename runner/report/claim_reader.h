@@ -42,6 +42,8 @@ class ClaimReader {
 
     /// Whether the table has a row for it.
     bool readsAny() const { return !rows().empty(); }
+    /// Whether it reads a time that was measured.
+    bool hasTimes() const { return !timeCells().empty(); }
     /// Whether all times that it reads were measured at what the paper measured at.
     bool isAtPrintedParameters() const;
     /// Whether some cell that it may read is a time or a rate of time.

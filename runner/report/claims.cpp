@@ -104,7 +104,7 @@ std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& contex
 std::string chooseClock(const ClaimSpec& claim, const ReportContext& context, ClaimReader& reader) {
     using Kind = ClaimSpec::TimeKind;
     const bool isAlgorithmic = claim.timeKind.value_or(Kind::Algorithmic) == Kind::Algorithmic;
-    if (!isAlgorithmic || context.deviceClass != "software" || !reader.readsTime()) return "";
+    if (!isAlgorithmic || context.deviceClass != "software" || !reader.hasTimes()) return "";
     return reader.readByProcess() ? "by the CPU time of the process"
                                   : "by the clock: no CPU time was recorded of these";
 }

@@ -103,7 +103,9 @@ TEST(Writers, ClaimFiles) {
         run.read("claims.csv"),
         "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
         "margin,reason,because,rests_on\n"
-        "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,\"8 [8, 8]\",draw_ms ≤ 10,2,,,"
+        "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,\"8 [8, 8]\",draw_ms ≤ 10,2,by the clock: "
+        "no CPU time was "
+        "recorded of these,,"
         "none of the 5 tried\n"
         "B,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, 8]\",draw_ms "
         "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
