@@ -65,9 +65,13 @@ void decide(const Contrast& contrast, const Told& told, double distance, double 
             Judgement& judgement) {
     judgement.verdict = verdictOf(told.interval, contrast.requirement);
     if (contrast.isRefutation) {
-        const bool isRefuted = judgement.verdict == Verdict::Fails &&
-                               toBound(told.interval.high, contrast.requirement) > noise;
-        judgement.verdict = isRefuted ? Verdict::Fails : Verdict::Holds;
+        // Only what surely contradicts counts; within the noise it leaves the claim open.
+        if (judgement.verdict != Verdict::Fails) {
+            judgement.verdict = Verdict::Holds;
+        } else if (toBound(told.interval.high, contrast.requirement) <= noise) {
+            judgement.verdict = Verdict::Ambiguous;
+            judgement.why = "a step back in every round, within the noise of this table";
+        }
         return;
     }
     const bool isDecided =
