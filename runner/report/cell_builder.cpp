@@ -43,6 +43,20 @@ void layKeyOver(const std::vector<config::LayoutAxis>& axes, const Key& key,
     }
 }
 
+struct Laid {
+    config::Selection selection;
+    Where where;
+};
+
+/// The parts of `cell`, the row and the column, laid over one another.
+Laid partsOver(const config::Layout& layout, const Key& row, const Key& column) {
+    Laid laid;
+    layOver(layout.cell, laid.selection, laid.where);
+    layKeyOver(layout.rows, row, laid.selection, laid.where);
+    layKeyOver(layout.columns, column, laid.selection, laid.where);
+    return laid;
+}
+
 /// Whether a case lies where the query looks. What is not known of a planned case may match.
 bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
              bool isUnknownMatching) {
@@ -62,10 +76,6 @@ bool matchesFrame(const Where& where, int frame) {
     if (found == where.end()) return true;
     const std::string text = std::to_string(frame);
     return std::find(found->second.begin(), found->second.end(), text) != found->second.end();
-}
-
-bool isTiming(const std::string& metric) {
-    return metric.ends_with("_time_ms") || metric.ends_with("frame_rate");
 }
 
 /// The same place by the CPU time of the process, where such is recorded.
@@ -99,7 +109,7 @@ struct Gathered {
 
 void takeRow(const Record& record, const CellQuery& query, int unit,
              std::map<int, std::vector<double>>& process, Gathered& gathered) {
-    if (isTiming(query.metric) && record.lane == "quality") {
+    if (isTimeMetric(query.metric) && record.lane == "quality") {
         gathered.note(Status::Ambiguous,
                       "measured in the quality lane, where cases run side by "
                       "side; a time needs the timing lane");
@@ -244,12 +254,7 @@ bool isTimeMetric(std::string_view metric) {
 }
 
 Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
-    config::Selection selection;
-    Where where;
-    layOver(layout.cell, selection, where);
-    layKeyOver(layout.rows, row, selection, where);
-    layKeyOver(layout.columns, column, selection, where);
-    return where;
+    return partsOver(layout, row, column).where;
 }
 
 std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases) {
@@ -261,11 +266,7 @@ std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& c
 }
 
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {
-    config::Selection selection;
-    Where where;
-    layOver(layout.cell, selection, where);
-    layKeyOver(layout.rows, row, selection, where);
-    layKeyOver(layout.columns, column, selection, where);
+    auto [selection, where] = partsOver(layout, row, column);
     if (!selection.metric) {
         throw Error(selection.location, "no metric is given for the cell of row '" +
                                             joined(row, "_") + "', column '" + joined(column, "_") +
