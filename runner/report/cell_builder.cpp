@@ -7,6 +7,7 @@
 
 #include "runner/core/text.h"
 #include "runner/report/sampling.h"
+#include "runner/report/share_draws.h"
 
 namespace gfxrepro::report {
 
@@ -98,6 +99,8 @@ struct Gathered {
     std::string message;
     std::set<std::string> units;
     std::vector<std::string> caseIds;
+    /// How many samples each of the values is a share of, where they are shares that say so.
+    std::vector<double> shareCounts;
 
     void note(Status status, const std::string& why) {
         if (status > worst) {
@@ -139,6 +142,11 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
             if (isNew) ++unitCount;
             takeRow(*record, query, unit->second, process, gathered);
+        }
+        for (const Record* count :
+             attempt.values(query.metric + std::string(kShareOf), query.pass)) {
+            if (matchesFrame(query.where, count->frame))
+                gathered.shareCounts.push_back(count->value);
         }
         // Process k of all cases is one round: what a cell of several cases shows is of rounds.
         if (!process.empty()) gathered.samples.processes[number].merge(process);
@@ -211,11 +219,28 @@ std::vector<Measured> measuredOf(const CellQuery& query, const Samples& samples)
     return values;
 }
 
-void fillValues(const CellQuery& query, const Samples& samples, Cell& cell) {
-    cell.values = measuredOf(query, samples);
+/// A share that was counted once, in one case: its bounds are those of the count.
+void boundShare(const CellQuery& query, const Gathered& gathered, Measured& measured) {
+    const auto& processes = gathered.samples.processes;
+    const bool isCountedOnce = gathered.shareCounts.size() == 1 && processes.size() == 1 &&
+                               processes.begin()->second.size() == 1 &&
+                               processes.begin()->second.begin()->second.size() == 1;
+    if (!isCountedOnce) return;
+    measured.rounds = shareDraws(measured.value / query.scale, gathered.shareCounts[0],
+                                 gathered.caseIds[0] + query.metric + query.pass);
+    std::vector<double> draws;
+    for (auto& [number, value] : measured.rounds) draws.push_back(value *= query.scale);
+    measured.areDraws = true;
+    measured.bounds = Bounds::Interval;
+    measured.interval = drawsInterval(std::move(draws));
+}
+
+void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
+    cell.values = measuredOf(query, gathered.samples);
     std::vector<double> values, lows, highs;
     for (std::size_t i = 0; i < cell.values.size(); ++i) {
         Measured& measured = cell.values[i];
+        boundShare(query, gathered, measured);
         measured.text = query.format.formatOne(i, measured.value);
         if (measured.bounds != Bounds::None) {
             measured.low = query.format.formatOne(i, measured.interval.low);
@@ -300,13 +325,13 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;
-    cell.caseIds = std::move(gathered.caseIds);
+    cell.caseIds = gathered.caseIds;
     if (!query.isScaled) {
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     }
     if (hasSamples) {
-        fillValues(query, gathered.samples, cell);
+        fillValues(query, gathered, cell);
         fillProcessTimes(query, cases, gathered.samples, cell);
     }
     const std::string word(statusName(cell.status));

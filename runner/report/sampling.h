@@ -28,6 +28,7 @@ struct Summary {
     Bounds bounds = Bounds::None;
     metrics::Interval interval;    // by `bounds`; of none the value itself
     std::map<int, double> rounds;  // the statistic in each process that has all units
+    bool areDraws = false;         // instead, what a share could be in truth (share_draws.h)
 };
 
 /// In each process the statistic over units, each reduced to the median of its repeats; with a
