@@ -2,7 +2,6 @@
 
 #include "runner/core/error.h"
 #include "runner/core/text.h"
-#include "runner/report/share_draws.h"
 
 namespace gfxrepro::technique {
 
@@ -10,7 +9,7 @@ void Recorder::share(std::string_view name, double part, double whole, std::stri
                      std::string_view pass) {
     if (whole == 0.0) return;
     metric(name, 100.0 * part / whole, "%", pass);
-    metric(std::string(name).append(report::kShareOf), whole, unit, pass);
+    metric(std::string(name).append("_of"), whole, unit, pass);
 }
 
 const TechniqueInfo& findTechnique(std::span<const TechniqueInfo> techniques, std::string_view name,
