@@ -20,6 +20,7 @@ void layOver(const config::Selection& part, config::Selection& selection, Where&
     if (part.pass) selection.pass = part.pass;
     if (part.format) selection.format = part.format;
     if (part.scale) selection.scale = part.scale;
+    if (part.shareOf) selection.shareOf = part.shareOf;
     if (part.location.line > 0) selection.location = part.location;
     for (const auto& [axis, value] : part.where) {
         std::vector<std::string> allowed = {canonicalText(value)};
@@ -79,22 +80,38 @@ bool matchesFrame(const Where& where, int frame) {
     return std::find(found->second.begin(), found->second.end(), text) != found->second.end();
 }
 
+bool isFrameTime(const std::string& metric) {
+    return metric == "wall_time_ms" || metric == "gpu_time_ms" || metric == "cpu_time_ms";
+}
+
 /// The same place by the CPU time of the process, where such is recorded.
 std::optional<CellQuery> byProcessTime(const CellQuery& query) {
     const bool isRate = query.metric == "frame_rate";
-    if (!isRate && query.metric != "wall_time_ms" && query.metric != "gpu_time_ms" &&
-        query.metric != "cpu_time_ms") {
-        return std::nullopt;
-    }
+    if (!isRate && !isFrameTime(query.metric)) return std::nullopt;
     CellQuery other = query;
     other.metric = "process_time_ms";
+    if (other.shareOf) {
+        if (isRate || !isFrameTime(other.shareOf->metric)) return std::nullopt;
+        other.shareOf->metric = "process_time_ms";
+    }
     other.isRateOfTime = isRate;
     return other;
+}
+
+/// What a share is of.
+std::optional<CellQuery> wholeOf(const CellQuery& query) {
+    if (!query.shareOf) return std::nullopt;
+    CellQuery whole = query;
+    whole.metric = query.shareOf->metric;
+    whole.pass = query.shareOf->pass;
+    whole.shareOf.reset();
+    return whole;
 }
 
 /// What the records of a cell came to.
 struct Gathered {
     Samples samples;
+    std::optional<Samples> whole;  // of a share
     Status worst = Status::Ok;
     std::string message;
     std::set<std::string> units;
@@ -153,18 +170,6 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
     }
 }
 
-Gathered gather(const CellQuery& query, const LayoutCases& cases) {
-    Gathered gathered;
-    int unitCount = 0;
-    for (const CaseRecords& run : cases.run) {
-        if (!matches(run.axes, cases, query.where, false)) continue;
-        gathered.caseIds.push_back(run.id);
-        std::map<int, int> unitOfFrame;
-        takeCase(run, query, unitOfFrame, unitCount, gathered);
-    }
-    return gathered;
-}
-
 /// The passes for which the matching cases recorded the metric: for the message when the one that
 /// was asked for is not among them.
 std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
@@ -190,6 +195,29 @@ std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
            (passes.empty() ? "" : "; it is there for pass: " + passes);
 }
 
+Gathered gather(const CellQuery& query, const LayoutCases& cases) {
+    Gathered gathered;
+    int unitCount = 0;
+    for (const CaseRecords& run : cases.run) {
+        if (!matches(run.axes, cases, query.where, false)) continue;
+        gathered.caseIds.push_back(run.id);
+        std::map<int, int> unitOfFrame;
+        takeCase(run, query, unitOfFrame, unitCount, gathered);
+    }
+    if (const std::optional<CellQuery> whole = wholeOf(query)) {
+        Gathered all = gather(*whole, cases);
+        gathered.note(all.worst, all.message);
+        if (all.samples.processes.empty()) {
+            if (!gathered.samples.processes.empty()) {
+                gathered.note(Status::Missing, whyNothing(*whole, cases));
+            }
+            gathered.samples = {};
+        }
+        gathered.whole = std::move(all.samples);
+    }
+    return gathered;
+}
+
 std::size_t plannedCount(const CellQuery& query, const LayoutCases& cases) {
     std::set<std::string_view> identities;
     for (const PlannedCase& planned : cases.planned) {
@@ -209,11 +237,15 @@ bool isPlanComplete(const CellQuery& query, const LayoutCases& cases) {
     return true;
 }
 
-std::vector<Measured> measuredOf(const CellQuery& query, const Samples& samples) {
+std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathered) {
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
+        Summary summary = summarize(gathered.samples, placeholder.statistic);
+        if (gathered.whole) {
+            summary = shareOf(summary, summarize(*gathered.whole, placeholder.statistic));
+        }
         Measured& measured = values.emplace_back();
-        static_cast<Summary&>(measured) = summarize(samples, placeholder.statistic);
+        static_cast<Summary&>(measured) = std::move(summary);
         measured.statistic = placeholder.name;
     }
     return values;
@@ -225,18 +257,13 @@ void boundShare(const CellQuery& query, const Gathered& gathered, Measured& meas
     const bool isCountedOnce = gathered.shareCounts.size() == 1 && processes.size() == 1 &&
                                processes.begin()->second.size() == 1 &&
                                processes.begin()->second.begin()->second.size() == 1;
-    if (!isCountedOnce) return;
-    measured.rounds = shareDraws(measured.value / query.scale, gathered.shareCounts[0],
-                                 gathered.caseIds[0] + query.metric + query.pass);
-    std::vector<double> draws;
-    for (auto& [number, value] : measured.rounds) draws.push_back(value *= query.scale);
-    measured.areDraws = true;
-    measured.bounds = Bounds::Interval;
-    measured.interval = drawsInterval(std::move(draws));
+    if (!isCountedOnce || query.shareOf) return;
+    boundByDraws(measured, query.scale, gathered.shareCounts[0],
+                 gathered.caseIds[0] + query.metric + query.pass);
 }
 
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
-    cell.values = measuredOf(query, gathered.samples);
+    cell.values = measuredOf(query, gathered);
     std::vector<double> values, lows, highs;
     for (std::size_t i = 0; i < cell.values.size(); ++i) {
         Measured& measured = cell.values[i];
@@ -268,7 +295,7 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
         const auto own = gathered.samples.processes.find(number);
         if (own == gathered.samples.processes.end() || own->second.size() != units.size()) return;
     }
-    cell.byProcess = measuredOf(*other, gathered.samples);
+    cell.byProcess = measuredOf(*other, gathered);
 }
 
 }  // namespace
@@ -302,13 +329,15 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
             CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
             selection.scale.value_or(1.0),
             selection.scale.has_value(),
+            selection.shareOf,
             false,
             std::move(where)};
 }
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
-    cell.isTime = isTimeMetric(query.metric);
+    cell.isTime =
+        isTimeMetric(query.metric) || (query.shareOf && isTimeMetric(query.shareOf->metric));
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
@@ -326,7 +355,9 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.status = gathered.worst;
     cell.message = gathered.message;
     cell.caseIds = gathered.caseIds;
-    if (!query.isScaled) {
+    if (query.shareOf) {
+        cell.unit = "%";
+    } else if (!query.isScaled) {
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     }

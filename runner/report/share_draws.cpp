@@ -32,6 +32,15 @@ std::map<int, double> shareDraws(double percent, double count, std::string_view 
     return draws;
 }
 
+void boundByDraws(Summary& share, double scale, double count, std::string_view name) {
+    share.rounds = shareDraws(share.value / scale, count, name);
+    std::vector<double> draws;
+    for (auto& [number, value] : share.rounds) draws.push_back(value *= scale);
+    share.areDraws = true;
+    share.bounds = Bounds::Interval;
+    share.interval = drawsInterval(std::move(draws));
+}
+
 metrics::Interval drawsInterval(std::vector<double> draws) {
     std::ranges::sort(draws);
     const auto tail = static_cast<std::size_t>(0.025 * static_cast<double>(draws.size()));

@@ -4,7 +4,7 @@
 #include <map>
 #include <string_view>
 
-#include "runner/metrics/statistics.h"
+#include "runner/report/sampling.h"
 
 namespace gfxrepro::report {
 
@@ -19,6 +19,9 @@ inline constexpr std::string_view kShareOf = "_of";
 /// same ones. The samples of an image are taken as independent; where neighbours are alike, they
 /// tell less than their number.
 std::map<int, double> shareDraws(double percent, double count, std::string_view name);
+
+/// Gives a percentage times `scale`, counted once, its draws and their interval.
+void boundByDraws(Summary& share, double scale, double count, std::string_view name);
 
 /// From the 2.5th to the 97.5th percentile.
 metrics::Interval drawsInterval(std::vector<double> draws);
