@@ -175,6 +175,11 @@ class Scheduler {
             if (isTwin) unit.twins.push_back(other->item);
             other = isTwin ? waiting_.erase(other) : std::next(other);
         }
+        const auto withPictures =
+            std::ranges::find_if(unit.twins, [](const Case* twin) { return savesPictures(*twin); });
+        if (!savesPictures(*unit.item) && withPictures != unit.twins.end()) {
+            std::swap(unit.item, *withPictures);
+        }
     }
 
     void start(const Unit& unit) {

@@ -62,9 +62,15 @@ std::string workKey(const Case& item) {
                     {"measure",
                      {measure.warmup, measure.repeats, measure.processes, measure.frames,
                       measure.timeLimitS, measure.memoryLimitBytes}}};
+    content["params"].erase("pictures");
     spellNumbersAlike(content);
     content["seed"] = std::to_string(item.seed);
     return sha256(content.dump());
+}
+
+bool savesPictures(const Case& item) {
+    const config::Node* pictures = item.params.find("pictures");
+    return pictures && pictures->toJson() == true;
 }
 
 std::vector<std::size_t> firstTwins(std::span<const Case> cases) {
@@ -90,6 +96,7 @@ std::vector<report::ImageEntry> shareFiles(const fs::path& runDir, const Case& m
                                            const Case& twin,
                                            const std::vector<report::ImageEntry>& images) {
     shareArtifacts(runDir, measured, twin);
+    if (savesPictures(measured) && !savesPictures(twin)) return {};
     const std::string stem = (fs::path("images") / stemOf(measured)).string();
     std::vector<report::ImageEntry> shared = images;
     for (report::ImageEntry& image : shared) {

@@ -37,6 +37,17 @@ TEST(Twins, AreOfOneWorkWhateverTheyAreCalled) {
     EXPECT_EQ(batch::workKey(item), batch::workKey(twin));
 }
 
+TEST(Twins, MayDifferByWhetherTheySavePictures) {
+    Case item = makeCase("t/1", "a", 64);
+    Case twin = makeCase("t/2", "a", 64);
+    EXPECT_FALSE(batch::savesPictures(twin));
+    item.params.set("pictures", Node::scalar("false"));
+    twin.params.set("pictures", Node::scalar("true"));
+    EXPECT_EQ(batch::workKey(item), batch::workKey(twin));
+    EXPECT_FALSE(batch::savesPictures(item));
+    EXPECT_TRUE(batch::savesPictures(twin));
+}
+
 TEST(Twins, TheKeyIsTheHashOfATextThatLasts) {
     Case item = makeCase("t/1", "a", 64);
     item.seed = 18446744073709551615U;
@@ -145,6 +156,10 @@ TEST(Twins, FilesAreSharedUnderTheTwinsNames) {
               "images/t-2/222222222222-result-f0002.png");
     EXPECT_EQ(readFile(run / "images/t-2/222222222222-result-f0002.png"), "png");
     EXPECT_EQ(readFile(run / "artifacts/t-2/222222222222-mesh.ply"), "ply");
+
+    measured.params.set("pictures", Node::scalar("true"));
+    EXPECT_THAT(batch::shareFiles(run, measured, twin, {image}), testing::IsEmpty());
+    twin.params.set("pictures", Node::scalar("true"));
 
     fs::remove(run / image.png);
     EXPECT_EQ(errorText([&] { batch::shareFiles(run, measured, twin, {image}); }),
