@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "runner/config/params.h"
 #include "runner/scene/scene.h"
@@ -23,6 +24,11 @@ struct GeneratorInfo {
 };
 
 std::span<const GeneratorInfo> generators();
+
+/// What the generator declares; throws Error where it does not take `values` (a map or null). No
+/// scene is made.
+std::vector<config::ParamInfo> declaredParams(const GeneratorInfo& generator,
+                                              const config::Node& values);
 
 /// Throws Error with the nearest name when there is none of that name.
 const GeneratorInfo& findGenerator(std::string_view name, const SourceLocation& where);
