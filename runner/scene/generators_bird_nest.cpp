@@ -153,6 +153,9 @@ HalfPath traced(const Twig& twig, bool isForward) {
 void addTwig(const Twig& twig, int sides, int stretches, MeshBuilder& builder) {
     const HalfPath back = traced(twig, false);
     const HalfPath front = traced(twig, true);
+    // A polygon of the circle's area: twigs are as thick whatever their sides.
+    const float angleRad = 2.0F * kPi / static_cast<float>(sides);
+    const float radiusM = twig.radiusM * std::sqrt(angleRad / sdf::sine(angleRad));
     std::vector<MeshBuilder::Station> stations;
     for (int i = 0; i <= stretches; ++i) {
         const float t = 2.0F * static_cast<float>(i) / static_cast<float>(stretches) - 1.0F;
@@ -163,7 +166,7 @@ void addTwig(const Twig& twig, int sides, int stretches, MeshBuilder& builder) {
             glm::mix(half[before], half[before + 1], place - static_cast<float>(before));
         const float wave = twig.waveM * sdf::sine(5.0F * t + twig.wavePhaseRad);
         const float taper = 1.0F - 0.35F * (t + 1.0F) * 0.5F - 0.4F * t * t * t * t;
-        stations.push_back({point + shellNormal(point) * wave, twig.radiusM * taper});
+        stations.push_back({point + shellNormal(point) * wave, radiusM * taper});
     }
     builder.setColor(twig.color);
     builder.addTube(stations, sides, true);

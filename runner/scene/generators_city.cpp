@@ -37,6 +37,7 @@ struct Slot {
 struct Settings {
     int blocks = 0;  // along each side
     float height = 1.0F;
+    float width = 1.0F;
     float recessedShare = 1.0F / 3.0F;
     float streetShare = 0.2F;
 };
@@ -93,7 +94,7 @@ void split(const Lot& lot, float largestM, Random& random, std::vector<Lot>& lot
     split(high, largestM, random, lots);
 }
 
-void planBlock(Plan& plan, int i, int j, float height, Random& random) {
+void planBlock(Plan& plan, int i, int j, const Settings& settings, Random& random) {
     const glm::vec2 corner = blockCorner(plan, i, j);
     Lot block;
     block.min = corner + kSidewalkM;
@@ -105,14 +106,14 @@ void planBlock(Plan& plan, int i, int j, float height, Random& random) {
         return;
     }
     std::vector<Lot> lots;
-    split(block, block.density < 0.28F ? 19.0F : 27.0F, random, lots);
+    split(block, settings.width * (block.density < 0.28F ? 19.0F : 27.0F), random, lots);
     for (Lot& lot : lots) {
         lot.density = densityAt(plan, 0.5F * (lot.min + lot.max));
         lot.heightM = heightAt(lot.density, random);
         // A tower on a narrow lot would be a board.
         const glm::vec2 size = lot.max - lot.min;
         lot.heightM = std::min(lot.heightM, 6.5F * std::min(size.x, size.y));
-        lot.heightM = std::max(height * lot.heightM, kLeastHeightM);
+        lot.heightM = std::max(settings.height * lot.heightM, kLeastHeightM);
         plan.lots.push_back(lot);
     }
 }
@@ -158,7 +159,7 @@ Plan planned(int blocks, const Settings& settings, std::uint64_t seed) {
     Random random(seed);
     for (int j = 0; j < plan.blocks.y; ++j) {
         for (int i = 0; i < plan.blocks.x; ++i) {
-            planBlock(plan, i, j, settings.height, random);
+            planBlock(plan, i, j, settings, random);
             planSlots(plan, i, j, random);
         }
     }
@@ -314,6 +315,9 @@ Scene city(config::Params& params, std::uint64_t seed) {
          "", 0, 31});
     settings.height = static_cast<float>(params.getDouble(
         "building_height", 1.0, {"factor on the buildings' heights", "", 0.5, 3.0}));
+    settings.width = static_cast<float>(params.getDouble(
+        "building_width", 1.0,
+        {"factor on the largest size of a building's lot: wider ones are fewer", "", 0.6, 2.5}));
     settings.recessedShare = static_cast<float>(params.getDouble(
         "recessed_share", 1.0 / 3.0,
         {"of the buildings of middle height: windows lie in the wall, with reveals, not flush", "",
