@@ -37,6 +37,7 @@ std::string eventText(const Json& event) {
     std::string text = event.value("time", "");
     text += fmt::format("  process {}", process);
     text += fmt::format("  {}", event.value("status", ""));
+    if (event.contains("as")) text += "  measured as " + event.value("as", "");
     if (event.contains("cost")) text += "  " + costText(event["cost"]);
     for (const char* key : {"message", "output"}) {
         if (const std::string said = event.value(key, ""); !said.empty()) text += '\n' + said;

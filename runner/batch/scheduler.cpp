@@ -11,6 +11,8 @@
 #include <limits>
 #include <memory>
 
+#include "runner/batch/twins.h"
+
 namespace gfxrepro::batch {
 
 namespace {
@@ -78,7 +80,13 @@ class Scheduler {
           phases_(phases),
           observer_(observer),
           expectations_(options.expectations),
-          records_(directory.recordsFile()) {}
+          records_(directory.recordsFile()) {
+        for (const Unit& unit : units) {
+            if (std::string key = workKey(*unit.item); !key.empty()) {
+                workKeys_.try_emplace(unit.item, std::move(key));
+            }
+        }
+    }
 
     RunOutcome run() {
         while (true) {
@@ -148,8 +156,24 @@ class Scheduler {
             });
             const int allowed = lane == Lane::Timing || timingRuns ? 1 : options_.jobs;
             if (busyCount() >= allowed) return;
-            start(waiting_.front());
+            Unit unit = std::move(waiting_.front());
             waiting_.pop_front();
+            takeTwins(unit);
+            start(unit);
+        }
+    }
+
+    /// Moves the waiting twins of the unit into it.
+    void takeTwins(Unit& unit) {
+        const auto key = workKeys_.find(unit.item);
+        if (key == workKeys_.end()) return;
+        for (auto other = waiting_.begin(); other != waiting_.end();) {
+            const auto otherKey = workKeys_.find(other->item);
+            const bool isTwin = otherKey != workKeys_.end() && otherKey->second == key->second &&
+                                other->process == unit.process &&
+                                !expectations_.skipOf(*other->item);
+            if (isTwin) unit.twins.push_back(other->item);
+            other = isTwin ? waiting_.erase(other) : std::next(other);
         }
     }
 
@@ -195,7 +219,7 @@ class Scheduler {
             const Unit unit = *worker->unit();
             if (isTriedAgain(unit, *result)) {
                 logCase("retry", unit, *result, worker->output());
-                waiting_.push_front({unit.item, unit.process, *result});
+                waiting_.push_front({unit.item, unit.process, *result, unit.twins});
             } else {
                 finish(unit, inViewOfFirstTry(unit, *result), worker->output());
             }
@@ -206,9 +230,12 @@ class Scheduler {
     }
 
     bool isTriedAgain(const Unit& unit, const CaseResult& result) const {
+        const auto isExpected = [&](const Case* item) {
+            return expectations_.isExpected(*item, result.status);
+        };
         return !unit.firstTry && result.status != report::Status::Ok &&
                result.status != report::Status::Unsupported &&
-               !expectations_.isExpected(*unit.item, result.status);
+               !(isExpected(unit.item) && std::ranges::all_of(unit.twins, isExpected));
     }
 
     void logCase(const char* name, const Unit& unit, const CaseResult& result,
@@ -218,6 +245,7 @@ class Scheduler {
                       {"title", unit.item->title()},
                       {"process", unit.process},
                       {"status", report::statusName(result.status)}};
+        if (unit.measuredAs) event["as"] = unit.measuredAs->title();
         if (result.status == report::Status::Ok || result.status == report::Status::Flaky) {
             event["cost"] = toJson(result.cost);
         }
@@ -226,23 +254,38 @@ class Scheduler {
         directory_.log(event);
     }
 
-    /// Images first: a unit whose rows are there is complete.
     void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
-        if (!result.images.empty()) report::appendImages(directory_.path(), result.images);
+        record(unit, result, output);
+        for (const Case* twin : unit.twins) {
+            record({twin, unit.process, {}, {}, unit.item}, result, "");
+        }
+        outcome_.voided += result.voidReason.empty() ? 0 : 1;
+        outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
+    }
+
+    /// Images first: a unit whose rows are there is complete.
+    void record(const Unit& unit, const CaseResult& result, const std::string& output) {
+        const bool hasValues =
+            result.status == report::Status::Ok || result.status == report::Status::Flaky;
+        report::appendImages(
+            directory_.path(),
+            unit.measuredAs && hasValues
+                ? shareFiles(directory_.path(), *unit.measuredAs, *unit.item, result.images)
+                : result.images);
         const std::vector<report::Record> rows = recordsOf(unit, result);
         records_.append(rows);
         rounds_.add(rows);
         logCase("case", unit, result, output);
-        count(*unit.item, result.status);
-        outcome_.voided += result.voidReason.empty() ? 0 : 1;
-        outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
+        count(unit, result.status);
         observer_.unitEnded(unit, result.status, result.message);
     }
 
-    void count(const Case& item, report::Status status) {
+    void count(const Unit& unit, report::Status status) {
+        const Case& item = *unit.item;
         ++outcome_.begun;
         if (status == report::Status::Ok || status == report::Status::Flaky) {
             ++outcome_.finished;
+            if (unit.measuredAs) ++outcome_.shared;
             if (status == report::Status::Flaky) ++outcome_.flaky;
         } else {
             ++(expectations_.isExpected(item, status) ? outcome_.expected : outcome_.failed);
@@ -252,6 +295,7 @@ class Scheduler {
 
     SignalWatch signals_;
     std::deque<Unit> waiting_;
+    std::map<const Case*, std::string> workKeys_;  // of cases in the quality lane
     Rounds& rounds_;
     std::string table_;  // of the unit that ran last, or is next
     const RunDirectory& directory_;

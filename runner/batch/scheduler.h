@@ -22,6 +22,7 @@ class Observer {
     /// A further round was found to be needed.
     virtual void unitsAdded(const std::vector<Unit>&) {}
     virtual void unitBegan(const Unit& unit) = 0;
+    /// Also for the unit of each twin that this one was measured for.
     virtual void unitEnded(const Unit& unit, report::Status status, const std::string& message) = 0;
     /// Now and then, for a display that shows time.
     virtual void tick() = 0;
@@ -39,6 +40,7 @@ struct RunOutcome {
     int begun = 0;     // units, those of further rounds too
     int finished = 0;  // units that ended `ok` or `flaky`
     int flaky = 0;     // of these
+    int shared = 0;    // of these: recorded from a twin's measurement
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others, but for those that were expected
     int expected = 0;  // that failed or were skipped as a list of expectations says
@@ -57,8 +59,9 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, config::
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases);
 
 /// Runs `units` and the further rounds that `rounds` asks for, appending records, images and log
-/// lines as each ends. A failure that nobody expects is tried once more, in a fresh worker; what
-/// passes then is `flaky`, unless the first worker was killed from outside.
+/// lines as each ends. Of units that are twins the first is run and recorded for each; one that is
+/// to be skipped is no twin. A failure that nobody expects is tried once more, in a fresh worker;
+/// what passes then is `flaky`, unless the first worker was killed from outside.
 RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
 

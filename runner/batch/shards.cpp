@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "runner/batch/twins.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::batch {
@@ -26,17 +27,13 @@ Shard parseShard(std::string_view text) {
 
 std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const Case> cases) {
     std::vector<std::vector<std::size_t>> groups;
-    std::map<std::string, std::size_t> groupOfExperiment;
+    std::map<std::string, std::size_t> groupOf;  // of an experiment, or of work
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        if (cases[i].measure.lane == config::Measure::Lane::Timing) {
-            const auto [group, isNew] =
-                groupOfExperiment.try_emplace(cases[i].experiment, groups.size());
-            if (!isNew) {
-                groups[group->second].push_back(i);
-                continue;
-            }
-        }
-        groups.push_back({i});
+        const bool isTiming = cases[i].measure.lane == config::Measure::Lane::Timing;
+        const std::string key = isTiming ? cases[i].experiment : workKey(cases[i]);
+        const auto [group, isNew] = groupOf.try_emplace(key, groups.size());
+        if (isNew) groups.emplace_back();
+        groups[group->second].push_back(i);
     }
     return groups;
 }

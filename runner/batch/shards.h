@@ -12,8 +12,9 @@ namespace gfxrepro::batch {
 /// "2/4"; its cases are still empty. Throws UsageError.
 Shard parseShard(std::string_view text);
 
-/// What may not be cut: the timing cases of an experiment, whose times stand in one table and are
-/// measured by turns on one device. Every other case is alone. Indices into `cases`.
+/// What is not cut: the timing cases of an experiment, whose times stand in one table and are
+/// measured by turns on one device; and twins, which are measured once where they are together.
+/// Every other case is alone. Indices into `cases`.
 std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const Case> cases);
 
 /// The shard (from 0) of each case: the groups by falling time, each to the shard that has least

@@ -19,6 +19,10 @@ struct Unit {
     int process = 0;
     /// How the first try ended, when this is the second.
     std::optional<CaseResult> firstTry;
+    /// Twins of the case (twins.h) for which its rows are recorded, too.
+    std::vector<const Case*> twins = {};
+    /// In the unit of a twin, which no worker gets: the case that was measured.
+    const Case* measuredAs = nullptr;
 };
 
 /// A worker process and the unit that it is on.

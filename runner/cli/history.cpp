@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "runner/batch/twins.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::cli {
@@ -59,8 +60,10 @@ std::string forecastText(const batch::Plan& plan, const History& history, int jo
     double timeS = 0.0;
     long long memoryBytes = 0;
     std::map<std::string_view, int> counts;
-    for (const batch::Case& item : plan.cases) {
-        if (!plan.measures(item)) continue;
+    const std::vector<std::size_t> firsts = batch::firstTwins(plan.cases);
+    for (std::size_t i = 0; i < firsts.size(); ++i) {
+        const batch::Case& item = plan.cases[i];
+        if (!plan.measures(item) || firsts[i] != i) continue;
         const std::optional<batch::Prediction> known = history.predictor.predict(item);
         if (!known) return "";
         const bool isAlone = item.measure.lane == config::Measure::Lane::Timing;

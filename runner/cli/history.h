@@ -24,8 +24,8 @@ std::string durationText(double timeS);
 std::string memoryText(double bytes);
 
 /// "about 12 min, at most 310 MiB a case, as runs/a tells (10 by same case, 2 by nearest)" for the
-/// cases of the plan (of its shard), with `jobs` quality cases at once; empty when nothing is
-/// known.
+/// cases of the plan (of its shard; twins are measured once), with `jobs` quality cases at once;
+/// empty when nothing is known.
 std::string forecastText(const batch::Plan& plan, const History& history, int jobs);
 
 }  // namespace gfxrepro::cli

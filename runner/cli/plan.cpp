@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
@@ -10,9 +11,15 @@ namespace gfxrepro::cli {
 
 namespace {
 
-/// Time of all processes of a case, its memory, and how they are known.
-std::vector<std::string> predictionTexts(const batch::Case& item,
+long long iterationsOf(const config::Measure& measure) {
+    return static_cast<long long>(measure.processes) *
+           (measure.warmup + static_cast<long long>(measure.repeats) * measure.frames);
+}
+
+/// Time of all processes of a case, its memory, and how they are known. `first` is its first twin.
+std::vector<std::string> predictionTexts(const batch::Case& item, const batch::Case& first,
                                          const batch::Predictor& predictor) {
+    if (&item != &first) return {"-", "-", "as " + first.id};
     const std::optional<batch::Prediction> known = predictor.predict(item);
     if (!known) return {"-", "-", "-"};
     std::string source(batch::sourceName(known->source));
@@ -35,25 +42,31 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
     const History history = openHistory(from, plan.deviceClass);
     std::vector<std::vector<std::string>> rows = {
         {"case", "lane", "output", "runs", "limit", "time", "memory", "known by", "title"}};
+    const std::vector<std::size_t> firsts = batch::firstTwins(plan.cases);
     long long iterations = 0;
-    for (const batch::Case& item : plan.cases) {
+    std::size_t twins = 0;
+    for (std::size_t i = 0; i < firsts.size(); ++i) {
+        const batch::Case& item = plan.cases[i];
         const config::Measure& measure = item.measure;
-        iterations += static_cast<long long>(measure.processes) *
-                      (measure.warmup + static_cast<long long>(measure.repeats) * measure.frames);
+        if (firsts[i] == i) iterations += iterationsOf(measure);
+        if (firsts[i] != i) ++twins;
         std::vector<std::string> row = {
             item.id, measure.lane == config::Measure::Lane::Timing ? "timing" : "quality",
             fmt::format("{}x{}", item.outputWidthPx, item.outputHeightPx),
             fmt::format("{}x{}x{}", measure.processes, measure.frames, measure.repeats),
             fmt::format("{:g} s", measure.timeLimitS)};
-        for (std::string& text : predictionTexts(item, history.predictor)) {
+        for (std::string& text : predictionTexts(item, plan.cases[firsts[i]], history.predictor)) {
             row.push_back(std::move(text));
         }
         row.push_back(item.title());
         rows.push_back(std::move(row));
     }
     fmt::print("{}", alignedColumns(rows));
-    fmt::print("{} case{}, {} iterations, for a {} device; runs are processes x frames x repeats\n",
-               plan.cases.size(), plan.cases.size() == 1 ? "" : "s", iterations, plan.deviceClass);
+    fmt::print(
+        "{} case{}{}, {} iterations, for a {} device; runs are processes x frames x repeats\n",
+        plan.cases.size(), plan.cases.size() == 1 ? "" : "s",
+        twins > 0 ? fmt::format(" ({} measured as another's twin)", twins) : "", iterations,
+        plan.deviceClass);
     const std::string forecast = forecastText(plan, history, 1);
     fmt::print("{}\n",
                forecast.empty() ? "no earlier run tells the time; --from RUN names one" : forecast);

@@ -23,6 +23,7 @@ std::string titleOf(const batch::Unit& unit) {
     } else if (processes > 1) {
         title += fmt::format(" process {}/{}", unit.process + 1, processes);
     }
+    if (unit.measuredAs) title += " (as " + unit.measuredAs->title() + ")";
     return title;
 }
 

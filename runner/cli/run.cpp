@@ -8,6 +8,7 @@
 
 #include "runner/batch/budget.h"
 #include "runner/batch/shards.h"
+#include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
@@ -40,7 +41,7 @@ std::string deviceClassOf(const gl::DeviceInfo& device) {
 }
 
 /// Leaves the tables alone that decide most claims in `budgetS`, as earlier runs predict their
-/// times; says which are left out.
+/// times; says which are left out. Twins count in each of their tables: the other may be left out.
 batch::Request withinBudget(const batch::Plan& plan, const batch::Request& request,
                             const std::vector<std::string>& from, double budgetS) {
     const History history = openHistory(from, plan.deviceClass);
@@ -90,7 +91,7 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
         // By what was named alone: whatever else lies here may differ between the shards.
         const auto predictor = batch::Predictor::from({options.from.begin(), options.from.end()});
         batch::takeShard(plan, batch::parseShard(options.shard),
-                         batch::caseTimesS(plan, predictor));
+                         batch::withoutTwins(plan.cases, batch::caseTimesS(plan, predictor)));
     }
     fs::path path = options.resume.empty() ? options.out : options.resume;
     if (path.empty()) path = batch::defaultRunPath(runSlug(plan));
@@ -176,8 +177,11 @@ std::string countText(int count, std::string_view what) {
 std::map<const batch::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
     const History history = openHistory(options.from, run.plan.deviceClass);
     std::map<const batch::Case*, double> unitTimesS;
-    for (const batch::Case& item : run.plan.cases) {
-        if (const auto known = history.predictor.predict(item)) unitTimesS[&item] = known->timeS;
+    const std::vector<std::size_t> firsts = batch::firstTwins(run.plan.cases);
+    for (std::size_t i = 0; i < firsts.size(); ++i) {
+        const batch::Case& item = run.plan.cases[i];
+        const auto known = history.predictor.predict(item);
+        if (known) unitTimesS[&item] = firsts[i] == i ? known->timeS : 0.0;
     }
     const std::string text = forecastText(run.plan, history, run.scheduler.jobs);
     if (!options.isQuiet && !text.empty()) fmt::print(stderr, "{}\n", text);
@@ -216,9 +220,9 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     }
     for (const std::string& line : outcome.complaints) fmt::print(stderr, "{}\n", line);
     for (const std::string& line : outcome.warnings) fmt::print(stderr, "warning: {}\n", line);
-    fmt::print("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
-               countText(outcome.flaky, "flaky"), countText(outcome.voided, "with void times"),
-               countText(outcome.failed, "failed"),
+    fmt::print("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
+               countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
+               countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
     if (!results) return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;

@@ -11,6 +11,7 @@
 #include "runner/batch/child_process.h"
 #include "runner/batch/merge.h"
 #include "runner/batch/shards.h"
+#include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
@@ -104,7 +105,8 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     History history = isBegun ? openHistory({out / "predictions.csv"}, "")
                               : openHistory(options.from, cut.plan.deviceClass);
     const bool arePredicted = !forecastText(cut.plan, history, 1).empty();
-    const std::vector<double> timesS = batch::caseTimesS(cut.plan, history.predictor);
+    const std::vector<double> timesS =
+        batch::withoutTwins(cut.plan.cases, batch::caseTimesS(cut.plan, history.predictor));
     Submission& s = cut.submission;
     s.name = runSlug(cut.plan);
     s.program = fs::read_symlink("/proc/self/exe");

@@ -59,14 +59,21 @@ struct Measure {
     bool mayContinue() const;
 };
 
+/// What a share is of: another metric, or another pass, of the same cases.
+struct Whole {
+    std::string metric;
+    std::string pass;  // empty: the whole case
+};
+
 /// What a cell shows: chosen records and their summary. Row axes, column axes and `cell` each give
 /// a part; the column's part wins over the row's, the row's over `cell`.
 struct Selection {
     std::optional<std::string> metric;
     std::optional<std::string> pass;
     std::optional<std::string>
-        format;                   // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
-    std::optional<double> scale;  // multiplies every value
+        format;                    // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
+    std::optional<double> scale;   // multiplies every value
+    std::optional<Whole> shareOf;  // shows the statistic ÷ the same of that, in %
     std::vector<std::pair<std::string, Node>> where;  // axis = value
     SourceLocation location;
 };

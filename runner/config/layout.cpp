@@ -20,6 +20,15 @@ Names referableAxes(const Vocabulary& vocabulary) {
     return names;
 }
 
+Whole readWhole(const Node& node) {
+    if (node.isScalar()) return {lineOf(node, "share_of"), ""};
+    requireKeys(node, "share_of", keysOf("share"));
+    const Node* metric = node.find("metric");
+    if (!metric) throwNotAllowed(node, "share_of", "a metric, or {metric: …, pass: …}");
+    const Node* pass = node.find("pass");
+    return {lineOf(*metric, "metric"), pass ? lineOf(*pass, "pass") : ""};
+}
+
 Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
     Selection selection;
     selection.location = node.location();
@@ -35,6 +44,7 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         selection.format = format->text();
     }
     if (const Node* scale = node.find("scale")) selection.scale = scale->asDouble();
+    if (const Node* whole = node.find("share_of")) selection.shareOf = readWhole(*whole);
     if (const Node* where = node.find("where")) {
         requireKeys(*where, "where", referableAxes(vocabulary));
         selection.where.assign(where->entries().begin(), where->entries().end());

@@ -157,7 +157,19 @@ SchemaSection selection() {
              {"format", "text", "none", "median mean min max sum count rate in braces: {mean:.2f}",
               text()},
              {"scale", "number", "1", "multiplies every value", number()},
+             {"share_of", "metric | share", "none",
+              "shows the statistic ÷ the same statistic of that metric in the same cases, in %",
+              anyOf({text(), refTo("share")})},
              {"where", "{axis: value}", "{}", "only these cases", pairs()}}};
+}
+
+SchemaSection share() {
+    return {"share",
+            "share_of.",
+            "Per process, as its interval; frames without the part count in the whole alone.",
+            {{"metric", "name", "required", "what is the whole", text()},
+             {"pass", "name", "whole case", "step of the algorithm", text()}},
+            false};
 }
 
 SchemaSection printed() {
@@ -236,7 +248,7 @@ SchemaFile experimentSchema() {
     SchemaFile file{"experiment",
                     "A table, figure, section or sweep",
                     {identity(), composition(), content(), output(), sweep(), axis(), measure(),
-                     profiles(), layout(), selection(), printed(), plot(), assumption()}};
+                     profiles(), layout(), selection(), share(), printed(), plot(), assumption()}};
     for (SchemaSection& section : claimSections()) file.sections.push_back(std::move(section));
     return file;
 }

@@ -7,6 +7,7 @@
 
 #include "runner/core/text.h"
 #include "runner/report/sampling.h"
+#include "runner/report/share_draws.h"
 
 namespace gfxrepro::report {
 
@@ -19,6 +20,7 @@ void layOver(const config::Selection& part, config::Selection& selection, Where&
     if (part.pass) selection.pass = part.pass;
     if (part.format) selection.format = part.format;
     if (part.scale) selection.scale = part.scale;
+    if (part.shareOf) selection.shareOf = part.shareOf;
     if (part.location.line > 0) selection.location = part.location;
     for (const auto& [axis, value] : part.where) {
         std::vector<std::string> allowed = {canonicalText(value)};
@@ -78,26 +80,44 @@ bool matchesFrame(const Where& where, int frame) {
     return std::find(found->second.begin(), found->second.end(), text) != found->second.end();
 }
 
+bool isFrameTime(const std::string& metric) {
+    return metric == "wall_time_ms" || metric == "gpu_time_ms" || metric == "cpu_time_ms";
+}
+
 /// The same place by the CPU time of the process, where such is recorded.
 std::optional<CellQuery> byProcessTime(const CellQuery& query) {
     const bool isRate = query.metric == "frame_rate";
-    if (!isRate && query.metric != "wall_time_ms" && query.metric != "gpu_time_ms" &&
-        query.metric != "cpu_time_ms") {
-        return std::nullopt;
-    }
+    if (!isRate && !isFrameTime(query.metric)) return std::nullopt;
     CellQuery other = query;
     other.metric = "process_time_ms";
+    if (other.shareOf) {
+        if (isRate || !isFrameTime(other.shareOf->metric)) return std::nullopt;
+        other.shareOf->metric = "process_time_ms";
+    }
     other.isRateOfTime = isRate;
     return other;
+}
+
+/// What a share is of.
+std::optional<CellQuery> wholeOf(const CellQuery& query) {
+    if (!query.shareOf) return std::nullopt;
+    CellQuery whole = query;
+    whole.metric = query.shareOf->metric;
+    whole.pass = query.shareOf->pass;
+    whole.shareOf.reset();
+    return whole;
 }
 
 /// What the records of a cell came to.
 struct Gathered {
     Samples samples;
+    std::optional<Samples> whole;  // of a share
     Status worst = Status::Ok;
     std::string message;
     std::set<std::string> units;
     std::vector<std::string> caseIds;
+    /// How many samples each of the values is a share of, where they are shares that say so.
+    std::vector<double> shareCounts;
 
     void note(Status status, const std::string& why) {
         if (status > worst) {
@@ -140,21 +160,14 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             if (isNew) ++unitCount;
             takeRow(*record, query, unit->second, process, gathered);
         }
+        for (const Record* count :
+             attempt.values(query.metric + std::string(kShareOf), query.pass)) {
+            if (matchesFrame(query.where, count->frame))
+                gathered.shareCounts.push_back(count->value);
+        }
         // Process k of all cases is one round: what a cell of several cases shows is of rounds.
         if (!process.empty()) gathered.samples.processes[number].merge(process);
     }
-}
-
-Gathered gather(const CellQuery& query, const LayoutCases& cases) {
-    Gathered gathered;
-    int unitCount = 0;
-    for (const CaseRecords& run : cases.run) {
-        if (!matches(run.axes, cases, query.where, false)) continue;
-        gathered.caseIds.push_back(run.id);
-        std::map<int, int> unitOfFrame;
-        takeCase(run, query, unitOfFrame, unitCount, gathered);
-    }
-    return gathered;
 }
 
 /// The passes for which the matching cases recorded the metric: for the message when the one that
@@ -182,6 +195,29 @@ std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
            (passes.empty() ? "" : "; it is there for pass: " + passes);
 }
 
+Gathered gather(const CellQuery& query, const LayoutCases& cases) {
+    Gathered gathered;
+    int unitCount = 0;
+    for (const CaseRecords& run : cases.run) {
+        if (!matches(run.axes, cases, query.where, false)) continue;
+        gathered.caseIds.push_back(run.id);
+        std::map<int, int> unitOfFrame;
+        takeCase(run, query, unitOfFrame, unitCount, gathered);
+    }
+    if (const std::optional<CellQuery> whole = wholeOf(query)) {
+        Gathered all = gather(*whole, cases);
+        gathered.note(all.worst, all.message);
+        if (all.samples.processes.empty()) {
+            if (!gathered.samples.processes.empty()) {
+                gathered.note(Status::Missing, whyNothing(*whole, cases));
+            }
+            gathered.samples = {};
+        }
+        gathered.whole = std::move(all.samples);
+    }
+    return gathered;
+}
+
 std::size_t plannedCount(const CellQuery& query, const LayoutCases& cases) {
     std::set<std::string_view> identities;
     for (const PlannedCase& planned : cases.planned) {
@@ -201,21 +237,37 @@ bool isPlanComplete(const CellQuery& query, const LayoutCases& cases) {
     return true;
 }
 
-std::vector<Measured> measuredOf(const CellQuery& query, const Samples& samples) {
+std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathered) {
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
+        Summary summary = summarize(gathered.samples, placeholder.statistic);
+        if (gathered.whole) {
+            summary = shareOf(summary, summarize(*gathered.whole, placeholder.statistic));
+        }
         Measured& measured = values.emplace_back();
-        static_cast<Summary&>(measured) = summarize(samples, placeholder.statistic);
+        static_cast<Summary&>(measured) = std::move(summary);
         measured.statistic = placeholder.name;
     }
     return values;
 }
 
-void fillValues(const CellQuery& query, const Samples& samples, Cell& cell) {
-    cell.values = measuredOf(query, samples);
+/// A share that was counted once, in one case: its bounds are those of the count.
+void boundShare(const CellQuery& query, const Gathered& gathered, Measured& measured) {
+    const auto& processes = gathered.samples.processes;
+    const bool isCountedOnce = gathered.shareCounts.size() == 1 && processes.size() == 1 &&
+                               processes.begin()->second.size() == 1 &&
+                               processes.begin()->second.begin()->second.size() == 1;
+    if (!isCountedOnce || query.shareOf) return;
+    boundByDraws(measured, query.scale, gathered.shareCounts[0],
+                 gathered.caseIds[0] + query.metric + query.pass);
+}
+
+void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
+    cell.values = measuredOf(query, gathered);
     std::vector<double> values, lows, highs;
     for (std::size_t i = 0; i < cell.values.size(); ++i) {
         Measured& measured = cell.values[i];
+        boundShare(query, gathered, measured);
         measured.text = query.format.formatOne(i, measured.value);
         if (measured.bounds != Bounds::None) {
             measured.low = query.format.formatOne(i, measured.interval.low);
@@ -243,7 +295,7 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
         const auto own = gathered.samples.processes.find(number);
         if (own == gathered.samples.processes.end() || own->second.size() != units.size()) return;
     }
-    cell.byProcess = measuredOf(*other, gathered.samples);
+    cell.byProcess = measuredOf(*other, gathered);
 }
 
 }  // namespace
@@ -277,13 +329,15 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
             CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
             selection.scale.value_or(1.0),
             selection.scale.has_value(),
+            selection.shareOf,
             false,
             std::move(where)};
 }
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
-    cell.isTime = isTimeMetric(query.metric);
+    cell.isTime =
+        isTimeMetric(query.metric) || (query.shareOf && isTimeMetric(query.shareOf->metric));
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
@@ -300,13 +354,15 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;
-    cell.caseIds = std::move(gathered.caseIds);
-    if (!query.isScaled) {
+    cell.caseIds = gathered.caseIds;
+    if (query.shareOf) {
+        cell.unit = "%";
+    } else if (!query.isScaled) {
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     }
     if (hasSamples) {
-        fillValues(query, gathered.samples, cell);
+        fillValues(query, gathered, cell);
         fillProcessTimes(query, cases, gathered.samples, cell);
     }
     const std::string word(statusName(cell.status));

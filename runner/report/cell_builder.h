@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@ struct CellQuery {
     CellFormat format;
     double scale = 1.0;
     bool isScaled = false;
+    std::optional<config::Whole> shareOf;
     bool isRateOfTime = false;  // the records are ms, the cell shows how many a second
     Where where;
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "runner/report/share_draws.h"
+
 namespace gfxrepro::report {
 
 namespace {
@@ -183,7 +185,11 @@ double largestDeviation(const GroupPoint& group) {
     return largest;
 }
 
-Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement) {
+Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement) {
+    std::vector<Sampled*> all;
+    for (auto& operand : group.operands)
+        for (Sampled& sampled : operand) all.push_back(&sampled);
+    const bool areDraws = keepRoundsOrDraws(all);
     Judgement judgement;
     const double point = quantity(pointOf(group));
     std::vector<double> values;
@@ -198,7 +204,10 @@ Judgement judge(const Group& group, const Quantity& quantity, const Requirement&
     metrics::Interval interval{point, point};
     Bounds bounds = Bounds::None;
     const bool isEqual = std::ranges::all_of(values, [&](double value) { return value == point; });
-    if (!isEqual) {
+    if (!isEqual && areDraws) {
+        bounds = Bounds::Interval;
+        interval = drawsInterval(values);
+    } else if (!isEqual) {
         const auto told = metrics::medianInterval(values);
         const auto [low, high] = std::ranges::minmax(values);
         bounds = told ? Bounds::Interval : Bounds::Range;

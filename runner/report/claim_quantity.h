@@ -85,8 +85,9 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
 /// Of values that are no times, and the same in every run of the program: the quantity itself is
 /// judged, of one sample too. Where it differs between rounds all the same (memory, the order of a
 /// parallel sum), it is judged by what it was in them: their medianInterval, or the range of fewer.
+/// Shares that were counted once are judged by the interval of the quantity over their draws.
 /// Times are judged by judgeTimes() (claim_times.h).
-Judgement judge(const Group& group, const Quantity& quantity, const Requirement& requirement);
+Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement);
 
 /// "in [0.3, 1.2]", "≥ 10", "≤ 25 %".
 std::string rangeText(const Requirement& requirement);

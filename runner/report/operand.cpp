@@ -101,16 +101,30 @@ Sampled Operand::evaluate(const TableRow& row, const std::string& statistic, Clo
         const Measured& measured = *cell.find(statistic, cell.isTime ? clock : Clock::Wall);
         // A single round tells no more than the value.
         const bool hasRounds = measured.rounds.size() > 1;
-        cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>()});
+        cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
+                         measured.areDraws});
         values.push_back(measured.value);
     }
+    std::vector<Sampled*> all;
+    for (Sampled& cell : cells) all.push_back(&cell);
     Sampled result;
     result.point = evaluate(values);
+    result.areDraws = keepRoundsOrDraws(all);
     for (const int round : commonRounds(cells)) {
         for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
         result.rounds[round] = evaluate(values);
     }
     return result;
+}
+
+bool keepRoundsOrDraws(std::span<Sampled* const> values) {
+    const bool hasRounds = std::ranges::any_of(
+        values, [](const Sampled* value) { return !value->rounds.empty() && !value->areDraws; });
+    if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
+    for (Sampled* value : values) {
+        if (value->areDraws) *value = {value->point, {}, false};
+    }
+    return false;
 }
 
 std::vector<int> commonRounds(std::span<const Sampled> values) {

@@ -18,9 +18,14 @@ namespace gfxrepro::report {
 struct Sampled {
     double point = 0.0;
     std::map<int, double> rounds;
+    bool areDraws = false;  // they are of shares that were counted once (share_draws.h)
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };
+
+/// Where a value has rounds of its own, drops the draws of others: the two have nothing to do with
+/// each other, and rounds tell more. Whether draws are left.
+bool keepRoundsOrDraws(std::span<Sampled* const> values);
 
 /// The rounds that all of them have but those that are certain.
 std::vector<int> commonRounds(std::span<const Sampled> values);
@@ -41,7 +46,8 @@ class Operand {
     /// `values` lies beside columns().
     double evaluate(std::span<const double> values);
     /// On the cells of a row, all of which must have the statistic by that clock; those that have
-    /// none by the process's are no times. The rounds are those that all cells have.
+    /// none by the process's are no times. The rounds are those that all cells have; draws count
+    /// only where no cell has rounds of its own.
     Sampled evaluate(const TableRow& row, const std::string& statistic, Clock clock);
 
   private:

@@ -49,6 +49,17 @@ metrics::Interval rangeOf(const std::vector<double>& values) {
     return {low, high};
 }
 
+/// Value and bounds of what each process came to, at least one.
+void fillFromRounds(const std::vector<double>& values, Summary& summary) {
+    summary.value = metrics::summarize(values, Statistic::Median);
+    summary.interval = rangeOf(values);
+    if (values.size() > 1) summary.bounds = Bounds::Range;
+    if (const auto interval = metrics::medianInterval(values)) {
+        summary.bounds = Bounds::Interval;
+        summary.interval = *interval;
+    }
+}
+
 }  // namespace
 
 std::string_view boundsName(Bounds bounds) {
@@ -73,22 +84,33 @@ Summary summarize(const Samples& samples, Statistic statistic) {
         values.push_back(summarizeUnits(units, statistic));
         summary.rounds[process] = values.back();
     }
-    summary.value = values.empty() ? summarizeUnits(all, statistic)
-                                   : metrics::summarize(values, Statistic::Median);
+    summary.value = summarizeUnits(all, statistic);
     summary.interval = {summary.value, summary.value};
-    if (const auto interval = metrics::medianInterval(values)) {
-        summary.bounds = Bounds::Interval;
-        summary.interval = *interval;
-        return summary;
-    }
+    if (!values.empty()) fillFromRounds(values, summary);
     // A sum or a count of repeats is not what one of them gives.
     const bool isOfRepeats =
         all.size() == 1 && (statistic == Statistic::Sum || statistic == Statistic::Count);
-    if (values.size() == 1 && !isOfRepeats) values = byRepeat(all, statistic);
-    if (values.size() < 2 || isOfRepeats) return summary;
+    if (values.size() != 1 || isOfRepeats) return summary;
+    const std::vector<double> repeats = byRepeat(all, statistic);
+    if (repeats.size() < 2) return summary;
     summary.bounds = Bounds::Range;
-    summary.interval = rangeOf(values);
+    summary.interval = rangeOf(repeats);
     return summary;
+}
+
+Summary shareOf(const Summary& part, const Summary& whole) {
+    Summary share;
+    std::vector<double> values;
+    for (const auto& [process, value] : part.rounds) {
+        const auto all = whole.rounds.find(process);
+        if (all == whole.rounds.end()) continue;
+        values.push_back(100.0 * value / all->second);
+        share.rounds[process] = values.back();
+    }
+    share.value = 100.0 * part.value / whole.value;
+    share.interval = {share.value, share.value};
+    if (!values.empty()) fillFromRounds(values, share);
+    return share;
 }
 
 }  // namespace gfxrepro::report

@@ -28,6 +28,7 @@ struct Summary {
     Bounds bounds = Bounds::None;
     metrics::Interval interval;    // by `bounds`; of none the value itself
     std::map<int, double> rounds;  // the statistic in each process that has all units
+    bool areDraws = false;         // instead, what a share could be in truth (share_draws.h)
 };
 
 /// In each process the statistic over units, each reduced to the median of its repeats; with a
@@ -39,5 +40,9 @@ struct Summary {
 /// metrics::medianInterval() of them; with fewer their range; with one process the range of what
 /// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
 Summary summarize(const Samples& samples, metrics::Statistic statistic);
+
+/// part ÷ whole in %: in each process that has both, with bounds of these shares. Without such a
+/// process, or with one alone, no bounds: repeats of the two do not go together.
+Summary shareOf(const Summary& part, const Summary& whole);
 
 }  // namespace gfxrepro::report

@@ -48,9 +48,9 @@ struct Cell {
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
     std::vector<std::string> caseIds;                  // whose records it takes
-    std::string metric;   // what it shows; empty, as its unit, where it is scaled
-    bool isTime = false;  // a time, or a rate of time
-    std::string unit;     // of the records, if they agree
+    std::string metric;   // what it shows; empty of a share, and, as its unit, where it is scaled
+    bool isTime = false;  // a time, a rate of time, or a share of one
+    std::string unit;     // of the records, if they agree; "%" of a share
     /// It was measured at what the paper measured at (printed_parameters.h). Never without a
     /// measurement, nor in a run whose plan does not know the printed parameters.
     bool isAtPrintedParameters = false;

@@ -12,7 +12,7 @@
 namespace gfxrepro::scene {
 
 /// Part of the identity of generated scenes: goes up when a generator's output changes.
-constexpr int kGeneratorVersion = 1;
+constexpr int kGeneratorVersion = 2;
 
 /// A generator reads its parameters by declaration (so `describe` can print them), refuses unknown
 /// ones, and returns a scene; its name and origin are the caller's to fill.

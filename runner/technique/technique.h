@@ -74,6 +74,11 @@ class Recorder {
     /// ("voxel", "byte", "ms", "1"). A metric may be given once a pass and frame.
     virtual void metric(std::string_view metric, double value, std::string_view unit,
                         std::string_view pass = "") = 0;
+    /// `part` of `whole` as the percentage `metric` ("redundant_pct"), with `whole` as
+    /// <metric>_of, from which the report knows how far the share is certain. A share of nothing is
+    /// not recorded.
+    void share(std::string_view metric, double part, double whole, std::string_view unit,
+               std::string_view pass = "");
     /// Saved as images/<case>-<name>.exr, with a PNG beside it for the report (linear, shown as
     /// sRGB). 1, 3 or 4 channels.
     virtual void image(std::string_view name, const image::ImageF& image,

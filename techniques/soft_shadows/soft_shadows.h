@@ -49,6 +49,7 @@ struct SoftShadowsParams {
     Measured measured = Measured::SoftShadow;
     bool measuresErrors = true;
     bool tracesTruth = false;
+    bool seesFromLight = false;
     bool showsPictures = false;
     bool exportsMesh = false;
 

@@ -89,8 +89,11 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
       measuresErrors(
           params.getBool("errors", true, {"compares with shadow maps of the original geometry"})),
       tracesTruth(params.getBool("traced_truth", false, {"compares with shadow rays, too"})),
-      showsPictures(params.getBool("pictures", false,
-                                   {"shadows, errors, and the casters seen from the light"})),
+      seesFromLight(params.getBool(
+          "light_views", false,
+          {"compares the casters with the geometry as seen from the light and from beside it"})),
+      showsPictures(
+          params.getBool("pictures", false, {"shadows, errors, and what light_views compares"})),
       exportsMesh(params.getBool("export_mesh", false, {"writes the meshes as PLY files"})) {
     shadowMap.sizePx =
         params.getInt("shadow_map_size", 1024, {"of a shadow map", "pixels", 1, 16384});
@@ -113,8 +116,13 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
                         "'measured: depth_and_pass' needs a method that draws a shadow map for "
                         "each light sample");
         }
-        params.refuseGiven({"errors", "traced_truth", "pictures"}, "'measured: soft_shadow'");
+        params.refuseGiven({"errors", "traced_truth", "light_views", "pictures"},
+                           "'measured: soft_shadow'");
         measuresErrors = false;
+    }
+    if (method == Method::RayTraced || isFiltered()) {
+        params.refuseGiven({"light_views"},
+                           "a method that draws a shadow map for each light sample");
     }
     if (method == Method::RayTraced && !measuresErrors) {
         params.refuseGiven({"shadow_map_size", "shadow_bias"},

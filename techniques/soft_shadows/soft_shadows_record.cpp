@@ -119,8 +119,7 @@ void SoftShadows::record(technique::Recorder& recorder) {
     }
     if (params_.reconstructs()) recordMeshes(recorder);
     if (params_.showsPictures) recordPicture(recorder);
-    if (params_.method == Method::RayTraced || params_.isFiltered()) return;
-    if (params_.measured != Measured::SoftShadow) return;
+    if (!params_.seesFromLight) return;
     recordLightView(recorder, "inside", light_.centre);
     // As far beyond the edge as the edge is from the centre, seen from there.
     recordLightView(recorder, "outside", light_.centre + 2.0F * light_.right);

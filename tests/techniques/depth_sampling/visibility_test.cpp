@@ -249,6 +249,26 @@ TEST(Visibility, OnlyNonRedundantImagesGetTheObjectHiddenFromAllViews) {
     EXPECT_TRUE(threeLayers.holds(2, c));
 }
 
+// [xie2017] Sec. 2.1: however many layers are peeled, a wall in the eye's plane is in none of them.
+TEST(Visibility, AWallInThePlaneOfTheEyeIsNeverPeeled) {
+    FourObjects objects;
+    scene::Mesh wall;
+    wall.positions = {{0, -1, 3}, {0, -1, 1}, {0, 1, 1}, {0, 1, 3}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};  // faces +x
+    objects.scene.meshes = {wall, squareAt({0, 0, -5}, 6.0F)};
+    objects.scene.instances = {{0}, {1}};
+    const RayTracer tracer(objects.scene);
+    const View centre = objects.viewFrom(0.0F);
+    const VisibilitySequence peeled(tracer, std::vector<View>(8, centre), true);
+    const VisibilitySequence nonRedundant(tracer, {objects.viewFrom(-1.0F), objects.viewFrom(1.0F)},
+                                          true);
+    for (const SurfacePoint& point :
+         {SurfacePoint{{0, -0.3F, 1.4F}, 1}, SurfacePoint{{0, 0.4F, 2.1F}, 2}}) {
+        EXPECT_FALSE(peeled.anyHolds(8, point));
+        EXPECT_TRUE(nonRedundant.holds(1, point));
+    }
+}
+
 TEST(Visibility, FrustumsEndWhatImagesHold) {
     const FourObjects objects;
     const RayTracer tracer(objects.scene);

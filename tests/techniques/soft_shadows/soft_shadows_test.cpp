@@ -117,7 +117,8 @@ TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
 }
 
 TEST_F(SoftShadowsTest, ShadowMapsOfTheGeometryAreTheTruth) {
-    const Metrics metrics = run("geometry", "traced_truth: true", plateOverFloor());
+    const Metrics metrics =
+        run("geometry", "traced_truth: true, light_views: true", plateOverFloor());
     EXPECT_EQ(metrics.at("visibility_error_mean/geometry"), 0.0);
     EXPECT_EQ(metrics.at("intensity_error_max/geometry"), 0.0);
     EXPECT_EQ(metrics.at("missing_pct/inside"), 0.0);
@@ -229,7 +230,9 @@ TEST_F(SoftShadowsTest, TimesItsThreeStepsOrTheYardstick) {
 
 TEST_F(SoftShadowsTest, SameCaseGivesTheSameNumbersAndPictures) {
     const scene::Scene scene = clutter();
-    const char* yaml = "{reference_size: 96, shadow_map_size: 96, light_grid: 3, pictures: true}";
+    const char* yaml =
+        "{reference_size: 96, shadow_map_size: 96, light_grid: 3, light_views: true, pictures: "
+        "true}";
     const test::MetricRecorder a = recorded(yaml, &scene);
     const test::MetricRecorder b = recorded(yaml, &scene);
     EXPECT_EQ(a.metrics, b.metrics);

@@ -53,6 +53,12 @@ TEST_F(ExperimentTest, BadLayouts) {
               head + "37: a cell's selection: unknown key 'metrics'; did you mean 'metric'?");
     EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, where: {metod: x}}}}"),
               head + "56: where: unknown key 'metod'; did you mean 'method'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: {metrics: x}}}}"),
+              head + "59: share_of: unknown key 'metrics'; did you mean 'metric'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: {pass: x}}}}"),
+              head + "58: share_of is {pass: x}; allowed: a metric, or {metric: …, pass: …}");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: [x]}}}"),
+              head + "58: share_of is [x]; allowed: a map of metric, pass");
     EXPECT_EQ(layoutError("{rows: scene, columns: {}}"),
               head + "32: labels is {}; allowed: a map {label: selection}");
     EXPECT_EQ(layoutError("{row: scene}"),

@@ -353,6 +353,73 @@ layout:
     EXPECT_EQ(table.columns[1].unit, "");  // scaled: megabytes are no bytes
 }
 
+constexpr const char* kShares = R"(
+scene: models/duck
+layout:
+  rows: {draw: {metric: gpu_time_ms, pass: draw}, all: {metric: wall_time_ms}}
+  columns:
+    ms: {}
+    pct: {share_of: wall_time_ms, format: "{mean:.1f}"}
+    of_draw_pct: {share_of: {metric: gpu_time_ms, pass: draw}, format: "{median:.0f}/{max:.0f}"}
+  cell: {format: "{mean:.1f}"}
+)";
+
+/// Frames of 10, 12, 14 … ms by process; in the first draw takes 1 ms, in the last 3, between none.
+Table sharesOf(int processes) {
+    RecordMaker maker;
+    maker.beginCase("models/duck");
+    for (int process = 0; process < processes; ++process) {
+        maker.process(process).frame(0).add("gpu_time_ms", {1.0}, "draw");
+        for (int frame = 0; frame < 3; ++frame) {
+            maker.frame(frame).add("wall_time_ms", {10.0 + 2.0 * process});
+        }
+        maker.add("gpu_time_ms", {3.0}, "draw");
+    }
+    return buildTable(experimentFrom(kShares), maker.records());
+}
+
+TEST(Table, SharesAreOfTheSameStatisticInEachProcess) {
+    const Table six = sharesOf(6);
+    const Cell& draw = six.rows[0].cells[1];
+    // 2 ms of 10, 12, … 20 ms.
+    EXPECT_DOUBLE_EQ(draw.values[0].rounds.at(0), 20.0);
+    EXPECT_DOUBLE_EQ(draw.values[0].rounds.at(5), 10.0);
+    EXPECT_DOUBLE_EQ(draw.values[0].value, (200.0 / 14.0 + 200.0 / 16.0) / 2.0);
+    EXPECT_EQ(draw.bounds(), Bounds::Interval);
+    EXPECT_EQ(draw.low, "10.0");
+    EXPECT_EQ(draw.high, "20.0");
+    EXPECT_EQ(draw.unit, "%");
+    EXPECT_TRUE(draw.isTime);
+    EXPECT_EQ(six.columns[1].unit, "%");
+    EXPECT_EQ(six.rows[1].cells[1].measured, "100.0");
+    EXPECT_EQ(six.rows[0].cells[0].unit, "ms") << "other columns are no shares";
+    EXPECT_EQ(six.rows[0].cells[2].measured, "100/100");
+
+    EXPECT_EQ(sharesOf(5).rows[0].cells[1].bounds(), Bounds::Range);
+    EXPECT_EQ(sharesOf(1).rows[0].cells[1].measured, "20.0");
+    EXPECT_EQ(sharesOf(1).rows[0].cells[1].bounds(), Bounds::None);
+}
+
+TEST(Table, ShareOfNothingIsMissing) {
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("gpu_time_ms", {1.0}, "draw");
+    const Cell cell = buildTable(experimentFrom(kShares), maker.records()).rows[0].cells[1];
+    EXPECT_EQ(cell.measured, "missing");
+    EXPECT_EQ(cell.message, "no 'wall_time_ms' was recorded");
+    EXPECT_TRUE(cell.values.empty());
+}
+
+/// On a software device claims read the CPU time, of the part as of the whole.
+TEST(Table, SharesOfTimesAreAlsoByProcessTime) {
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("gpu_time_ms", {1.0}, "draw").add("wall_time_ms", {4.0});
+    maker.add("process_time_ms", {6.0}, "draw").add("process_time_ms", {8.0});
+    const Cell cell = buildTable(experimentFrom(kShares), maker.records()).rows[0].cells[1];
+    EXPECT_EQ(cell.measured, "25.0");
+    ASSERT_EQ(cell.byProcess.size(), 1U);
+    EXPECT_DOUBLE_EQ(cell.byProcess[0].value, 75.0);
+}
+
 TEST(Sampling, AnIntervalIsOverProcesses) {
     const auto samplesOf = [](std::initializer_list<double> processes) {
         Samples samples;

@@ -1,0 +1,238 @@
+// Equal cases of two tables are measured once and recorded for both.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/report/images.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// table-<index>.yaml of the mock with these lines.
+std::string writeTable(const TemporaryFolder& folder, const std::string& index,
+                       const std::string& lines) {
+    return folder.write("table-" + index + ".yaml", "table: demo2026/" + index +
+                                                        "\ntitle: T\ntechnique: mock\n" +
+                                                        "output: {width: 8, height: 8}\n" + lines);
+}
+
+/// Two tables that have numbers 2 and 3 in common.
+std::vector<std::string> writeTables(const TemporaryFolder& folder, const std::string& more = "") {
+    const std::string layout =
+        "layout:\n  rows: number\n  columns: {n: {metric: number}}\n  cell: \"{median:.0f}\"\n";
+    return {writeTable(folder, "1", more + layout + "sweep: {number: [1, 2, 3]}\n"),
+            writeTable(folder, "2", more + layout + "sweep: {number: [2, 3, 4]}\n")};
+}
+
+ProcessResult measure(std::vector<std::string> configs, const std::string& dir,
+                      const std::vector<std::string>& more = {}) {
+    configs.insert(configs.begin(), {"run"});
+    configs.insert(configs.end(), {"--device", "software", "--jobs", "1", "--out", dir});
+    configs.insert(configs.end(), more.begin(), more.end());
+    return mockGfxrepro(configs);
+}
+
+/// The wall times of a table's cases by number: no two measurements have the same.
+std::map<int, double> timesOf(const std::string& dir, const std::string& table) {
+    std::map<int, double> times;
+    for (const report::Record& row : rowsOf(dir, "wall_time_ms")) {
+        if (row.table != table) continue;
+        times[nlohmann::json::parse(row.params).at("number").get<int>()] = row.value;
+    }
+    return times;
+}
+
+/// How often a worker was given a case: the lines of the log that are no twin's.
+int measuredCount(const std::string& dir) {
+    int count = 0;
+    for (const std::string& line : split(readFile(dir + "/log.jsonl"), '\n')) {
+        const auto event = nlohmann::json::parse(line, nullptr, false);
+        if (event.is_object() && event.value("event", "") == "case" && !event.contains("as")) {
+            ++count;
+        }
+    }
+    return count;
+}
+
+/// A run in which each table was measured by itself has the same tables.
+void expectTablesOfTheirOwn(const std::vector<std::string>& configs, const std::string& dir) {
+    ASSERT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    for (std::size_t i = 0; i < configs.size(); ++i) {
+        const std::string index = std::to_string(i + 1);
+        const std::string alone = dir + "-alone-" + index;
+        ASSERT_EQ(measure({configs[i]}, alone).exitCode, 0);
+        ASSERT_EQ(mockGfxrepro({"table", alone}).exitCode, 0);
+        const std::string name = "/tables/demo2026-" + index + ".csv";
+        EXPECT_EQ(readFile(dir + name), readFile(alone + name)) << name;
+    }
+}
+
+TEST(Twins, AreMeasuredOnceAndFillBothTables) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> configs = writeTables(folder);
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measure(configs, dir);
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(run.out, "6 of 6 finished, 2 as a twin; records: " + dir + "/records.csv\n");
+    EXPECT_THAT(run.err, HasSubstr("] ok demo2026/2 number=3 (as demo2026/1 number=3)\n"));
+    EXPECT_THAT(run.err, HasSubstr("[6/6] ok demo2026/2 number=4\n"));
+    EXPECT_EQ(measuredCount(dir), 4);
+    const std::map<int, double> first = timesOf(dir, "demo2026/1");
+    const std::map<int, double> second = timesOf(dir, "demo2026/2");
+    ASSERT_EQ(first.size(), 3U);
+    ASSERT_EQ(second.size(), 3U);
+    EXPECT_EQ(first.at(2), second.at(2));
+    EXPECT_EQ(first.at(3), second.at(3));
+    expectTablesOfTheirOwn(configs, dir);
+
+    std::map<std::string, int> images;
+    for (const report::ImageEntry& image : report::readImages(dir)) {
+        ++images[image.table];
+        EXPECT_TRUE(image.title.starts_with(image.table + " number=")) << image.title;
+        EXPECT_THAT(image.png, HasSubstr(image.caseId));
+        EXPECT_TRUE(fs::exists(fs::path(dir) / image.png)) << image.png;
+        EXPECT_TRUE(fs::exists(fs::path(dir) / image.exr)) << image.exr;
+    }
+    EXPECT_EQ(images["demo2026/1"], 6);
+    EXPECT_EQ(images["demo2026/2"], 6);
+    ASSERT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
+    EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("measured as demo2026/1 number=3"));
+}
+
+TEST(Twins, NeverAmongTimes) {
+    const TemporaryFolder folder;
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measure(writeTables(folder, "measure: {lane: timing}\n"), dir);
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(measuredCount(dir), 6);
+    EXPECT_NE(timesOf(dir, "demo2026/1").at(2), timesOf(dir, "demo2026/2").at(2));
+}
+
+TEST(Twins, ProcessesAreSharedOneByOne) {
+    const TemporaryFolder folder;
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measure(writeTables(folder, "measure: {processes: 2}\n"), dir);
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("12 of 12 finished, 4 as a twin;"));
+    EXPECT_THAT(run.err, HasSubstr("demo2026/2 number=3 process 2/2 (as demo2026/1 number=3)\n"));
+    EXPECT_EQ(measuredCount(dir), 8);
+}
+
+TEST(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> configs = writeTables(folder);
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(measure(configs, dir).exitCode, 0);
+    const std::vector<report::Record> all = report::readRecords(dir + "/records.csv");
+    const auto keep = [&](auto isKept) {
+        std::vector<report::Record> rows;
+        std::ranges::copy_if(all, std::back_inserter(rows), isKept);
+        fs::remove(dir + "/records.csv");
+        report::RecordWriter(dir + "/records.csv").append(rows);
+    };
+    // As if the runner had ended between the rows of number=2 and those of its twin.
+    const std::map<int, double> before = timesOf(dir, "demo2026/1");
+    keep([](const report::Record& row) { return row.table == "demo2026/1"; });
+    const ProcessResult twin = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
+    EXPECT_THAT(twin.out, HasSubstr("3 of 3 finished; records: ")) << twin.err;
+    EXPECT_EQ(timesOf(dir, "demo2026/1"), before);
+    EXPECT_EQ(timesOf(dir, "demo2026/2").size(), 3U);
+    // And as if it had measured nothing but number=1 and the twin of number=2.
+    keep([](const report::Record& row) {
+        const int number = nlohmann::json::parse(row.params).at("number").get<int>();
+        return number == (row.table == "demo2026/1" ? 1 : 2);
+    });
+    const ProcessResult rest = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
+    EXPECT_THAT(rest.out, HasSubstr("4 of 4 finished, 1 as a twin; records: ")) << rest.err;
+    expectTablesOfTheirOwn(configs, dir);
+}
+
+TEST(Twins, FailTogetherAndAreTriedAgainTogether) {
+    const TemporaryFolder folder;
+    const std::string marker = folder.path() / "marker";
+    const std::vector<std::string> configs = {
+        writeTable(folder, "1",
+                   "sweep: {behaviour: [throw, flake]}\nparams: {marker: " + marker + "}\n"),
+        writeTable(folder, "2",
+                   "sweep: {behaviour: [flake, throw]}\nparams: {marker: " + marker + "}\n")};
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measure(configs, dir);
+    EXPECT_EQ(run.exitCode, 4) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("2 of 4 finished, 1 as a twin, 2 flaky, 2 failed; records: "));
+    EXPECT_THAT(run.err, HasSubstr("error demo2026/2 behaviour=throw (as demo2026/1 "
+                                   "behaviour=throw): nothing works\n"));
+    EXPECT_EQ(measuredCount(dir), 2);
+    const std::vector<std::string> lines = statusLines(dir);
+    ASSERT_EQ(lines.size(), 4U);
+    EXPECT_EQ(lines[0], "throw: error (nothing works)");
+    EXPECT_EQ(lines[0], lines[1]);
+    EXPECT_THAT(lines[2], HasSubstr("flake: flaky (passed at the second try; the first: crash: "));
+    EXPECT_EQ(lines[2], lines[3]);
+}
+
+TEST(Twins, WhatOneTableExpectsOrSkipsIsNotTheOthers) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> configs = {
+        writeTable(folder, "1", "sweep: {behaviour: [ok, throw]}\n"),
+        writeTable(folder, "2", "sweep: {behaviour: [ok, throw]}\n")};
+    folder.write("expect-software.yaml",
+                 "skips:\n  - {table: demo2026/1, at: {behaviour: ok}, reason: slow, "
+                 "until: 2999-01-01}\n"
+                 "fails:\n  - {table: demo2026/1, at: {behaviour: throw}, reason: known, "
+                 "until: 2999-01-01}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measure(configs, dir);
+    EXPECT_EQ(run.exitCode, 4) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("1 of 4 finished, 1 failed, 2 failed or skipped as expected;"));
+    EXPECT_THAT(readFile(dir + "/log.jsonl"), HasSubstr("\"event\":\"retry\""))
+        << "the second table does not expect it";
+}
+
+TEST(Twins, ShardsKeepThemTogetherAndMerge) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> configs = writeTables(folder);
+    const std::string merged = folder.path() / "merged";
+    std::vector<std::string> merge = {"merge", merged};
+    int measured = 0;
+    for (const char* shard : {"1/2", "2/2"}) {
+        const std::string dir = folder.path() / (std::string("shard-") + shard[0]);
+        ASSERT_EQ(measure(configs, dir, {"--shard", shard}).exitCode, 0);
+        measured += measuredCount(dir);
+        merge.push_back(dir);
+    }
+    EXPECT_EQ(measured, 4);
+    const ProcessResult result = mockGfxrepro(merge);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(timesOf(merged, "demo2026/1").at(3), timesOf(merged, "demo2026/2").at(3));
+    for (const report::ImageEntry& image : report::readImages(merged)) {
+        EXPECT_TRUE(fs::exists(fs::path(merged) / image.png)) << image.png;
+    }
+    expectTablesOfTheirOwn(configs, merged);
+}
+
+TEST(Twins, OnlyLeavesThemAloneAndAPlanPredictsThemOnce) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> configs = writeTables(folder);
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measure(configs, dir, {"--only", "number=3"});
+    EXPECT_THAT(run.out, HasSubstr("2 of 2 finished, 1 as a twin;")) << run.err;
+    const ProcessResult plan =
+        mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});
+    ASSERT_EQ(plan.exitCode, 0) << plan.err;
+    EXPECT_THAT(plan.out, HasSubstr("6 cases (2 measured as another's twin), 4 iterations,"));
+    EXPECT_THAT(plan.out, HasSubstr("tells (3 by nearest, 1 by same case)\n"));
+    // Alone the second table is measured, and its time is known.
+    const ProcessResult second =
+        mockGfxrepro({"plan", configs[1], "--device", "software", "--from", dir});
+    EXPECT_THAT(second.out, HasSubstr("3 cases, 3 iterations,"));
+    EXPECT_THAT(second.out, HasSubstr("tells (2 by nearest, 1 by same case)\n"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
