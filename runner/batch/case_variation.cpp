@@ -1,6 +1,12 @@
 #include "runner/batch/case_variation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
+
+#include "runner/config/scene_reference.h"
+#include "runner/core/text.h"
 
 namespace gfxrepro::batch {
 
@@ -17,6 +23,21 @@ void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case
     }
 }
 
+namespace {
+
+/// Parameters of the generated scene, which are among the case's.
+config::Node sceneParamsOf(const Case& item) {
+    config::Node params = config::Node::map({});
+    for (const auto& [name, value] : item.params.entries()) {
+        if (!name.starts_with(config::kSceneAxisPrefix)) continue;
+        params.set(name.substr(config::kSceneAxisPrefix.size()), value,
+                   item.params.keyLocation(name));
+    }
+    return params;
+}
+
+}  // namespace
+
 std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
                              const scene::Catalog& catalog) {
     if (item.scene.isNull()) return {item};
@@ -24,7 +45,12 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
     const config::Node& instead = experiment.sceneInstead;
     const config::Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
     if (other) first.scene = *other;
-    const scene::SceneSource source = catalog.resolve(first.scene);
+    scene::SceneSource source = catalog.resolve(first.scene);
+    const config::Node params = sceneParamsOf(item);
+    if (!params.entries().empty()) {
+        scene::takeParams(config::sceneName(first.scene.text()), params, source);
+        first.scene = config::withSceneParams(first.scene, params);
+    }
     const std::uint64_t seed =
         experiment.sceneSeed ? static_cast<std::uint64_t>(*experiment.sceneSeed) : source.seed;
     const int count = source.isSeeded() ? experiment.measure.sceneSeeds : 1;
@@ -33,7 +59,7 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
         Case& taken = cases.emplace_back(first);
         if (count > 1) taken.sceneSample = i;
         if (source.isSeeded() && (i > 0 || experiment.sceneSeed)) {
-            taken.scene = scene::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
+            taken.scene = config::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
         }
         if (taken.scene.text() != item.scene.text()) taken.standsFor = item.scene;
     }
@@ -58,6 +84,30 @@ void requireTaken(const config::Experiment& experiment, const std::vector<Case>&
         throw Error(
             experiment.sceneInstead.keyLocation(name),
             "'scene_instead': no case of " + experiment.id + " has the scene '" + name + "'");
+    }
+}
+
+void requireSceneNames(const config::Experiment& experiment, const std::vector<Case>& cases,
+                       const scene::Catalog& catalog) {
+    std::set<std::string> known, scenes;
+    for (const auto& [name, entry] : catalog.entries()) scenes.insert(name);
+    for (const Case& item : cases) {
+        for (const auto& [name, value] : item.params.entries()) known.insert(name);
+        const config::Node& scene = item.standsFor.isNull() ? item.scene : item.standsFor;
+        if (!scene.isNull()) scenes.insert(config::sceneName(scene.text()));
+    }
+    const auto require = [](const std::set<std::string>& names, const std::string& name,
+                            const SourceLocation& where, const std::string& what) {
+        if (names.contains(name)) return;
+        const std::vector<std::string> all(names.begin(), names.end());
+        throw Error(where,
+                    fmt::format("params_by_scene: {} '{}'{}", what, name, suggestion(name, all)));
+    };
+    for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
+        require(scenes, scene, experiment.paramsByScene.keyLocation(scene), "unknown scene");
+        for (const auto& [name, value] : params.entries()) {
+            require(known, name, params.keyLocation(name), "unknown parameter");
+        }
     }
 }
 

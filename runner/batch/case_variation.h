@@ -22,4 +22,9 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
 void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases,
                   const scene::Catalog& catalog);
 
+/// Throws Error for an entry of `params_by_scene` whose scene neither the catalogue nor a case has,
+/// or whose parameter no case has.
+void requireSceneNames(const config::Experiment& experiment, const std::vector<Case>& cases,
+                       const scene::Catalog& catalog);
+
 }  // namespace gfxrepro::batch

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runner/batch/case_variation.h"
+#include "runner/config/scene_reference.h"
 #include "runner/core/text.h"
 #include "runner/report/case_records.h"
 
@@ -110,7 +111,7 @@ void requireCatalogued(const Assumption& assumption, const Node& name,
     const std::string text = name.isScalar() ? name.text() : "";
     std::vector<std::string> known;
     for (const auto& [entry, source] : catalog.entries()) known.push_back(entry);
-    if (catalog.entries().contains(text.substr(0, text.find('@')))) return;
+    if (catalog.entries().contains(config::sceneName(text))) return;
     refuseRange(assumption, name, "catalogued scenes" + suggestion(text, known));
 }
 

@@ -27,7 +27,8 @@ struct Case {
     std::optional<int> sceneSample;  // from 0, where several seeds are measured
     config::Node given;    // the parameters that the config gives: a technique is made from these
     config::Node offered;  // null, or values that take the place of the technique's defaults
-    config::Node params;   // every declared parameter with its value: what records say
+    config::Node params;   // every declared parameter with its value, and `scene.NAME` of a
+                           // generated scene where the config gives it: what records say
     config::Node axes;     // the swept ones
     int outputWidthPx = 0;
     int outputHeightPx = 0;

@@ -3,6 +3,7 @@
 
 #include "runner/batch/case_variation.h"
 #include "runner/batch/plan.h"
+#include "runner/config/scene_reference.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::batch {
@@ -15,7 +16,7 @@ namespace {
 config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
     if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
     const fs::path path = reference.text();
-    if (!path.has_extension() || path.is_absolute()) return reference;
+    if (!config::isSceneFile(reference.text()) || path.is_absolute()) return reference;
     const fs::path folder = fs::path(reference.location().file).parent_path();
     return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
                                 reference.location());
@@ -57,6 +58,10 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
         item.technique = experiment.technique;
         item.scene = absoluteReference(spec.scene, catalog);
         item.params = params.resolved();
+        for (const auto& [name, value] : spec.sceneParams.entries()) {
+            item.params.set(std::string(config::kSceneAxisPrefix) + name, value,
+                            spec.sceneParams.keyLocation(name));
+        }
         item.axes = config::Node::map({});
         for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
         item.outputWidthPx = spec.outputWidthPx;
@@ -76,6 +81,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
     }
     requireTaken(experiment, cases, catalog);
+    requireSceneNames(experiment, cases, catalog);
     return cases;
 }
 

@@ -61,9 +61,7 @@ void describeTechnique(const technique::TechniqueInfo& info) {
 
 void describeGenerator(const scene::GeneratorInfo& info) {
     fmt::print("generator {}: {}\n", info.name, info.summary);
-    config::Params params({}, "generator '" + std::string(info.name) + "'");
-    info.generate(params, 1);
-    printParams(params.declared());
+    printParams(scene::declaredParams(info, {}));
 }
 
 void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
@@ -90,6 +88,12 @@ void describeExperiment(const config::Experiment& experiment) {
     const bool isPrinted = experiment.technique.empty();
     fmt::print("technique  {}\n", isPrinted ? "none, only printed" : experiment.technique);
     fmt::print("cases      {}\n", config::expandCases(experiment).size());
+    for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
+        fmt::print("of scene   {}: {}\n", scene, params.toFlowText());
+    }
+    if (!experiment.sceneParams.entries().empty()) {
+        fmt::print("of scenes  {}\n", experiment.sceneParams.toFlowText());
+    }
     fmt::print("profiles   full{}\n",
                experiment.profiles.empty() ? "" : ", " + joined(experiment.profiles));
     if (!experiment.printed.hardware.empty()) {

@@ -4,6 +4,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
 #include "runner/gpu_scene/gpu_mesh.h"
 #include "runner/image/png_io.h"
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 scene::Scene loadNamed(const SceneOptions& options) {
-    if (fs::path(options.name).has_extension()) return scene::loadScene(options.name);
+    if (config::isSceneFile(options.name)) return scene::loadScene(options.name);
     return openCatalog(options.assets).load(config::Node::scalar(options.name));
 }
 

@@ -8,6 +8,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/params.h"
+#include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
@@ -18,8 +19,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 using Kind = Experiment::Kind;
-
-constexpr int kMaxOutputPx = 16384;
 
 struct Identity {
     std::string_view key;
@@ -71,14 +70,6 @@ void readIdentity(const Node& document, Experiment& experiment) {
         found->kind == Kind::Figure ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1] : text;
 }
 
-int outputSize(const Node& value, const std::string& axis) {
-    const auto size = value.tryInteger();
-    if (!size || *size < 1 || *size > kMaxOutputPx) {
-        throwNotAllowed(value, axis, "a whole number, 1 … 16384 pixels");
-    }
-    return static_cast<int>(*size);
-}
-
 void requireAxisNames(const Node& sweep, const std::vector<AxisPoint>& points) {
     std::set<std::string> names;
     for (const AxisPoint& point : points) {
@@ -106,10 +97,20 @@ Vocabulary vocabularyOf(const Experiment& experiment, const std::vector<AxisPoin
             }
         }
     }
-    // What is not swept has the one value.
-    for (const auto& [name, value] : experiment.params.entries()) {
-        vocabulary.axes.try_emplace(name, Node::Sequence{value});
+    // What is not swept has the one value, or one a scene.
+    std::map<std::string, Node::Sequence> fixed;
+    const auto add = [&](const std::string& name, const Node& value) {
+        const bool isNew = seen.insert(name + "=" + contentKey(value)).second;
+        if (isNew && !vocabulary.axes.contains(name)) fixed[name].push_back(value);
+    };
+    for (const auto& [name, value] : experiment.params.entries()) add(name, value);
+    for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
+        for (const auto& [name, value] : params.entries()) add(name, value);
     }
+    for (const auto& [name, value] : experiment.sceneParams.entries()) {
+        add(std::string(kSceneAxisPrefix) + name, value);
+    }
+    vocabulary.axes.merge(fixed);
     if (!experiment.scene.isNull()) {
         vocabulary.axes.try_emplace("scene", Node::Sequence{experiment.scene});
     }
@@ -138,8 +139,9 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key : {"scene", "scene_seed", "scene_instead", "params", "params_instead",
-                            "output", "sweep", "measure", "layout", "claims", "plots"}) {
+    for (const char* key :
+         {"scene", "scene_params", "scene_seed", "scene_instead", "params", "params_by_scene",
+          "params_instead", "output", "sweep", "measure", "layout", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -157,24 +159,44 @@ long long sceneSeed(const Node& node) {
     return *seed;
 }
 
+/// A map, empty where the section is not there.
+Node mapOf(const Node& document, std::string_view key) {
+    const Node* node = document.find(key);
+    if (!node || node->isNull()) return Node::map({}, document.location());
+    if (!node->isMap()) throwNotAllowed(*node, key, "a map");
+    return *node;
+}
+
+Node paramsByScene(const Node& document) {
+    Node scenes = mapOf(document, "params_by_scene");
+    for (const auto& [scene, params] : scenes.entries()) {
+        if (!params.isMap()) {
+            throwNotAllowed(params, "params_by_scene: '" + scene + "'", "a map {name: value}");
+        }
+        if (sceneName(scene) != scene) {
+            throw Error(
+                scenes.keyLocation(scene),
+                "params_by_scene: '" + scene +
+                    "'; allowed: a scene without seed and parameters, whose cases it is of");
+        }
+    }
+    return scenes;
+}
+
 void readMeasurement(const Node& document, Experiment& experiment) {
     const auto section = [&](const char* key) {
         const Node* node = document.find(key);
         return node ? *node : Node();
     };
     experiment.technique = lineOf(*document.find("technique"), "technique");
-    experiment.params = section("params");
-    if (experiment.params.isNull()) experiment.params = Node::map({}, document.location());
-    if (!experiment.params.isMap()) throwNotAllowed(experiment.params, "params", "a map");
-    experiment.paramsInstead = section("params_instead");
-    if (experiment.paramsInstead.isNull()) experiment.paramsInstead = Node::map({});
-    if (!experiment.paramsInstead.isMap()) {
-        throwNotAllowed(experiment.paramsInstead, "params_instead", "a map");
-    }
+    experiment.params = mapOf(document, "params");
+    experiment.paramsByScene = paramsByScene(document);
+    experiment.paramsInstead = mapOf(document, "params_instead");
     for (const auto& [name, value] : experiment.paramsInstead.entries()) {
         if (Node* given = experiment.params.find(name)) *given = value;
     }
     experiment.scene = section("scene");
+    experiment.sceneParams = mapOf(document, "scene_params");
     if (const Node* seed = document.find("scene_seed")) experiment.sceneSeed = sceneSeed(*seed);
     experiment.sceneInstead = section("scene_instead");
     if (!experiment.sceneInstead.isNull() && !experiment.sceneInstead.isMap()) {
@@ -345,32 +367,6 @@ std::string Experiment::label() const {
     std::string number = id.substr(id.find('/') + 1);
     if (kind == Kind::Figure) number.erase(0, kFigurePrefix.size());
     return std::string(identity->label) + " " + number;
-}
-
-std::vector<CaseSpec> expandCases(const Experiment& experiment) {
-    std::vector<CaseSpec> cases;
-    if (experiment.technique.empty()) return cases;
-    for (AxisPoint& point : expandSweep(experiment.sweep)) {
-        CaseSpec spec{{},
-                      experiment.params,
-                      experiment.scene,
-                      experiment.outputWidthPx,
-                      experiment.outputHeightPx};
-        for (const auto& [axis, value] : point) {
-            if (axis == "scene") {
-                spec.scene = value;
-            } else if (axis == "output.width") {
-                spec.outputWidthPx = outputSize(value, axis);
-            } else if (axis == "output.height") {
-                spec.outputHeightPx = outputSize(value, axis);
-            } else {
-                spec.params.set(axis, value);
-            }
-        }
-        spec.axes = std::move(point);
-        cases.push_back(std::move(spec));
-    }
-    return cases;
 }
 
 }  // namespace gfxrepro::config

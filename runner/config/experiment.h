@@ -183,6 +183,9 @@ struct PlotSpec {
     SourceLocation location;
 };
 
+/// Begins the name of an axis that is a parameter of the generated scene: "scene.blades".
+inline constexpr std::string_view kSceneAxisPrefix = "scene.";
+
 /// The assumptions that are bound to what a case has beside its parameters.
 inline constexpr const char* kOutputAssumption = "output";
 inline constexpr const char* kSceneAssumption = "scene";
@@ -215,7 +218,10 @@ struct Experiment {
     std::string technique;
     Node params;         // a map, before the sweep is laid over it
     Node paramsInstead;  // a map: in cases that take them, instead of values and defaults
-    Node scene;          // null, or a reference
+    Node paramsByScene =
+        Node::map({});  // a map: scene → a map, laid over `params` in the cases of that scene
+    Node scene;         // null, or a reference
+    Node sceneParams = Node::map({});  // a map: of the generated scenes, laid over the catalogue's
     std::optional<long long> sceneSeed;  // of generated scenes, instead of the catalogue's
     Node sceneInstead;  // null, or a map: catalogued scene → the one that takes its place
     int outputWidthPx = 512;
@@ -272,8 +278,9 @@ Experiment experimentFromDocument(const Node& document, const std::filesystem::p
 /// One case before the technique's defaults are filled in.
 struct CaseSpec {
     AxisPoint axes;
-    Node params;  // with the axes laid over
-    Node scene;   // null or a reference
+    Node params;       // with those of the scene, then the axes laid over
+    Node scene;        // null or a reference
+    Node sceneParams;  // a map, with the axes laid over
     int outputWidthPx = 0;
     int outputHeightPx = 0;
 };

@@ -5,6 +5,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
+#include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
@@ -132,7 +133,7 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
         for (const Node& item : reference.items()) items.push_back(withSceneFile(item, folder));
         return Node::sequence(std::move(items), reference.location());
     }
-    if (!reference.isScalar() || !fs::path(reference.text()).has_extension()) return reference;
+    if (!reference.isScalar() || !isSceneFile(reference.text())) return reference;
     const fs::path beside = folder ? *folder : fs::path(reference.location().file).parent_path();
     const fs::path file = fs::absolute(beside / reference.text()).lexically_normal();
     return Node::scalar(file.string(), reference.location(), true);
@@ -159,8 +160,20 @@ Node withSceneFiles(const Node& node, bool isAxisMap) {
     return result;
 }
 
+/// The keys of a map that are scenes.
+Node withSceneFileKeys(const Node& map) {
+    if (!map.isMap()) return map;
+    Node result = Node::map({}, map.location());
+    for (const auto& [scene, value] : map.entries()) {
+        const SourceLocation& where = map.keyLocation(scene);
+        result.set(withSceneFile(Node::scalar(scene, where)).text(), value, where);
+    }
+    return result;
+}
+
 void resolveScenes(Node& document) {
     if (Node* scene = document.find("scene")) *scene = withSceneFile(*scene);
+    if (Node* params = document.find("params_by_scene")) *params = withSceneFileKeys(*params);
     if (Node* sweep = document.find("sweep")) *sweep = withSceneFiles(*sweep, true);
     for (const char* key : {"layout", "claims"}) {
         if (Node* section = document.find(key)) *section = withSceneFiles(*section, false);
@@ -220,6 +233,15 @@ void requireNotSwept(const Override& given, const std::string& name, const Node&
     }
 }
 
+/// A parameter that the command line sets is of all scenes.
+void dropFromScenes(const std::string& name, Node& document) {
+    Node* scenes = document.find("params_by_scene");
+    if (!scenes || !scenes->isMap()) return;
+    for (auto& [scene, params] : scenes->entries()) {
+        if (params.isMap()) params.erase(name);
+    }
+}
+
 void applySets(const std::vector<Override>& sets, Node& document) {
     for (const Override& given : sets) {
         const std::string first = given.key.substr(0, given.key.find('.'));
@@ -230,6 +252,7 @@ void applySets(const std::vector<Override>& sets, Node& document) {
         const Node value =
             path == "scene" ? withSceneFile(given.value, fs::current_path()) : given.value;
         document.setPath(path, value);
+        if (path.starts_with("params.")) dropFromScenes(parameterName(path), document);
     }
     // A key that is set to nothing goes.
     document = merged(Node::map({}, document.location()), document);

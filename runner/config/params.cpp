@@ -262,6 +262,7 @@ void Params::finish() const {
             throw Error(map->keyLocation(key), owner_ + ": unknown parameter '" + key + "'" + hint);
         }
     }
+    if (stopsWhenFinished_) throw Finished();
 }
 
 }  // namespace gfxrepro::config

@@ -93,6 +93,10 @@ class Params {
 
     /// Throws Error at the first key that nobody declared, with the nearest declared name.
     void finish() const;
+    /// For those who only ask what a reader declares and whether it takes the values: finish() ends
+    /// the reader by throwing Finished.
+    struct Finished {};
+    void stopWhenFinished() { stopsWhenFinished_ = true; }
 
     /// Every declared parameter with the value that is in force, in order of declaration.
     const Node& resolved() const { return resolved_; }
@@ -110,6 +114,7 @@ class Params {
     std::string owner_;
     Node resolved_;
     std::vector<ParamInfo> declared_;
+    bool stopsWhenFinished_ = false;
 };
 
 }  // namespace gfxrepro::config

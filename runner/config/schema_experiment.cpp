@@ -54,6 +54,9 @@ SchemaSection content() {
          {"technique", "name", "none", "what measures; without it the file is only `printed`",
           text()},
          {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
+         {"scene_params", "{name: value}", "{}",
+          "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`",
+          mapOf(anything())},
          {"scene_seed",
           "whole number",
           "the catalogue's",
@@ -64,6 +67,9 @@ SchemaSection content() {
           mapOf(text())},
          {"params", "{name: value}", "{}", "of the technique: `gfxrepro describe TECHNIQUE`",
           mapOf(anything())},
+         {"params_by_scene", "{scene: {name: value}}", "{}",
+          "laid over `params` in the cases of a scene, whatever its seed; a swept axis wins",
+          mapOf(mapOf(anything()))},
          {"params_instead", "{name: value}", "{}",
           "takes the place of a parameter's value or default in the cases that take it",
           mapOf(anything())},
@@ -96,8 +102,8 @@ SchemaSection sweep() {
     return {
         "sweep",
         "sweep.",
-        "Any other key is a parameter of the technique: it is an axis too. A condition's value may "
-        "be a list: any of these.",
+        "Any other key is a parameter of the technique, or as `scene.NAME` one of the generated "
+        "scenes: it is an axis too. A condition's value may be a list: any of these.",
         {{"scene", "values", "none", "scenes", axisType()},
          {"output.width", "values", "none", "widths of the image", axisType()},
          {"output.height", "values", "none", "heights of the image", axisType()},

@@ -67,6 +67,11 @@ const std::vector<std::string>& identityKeys();
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 
+/// Most pixels along a side of the image.
+inline constexpr int kMaxOutputPx = 16384;
+/// Throws Error unless `value` is a side of the image; `axis` begins the message.
+int outputSize(const Node& value, std::string_view axis);
+
 /// The `measure` and `output` sections; their declarations are part of the schema.
 Measure readMeasure(Params& params);
 std::pair<int, int> readOutput(Params& params);

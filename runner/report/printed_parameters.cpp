@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "runner/config/scene_reference.h"
 #include "runner/core/text.h"
 #include "runner/report/cell_builder.h"
 #include "runner/report/csv.h"
@@ -52,12 +53,12 @@ bool isNoParameter(const std::string& name) {
 }
 
 /// Of a generated scene at another seed ("outdoor/city@3") the name in the table: another sample of
-/// it, not another parameter.
+/// it, not another parameter. Its generator's parameters are among the case's.
 std::string sceneNameOf(const CaseRecords& item, const Json& params) {
     const auto named = params.find(kStandsFor);
     if (named == params.end()) return item.scene;
     const std::string name = settingText(*named);
-    return item.scene.starts_with(name + "@") ? name : item.scene;
+    return config::sceneName(item.scene) == name ? name : item.scene;
 }
 
 Settings settingsOf(const CaseRecords& item, int frameCount, const config::Printed& printed) {

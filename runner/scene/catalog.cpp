@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runner/config/scene_reference.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
 #include "runner/image/png_io.h"
@@ -114,11 +115,26 @@ std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source
                                  how.resampleTo.value_or(0), how.detailM, source.seed);
 }
 
-/// Stands between the name of a scene and its seed.
-constexpr char kSeedMark = '@';
+/// "the file s.obj", "generator grass".
+std::string kindOf(const SceneSource& source) {
+    return source.file.empty() ? "generator " + source.generator : "the file " + source.file;
+}
 
-bool isUserFile(const std::string& reference) {
-    return fs::path(reference).has_extension();
+void takeSeed(const std::string& name, const std::string& seed, const SourceLocation& where,
+              SceneSource& source) {
+    const auto number = parseInteger(seed);
+    if (!number || *number < 0) {
+        throw Error(
+            where,
+            fmt::format("the seed of scene '{}' is '{}'; allowed: a whole number, at least 0", name,
+                        seed));
+    }
+    if (!source.isSeeded()) {
+        throw Error(where,
+                    fmt::format("scene '{}' has no seed: it is {}{}", name,
+                                source.file.empty() ? "the only one of " : "", kindOf(source)));
+    }
+    source.seed = static_cast<std::uint64_t>(*number);
 }
 
 }  // namespace
@@ -154,40 +170,30 @@ bool SceneSource::isSeeded() const {
     return heightMap && heightMap->detailM > 0.0F;
 }
 
-Node withSeed(const Node& reference, std::uint64_t seed) {
-    const std::string& text = reference.text();
-    return Node::scalar(
-        fmt::format("{}{}{}", text.substr(0, text.find(kSeedMark)), kSeedMark, seed),
-        reference.location());
+void takeParams(const std::string& name, const Node& params, SceneSource& source) {
+    if (source.generator.empty()) {
+        const std::string& first = params.entries().front().first;
+        throw Error(
+            params.keyLocation(first),
+            fmt::format("scene '{}' is not generated, so it has no parameter '{}': it is {}", name,
+                        first, kindOf(source)));
+    }
+    source.params = config::merged(source.params, params);
+    declaredParams(findGenerator(source.generator, source.where), source.params);
 }
 
 SceneSource Catalog::resolve(const Node& reference) const {
-    const std::string& text = reference.text();
-    const std::size_t mark = text.find(kSeedMark);
-    if (mark == std::string::npos || isUserFile(text)) return sourceOf(reference);
-    const std::string name = text.substr(0, mark), seed = text.substr(mark + 1);
-    const auto number = parseInteger(seed);
-    if (!number || *number < 0) {
-        throw Error(
-            reference.location(),
-            fmt::format("the seed of scene '{}' is '{}'; allowed: a whole number, at least 0", name,
-                        seed));
-    }
-    SceneSource source = sourceOf(Node::scalar(name, reference.location()));
-    if (!source.isSeeded()) {
-        throw Error(
-            reference.location(),
-            fmt::format("scene '{}' has no seed: it is {}", name,
-                        source.file.empty() ? "the only one of generator " + source.generator
-                                            : "the file " + source.file));
-    }
-    source.seed = static_cast<std::uint64_t>(*number);
+    const config::SceneReference parts = config::SceneReference::from(reference);
+    const SourceLocation& where = reference.location();
+    SceneSource source = sourceOf(Node::scalar(parts.name, where));
+    if (parts.seed) takeSeed(parts.name, *parts.seed, where, source);
+    if (!parts.params.entries().empty()) takeParams(parts.name, parts.params, source);
     return source;
 }
 
 SceneSource Catalog::sourceOf(const Node& reference) const {
     const std::string& name = reference.text();
-    if (isUserFile(name)) {
+    if (config::isSceneFile(name)) {
         SceneSource source;
         source.file = fs::absolute(fs::path(reference.location().file).parent_path() / name)
                           .lexically_normal();

@@ -43,10 +43,6 @@ struct SceneSource {
     bool isSeeded() const;
 };
 
-/// The generated scene at another seed than the catalogue's: "outdoor/city@3". A seed that
-/// `reference` has already is replaced.
-config::Node withSeed(const config::Node& reference, std::uint64_t seed);
-
 struct SceneEntry {
     std::string name;  // "models/dragon" = configs/scenes/models/dragon.yaml
     std::string doc;
@@ -55,6 +51,10 @@ struct SceneEntry {
     std::vector<SceneSource> sources;
     std::filesystem::path path;
 };
+
+/// Lays parameters over those of the source's generator. Throws Error where the scene `name` is not
+/// generated, and for what the generator does not take.
+void takeParams(const std::string& name, const config::Node& params, SceneSource& source);
 
 class Catalog {
   public:
@@ -65,9 +65,9 @@ class Catalog {
 
     /// The source that load() would take: the first whose file is there, or a generator.
     /// A reference with a file extension is a user's own file, relative to the file that names it;
-    /// one with a seed ("outdoor/city@3") is a generated scene of that seed instead of its own.
-    /// Throws Error for unknown names (with the nearest) and for entries none of whose sources is
-    /// at hand (with where it looked and how to get it).
+    /// one with a seed or parameters is a generated scene of those instead of its own
+    /// (config::SceneReference). Throws Error for unknown names (with the nearest) and for entries
+    /// none of whose sources is at hand (with where it looked and how to get it).
     SceneSource resolve(const config::Node& reference) const;
     /// Identity of the content: changes when the file or the generator's parameters change.
     /// Remembers the digests of files by size and time, so not for several threads at once.

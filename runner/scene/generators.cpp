@@ -215,6 +215,17 @@ std::span<const GeneratorInfo> generators() {
     return kGenerators;
 }
 
+std::vector<config::ParamInfo> declaredParams(const GeneratorInfo& generator,
+                                              const config::Node& values) {
+    config::Params params(values, "generator '" + std::string(generator.name) + "'");
+    params.stopWhenFinished();
+    try {
+        generator.generate(params, 1);
+    } catch (const config::Params::Finished&) {  // no error: what was asked is known
+    }
+    return params.declared();
+}
+
 const GeneratorInfo& findGenerator(std::string_view name, const SourceLocation& where) {
     std::vector<std::string> names;
     for (const GeneratorInfo& generator : generators()) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "runner/config/params.h"
 #include "runner/scene/scene.h"
@@ -11,7 +12,7 @@
 namespace gfxrepro::scene {
 
 /// Part of the identity of generated scenes: goes up when a generator's output changes.
-constexpr int kGeneratorVersion = 1;
+constexpr int kGeneratorVersion = 2;
 
 /// A generator reads its parameters by declaration (so `describe` can print them), refuses unknown
 /// ones, and returns a scene; its name and origin are the caller's to fill.
@@ -23,6 +24,11 @@ struct GeneratorInfo {
 };
 
 std::span<const GeneratorInfo> generators();
+
+/// What the generator declares; throws Error where it does not take `values` (a map or null). No
+/// scene is made.
+std::vector<config::ParamInfo> declaredParams(const GeneratorInfo& generator,
+                                              const config::Node& values);
 
 /// Throws Error with the nearest name when there is none of that name.
 const GeneratorInfo& findGenerator(std::string_view name, const SourceLocation& where);

@@ -8,6 +8,7 @@
 #include "runner/core/random.h"
 #include "runner/scene/generators_outdoor.h"
 #include "runner/scene/mesh_builder.h"
+#include "runner/scene/refine.h"
 #include "runner/scene/sdf.h"
 
 namespace gfxrepro::scene {
@@ -27,12 +28,14 @@ constexpr float kWall = 0.24F;
 /// Twigs start no higher than this share of the ellipsoid's height: the rim curls in a little.
 constexpr float kRim = 0.16F;
 
-constexpr int kTwigSides = 5;
-constexpr int kTwigStretches = 6;  // on average
-constexpr int kStretchTriangles = 2 * kTwigSides;
-constexpr int kCapTriangles = 2 * (kTwigSides - 2);
-/// Radii are stated for about the number of twigs that the default count gives.
-constexpr float kReferenceTwigs = 1000.0F;
+/// A twig of three sides and two stretches with its caps.
+constexpr int kLeastTwigTriangles = 14;
+/// Of a twig, where `twigs` says nothing; with few triangles twigs get coarser, to the second
+/// number, before they get fewer.
+constexpr int kUsualTwigTriangles = 530;
+constexpr int kCoarseTwigTriangles = 66;
+/// Radii are stated for the number of twigs that the default count of triangles gives.
+constexpr int kReferenceTwigs = 122;
 
 /// Smooth step of x from 0 at `low` to 1 at `high`.
 float ramp(float low, float high, float x) {
@@ -116,7 +119,7 @@ glm::vec3 headed(const glm::vec3& point, float headingRad) {
 }
 
 /// Points from the twig's middle towards one end, `kSteps` steps.
-constexpr int kSteps = 12;
+constexpr int kSteps = 32;
 using HalfPath = std::array<glm::vec3, kSteps + 1>;
 
 HalfPath traced(const Twig& twig, bool isForward) {
@@ -147,9 +150,12 @@ HalfPath traced(const Twig& twig, bool isForward) {
     return path;
 }
 
-void addTwig(const Twig& twig, int stretches, MeshBuilder& builder) {
+void addTwig(const Twig& twig, int sides, int stretches, MeshBuilder& builder) {
     const HalfPath back = traced(twig, false);
     const HalfPath front = traced(twig, true);
+    // A polygon of the circle's area: twigs are as thick whatever their sides.
+    const float angleRad = 2.0F * kPi / static_cast<float>(sides);
+    const float radiusM = twig.radiusM * std::sqrt(angleRad / sdf::sine(angleRad));
     std::vector<MeshBuilder::Station> stations;
     for (int i = 0; i <= stretches; ++i) {
         const float t = 2.0F * static_cast<float>(i) / static_cast<float>(stretches) - 1.0F;
@@ -160,10 +166,10 @@ void addTwig(const Twig& twig, int stretches, MeshBuilder& builder) {
             glm::mix(half[before], half[before + 1], place - static_cast<float>(before));
         const float wave = twig.waveM * sdf::sine(5.0F * t + twig.wavePhaseRad);
         const float taper = 1.0F - 0.35F * (t + 1.0F) * 0.5F - 0.4F * t * t * t * t;
-        stations.push_back({point + shellNormal(point) * wave, twig.radiusM * taper});
+        stations.push_back({point + shellNormal(point) * wave, radiusM * taper});
     }
     builder.setColor(twig.color);
-    builder.addTube(stations, kTwigSides, true);
+    builder.addTube(stations, sides, true);
 }
 
 constexpr int kEggs = 4;
@@ -271,21 +277,35 @@ Mesh branch(int material) {
     return builder.take("branch", material);
 }
 
-/// `triangles` of twigs, exactly: any even number, the twigs' stretches take up what is left over.
-Mesh twigs(int triangles, std::uint64_t seed, int material) {
-    int count = triangles / (kTwigStretches * kStretchTriangles + kCapTriangles);
-    while ((triangles - count * kCapTriangles) % kStretchTriangles != 0) --count;
-    const int stretches = (triangles - count * kCapTriangles) / kStretchTriangles;
-    // Volume is length · radius²: the bowl holds as much wood whatever the count.
-    const float thickness = std::sqrt(kReferenceTwigs / static_cast<float>(count));
+int usualTwigs(int triangles) {
+    return std::max(triangles / kUsualTwigTriangles,
+                    std::min(kReferenceTwigs, triangles / kCoarseTwigTriangles));
+}
+
+/// About as many stretches a twig as make them five times as long as the sides are wide.
+int sidesFor(int trianglesPerTwig) {
+    const float sides = std::sqrt(static_cast<float>(trianglesPerTwig) / 5.0F);
+    return std::clamp(static_cast<int>(sides + 0.5F), 3, 24);
+}
+
+/// `count` twigs of `triangles` together, any even number.
+Mesh twigs(int triangles, int count, float thickness, std::uint64_t seed, int material) {
+    const int sides = sidesFor(triangles / count);
+    const int stretches = (triangles - count * 2 * (sides - 2)) / (2 * sides);
+    // Volume is length · radius²: with the usual number of twigs the bowl holds as much wood
+    // whatever the count of triangles.
+    const float scale = thickness * std::sqrt(static_cast<float>(kReferenceTwigs) /
+                                              static_cast<float>(usualTwigs(triangles)));
     Random random(seed, kTwigStream);
     MeshBuilder builder;
     for (int i = 0; i < count; ++i) {
-        const Twig twig = makeTwig(random, thickness);
-        addTwig(twig, stretches / count + (i < stretches % count ? 1 : 0), builder);
+        const Twig twig = makeTwig(random, scale);
+        addTwig(twig, sides, stretches / count + (i < stretches % count ? 1 : 0), builder);
     }
-    GFXREPRO_ASSERT_EQ(builder.triangleCount(), static_cast<std::size_t>(triangles));
-    return builder.take("twigs", material);
+    // What is less than a stretch.
+    Mesh mesh = refinedTo(builder.take("twigs", material), triangles);
+    GFXREPRO_ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(triangles));
+    return mesh;
 }
 
 Material diffuse(std::string_view name, const glm::vec3& color) {
@@ -301,6 +321,13 @@ Scene birdNest(config::Params& params, std::uint64_t seed) {
     const int triangles =
         params.getInt("triangles", 67'000,
                       {"exact count; even, for twigs, eggs and branch are closed", "", 5000, 4e6});
+    const int wantedTwigs = params.getInt(
+        "twigs", 0,
+        {"twigs in the bowl, which share the triangles: fewer are rounder and smoother; 0: one for "
+         "every 530 triangles",
+         "", 0, 250'000});
+    const double thickness = params.getDouble(
+        "twig_thickness", 1.0, {"factor on the twigs' radii, whatever their number", "", 0.2, 5.0});
     params.finish();
     if (triangles % 2 != 0) {
         throw Error(params.locationOf("triangles"),
@@ -308,11 +335,20 @@ Scene birdNest(config::Params& params, std::uint64_t seed) {
                         " is odd, but twigs, eggs and branch are closed, which takes an even "
                         "number");
     }
+    const int ofTwigs = triangles - kEggs * kEggTriangles - kBranchTriangles;
+    const int count = wantedTwigs > 0 ? wantedTwigs : usualTwigs(ofTwigs);
+    if (count > ofTwigs / kLeastTwigTriangles) {
+        throw Error(params.locationOf("twigs"),
+                    "twigs: " + std::to_string(count) + " take at least " +
+                        std::to_string(static_cast<long long>(count) * kLeastTwigTriangles) +
+                        " triangles, but " + std::to_string(ofTwigs) + " are left of " +
+                        std::to_string(triangles) + " beside eggs and branch");
+    }
     Scene scene;
     scene.materials = {diffuse("twigs", glm::vec3(1.0F)), diffuse("eggs", {0.30F, 0.60F, 0.62F}),
                        diffuse("bark", glm::vec3(1.0F))};
-    scene.meshes = {twigs(triangles - kEggs * kEggTriangles - kBranchTriangles, seed, 0),
-                    eggs(seed, 1), branch(2)};
+    scene.meshes = {twigs(ofTwigs, count, static_cast<float>(thickness), seed, 0), eggs(seed, 1),
+                    branch(2)};
     scene.instances = {{0}, {1}, {2}};
     Camera camera;
     camera.name = "three_quarter";

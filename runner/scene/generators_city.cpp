@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "runner/core/error.h"
 #include "runner/scene/fitted_camera.h"
 #include "runner/scene/generators_city_parts.h"
 #include "runner/scene/generators_outdoor.h"
+#include "runner/scene/refine.h"
 
 namespace gfxrepro::scene {
 
@@ -16,8 +19,10 @@ constexpr float kStreetM = 15.0F;
 constexpr float kPitchM = kBlockM + kStreetM;
 constexpr float kSidewalkM = 4.0F;
 constexpr float kSidewalkHeightM = 0.2F;
-/// What a block is given, about: 4 × 4 blocks make the default.
+/// What a block is given, about: 3 × 3 blocks make the default.
 constexpr float kTrianglesPerBlock = 3400.0F;
+/// Nothing else would hold a shop front and a roof.
+constexpr float kLeastHeightM = 6.0F;
 
 /// A place for something small on a street.
 struct Slot {
@@ -26,6 +31,15 @@ struct Slot {
     glm::vec3 base{0.0F};
     glm::vec3 direction{1.0F, 0.0F, 0.0F};
     std::uint64_t seed = 0;
+};
+
+/// What is chosen beside the count of triangles.
+struct Settings {
+    int blocks = 0;  // along each side
+    float height = 1.0F;
+    float width = 1.0F;
+    float recessedShare = 1.0F / 3.0F;
+    float streetShare = 0.2F;
 };
 
 /// Everything but the triangles: does not depend on the detail.
@@ -56,7 +70,8 @@ float heightAt(float density, Random& random) {
     return 13.0F + 20.0F * u * (0.5F + 0.5F * density);
 }
 
-/// Splits across the longer side until a lot has the size of a building.
+/// Splits across the longer side until a lot has the size of a building. The city's centre, the
+/// origin, is left inside of one.
 void split(const Lot& lot, float largestM, Random& random, std::vector<Lot>& lots) {
     const glm::vec2 size = lot.max - lot.min;
     const int axis = size.x > size.y ? 0 : 1;
@@ -64,8 +79,13 @@ void split(const Lot& lot, float largestM, Random& random, std::vector<Lot>& lot
         lots.push_back(lot);
         return;
     }
-    const float cut = lot.min[axis] + size[axis] * random.uniform(0.4F, 0.6F);
+    float cut = lot.min[axis] + size[axis] * random.uniform(0.4F, 0.6F);
     const float alleyM = random.index(3) == 0 ? 2.2F : 0.3F;
+    constexpr float kInsideM = 5.0F;
+    const int other = 1 - axis;
+    if (lot.min[other] < 0.0F && lot.max[other] > 0.0F && std::abs(cut) < kInsideM) {
+        cut = cut < 0.0F ? -kInsideM : kInsideM;
+    }
     Lot low = lot;
     Lot high = lot;
     low.max[axis] = cut - 0.5F * alleyM;
@@ -74,7 +94,7 @@ void split(const Lot& lot, float largestM, Random& random, std::vector<Lot>& lot
     split(high, largestM, random, lots);
 }
 
-void planBlock(Plan& plan, int i, int j, Random& random) {
+void planBlock(Plan& plan, int i, int j, const Settings& settings, Random& random) {
     const glm::vec2 corner = blockCorner(plan, i, j);
     Lot block;
     block.min = corner + kSidewalkM;
@@ -86,13 +106,14 @@ void planBlock(Plan& plan, int i, int j, Random& random) {
         return;
     }
     std::vector<Lot> lots;
-    split(block, block.density < 0.28F ? 19.0F : 27.0F, random, lots);
+    split(block, settings.width * (block.density < 0.28F ? 19.0F : 27.0F), random, lots);
     for (Lot& lot : lots) {
         lot.density = densityAt(plan, 0.5F * (lot.min + lot.max));
         lot.heightM = heightAt(lot.density, random);
         // A tower on a narrow lot would be a board.
         const glm::vec2 size = lot.max - lot.min;
         lot.heightM = std::min(lot.heightM, 6.5F * std::min(size.x, size.y));
+        lot.heightM = std::max(settings.height * lot.heightM, kLeastHeightM);
         plan.lots.push_back(lot);
     }
 }
@@ -131,22 +152,22 @@ void planSlots(Plan& plan, int i, int j, Random& random) {
     }
 }
 
-Plan planned(float blocks, std::uint64_t seed) {
+/// `blocks` along each side.
+Plan planned(int blocks, const Settings& settings, std::uint64_t seed) {
     Plan plan;
-    plan.blocks.x = std::max(1, static_cast<int>(std::sqrt(blocks) + 0.5F));
-    plan.blocks.y =
-        std::max(1, static_cast<int>(blocks / static_cast<float>(plan.blocks.x) + 0.5F));
+    plan.blocks = glm::ivec2(blocks);
     Random random(seed);
     for (int j = 0; j < plan.blocks.y; ++j) {
         for (int i = 0; i < plan.blocks.x; ++i) {
-            planBlock(plan, i, j, random);
+            planBlock(plan, i, j, settings, random);
             planSlots(plan, i, j, random);
         }
     }
     for (std::size_t i = plan.slots.size(); i > 1; --i) {
         std::swap(plan.slots[i - 1], plan.slots[random.index(static_cast<std::uint32_t>(i))]);
     }
-    plan.usualSlots = plan.slots.size() / 5;
+    plan.usualSlots =
+        static_cast<std::size_t>(settings.streetShare * static_cast<float>(plan.slots.size()));
     return plan;
 }
 
@@ -207,7 +228,7 @@ void addStreets(Builders& builders, const Plan& plan) {
     }
 }
 
-Builders built(const Plan& plan, float detail, std::uint64_t seed) {
+Builders built(const Plan& plan, const FacadeDetail& detail, std::uint64_t seed) {
     Builders builders;
     addStreets(builders, plan);
     Random random(seed, 4);
@@ -217,32 +238,37 @@ Builders built(const Plan& plan, float detail, std::uint64_t seed) {
     return builders;
 }
 
-/// As many blocks as leave room for windows.
-Plan fittingPlan(std::size_t triangles, std::uint64_t seed) {
-    constexpr float kLeastDetail = 0.3F;
-    float blocks = static_cast<float>(triangles) / kTrianglesPerBlock;
-    for (;;) {
-        Plan plan = planned(blocks, seed);
-        const bool isLeast = plan.blocks == glm::ivec2(1);
-        if (isLeast || built(plan, kLeastDetail, seed).triangleCount() <= triangles) return plan;
-        blocks *= 0.9F;
+/// As many blocks as leave room for windows, an odd number along each side: a crossing would lie
+/// under the centre otherwise.
+Plan fittingPlan(std::size_t triangles, const Settings& settings, std::uint64_t seed) {
+    constexpr float kLeastWindows = 0.3F;
+    const float across = std::sqrt(static_cast<float>(triangles) / kTrianglesPerBlock);
+    for (int blocks = 2 * static_cast<int>(0.5F * across) + 1;; blocks -= 2) {
+        Plan plan = planned(blocks, settings, seed);
+        const FacadeDetail least{kLeastWindows, settings.recessedShare};
+        if (blocks == 1 || built(plan, least, seed).triangleCount() <= triangles) return plan;
     }
 }
 
-/// As many windows as the count allows, then cars, trees and lamps for what is missing.
-Builders filled(const Plan& plan, std::size_t triangles, std::uint64_t seed) {
+/// What the count allows for, in windows.
+constexpr float kFewestWindows = 0.1F;
+constexpr float kMostWindows = 4.0F;
+
+/// As many windows as the count allows, then cars, trees and lamps for what is missing, and at last
+/// the ground's longest edges halved.
+Builders filled(const Plan& plan, std::size_t triangles, float recessedShare, std::uint64_t seed) {
     constexpr int kBisections = 12;
-    float low = 0.1F;
-    float high = 4.0F;
-    Builders best = built(plan, low, seed);
+    float low = kFewestWindows;
+    float high = kMostWindows;
+    Builders best = built(plan, {low, recessedShare}, seed);
     for (int i = 0; i < kBisections; ++i) {
-        const float detail = 0.5F * (low + high);
-        Builders builders = built(plan, detail, seed);
+        const float windows = 0.5F * (low + high);
+        Builders builders = built(plan, {windows, recessedShare}, seed);
         if (builders.triangleCount() <= triangles) {
-            low = detail;
+            low = windows;
             best = std::move(builders);
         } else {
-            high = detail;
+            high = windows;
         }
     }
     constexpr std::size_t kLargestSlot = 40;
@@ -251,6 +277,18 @@ Builders filled(const Plan& plan, std::size_t triangles, std::uint64_t seed) {
         addSlot(best, plan.slots[i]);
     }
     return best;
+}
+
+/// Throws Error unless the city can have `triangles`, to the 2 % that the ground may take up.
+void checkCount(const config::Params& params, const Plan& plan, std::size_t count,
+                std::size_t triangles) {
+    const bool isTooMany = count > triangles;
+    if (!isTooMany && 50 * count >= 49 * triangles) return;
+    const std::string across = std::to_string(plan.blocks.x);
+    throw Error(params.locationOf("blocks"),
+                "blocks: " + across + " × " + across + " blocks of such buildings have at " +
+                    (isTooMany ? "least " : "most ") + std::to_string(count) +
+                    " triangles, but 'triangles' is " + std::to_string(triangles));
 }
 
 void addMesh(Scene& scene, MeshBuilder& builder, const char* name, float roughness) {
@@ -267,20 +305,53 @@ void addMesh(Scene& scene, MeshBuilder& builder, const char* name, float roughne
 }  // namespace
 
 Scene city(config::Params& params, std::uint64_t seed) {
-    const int triangles = params.getInt(
-        "triangles", 50'000, {"count, met to 2 %; more make a larger city", "", 5000, 1e6});
+    const int triangles =
+        params.getInt("triangles", 50'000, {"exact count; more make a larger city", "", 5000, 1e6});
+    Settings settings;
+    settings.blocks = params.getInt(
+        "blocks", 0,
+        {"along each side, odd: a building stands under the centre then, not a crossing; fewer "
+         "have more windows; 0: as many as give a block some 3400 triangles",
+         "", 0, 31});
+    settings.height = static_cast<float>(params.getDouble(
+        "building_height", 1.0, {"factor on the buildings' heights", "", 0.5, 3.0}));
+    settings.width = static_cast<float>(params.getDouble(
+        "building_width", 1.0,
+        {"factor on the largest size of a building's lot: wider ones are fewer", "", 0.6, 2.5}));
+    settings.recessedShare = static_cast<float>(params.getDouble(
+        "recessed_share", 1.0 / 3.0,
+        {"of the buildings of middle height: windows lie in the wall, with reveals, not flush", "",
+         0.0, 1.0}));
+    settings.streetShare = static_cast<float>(params.getDouble(
+        "street_share", 0.2,
+        {"of the places for trees, lamps and cars along the streets that are taken before windows "
+         "get the other triangles",
+         "", 0.0, 1.0}));
     params.finish();
+    if (settings.blocks > 0 && settings.blocks % 2 == 0) {
+        throw Error(params.locationOf("blocks"),
+                    "blocks: " + std::to_string(settings.blocks) +
+                        " is even, which puts a crossing under the city's centre; allowed: 0 and "
+                        "odd numbers");
+    }
 
     const auto wanted = static_cast<std::size_t>(triangles);
-    const Plan plan = fittingPlan(wanted, seed);
-    Builders builders = filled(plan, wanted, seed);
+    const Plan plan = settings.blocks > 0 ? planned(settings.blocks, settings, seed)
+                                          : fittingPlan(wanted, settings, seed);
+    Builders builders = filled(plan, wanted, settings.recessedShare, seed);
+    checkCount(params, plan, builders.triangleCount(), wanted);
+    const std::size_t missing = wanted - builders.triangleCount();
     Scene scene;
     addMesh(scene, builders.ground, "ground", 1.0F);
+    Mesh& ground = scene.meshes.back();
+    const std::size_t ofGround = ground.triangles.size() + missing;
+    ground = refinedTo(std::move(ground), static_cast<long long>(ofGround));
     addMesh(scene, builders.walls, "walls", 1.0F);
     addMesh(scene, builders.glass, "glass", 0.2F);
     addMesh(scene, builders.roofs, "roofs", 1.0F);
     addMesh(scene, builders.metal, "metal", 0.5F);
     addMesh(scene, builders.plants, "plants", 1.0F);
+    GFXREPRO_ASSERT_EQ(scene.triangleCount(), wanted);
     // Over the roofs, at an angle to the streets.
     const glm::vec3 target(0.0F, 0.15F * scene.bounds().max.y, 0.0F);
     scene.cameras.push_back(fittedCamera(scene, target, {0.36F, 0.56F, 0.86F}, 0.7F, 0.88F));

@@ -111,10 +111,11 @@ void addHouse(Builders& builders, const Lot& lot, float detail, Random& random) 
                               chimney + glm::vec3(0.45F, rise + 1.0F, 0.45F)});
 }
 
-void addBlockBuilding(Builders& builders, const Lot& lot, float detail, Random& random) {
-    FacadeStyle style = styleOf(oneOf(kWallColors, random), detail, random);
+void addBlockBuilding(Builders& builders, const Lot& lot, const FacadeDetail& detail,
+                      Random& random) {
+    FacadeStyle style = styleOf(oneOf(kWallColors, random), detail.windows, random);
     style.hasLedges = random.index(6) == 0;
-    if (random.index(3) != 0) style.recessM = 0.0F;
+    if (random.uniform() >= detail.recessedShare) style.recessM = 0.0F;
     Solid body{{lot.min.x, 0.2F, lot.min.y}, {lot.max.x, lot.heightM, lot.max.y}};
     // The shop front: a darker storey, with a canopy around.
     const float shopM = 4.5F;
@@ -192,15 +193,16 @@ void addTower(Builders& builders, const Lot& lot, float detail, Random& random) 
 
 }  // namespace
 
-void addBuilding(Builders& builders, const Lot& lot, float detail, std::uint64_t seed) {
+void addBuilding(Builders& builders, const Lot& lot, const FacadeDetail& detail,
+                 std::uint64_t seed) {
     Random random(seed, 1);
     const glm::vec2 size = lot.max - lot.min;
     if (lot.heightM < 12.0F && std::min(size.x, size.y) < 18.0F) {
-        addHouse(builders, lot, detail, random);
+        addHouse(builders, lot, detail.windows, random);
     } else if (lot.heightM < 36.0F) {
         addBlockBuilding(builders, lot, detail, random);
     } else {
-        addTower(builders, lot, detail, random);
+        addTower(builders, lot, detail.windows, random);
     }
 }
 

@@ -24,10 +24,12 @@ constexpr float kSideM = 2.4F;  // of the square, around the origin
 constexpr int kCells = 32;      // of the ground, along each side
 constexpr int kGroundTriangles = 2 * kCells * kCells;
 
-constexpr int kStretches = 4;  // of a blade: three quads and a tip, 7 triangles
-constexpr int kBladeTriangles = 2 * kStretches - 1;
-/// Widths are stated for about the number of blades that the default count gives.
-constexpr float kReferenceBlades = 7700.0F;
+/// Both sides of two stretches, a quad and a tip.
+constexpr int kLeastBladeTriangles = 6;
+/// Of a blade, where `blades` says nothing.
+constexpr int kUsualBladeTriangles = 28;
+/// Widths are stated for the number of blades that the default count of triangles gives.
+constexpr int kReferenceBlades = 1926;
 
 /// A smooth function over the field, in [−1, 1]: a few waves in directions and phases from the
 /// seed.
@@ -173,8 +175,9 @@ Blade makeBlade(Random& random, const Field& field, float widthScale) {
     return blade;
 }
 
-/// A curved strip that tapers to a point.
-void addBlade(const Blade& blade, int stretches, Mesh& mesh) {
+/// The front of a curved strip that tapers to a point: all stretches are quads but the last. One
+/// that is cut off ends in a quad, too.
+void addBlade(const Blade& blade, int stretches, bool isCut, Mesh& mesh) {
     const glm::vec3 up(0.0F, 1.0F, 0.0F);
     const glm::vec3 out(sdf::cosine(blade.azimuthRad), 0.0F, sdf::sine(blade.azimuthRad));
     const glm::vec3 across(-out.z, 0.0F, out.x);
@@ -195,10 +198,11 @@ void addBlade(const Blade& blade, int stretches, Mesh& mesh) {
         const float twistRad = blade.twistRad * t;
         const glm::vec3 side = across * sdf::cosine(twistRad) + face * sdf::sine(twistRad);
         const glm::vec3 normal = glm::normalize(glm::cross(side, tangent));
-        if (i == stretches) {
+        if (i == stretches && !isCut) {
             put(point, normal, t);
         } else {
-            const glm::vec3 half = 0.5F * blade.widthM * (1.0F - t * t) * side;
+            const float taper = isCut ? 1.0F - 0.7F * t * t : 1.0F - t * t;
+            const glm::vec3 half = 0.5F * blade.widthM * taper * side;
             put(point - half, normal, t);
             put(point + half, normal, t);
         }
@@ -207,31 +211,44 @@ void addBlade(const Blade& blade, int stretches, Mesh& mesh) {
         const float aheadRad = blade.tiltRad + blade.bendRad * ahead * ahead;
         point += step * (out * sdf::sine(aheadRad) + up * sdf::cosine(aheadRad));
     }
-    for (unsigned i = 0; i + 1 < static_cast<unsigned>(stretches); ++i) {
+    const auto quads = static_cast<unsigned>(isCut ? stretches : stretches - 1);
+    for (unsigned i = 0; i < quads; ++i) {
         const unsigned a = first + 2 * i;
         mesh.triangles.emplace_back(a, a + 1, a + 3);
         mesh.triangles.emplace_back(a, a + 3, a + 2);
     }
-    const unsigned last = first + 2 * static_cast<unsigned>(stretches - 1);
+    if (isCut) return;
+    const unsigned last = first + 2 * quads;
     mesh.triangles.emplace_back(last, last + 1, last + 2);
 }
 
-/// `triangles` of blades, exactly: some blades get one stretch more for what is left over.
-Mesh bladeMesh(int triangles, const Field& field, std::uint64_t seed, int material) {
-    int count = triangles / kBladeTriangles;
-    // A blade has an odd number of triangles, a stretch more gives it two.
-    if ((triangles - count) % 2 != 0) --count;
-    const int longer = (triangles - count * kBladeTriangles) / 2;
-    // Blades stay as wide against the distance to their neighbours, which is 1/√count. Their area
-    // then grows by √count: finer grass is denser grass, as from a lawn to moss.
-    const float widthScale = std::sqrt(kReferenceBlades / static_cast<float>(count));
+int usualBlades(int triangles) {
+    return triangles / kUsualBladeTriangles;
+}
+
+/// `count` blades of `triangles` together, any even number.
+Mesh bladeMesh(int triangles, int count, float width, const Field& field, std::uint64_t seed,
+               int material) {
+    // Blades stay as wide against the distance to their neighbours, which is 1/√count for the
+    // usual count. Their area then grows by √count: finer grass is denser grass, as from a lawn to
+    // moss.
+    const float widthScale = width * std::sqrt(static_cast<float>(kReferenceBlades) /
+                                               static_cast<float>(usualBlades(triangles)));
+    // The front of a blade has an odd number of triangles: where their sum has the wrong parity,
+    // one blade is cut off.
+    const int fronts = triangles / 2;
+    const bool isOneCut = (fronts + count) % 2 != 0;
+    const long long stretches = (fronts + count) / 2;
     Random random(seed, kBladeStream);
     Mesh mesh;
     mesh.name = "blades";
     mesh.material = material;
-    for (int i = 0; i < count; ++i) {
-        addBlade(makeBlade(random, field, widthScale), kStretches + (i < longer ? 1 : 0), mesh);
+    for (long long i = 0; i < count; ++i) {
+        const long long ofBlade = stretches * (i + 1) / count - stretches * i / count;
+        addBlade(makeBlade(random, field, widthScale), static_cast<int>(ofBlade),
+                 isOneCut && i == 0, mesh);
     }
+    addBackSides(mesh);
     GFXREPRO_ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(triangles));
     return mesh;
 }
@@ -239,20 +256,42 @@ Mesh bladeMesh(int triangles, const Field& field, std::uint64_t seed, int materi
 }  // namespace
 
 Scene grass(config::Params& params, std::uint64_t seed) {
-    const int triangles = params.getInt("triangles", 56'000,
-                                        {"exact count, ground of 2048 included", "", 10'000, 4e6});
+    const int triangles = params.getInt(
+        "triangles", 56'000,
+        {"exact count, ground of 2048 included; even, for a blade has two sides", "", 10'000, 4e6});
+    const int wantedBlades = params.getInt(
+        "blades", 0,
+        {"blades on the field, which share the triangles: fewer bend more smoothly; 0: one for "
+         "every 28 triangles",
+         "", 0, 600'000});
+    const double width = params.getDouble(
+        "blade_width", 1.0, {"factor on the blades' width, whatever their number", "", 0.2, 5.0});
     params.finish();
+    if (triangles % 2 != 0) {
+        throw Error(params.locationOf("triangles"),
+                    "triangles: " + std::to_string(triangles) +
+                        " is odd, but a blade has two sides, which takes an even number");
+    }
+    const int ofBlades = triangles - kGroundTriangles;
+    const int count = wantedBlades > 0 ? wantedBlades : usualBlades(ofBlades);
+    if (count > ofBlades / kLeastBladeTriangles) {
+        throw Error(params.locationOf("blades"),
+                    "blades: " + std::to_string(count) + " take at least " +
+                        std::to_string(static_cast<long long>(count) * kLeastBladeTriangles) +
+                        " triangles, but " + std::to_string(ofBlades) + " are left of " +
+                        std::to_string(triangles) + " beside the ground");
+    }
     const Field field{Random(seed, kFieldStream)};
     Scene scene;
     Material blades;
     blades.name = "grass";
     blades.baseColor = glm::vec4(1.0F);
-    blades.isDoubleSided = true;
     Material earth;
     earth.name = "earth";
     earth.baseColor = glm::vec4(1.0F);
     scene.materials = {blades, earth};
-    scene.meshes = {bladeMesh(triangles - kGroundTriangles, field, seed, 0), groundMesh(field, 1)};
+    scene.meshes = {bladeMesh(ofBlades, count, static_cast<float>(width), field, seed, 0),
+                    groundMesh(field, 1)};
     scene.instances = {{0}, {1}};
     Camera camera;
     camera.name = "three_quarter";

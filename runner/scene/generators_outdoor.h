@@ -1,5 +1,7 @@
 // Generators of the outdoor scenes of [xie2017] Fig. 8–12: none was published, these have the
-// printed triangle counts.
+// printed triangle counts, exactly. Their other numbers are free: what a scene consists of shares
+// the triangles. Nothing is double-sided: thin sheets are two coincident polygons, as back faces
+// are culled in all drawings ([xie2017] Sec. 2.2.2).
 #pragma once
 
 #include <cstdint>
@@ -9,17 +11,21 @@
 
 namespace gfxrepro::scene {
 
-/// Twigs woven into a bowl, eggs in it, a forked branch below. Exactly `triangles`; the number of
-/// twigs follows from it, the bowl stays, and the twigs get thinner so that the wood in it stays.
+/// Twigs woven into a bowl, eggs in it, a forked branch below. Exactly `triangles`; where `twigs`
+/// says nothing their number follows from it, the bowl stays, and the twigs get thinner so that the
+/// wood in it stays.
 Scene birdNest(config::Params& params, std::uint64_t seed);
 
-/// Bent blades on uneven ground. Exactly `triangles`; the number of blades follows from it, field
-/// and blade lengths stay, and the blades' width keeps its ratio to the distance between them.
+/// Bent blades on uneven ground. Exactly `triangles`; where `blades` says nothing their number
+/// follows from it, field and blade lengths stay, and the blades' width keeps its ratio to the
+/// distance between them.
 Scene grass(config::Params& params, std::uint64_t seed);
 
-/// A downtown: streets, sidewalks, towers, houses, trees and cars.
+/// A downtown: streets, sidewalks, towers, houses, trees and cars; a building under its centre.
+/// Exactly `triangles`: windows, street furniture and, for the last few, the ground take them up.
 Scene city(config::Params& params, std::uint64_t seed);
-/// A deciduous tree with a dense crown of double-sided leaves on a disc of ground.
+/// A deciduous tree with a crown of leaves on a disc of ground. Exactly `triangles`: the leaves
+/// share what the wood leaves.
 Scene tree(config::Params& params, std::uint64_t seed);
 
 /// The baseline V₀V₁ that four_objects is made for, in diagonals of its box.

@@ -63,7 +63,7 @@ void addHouses(Square& square, float detail, Random& random) {
                 lot.max = {side == 1 ? -near : far, from + kWidthM - 0.3F};
             }
             lot.heightM = random.uniform(8.0F, 14.0F);
-            addBuilding(square.city, lot, detail, random.next());
+            addBuilding(square.city, lot, {.windows = detail}, random.next());
         }
     }
 }

@@ -143,22 +143,69 @@ class Grower {
     std::vector<Twig> twigs_;
 };
 
-/// Two triangles, folded along the midrib; the tip hangs.
-void addLeaf(MeshBuilder& builder, const glm::vec3& base, const glm::vec3& direction, float lengthM,
-             float rollRad) {
-    const glm::vec3 across = anyAcross(direction);
-    const glm::vec3 normal = glm::cross(direction, across);
-    const glm::vec3 side = across * sdf::cosine(rollRad) + normal * sdf::sine(rollRad);
-    const glm::vec3 up = glm::cross(direction, side);
-    const glm::vec3 tip = base + direction * lengthM - kUp * (0.18F * lengthM);
-    const glm::vec3 middle = base + direction * (0.45F * lengthM) + up * (0.14F * lengthM);
-    builder.addTriangle(base, tip, middle + side * (0.4F * lengthM));
-    builder.addTriangle(base, middle - side * (0.4F * lengthM), tip);
-}
+/// The front of a leaf: `triangles` of them, two at least. Both halves run between the midrib,
+/// which hangs in an arc from base to tip, and the outline; the leaf is folded along the midrib.
+class LeafShape {
+  public:
+    LeafShape(const glm::vec3& base, const glm::vec3& direction, float lengthM, float rollRad)
+        : base_(base), direction_(direction), lengthM_(lengthM) {
+        const glm::vec3 across = anyAcross(direction);
+        const glm::vec3 normal = glm::cross(direction, across);
+        side_ = across * sdf::cosine(rollRad) + normal * sdf::sine(rollRad);
+        up_ = glm::cross(direction, side_);
+    }
 
-/// `count` leaves, dealt out evenly to the twigs.
+    void add(MeshBuilder& builder, int triangles) const {
+        const int ribs = triangles / 4;  // points between base and tip
+        const int outline = triangles - 2 * ribs;
+        addHalf(builder, ribs, (outline + 1) / 2, 1.0F);
+        addHalf(builder, ribs, outline / 2, -1.0F);
+    }
+
+  private:
+    /// `t` from base to tip, `half` 1 and −1 on the outline, 0 on the midrib.
+    glm::vec3 at(float t, float half) const {
+        const float width = 4.0F * t * (1.0F - t);
+        const glm::vec3 rib =
+            base_ + direction_ * (t * lengthM_) - kUp * (0.18F * t * t * lengthM_);
+        return rib + (side_ * (0.4F * half) + up_ * (0.14F * std::abs(half))) * (width * lengthM_);
+    }
+
+    /// A strip between midrib and outline, always on from the end that lies behind.
+    void addHalf(MeshBuilder& builder, int ribs, int outline, float half) const {
+        const auto shareOf = [](int i, int count) {
+            return static_cast<float>(i) / static_cast<float>(count + 1);
+        };
+        glm::vec3 rib = base_;
+        glm::vec3 edge = at(shareOf(1, outline), half);
+        const auto put = [&](const glm::vec3& next) {
+            if (half > 0.0F) {
+                builder.addTriangle(rib, next, edge);
+            } else {
+                builder.addTriangle(rib, edge, next);
+            }
+        };
+        int i = 0;  // of the midrib; its point ribs + 1 is the tip
+        int j = 1;  // of the outline
+        while (i <= ribs) {
+            // The outline stops before the tip, which closes the last triangle.
+            const bool isRibNext =
+                j == outline || (i < ribs && shareOf(i + 1, ribs) <= shareOf(j + 1, outline));
+            const glm::vec3 next =
+                isRibNext ? at(shareOf(i + 1, ribs), 0.0F) : at(shareOf(j + 1, outline), half);
+            put(next);
+            (isRibNext ? rib : edge) = next;
+            ++(isRibNext ? i : j);
+        }
+    }
+
+    glm::vec3 base_, direction_, side_{0.0F}, up_{0.0F};
+    float lengthM_;
+};
+
+/// `count` leaves, dealt out evenly to the twigs, and `triangles` to them; their fronts.
 void addLeaves(MeshBuilder& builder, const std::vector<Twig>& twigs, std::size_t count,
-               float lengthM, std::uint64_t seed) {
+               std::size_t triangles, float lengthM, std::uint64_t seed) {
     constexpr glm::vec3 kGreens[] = {
         {0.10F, 0.26F, 0.04F}, {0.15F, 0.33F, 0.05F}, {0.07F, 0.20F, 0.04F}, {0.22F, 0.36F, 0.07F}};
     Random random(seed, 1);
@@ -172,8 +219,9 @@ void addLeaves(MeshBuilder& builder, const std::vector<Twig>& twigs, std::size_t
         const glm::vec3 direction = turned(glm::normalize(b - a), random.uniform(0.5F, 1.5F),
                                            random.uniform(0.0F, 2 * kPi));
         builder.setColor(kGreens[random.index(4)] * random.uniform(0.8F, 1.2F));
-        addLeaf(builder, base, direction, lengthM * random.uniform(0.7F, 1.2F),
-                random.uniform(0.0F, 2.0F * kPi));
+        const float ownLengthM = lengthM * random.uniform(0.7F, 1.2F);
+        const LeafShape leaf(base, direction, ownLengthM, random.uniform(0.0F, 2.0F * kPi));
+        leaf.add(builder, static_cast<int>(triangles * (i + 1) / count - triangles * i / count));
     }
 }
 
@@ -217,12 +265,11 @@ void addGround(MeshBuilder& builder, float radiusM) {
     builder.addIndexed(low, std::vector<glm::vec3>(kSides, -kUp), fan);
 }
 
-void addMesh(Scene& scene, MeshBuilder& builder, const char* name, bool isDoubleSided) {
+void addMesh(Scene& scene, MeshBuilder& builder, const char* name) {
     const int index = static_cast<int>(scene.meshes.size());
     Material material;
     material.name = name;
     material.baseColor = {1.0F, 1.0F, 1.0F, 1.0F};
-    material.isDoubleSided = isDoubleSided;
     scene.materials.push_back(material);
     scene.meshes.push_back(builder.take(name, index));
     scene.instances.push_back({index, glm::mat4(1.0F)});
@@ -231,10 +278,24 @@ void addMesh(Scene& scene, MeshBuilder& builder, const char* name, bool isDouble
 }  // namespace
 
 Scene tree(config::Params& params, std::uint64_t seed) {
-    const int triangles = params.getInt(
-        "triangles", static_cast<int>(kDefaultTriangles),
-        {"count, met to one triangle; more make finer twigs and leaves", "", 10'000, 2e6});
+    const int triangles =
+        params.getInt("triangles", static_cast<int>(kDefaultTriangles),
+                      {"exact count; even, for a leaf has two sides; more make finer twigs and "
+                       "leaves",
+                       "", 10'000, 2e6});
+    const int wantedLeaves = params.getInt(
+        "leaves", 0,
+        {"leaves, which share the triangles that the wood leaves: fewer are rounder; 0: seven for "
+         "every 40 of them",
+         "", 0, 500'000});
+    const double leafSize = params.getDouble(
+        "leaf_size", 1.0, {"factor on the leaves' length, whatever their number", "", 0.2, 5.0});
     params.finish();
+    if (triangles % 2 != 0) {
+        throw Error(params.locationOf("triangles"),
+                    "triangles: " + std::to_string(triangles) +
+                        " is odd, but a leaf has two sides, which takes an even number");
+    }
 
     const auto wanted = static_cast<std::size_t>(triangles);
     const float share = static_cast<float>(triangles) / kDefaultTriangles;
@@ -243,15 +304,28 @@ Scene tree(config::Params& params, std::uint64_t seed) {
     MeshBuilder ground;
     addGround(ground, 3.2F);
     const std::size_t wood = grower.bark().triangleCount() + ground.triangleCount();
-    GFXREPRO_ASSERT(wood < wanted);
-    // The leaves' area together stays what it is.
+    GFXREPRO_ASSERT(wood < wanted && wood % 2 == 0);
+    const std::size_t fronts = (wanted - wood) / 2;
+    const std::size_t count = wantedLeaves > 0 ? static_cast<std::size_t>(wantedLeaves)
+                                               : std::max(fronts * 7 / 20, std::size_t{1});
+    if (count > fronts / 2) {
+        throw Error(params.locationOf("leaves"),
+                    "leaves: " + std::to_string(count) + " take at least " +
+                        std::to_string(4 * count) + " triangles, but " +
+                        std::to_string(2 * fronts) + " are left of " + std::to_string(triangles) +
+                        " beside wood and ground");
+    }
+    // The usual leaves' area together stays what it is.
     MeshBuilder leaves;
-    addLeaves(leaves, grower.twigs(), (wanted - wood) / 2, 0.23F / std::sqrt(share), seed);
+    addLeaves(leaves, grower.twigs(), count, fronts,
+              static_cast<float>(leafSize) * 0.23F / std::sqrt(share), seed);
 
     Scene scene;
-    addMesh(scene, ground, "ground", false);
-    addMesh(scene, grower.bark(), "bark", false);
-    addMesh(scene, leaves, "leaves", true);
+    addMesh(scene, ground, "ground");
+    addMesh(scene, grower.bark(), "bark");
+    addMesh(scene, leaves, "leaves");
+    addBackSides(scene.meshes.back());
+    GFXREPRO_ASSERT_EQ(scene.triangleCount(), wanted);
     const glm::vec3 target(0.0F, 0.5F * scene.bounds().max.y, 0.0F);
     scene.cameras.push_back(fittedCamera(scene, target, {0.55F, 0.22F, 1.0F}, 0.7F, 0.88F));
     return scene;

@@ -123,6 +123,22 @@ void MeshBuilder::addTube(std::span<const Station> stations, int sides, bool isC
     }
 }
 
+void addBackSides(Mesh& mesh) {
+    const auto append = [](auto& values, auto&& changed) {
+        const std::size_t count = values.size();
+        values.reserve(2 * count);
+        for (std::size_t i = 0; i < count; ++i) values.push_back(changed(values[i]));
+    };
+    const auto same = [](const auto& value) { return value; };
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    append(mesh.positions, same);
+    append(mesh.normals, [](const glm::vec3& normal) { return -normal; });
+    append(mesh.texcoords, same);
+    append(mesh.colors, same);
+    append(mesh.triangles,
+           [first](const glm::uvec3& t) { return glm::uvec3(t.x, t.z, t.y) + first; });
+}
+
 Mesh MeshBuilder::take(std::string_view name, int material) {
     Mesh mesh = std::exchange(mesh_, {});
     mesh.name = name;

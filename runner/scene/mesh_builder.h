@@ -46,4 +46,9 @@ class MeshBuilder {
     glm::vec3 color_{1.0F};
 };
 
+/// Gives a thin sheet, drawn with back faces culled, its other side: every triangle once more with
+/// the opposite winding on vertices of its own, whose normals point the other way. The back of
+/// triangle i is triangle i + n, n being the number of triangles before.
+void addBackSides(Mesh& mesh);
+
 }  // namespace gfxrepro::scene

@@ -116,8 +116,8 @@ void DepthSampling::setup(technique::SetupContext& context) {
     depth_images::requireIdsFor(scene.triangleCount());
     const Views views = makeViews(context);
     raycast::RayTracer tracer(scene);
-    checkViews(scene, tracer, views.conventional);
-    if (params_.method == Method::DepthPeeling) checkViews(scene, tracer, {&views.images[0], 1});
+    checkViews(tracer, views.conventional);
+    if (params_.method == Method::DepthPeeling) checkViews(tracer, {&views.images[0], 1});
 
     if (params_.redundancy == Redundancy::Visibility) {
         experiment_ =

@@ -284,6 +284,11 @@ TEST_F(DepthSamplingTest, RefusesViewsInsideOfGeometry) {
     scene.materials = {scene::Material{.isDoubleSided = true}};
     scene.meshes[0].material = 0;
     EXPECT_EQ(errorText([&] { run("{view_spread: 0}", scene); }), "no error");
+    // Nor has one with a second side on the same points, whichever of them a ray reports.
+    scene.materials[0].isDoubleSided = false;
+    EXPECT_EQ(errorText([&] { run("{view_spread: 0}", scene); }), "view 0 at (0, 0, 4)" + rest);
+    scene::addBackSides(scene.meshes[0]);
+    EXPECT_EQ(errorText([&] { run("{view_spread: 0}", scene); }), "no error");
 }
 
 TEST_F(DepthSamplingTest, TimesImagesOrOneOutputFrame) {

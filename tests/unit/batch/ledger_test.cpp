@@ -43,7 +43,7 @@ struct Ledger {
         for (const char* name : {"grass", "tree"}) {
             folder.write(std::string("configs/scenes/") + name + ".yaml",
                          std::string("scene: ") + name + "\ndoc: d\nsources:\n  - {generator: " +
-                             name + ", params: {triangles: 3000}, seed: 3}\n");
+                             name + ", params: {triangles: 12000}, seed: 3}\n");
         }
         folder.write("configs/scenes/scan.yaml",
                      "scene: scan\ndoc: d\nsources:\n  - file: s.obj\n");
@@ -181,6 +181,92 @@ TEST(Cases, TakeSeedsAndOtherScenes) {
     EXPECT_EQ(
         errorOf("scene: grass\nmeasure: {lane: timing, scene_seeds: 5}\n"),
         "DIR/t.yaml:5:38: 'scene_seeds' needs the quality lane: a time varies by the process");
+}
+
+TEST(Cases, TakeTheParametersOfTheirScene) {
+    const Ledger ledger;
+    const auto biases = [&](const std::string& lines) {
+        std::vector<std::string> result;
+        for (const Case& item : ledger.cases(ledger.load(lines))) {
+            result.push_back(item.params.find("bias")->text());
+        }
+        return result;
+    };
+    const std::string swept = "sweep: {scene: [grass, scan]}\n";
+    const std::string grass = "params_by_scene: {grass: {bias: 0.2}}\n";
+    EXPECT_THAT(biases(swept + grass), ElementsAre("0.2", "0.5"));
+    EXPECT_THAT(biases(swept + "params: {bias: 0.1}\n" + grass), ElementsAre("0.2", "0.1"));
+    EXPECT_THAT(biases("sweep: {scene: [grass@7, scan]}\n" + grass), ElementsAre("0.2", "0.5"));
+    EXPECT_THAT(biases("scene: grass\nscene_instead: {grass: tree}\n" + grass), ElementsAre("0.2"));
+    EXPECT_THAT(biases("scene: grass\nsweep: {bias: [0.3, 0.4]}\n" + grass),
+                ElementsAre("0.3", "0.4"));
+    EXPECT_THAT(biases(swept + grass + "params_instead: {bias: 0.6}\n"), ElementsAre("0.6", "0.6"));
+    EXPECT_THAT(biases("scene: scan\n" + grass), ElementsAre("0.5")) << "catalogued, not measured";
+    const config::Experiment bound =
+        ledger.bound(swept + grass + "assumptions:\n  bias: {range: [0, 1], why: open}\n");
+    EXPECT_EQ(bound.assumptions.front().value.text(), "0.2, 0.5");
+}
+
+TEST(Cases, RefuseParametersOfNoScene) {
+    const Ledger ledger;
+    const auto errorOf = [&](const std::string& lines) {
+        return test::errorText([&] { ledger.cases(ledger.load("scene: grass\n" + lines)); },
+                               ledger.folder.path());
+    };
+    EXPECT_EQ(errorOf("params_by_scene:\n  gras: {bias: 0.2}\n"),
+              "DIR/t.yaml:6:3: params_by_scene: unknown scene 'gras'; did you mean 'grass'?");
+    EXPECT_EQ(
+        errorOf("params_by_scene:\n  grass: {biass: 0.2}\n"),
+        "DIR/t.yaml:6:11: technique 'still': unknown parameter 'biass'; did you mean 'bias'?");
+    EXPECT_EQ(errorOf("params_by_scene:\n  tree: {biass: 0.2}\n"),
+              "DIR/t.yaml:6:10: params_by_scene: unknown parameter 'biass'; did you mean 'bias'?");
+    EXPECT_EQ(errorOf("params_by_scene:\n  grass: {bias: 2}\n"),
+              "DIR/t.yaml:6:17: technique 'still': bias is 2; allowed: 0 … 1 texels");
+    EXPECT_EQ(errorOf("params_by_scene:\n  grass: 2\n"),
+              "DIR/t.yaml:6:10: params_by_scene: 'grass' is 2; allowed: a map {name: value}");
+    EXPECT_EQ(errorOf("params_by_scene:\n  grass@3: {bias: 0.2}\n"),
+              "DIR/t.yaml:6:3: params_by_scene: 'grass@3'; allowed: a scene without seed and "
+              "parameters, whose cases it is of");
+}
+
+TEST(Cases, TakeParametersOfTheGeneratedScene) {
+    const Ledger ledger;
+    const auto scenes = [&](const std::string& lines) {
+        std::vector<std::pair<std::string, std::string>> result;
+        for (const Case& item : ledger.cases(ledger.load(lines))) {
+            const config::Node* count = item.params.find("scene.triangles");
+            result.emplace_back(item.scene.text() + " for " + item.standsFor.text(),
+                                count ? count->text() : "");
+        }
+        return result;
+    };
+    EXPECT_THAT(scenes("scene: grass\nscene_params: {triangles: 40000}\n"),
+                ElementsAre(Pair("grass?triangles=40000 for grass", "40000")));
+    EXPECT_THAT(scenes("sweep: {scene: [grass, tree], scene.triangles: [40000]}\n"
+                       "scene_params: {triangles: 50000}\nscene_seed: 8\n"),
+                ElementsAre(Pair("grass?triangles=40000@8 for grass", "40000"),
+                            Pair("tree?triangles=40000@8 for tree", "40000")));
+    const std::vector<Case> cases =
+        ledger.cases(ledger.load("scene: grass\nsweep: {scene.triangles: [40000, 50000]}\n"));
+    EXPECT_EQ(cases[1].title(), "sweep/t scene.triangles=50000 (grass?triangles=50000)");
+    EXPECT_NE(ledger.catalog().contentKey(cases[0].scene),
+              ledger.catalog().contentKey(cases[1].scene));
+    EXPECT_EQ(cases[1].recordedParams().at("scene.triangles"), 50000);
+
+    const auto errorOf = [&](const std::string& lines) {
+        return test::errorText([&] { scenes(lines); }, ledger.folder.path());
+    };
+    EXPECT_EQ(errorOf("scene: scan\nscene_params: {triangles: 40000}\n"),
+              "DIR/t.yaml:5:16: scene 'scan' is not generated, so it has no parameter 'triangles': "
+              "it is the file s.obj");
+    EXPECT_EQ(errorOf("scene: grass\nscene_params: {triangle: 40000}\n"),
+              "DIR/t.yaml:5:16: generator 'grass': unknown parameter 'triangle'; did you mean "
+              "'triangles'?");
+    EXPECT_EQ(errorOf("scene: grass\nscene_params: {triangles: 1}\n"),
+              "DIR/t.yaml:5:27: generator 'grass': triangles is 1; allowed: 10000 … 4000000");
+    EXPECT_EQ(errorOf("scene: grass\nscene_params: {triangles: [1, 2]}\n"),
+              "DIR/t.yaml:5:27: generator 'grass': triangles is [1, 2]; allowed: a whole number, "
+              "10000 … 4000000");
 }
 
 TEST(Cases, SayWhichSceneTheyTake) {

@@ -312,6 +312,30 @@ TEST_F(ExperimentTest, ExtendsIsFollowedAndChecked) {
               "cannot read DIR/x.yaml: No such file or directory");
 }
 
+TEST_F(ExperimentTest, ParametersOfScenesMergeByKey) {
+    folder.write("presets/views.yaml",
+                 "params_by_scene: {a: {spread: 0.1, distance: 1}, b: {spread: 0.2}}\n");
+    const std::string text =
+        "table: p/1\ntitle: t\ntechnique: x\nextends: presets/views.yaml\n"
+        "sweep: {scene: [a, b]}\nparams: {spread: 0.9, n: 1}\n"
+        "params_by_scene: {a: {spread: 0.3}, b: {spread: null}}\n"
+        "layout: {rows: scene, columns: {c: {where: {spread: 0.3}, metric: m}}}\n";
+    const auto paramsOf = [&](const ExperimentOptions& options) {
+        std::vector<std::string> params;
+        for (const CaseSpec& spec : expandCases(load(text, options))) {
+            params.push_back(spec.params.toFlowText());
+        }
+        return params;
+    };
+    EXPECT_EQ(paramsOf({}), (std::vector<std::string>{"{spread: 0.3, n: 1, distance: 1}",
+                                                      "{spread: 0.9, n: 1}"}));
+    ExperimentOptions options;
+    options.sets = {parseOverride("spread=0.5")};
+    EXPECT_EQ(paramsOf(options),
+              (std::vector<std::string>{"{spread: 0.5, n: 1, distance: 1}", "{spread: 0.5, n: 1}"}))
+        << "what the command line sets is of all scenes";
+}
+
 TEST_F(ExperimentTest, Overrides) {
     ExperimentOptions options;
     options.sets = {parseOverride("resolution=64"), parseOverride("output.width=100"),

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -72,6 +74,42 @@ inline void expectSoundMesh(const Mesh& mesh) {
         bad += !(glm::length(cross) > 1e-5F * longest * longest);
         // Winding and vertex normals must agree about the outside.
         bad += !(glm::dot(cross, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) > 0.0F);
+    }
+    EXPECT_EQ(bad, 0U);
+}
+
+inline double surfaceArea(const Mesh& mesh) {
+    double sum = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::vec3 a = mesh.positions[t.x];
+        sum += 0.5 * glm::length(glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
+    }
+    return sum;
+}
+
+/// A sheet of fronts, then their backs in the same order: the same points bit by bit, opposite
+/// winding and normals. No two fronts lie on each other.
+inline void expectTwoSidedSheet(const Mesh& mesh) {
+    const std::size_t half = mesh.triangles.size() / 2;
+    ASSERT_EQ(mesh.triangles.size(), 2 * half);
+    std::size_t bad = 0;
+    std::set<std::array<float, 9>> seen;
+    for (std::size_t i = 0; i < half; ++i) {
+        const glm::uvec3 front = mesh.triangles[i];
+        const glm::uvec3 turned = mesh.triangles[i + half];
+        const glm::uvec3 back(turned.x, turned.z, turned.y);
+        std::array<std::array<float, 3>, 3> corners;
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3 p = mesh.positions[front[k]];
+            bad += p != mesh.positions[back[k]] || mesh.colors[front[k]] != mesh.colors[back[k]] ||
+                   mesh.normals[front[k]] != -mesh.normals[back[k]];
+            corners[static_cast<std::size_t>(k)] = {p.x, p.y, p.z};
+        }
+        std::ranges::sort(corners);
+        const auto& c = corners;
+        bad += !seen.insert({c[0][0], c[0][1], c[0][2], c[1][0], c[1][1], c[1][2], c[2][0], c[2][1],
+                             c[2][2]})
+                    .second;
     }
     EXPECT_EQ(bad, 0U);
 }
