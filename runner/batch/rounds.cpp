@@ -21,7 +21,6 @@ Recorded recordedOf(const std::vector<report::Record>& records) {
     Recorded recorded;
     std::set<std::pair<std::string, int>> failed;
     for (const report::Record& row : records) {
-        if (row.isControl()) continue;
         int& rounds = recorded.rounds[row.table];
         rounds = std::max(rounds, row.process + 1);
         recorded.complete[row.caseId].insert(row.process);

@@ -33,7 +33,7 @@ std::vector<Failure> failuresOf(const std::string& table,
     std::map<std::pair<std::string, int>, const report::Record*> last;
     std::vector<std::pair<std::string, int>> order;
     for (const report::Record& record : records) {
-        if (record.table != table || record.isControl()) continue;
+        if (record.table != table) continue;
         const auto [place, isNew] = last.try_emplace({record.caseId, record.process}, &record);
         if (isNew) order.push_back(place->first);
         place->second = &record;

@@ -92,7 +92,7 @@ std::string SeriesKey::title() const {
 SeriesMap seriesOf(const std::vector<report::Record>& records) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
     for (const report::Record& record : records) {
-        if (record.status != report::Status::Ok || record.isControl()) continue;
+        if (record.status != report::Status::Ok) continue;
         const SeriesKey key{record.table,  record.technique, record.method, record.scene,
                             record.params, record.pass,      record.metric, record.unit};
         const bool isOfFrame = key.isTime() && key.pass.empty() && record.lane == "timing";

@@ -126,7 +126,7 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
     std::unordered_map<std::string_view, Place> places;
     int seedCount = 1;
     for (const Record& record : records) {
-        if (record.table != table || record.isControl()) continue;
+        if (record.table != table) continue;
         const auto [found, isNew] = places.try_emplace(record.caseId, Place{0, 0});
         if (isNew) {
             const Json params = paramsOf(record);

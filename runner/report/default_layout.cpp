@@ -18,7 +18,7 @@ config::Layout defaultLayout(const config::Experiment& experiment,
     config::LayoutAxis columns{"measured", {}};
     std::set<std::pair<std::string, std::string>> known = {{"scene_source", ""}};  // a row's mark
     for (const Record& record : records) {
-        if (record.table != experiment.id || record.isControl() || record.metric.empty()) continue;
+        if (record.table != experiment.id || record.metric.empty()) continue;
         if (!known.insert({record.metric, record.pass}).second) continue;
         config::Selection selection;
         selection.metric = record.metric;

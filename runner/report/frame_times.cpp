@@ -73,7 +73,7 @@ FrameTimes::CaseTimes& FrameTimes::caseOf(const Record& record) {
 void FrameTimes::add(const Record& record) {
     const bool isWall = record.metric == "wall_time_ms";
     if (!isWall && record.metric != "process_time_ms") return;
-    if (!record.pass.empty() || record.lane != "timing" || record.isControl()) return;
+    if (!record.pass.empty() || record.lane != "timing") return;
     if (record.status != Status::Ok && record.status != Status::Flaky) return;
     if (!(record.value > 0.0)) return;
     CaseTimes& times = caseOf(record);

@@ -96,6 +96,9 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
     record.frame = integerField(where, "frame", fields[7]);
     record.repeat = integerField(where, "repeat", fields[8]);
     record.process = integerField(where, "process", fields[9]);
+    if (record.process < 0) {
+        throw Error(where, "column 'process': expected 0 or more, found '" + fields[9] + "'");
+    }
     record.lane = std::move(fields[10]);
     record.pass = std::move(fields[11]);
     record.metric = std::move(fields[12]);

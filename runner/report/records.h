@@ -41,19 +41,15 @@ struct Record {
     std::string params;  // one-line JSON of the case's resolved parameters
     int frame = 0;       // or kSetup
     int repeat = 0;      // or kSetup
-    int process = 0;
-    std::string lane;  // "timing" | "quality"
-    std::string pass;  // the paper's step; empty for whole-case metrics
+    int process = 0;     // from 0
+    std::string lane;    // "timing" | "quality"
+    std::string pass;    // the paper's step; empty for whole-case metrics
     std::string metric;
     std::string unit;
     /// Not-a-number for failed cases, written as an empty field; +∞ ("inf") of equal pictures.
     double value = 0.0;
     Status status = Status::Ok;
     std::string message;
-
-    /// Runs of older versions began with a case measured twice for nothing but to see by how much
-    /// equal measurements differ, as processes −2 and −1. They enter no cell.
-    bool isControl() const { return process < 0; }
     bool operator==(const Record&) const = default;
 };
 

@@ -23,8 +23,7 @@ std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::
 
 std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric) {
     std::vector<report::Record> rows = report::readRecords(runDir / "records.csv");
-    std::erase_if(
-        rows, [&](const report::Record& row) { return row.metric != metric || row.isControl(); });
+    std::erase_if(rows, [&](const report::Record& row) { return row.metric != metric; });
     return rows;
 }
 

@@ -18,7 +18,7 @@ ProcessResult mockGfxrepro(std::vector<std::string> arguments);
 /// A config for the mock technique with these lines behind its head.
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines);
 
-/// Rows of a metric, without the A/A pair's.
+/// Rows of a metric.
 std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);
 
 /// "value=status message" of every case in order of the rows, by the parameter `behaviour`.

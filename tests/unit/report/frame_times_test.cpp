@@ -52,8 +52,7 @@ TEST(FrameTimes, SumsTheFramesOfARound) {
 
 TEST(FrameTimes, PassesOverWhatIsNoTimeOfAFrame) {
     RecordMaker maker;
-    maker.beginCase("a").process(-1).add("wall_time_ms", {10});  // an A/A pair of an old run
-    maker.process(0).lane("quality").add("wall_time_ms", {10});
+    maker.beginCase("a").lane("quality").add("wall_time_ms", {10});
     EXPECT_EQ(timesOf(maker).roundCount(), 0U);
     EXPECT_TRUE(timeNotes(timesOf(maker), measureOf(1)).empty());
 }
@@ -130,8 +129,7 @@ TEST(FrameTimes, NotesStandUnderTablesOfTimes) {
     const config::Experiment experiment = experimentFrom(
         "sweep: {scene: [models/duck]}\nmeasure: {lane: timing, processes: 6}\n"
         "layout:\n  rows: scene\n  columns: {ms: {metric: wall_time_ms, format: \"{max:.0f}\"}}\n");
-    RecordMaker maker = rounds({9, 10, 10, 10, 10, 11});
-    maker.process(-2).add("wall_time_ms", {99});
+    const RecordMaker maker = rounds({9, 10, 10, 10, 10, 11});
     const Table table = buildTable(experiment, maker.records());
     EXPECT_EQ(table.rows.at(0).cells.at(0).measured, "10");
     EXPECT_EQ(table.rows.at(0).cells.at(0).low, "9");

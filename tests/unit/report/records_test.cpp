@@ -139,6 +139,8 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
               "DIR/records.csv:3: expected records of schema 1, found 2");
     EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0.5,0,0,timing,p,x,ms,1,ok,\n"),
               "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
+    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,-2,timing,p,x,ms,1,ok,\n"),
+              "DIR/records.csv:2: column 'process': expected 0 or more, found '-2'");
     EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,fast,ok,\n"),
               "DIR/records.csv:2: column 'value': expected a number or nothing, found 'fast'");
     EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,fine,\n"),
