@@ -62,7 +62,4 @@ Contrasts allAlike(double within);
 /// verdict.
 Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::optional<double> noise);
 
-/// What counts more when a verdict is made of several: fails, unmeasured, ambiguous, holds.
-int severity(Verdict verdict);
-
 }  // namespace gfxrepro::report
