@@ -137,7 +137,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
     const bool isAffordable = spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
     const bool isWanted = measure.mayContinue() && rounds > 0 &&
                           rounds < static_cast<std::size_t>(measure.processesAtMost) &&
-                          !(error && *error <= measure.relativeError);
+                          !table.times.isKnownTo(measure.relativeError, measure.processes);
     if (isWanted && isAffordable && !cases.empty()) {
         table.roundsBegun = measured + 1;
         std::vector<Unit> units;
@@ -146,7 +146,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
     }
     table.ending = {{"table", experiment},
                     {"rounds", rounds},
-                    {"ended_by", report::endOfRounds(measure, rounds, error)},
+                    {"ended_by", report::endOfRounds(measure, table.times)},
                     {"relative_error", error ? Json(*error) : Json(nullptr)},
                     {"seconds", spent.count()}};
     return {};

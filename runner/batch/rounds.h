@@ -24,8 +24,9 @@ namespace gfxrepro::batch {
 std::vector<Unit> unitsOf(const Plan& plan, const std::vector<report::Record>& records = {});
 
 /// Decides after each round of a table of times whether another follows: while the time of some
-/// case is known to less than its `relative_error`, there are fewer than `processes_at_most`, and
-/// the next would end within `time_budget_s`. A decision is final, also for a run that is resumed.
+/// case is not known to its `relative_error` (report::FrameTimes::isKnownTo), there are fewer than
+/// `processes_at_most`, and the next would end within `time_budget_s`. A decision is final, also
+/// for a run that is resumed.
 class Rounds {
   public:
     using TimePoint = std::chrono::steady_clock::time_point;

@@ -49,40 +49,13 @@ std::vector<double> walshAverages(std::span<const double> values) {
     return means;
 }
 
-/// The greatest number of outcomes to leave out at each end of a distribution over 0, 1, … with
-/// these weights, so that 95 % or more is left.
-std::size_t leftOut(const std::vector<double>& weights) {
-    const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+/// The greatest number of outcomes to leave out at each end of a symmetric distribution over 0, 1,
+/// … with these chances, so that 95 % or more is left.
+std::size_t leftOut(const std::vector<double>& chances) {
     double below = 0.0;
     std::size_t count = 0;
-    while (below + weights[count] <= 0.025 * all) below += weights[count++];
+    while (below + chances[count] <= 0.025) below += chances[count++];
     return count;
-}
-
-/// How often k of n signs are positive, k = 0 … n. Scaled, so that no n overflows.
-std::vector<double> signWeights(std::size_t n) {
-    std::vector<double> weights{1.0};
-    for (std::size_t i = 0; i < n; ++i) {
-        std::vector<double> next(weights.size() + 1, 0.0);
-        for (std::size_t k = 0; k < weights.size(); ++k) {
-            next[k] += 0.5 * weights[k];
-            next[k + 1] += 0.5 * weights[k];
-        }
-        weights = std::move(next);
-    }
-    return weights;
-}
-
-/// How often the positive ones of the ranks 1 … n sum to w, w = 0 … n (n + 1) / 2. Scaled.
-std::vector<double> rankSumWeights(std::size_t n) {
-    std::vector<double> weights(n * (n + 1) / 2 + 1, 0.0);
-    weights[0] = 1.0;
-    for (std::size_t rank = 1; rank <= n; ++rank) {
-        for (std::size_t sum = weights.size(); sum-- > 0;) {
-            weights[sum] = 0.5 * (weights[sum] + (sum >= rank ? weights[sum - rank] : 0.0));
-        }
-    }
-    return weights;
 }
 
 }  // namespace
@@ -122,9 +95,14 @@ std::optional<Interval> medianInterval(std::span<const double> values) {
     if (values.size() < kFewestForInterval) return std::nullopt;
     std::vector<double> sorted(values.begin(), values.end());
     std::ranges::sort(sorted);
-    // Out of k outcomes left out, the interval ends at the k-th value from each end.
-    const std::size_t count = leftOut(signWeights(sorted.size()));
+    const std::size_t count = medianIntervalDepth(sorted.size());
     return Interval{sorted[count - 1], sorted[sorted.size() - count]};
+}
+
+std::size_t medianIntervalDepth(std::size_t count) {
+    // Of k outcomes left out, the interval ends at the k-th value from each end. Signs are scores
+    // of one each.
+    return leftOut(coinSums(std::vector<std::size_t>(count, 1)));
 }
 
 double centre(std::span<const double> values) {
@@ -134,8 +112,23 @@ double centre(std::span<const double> values) {
 std::optional<Interval> centreInterval(std::span<const double> values) {
     if (values.size() < kFewestForInterval) return std::nullopt;
     const std::vector<double> means = walshAverages(values);
-    const std::size_t count = leftOut(rankSumWeights(values.size()));
+    std::vector<std::size_t> ranks(values.size());
+    std::iota(ranks.begin(), ranks.end(), std::size_t{1});
+    const std::size_t count = leftOut(coinSums(ranks));
     return Interval{means[count - 1], means[means.size() - count]};
+}
+
+std::vector<double> coinSums(std::span<const std::size_t> scores) {
+    std::vector<double> chances(std::accumulate(scores.begin(), scores.end(), std::size_t{1}), 0.0);
+    chances[0] = 1.0;
+    std::size_t largest = 0;
+    for (const std::size_t score : scores) {
+        largest += score;
+        for (std::size_t sum = largest + 1; sum-- > 0;) {
+            chances[sum] = 0.5 * (chances[sum] + (sum >= score ? chances[sum - score] : 0.0));
+        }
+    }
+    return chances;
 }
 
 double kendall(std::span<const double> x, std::span<const double> y) {

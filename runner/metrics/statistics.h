@@ -35,6 +35,9 @@ inline constexpr std::size_t kFewestForInterval = 6;
 /// (sign test; Conover 1999, Practical Nonparametric Statistics, Sec. 3.2). None for fewer than
 /// kFewestForInterval values. Infinite values are values.
 std::optional<Interval> medianInterval(std::span<const double> values);
+/// How far from either end of so many sorted values its ends stand: 1 of 6 to 8, 2 of 9 to 11.
+/// At least kFewestForInterval.
+std::size_t medianIntervalDepth(std::size_t count);
 
 /// The middle of a symmetric distribution: the median of the means of all pairs of values, each
 /// with itself too (Hodges and Lehmann 1963). Robust: one value in four may be anything.
@@ -43,6 +46,10 @@ double centre(std::span<const double> values);
 /// Nonparametric Statistical Methods, Sec. 3.3); for differences of two equally noisy things, whose
 /// distribution is symmetric. None for fewer than kFewestForInterval values, which must be finite.
 std::optional<Interval> centreInterval(std::span<const double> values);
+
+/// The chance of each sum, from 0 on, of scores that fair coins choose: with ranks for scores that
+/// of signed ranks. No number of scores overflows.
+std::vector<double> coinSums(std::span<const std::size_t> scores);
 
 /// Rank correlation of y with x, −1 … 1: concordant less discordant pairs over all pairs of unlike
 /// x (Kendall 1938; a tie in y counts for neither). 0 without such a pair.

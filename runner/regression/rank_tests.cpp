@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTail = 0.025;  // of a 95 % interval
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr metrics::Interval kUnbounded{-kInfinity, kInfinity};
 
 /// Ranks times two: whole numbers where values are equal, too.
 std::vector<std::size_t> doubledRanks(std::span<const double> values) {
@@ -27,20 +28,6 @@ std::vector<std::size_t> doubledPlaces(std::size_t count) {
     std::vector<std::size_t> places(count);
     for (std::size_t i = 0; i < count; ++i) places[i] = 2 * (i + 1);
     return places;
-}
-
-/// The chance of each sum of scores that fair coins choose.
-Series coinSums(const std::vector<std::size_t>& scores) {
-    Series chances(std::accumulate(scores.begin(), scores.end(), std::size_t{0}) + 1, 0.0);
-    chances[0] = 1.0;
-    std::size_t largest = 0;
-    for (const std::size_t score : scores) {
-        largest += score;
-        for (std::size_t sum = largest + 1; sum-- > 0;) {
-            chances[sum] = 0.5 * (chances[sum] + (sum >= score ? chances[sum - score] : 0.0));
-        }
-    }
-    return chances;
 }
 
 /// The chance of each sum of `count` of the scores, each choice as likely as another.
@@ -84,14 +71,6 @@ std::size_t stepsInTail(const Series& chances, std::size_t begin) {
     return steps;
 }
 
-/// Median and exact interval of `steps` that are sorted here.
-void fillShift(Series steps, std::size_t inTail, RankTest& test) {
-    std::ranges::sort(steps);
-    test.shift = metrics::summarize(steps, metrics::Statistic::Median);
-    test.interval = {-kInfinity, kInfinity};
-    if (inTail > 0) test.interval = {steps[inTail - 1], steps[steps.size() - inTail]};
-}
-
 }  // namespace
 
 Series ranksOf(std::span<const double> values) {
@@ -115,12 +94,11 @@ RankTest signedRank(std::span<const double> differences) {
     GFXREPRO_ASSERT(count > 0);
     RankTest test;
     test.attainable = std::min(1.0, std::exp2(1.0 - static_cast<double>(count)));
-    Series sizes, means;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (differences[i] != 0.0) sizes.push_back(std::abs(differences[i]));
-        for (std::size_t j = 0; j <= i; ++j) {
-            means.push_back(std::midpoint(differences[i], differences[j]));
-        }
+    test.shift = metrics::centre(differences);
+    test.interval = metrics::centreInterval(differences).value_or(kUnbounded);
+    Series sizes;
+    for (const double difference : differences) {
+        if (difference != 0.0) sizes.push_back(std::abs(difference));
     }
     const std::vector<std::size_t> ranks = doubledRanks(sizes);
     double sum = 0.0, all = 0.0;
@@ -130,8 +108,7 @@ RankTest signedRank(std::span<const double> differences) {
         all += rank;
         if (differences[i] > 0.0) sum += rank;
     }
-    test.chance = twoSided(coinSums(ranks), 0.5 * all, sum);
-    fillShift(std::move(means), stepsInTail(coinSums(doubledPlaces(count)), 0), test);
+    test.chance = twoSided(metrics::coinSums(ranks), 0.5 * all, sum);
     return test;
 }
 
@@ -162,7 +139,11 @@ RankTest rankSum(std::span<const double> before, std::span<const double> after) 
     for (const double a : after) {
         for (const double b : before) steps.push_back(a - b);
     }
-    fillShift(std::move(steps), stepsInTail(untied, least), test);
+    std::ranges::sort(steps);
+    test.shift = metrics::summarize(steps, metrics::Statistic::Median);
+    const std::size_t inTail = stepsInTail(untied, least);
+    test.interval = inTail > 0 ? metrics::Interval{steps[inTail - 1], steps[steps.size() - inTail]}
+                               : kUnbounded;
     return test;
 }
 

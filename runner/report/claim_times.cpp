@@ -232,20 +232,4 @@ Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::option
     return worst.value_or(Judgement{});
 }
 
-int severity(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::Holds:
-            return 0;
-        case Verdict::NotApplicable:
-            return 1;
-        case Verdict::Ambiguous:
-            return 2;
-        case Verdict::Unmeasured:
-            return 3;
-        case Verdict::Fails:
-            return 4;
-    }
-    return 4;
-}
-
 }  // namespace gfxrepro::report

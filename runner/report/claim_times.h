@@ -12,8 +12,8 @@
 // hypothesis testing and acceptance sampling", Technometrics 24). That one fails is the union of
 // theirs: among k comparisons on their bounds, up to k times the 2.5 % of one end.
 //
-// Rounds that end by a relative error are no fixed number: of intervals that happen to be narrow
-// fewer hold the truth than of all.
+// Rounds that end by a relative error are no fixed number; FrameTimes::isKnownTo says by which rule
+// their intervals hold the truth as often, too.
 #pragma once
 
 #include <functional>
@@ -61,8 +61,5 @@ Contrasts allAlike(double within);
 /// decided; nor where times would have to differ by less than `noise`, the table's, for another
 /// verdict.
 Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::optional<double> noise);
-
-/// What counts more when a verdict is made of several: fails, unmeasured, ambiguous, holds.
-int severity(Verdict verdict);
 
 }  // namespace gfxrepro::report

@@ -216,6 +216,22 @@ std::string_view verdictName(Verdict verdict) {
     return "";
 }
 
+int severity(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::Holds:
+            return 0;
+        case Verdict::NotApplicable:
+            return 1;
+        case Verdict::Ambiguous:
+            return 2;
+        case Verdict::Unmeasured:
+            return 3;
+        case Verdict::Fails:
+            return 4;
+    }
+    return 4;
+}
+
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,
                                         const ReportContext& context) {
     std::vector<ClaimResult> results;

@@ -19,6 +19,9 @@ std::string_view verdictName(Verdict verdict);
 /// Throws Error for a name that is none.
 Verdict verdictFromName(std::string_view name);
 
+/// What counts more when a verdict is made of several: fails, unmeasured, ambiguous, holds.
+int severity(Verdict verdict);
+
 /// What kept results of `gfxrepro sensitivity` say of a claim.
 struct TriedClaim {
     Verdict verdict = Verdict::Unmeasured;  // as configured, when it was tried

@@ -16,6 +16,9 @@ static_assert(config::kFewestRounds == metrics::kFewestForInterval);
 
 using metrics::Statistic;
 
+/// Values that an interval has beyond those by which it was found to be narrow.
+constexpr std::size_t kNewRounds = 2;
+
 double medianOf(const std::vector<double>& values) {
     return metrics::summarize(values, Statistic::Median);
 }
@@ -121,15 +124,35 @@ Clock FrameTimes::judgedClock() const {
     return hasAll ? Clock::Process : Clock::Wall;
 }
 
-std::optional<double> FrameTimes::relativeError() const {
+std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
     std::optional<double> largest;
-    for (const std::map<int, double>& rounds : times(judgedClock())) {
-        const std::vector<double> values = valuesOf(rounds);
+    for (const std::map<int, double>& processes : times(judgedClock())) {
+        std::vector<double> values = valuesOf(processes);
+        if (values.size() < rounds) continue;
+        values.resize(rounds);
         const auto interval = metrics::medianInterval(values);
-        if (!interval || values.size() < roundCount()) continue;
+        if (!interval) continue;
         largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
     }
     return largest;
+}
+
+bool FrameTimes::isKnownTo(double relativeError, int asked) const {
+    const std::size_t rounds = roundCount();
+    if (rounds < metrics::kFewestForInterval) return false;
+    const std::size_t first = std::max<std::size_t>(asked, metrics::kFewestForInterval);
+    const auto isWithin = [&](std::size_t look, double error) {
+        const std::optional<double> measured = relativeErrorOf(look);
+        return measured && *measured <= error;
+    };
+    if (isWithin(first, relativeError / 2.0)) return true;
+    if (metrics::medianIntervalDepth(rounds + 1) == metrics::medianIntervalDepth(rounds)) {
+        return false;
+    }
+    for (std::size_t look = first; look + kNewRounds <= rounds; ++look) {
+        if (isWithin(look, relativeError)) return true;
+    }
+    return false;
 }
 
 std::optional<double> FrameTimes::noise(Clock clock) const {
@@ -183,12 +206,11 @@ std::vector<std::string> outlierTexts(const FrameTimes& times) {
     return texts;
 }
 
-std::string_view endOfRounds(const config::Measure& measure, std::size_t rounds,
-                             std::optional<double> relativeError) {
+std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times) {
     if (!measure.mayContinue()) return "processes";
-    if (relativeError && *relativeError <= measure.relativeError) return "relative_error";
-    if (rounds >= static_cast<std::size_t>(measure.processesAtMost)) return "processes_at_most";
-    return "time_budget_s";
+    if (times.isKnownTo(measure.relativeError, measure.processes)) return "relative_error";
+    const bool isMost = times.roundCount() >= static_cast<std::size_t>(measure.processesAtMost);
+    return isMost ? "processes_at_most" : "time_budget_s";
 }
 
 std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure) {
@@ -209,7 +231,7 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
         notes.push_back(fmt::format(
             "Times of {} rounds by turns, ended by {}; the {}time of a frame is known to ±{} or "
             "better{}.",
-            rounds, endOfRounds(measure, rounds, error),
+            rounds, endOfRounds(measure, times),
             times.judgedClock() == Clock::Process ? "CPU " : "", percentText(*error), target));
     }
     if (const auto noise = times.noise(Clock::Wall)) {

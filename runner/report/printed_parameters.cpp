@@ -32,6 +32,12 @@ std::string settingText(const Json& value) {
     return fmt::format("[{}]", joined(items));
 }
 
+/// Under which name settings have what `printed.at` names.
+std::string settingNameOf(const std::string& name) {
+    if (name == "measure.frames") return "frames";
+    return name.starts_with("output.") ? "output" : name;
+}
+
 /// Lays what `printed.at` says over a case.
 void layOver(const config::Printed& printed, std::string& scene, Json& params, Json& frames) {
     for (const auto& [name, value] : printed.at) {
@@ -120,7 +126,8 @@ bool areSameCases(std::vector<Settings> a, std::vector<Settings> b) {
 }
 
 std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
-                                    const std::vector<Settings>& printed) {
+                                    const std::vector<Settings>& printed,
+                                    const std::set<std::string>& open) {
     std::vector<std::string> names;
     for (const auto* cases : {&printed, &measured}) {
         for (const Settings& settings : *cases) {
@@ -129,14 +136,17 @@ std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
     }
     std::vector<Departure> departures;
     for (const std::string& name : names) {
-        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed)};
+        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed),
+                            open.contains(name)};
         if (!isSameSet(departure.measured, departure.printed)) {
             departures.push_back(std::move(departure));
         }
     }
     if (departures.empty()) {
-        departures.push_back(
-            {"cases", {std::to_string(measured.size())}, {std::to_string(printed.size())}});
+        departures.push_back({"cases",
+                              {std::to_string(measured.size())},
+                              {std::to_string(printed.size())},
+                              !open.empty()});
     }
     return departures;
 }
@@ -181,7 +191,8 @@ struct Tally {
             const auto known =
                 std::ranges::find(departures, departure.parameter, &Departure::parameter);
             Departure& all = known == departures.end()
-                                 ? departures.emplace_back(Departure{departure.parameter, {}, {}})
+                                 ? departures.emplace_back(
+                                       Departure{departure.parameter, {}, {}, departure.isOpen})
                                  : *known;
             for (const std::string& value : departure.measured) addOnce(value, all.measured);
             for (const std::string& value : departure.printed) addOnce(value, all.printed);
@@ -242,10 +253,13 @@ std::string line(const Table& table, std::span<const TableRow> rows) {
 
 std::string departuresText(const std::vector<Departure>& departures) {
     std::vector<std::string> parts;
+    std::string_view said;  // holds for what follows
     for (const Departure& departure : departures) {
+        const std::string_view whose = departure.isOpen ? "paper profile " : "printed ";
         parts.push_back(fmt::format("{} {} ({}{})", departure.parameter,
-                                    valuesText(departure.measured), parts.empty() ? "printed " : "",
+                                    valuesText(departure.measured), whose == said ? "" : whose,
                                     valuesText(departure.printed)));
+        said = whose;
     }
     return joined(parts);
 }
@@ -257,6 +271,8 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     cases_ = gatherCases(paper, {});
     layout_ = std::move(paper.layout);
     printed_ = std::move(paper.printed);
+    for (const config::Assumption& assumption : paper.assumptions) open_.insert(assumption.name);
+    for (const auto& [name, value] : printed_.at) open_.erase(settingNameOf(name));
     for (const config::PaperCase& item : experiment.paperCases) {
         cases_.run.push_back(unmeasured(item, cases_.axes));
     }
@@ -274,7 +290,7 @@ void PrintedParameters::compare(const config::Layout& layout, const Key& row, co
         settingsOf(casesAt(whereOf(layout_, row, column), cases_), cases_.frameCount, printed_);
     if (printed.empty()) return;
     cell.isAtPrintedParameters = areSameCases(measured, printed);
-    if (!cell.isAtPrintedParameters) cell.departures = departuresOf(measured, printed);
+    if (!cell.isAtPrintedParameters) cell.departures = departuresOf(measured, printed, open_);
 }
 
 void PrintedCells::add(const config::Experiment& experiment, const Table& table) {

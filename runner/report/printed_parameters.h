@@ -4,8 +4,9 @@
 // cell is at the printed parameters where the cases behind it are these cases: the same parameters
 // of the technique (defaults resolved), size of the output, frames and scene. Not compared: how
 // often and where a case runs, and the parameter `pictures`, by which techniques save pictures
-// beside their numbers. A stand-in in place of a real model is no other scene: it goes by its name,
-// and Table marks its source.
+// beside their numbers. What an assumption names and `printed.at` does not say is open in the
+// document: a departure from the profile's value is said to be just that. A stand-in in place of a
+// real model is no other scene: it goes by its name, and Table marks its source.
 #pragma once
 
 #include <set>
@@ -36,6 +37,7 @@ class PrintedParameters {
     // Under the profile `paper`.
     config::Layout layout_;
     config::Printed printed_;
+    std::set<std::string> open_;
     LayoutCases cases_;
 };
 
@@ -54,7 +56,7 @@ PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
 /// when nothing is printed.
 std::string printedCellsLine(const PrintedCells& count);
 
-/// "output 128×128 (printed 512×512), light_grid 4 (16)".
+/// "output 128×128 (printed 512×512), light_grid 4 (16), frames 3 (paper profile 50)".
 std::string departuresText(const std::vector<Departure>& departures);
 
 /// At which parameters the table was measured, and which of them differ from the printed ones:

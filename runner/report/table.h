@@ -29,6 +29,8 @@ struct Departure {
     std::string parameter;
     std::vector<std::string> measured;
     std::vector<std::string> printed;
+    /// The document leaves the parameter open: `printed` is what the profile `paper` takes for it.
+    bool isOpen = false;
 
     bool operator==(const Departure&) const = default;
 };

@@ -57,6 +57,23 @@ TEST(Statistics, MedianIntervalIsOfOrderStatistics) {
     EXPECT_EQ(medianInterval(std::vector<double>(6, infinity))->low, infinity);
 }
 
+TEST(Statistics, MedianIntervalDepthIsThatOfItsEnds) {
+    std::vector<std::size_t> depths;
+    for (std::size_t count = 6; count <= 20; ++count) depths.push_back(medianIntervalDepth(count));
+    EXPECT_EQ(depths, (std::vector<std::size_t>{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 5, 5, 5, 6}));
+}
+
+/// Of three coins with 1, 2 and 3 two of eight throws come to 3; of ties whole numbers stay whole.
+TEST(Statistics, CoinSumsAreChances) {
+    const std::vector<std::size_t> ranks = {1, 2, 3}, ties = {2, 2};
+    EXPECT_EQ(coinSums(ranks),
+              (std::vector<double>{0.125, 0.125, 0.125, 0.25, 0.125, 0.125, 0.125}));
+    EXPECT_EQ(coinSums(ties), (std::vector<double>{0.25, 0.0, 0.5, 0.0, 0.25}));
+    EXPECT_EQ(coinSums({}), std::vector<double>{1.0});
+    const std::vector<std::size_t> many(2000, 1);
+    EXPECT_NEAR(coinSums(many)[1000], 0.01784, 1e-5) << "no overflow";
+}
+
 /// Critical values of Wilcoxon's signed ranks at 5 %, two-sided (Hollander, Wolfe and Chicken 2014,
 /// Table A.4): with 6 values none of the 21 means is left out but the outermost stays the end.
 TEST(Statistics, CentreIntervalIsOfSignedRanks) {

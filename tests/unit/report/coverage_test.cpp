@@ -172,6 +172,77 @@ TEST_P(Coverage, OfADirection) {
 
 INSTANTIATE_TEST_SUITE_P(Processes, Coverage, ::testing::Values(6, 8, 10));
 
+/// A table of one case, or several, whose rounds go on by the program's own rule.
+struct Ended {
+    bool isByError = false;
+    int rounds = 0;
+    int cases = 0;
+    int held = 0;  // cases whose interval holds the truth
+};
+
+Ended measure(int cases, double scatter, Random& random) {
+    config::Measure measure;
+    measure.lane = config::Measure::Lane::Timing;
+    measure.processes = 6;
+    measure.relativeError = 0.05;
+    measure.processesAtMost = 20;
+    FrameTimes times;
+    std::vector<Samples> samples(static_cast<std::size_t>(cases));
+    Ended ended{false, 0, cases, 0};
+    do {
+        for (int i = 0; i < cases; ++i) {
+            Record record;
+            record.caseId = std::to_string(i);
+            record.lane = "timing";
+            record.metric = "wall_time_ms";
+            record.process = ended.rounds;
+            record.value = 10.0 * std::exp(scatter * normal(random));
+            times.add(record);
+            samples[static_cast<std::size_t>(i)].processes[ended.rounds][0] = {record.value};
+        }
+        ++ended.rounds;
+    } while (ended.rounds < measure.processes ||
+             endOfRounds(measure, times) == std::string_view("time_budget_s"));
+    ended.isByError = endOfRounds(measure, times) == std::string_view("relative_error");
+    for (const Samples& own : samples) {
+        ended.held += holds(summarize(own, metrics::Statistic::Median).interval, 10.0) ? 1 : 0;
+    }
+    return ended;
+}
+
+/// Whether intervals hold the truth where the number of rounds depends on them: of all, and of
+/// those that a relative error of 5 % ended. Times scatter from half to more than twice that.
+TEST(RoundsCoverage, OfIntervalsThatRoundsWentOnFor) {
+    constexpr double kAsMeasured = 0.112;  // kBetween and kWithin together
+    constexpr int kLongTrials = 5 * kTrials;
+    for (const auto& [cases, scatter] : {std::pair(1, 0.02), std::pair(1, 0.03), std::pair(1, 0.06),
+                                         std::pair(1, kAsMeasured), std::pair(3, 0.06)}) {
+        int all = 0, held = 0, byError = 0, heldByError = 0, rounds = 0;
+        for (int i = 0; i < kLongTrials; ++i) {
+            Random random(static_cast<std::uint64_t>(1000 * i + cases));
+            const Ended ended = measure(cases, scatter, random);
+            all += ended.cases;
+            held += ended.held;
+            rounds += ended.rounds;
+            if (!ended.isByError) continue;
+            byError += ended.cases;
+            heldByError += ended.held;
+        }
+        const double share = static_cast<double>(held) / all;
+        const double shareByError = static_cast<double>(heldByError) / byError;
+        std::printf(
+            "  %d cases, %.1f %%: %.1f %%; ended by error %.0f %%, of these %.1f %%; %.1f "
+            "rounds\n",
+            cases, 100.0 * scatter, 100.0 * share, 100.0 * byError / all, 100.0 * shareByError,
+            1.0 * rounds / kLongTrials);
+        EXPECT_GE(share, 0.95) << cases << " cases, " << scatter;
+        // Of times that scatter most a fifth ends so: 93 % hold it, in as many trials ± 1.7 %
+        // (three standard errors). To end at the first look that finds it small enough, 82 % do.
+        EXPECT_GE(shareByError, scatter == kAsMeasured ? 0.913 : kRequired)
+            << cases << " cases, " << scatter;
+    }
+}
+
 /// What the rule is for: with fewer processes a range holds the truth more rarely than it would
 /// say.
 TEST(RangeCoverage, ARangeOfThreeWouldNotDo) {

@@ -67,6 +67,27 @@ TEST(FrameTimes, RelativeErrorNeedsSixRounds) {
     EXPECT_DOUBLE_EQ(*timesOf(two).relativeError(), 0.1) << "a case that failed is left out";
 }
 
+TEST(FrameTimes, EndsAtARelativeErrorWithNewValuesInTheInterval) {
+    const auto isKnown = [](std::initializer_list<double> valuesMs, int asked = 6) {
+        return timesOf(rounds(valuesMs)).isKnownTo(0.1, asked);
+    };
+    EXPECT_FALSE(isKnown({10, 10, 10, 10, 10})) << "no interval";
+    EXPECT_TRUE(isKnown({9.5, 10, 10, 10, 10, 10.5})) << "half of the error at the first look";
+    EXPECT_FALSE(isKnown({9.4, 10, 10, 10, 10, 10.6})) << "small enough, and more follow";
+    EXPECT_FALSE(isKnown({9.4, 10, 10, 10, 10, 10.6, 10}));
+    EXPECT_TRUE(isKnown({9.4, 10, 10, 10, 10, 10.6, 10, 10}));
+    EXPECT_TRUE(isKnown({9.4, 10, 10, 10, 10, 10.6, 20, 10})) << "whatever followed";
+    EXPECT_FALSE(isKnown({8, 10, 10, 10, 10, 12, 10, 10}));
+    EXPECT_FALSE(isKnown({8, 10, 10, 10, 10, 12, 10, 10, 10})) << "small enough from the ninth on";
+    EXPECT_FALSE(isKnown({8, 10, 10, 10, 10, 12, 10, 10, 10, 10}));
+    EXPECT_TRUE(isKnown({8, 10, 10, 10, 10, 12, 10, 10, 10, 10, 10}));
+    // The first look is after as many as were asked for.
+    EXPECT_FALSE(isKnown({9.5, 10, 10, 10, 10, 10.5}, 8));
+    EXPECT_FALSE(isKnown({9, 10, 10, 10, 10, 11, 10}, 7));
+    EXPECT_TRUE(isKnown({9.6, 10, 10, 10, 10, 10.4, 10}, 7));
+    EXPECT_FALSE(timesOf(RecordMaker()).isKnownTo(0.1, 6));
+}
+
 TEST(FrameTimes, NoiseIsOfPairsMeasuredByTurns) {
     RecordMaker maker;
     const double drift[] = {1.0, 1.5, 2.0, 1.2, 3.0, 1.1};  // of the machine, alike for both

@@ -81,6 +81,33 @@ TEST(PrintedParameters, WhatIsPrintedLiesOverTheProfile) {
                     Departure{"light_grid", {"16"}, {"32"}}, Departure{"frames", {"1"}, {"500"}}));
 }
 
+/// What the document leaves open is the profile's, not printed; unless `printed.at` says so.
+TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
+    const auto lineAt = [](const std::string& at, const std::string& assumptions) {
+        std::string body = std::string(kDuck) +
+                           "measure: {frames: 3}\nprofiles: {paper: {measure: {frames: 50}}}\n" +
+                           "assumptions: {" + assumptions + "}\n";
+        body.replace(body.find("values"), 0, "at: {" + at + "}, ");
+        RecordMaker maker;
+        maker.beginCase("models/duck", R"({"light_grid": 4, "output": {"width": 8, "height": 8}})");
+        maker.add("gpu_time_ms", {8.0});
+        return parametersLine(buildTable(
+            withPaperCases(experimentFrom(body), {{"models/duck", kPrinted}}), maker.records()));
+    };
+    const std::string frames = "frames: {value: some, why: not said}";
+    EXPECT_EQ(
+        lineAt("", frames),
+        "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (paper profile "
+        "50).");
+    EXPECT_EQ(lineAt("measure.frames: 60", frames),
+              "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (60).");
+    EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"),
+              "Measured at output 8×8 (paper profile 512×512), light_grid 4 (printed 16), frames 3 "
+              "(50).");
+    EXPECT_EQ(lineAt("output.width: 512", "output: {range: [8, 512], why: not said}"),
+              "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (50).");
+}
+
 constexpr const char* kGrid = R"(
 sweep: {scene: [models/duck], light_grid: [4, 16]}
 layout: {rows: light_grid, columns: {ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
@@ -143,6 +170,17 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
               "Measured at light_grid 4 / 8 (printed 16).");
     EXPECT_EQ(lineOf({{{"n", {"1", "2", "3", "4", "5"}, {}}}}),
               "Measured at n 1 / 2 / … / 5 (printed none).");
+    const Departure open{"frames", {"3"}, {"50"}, true}, view{"view", {"a"}, {"b"}, true};
+    EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (paper profile 50).");
+    EXPECT_EQ(lineOf({{output, grid, view, open}}),
+              "Measured at output 128×128 (printed 512×512), light_grid 4 (16), view a (paper "
+              "profile b), frames 3 (50).");
+    EXPECT_EQ(lineOf({{view, output}}),
+              "Measured at view a (paper profile b), output 128×128 (printed 512×512).");
+    EXPECT_EQ(
+        lineOf({{}, {open}}),
+        "Measured at the printed parameters in 1 of 2 cells, in the others at frames 3 (paper "
+        "profile 50).");
 }
 
 /// Behind a cell several cases, over which its mean is taken.
