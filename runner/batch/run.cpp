@@ -9,6 +9,7 @@
 #include "runner/batch/sensitivity.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/report/fit.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::batch {
@@ -141,7 +142,10 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     }
     Conclusion conclusion;
     conclusion.printedCells = report::countPrintedCells(run.plan.experiments, tables);
-    if (which.tables) report::writeTables(runDir, tables);
+    if (which.tables) {
+        report::writeTables(runDir, tables);
+        report::writeFits(runDir, run.plan.experiments, tables);
+    }
     if (which.claims) {
         conclusion.claims = report::evaluateClaims(run.plan.experiments, tables, context);
         report::writeClaims(runDir, conclusion.claims, context);

@@ -141,7 +141,7 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 void requireOnlyPrinted(const Node& document) {
     for (const char* key :
          {"scene", "scene_params", "scene_seed", "scene_instead", "params", "params_by_scene",
-          "params_instead", "output", "sweep", "measure", "layout", "claims", "plots"}) {
+          "params_instead", "output", "sweep", "measure", "layout", "fit", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -222,6 +222,18 @@ void requireNotSwept(const Printed& printed, const std::vector<AxisPoint>& point
     }
 }
 
+void requireColumns(const Node& fit, const TableNames& names) {
+    if (!fit.isMap() || fit.entries().empty()) {
+        throwNotAllowed(fit, "fit", "a map {column: printed cell}");
+    }
+    for (const auto& [column, cell] : fit.entries()) {
+        const bool isKnown = std::ranges::find(names.columns, column) != names.columns.end();
+        if (isKnown || !names.hasAllColumns) continue;
+        throw Error(fit.keyLocation(column),
+                    "fit: no column '" + column + "'" + suggestion(column, names.columns));
+    }
+}
+
 /// Layout, and what is checked against it: printed values, claims, plots.
 void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const Node* printed = document.find("printed");
@@ -234,7 +246,7 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     }
     const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
     requireAxisNames(experiment.sweep, points);
-    for (const char* key : {"printed", "claims", "plots"}) {
+    for (const char* key : {"printed", "fit", "claims", "plots"}) {
         if (document.find(key) && !layout) {
             throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
         }
@@ -245,6 +257,7 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const TableNames names = tableNames(experiment.layout, vocabulary);
     if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
     if (isComplete) requireNotSwept(experiment.printed, points);
+    if (const Node* fit = document.find("fit")) requireColumns(*fit, names);
     if (claims) experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty());
     if (plots) experiment.plots = readPlots(*plots, names);
 }

@@ -5,6 +5,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
+#include "runner/config/fit.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
@@ -267,6 +268,36 @@ Node withProfile(const Node& document, const std::vector<std::pair<std::string, 
     return result;
 }
 
+/// A file of the configs, or one beside `file`.
+fs::path configNamed(const Node& name, const fs::path& file, const fs::path& configsFolder,
+                     const std::string& what) {
+    for (const fs::path& folder : {configsFolder, file.parent_path()}) {
+        if (fs::is_regular_file(folder / name.text())) return folder / name.text();
+    }
+    throw Error(name.location(),
+                what + ": no file '" + name.text() + "' in " + configsFolder.string());
+}
+
+/// The experiment, with the printed cells that its fit names.
+Experiment readWhole(const Node& document, const fs::path& file, bool isComplete,
+                     const fs::path& configsFolder) {
+    Experiment experiment = readExperiment(document, file, isComplete);
+    const Node* fit = document.find("fit");
+    if (!fit) return experiment;
+    Node cells = *fit;
+    for (auto& [column, cell] : cells.entries()) {
+        const std::string what = "fit: '" + column + "'";
+        requireKeys(cell, what, keysOf("fit"));
+        const Node* table = cell.find("table");
+        if (!table) throw Error(fit->keyLocation(column), what + " needs 'table'");
+        const fs::path place = configNamed(*table, file, configsFolder, what);
+        cell = withPrintedCell(cell, column, experiment, loadExperiment(place, {}, configsFolder));
+    }
+    Node whole = document;
+    whole.set("fit", std::move(cells), document.keyLocation("fit"));
+    return readExperiment(whole, file, isComplete);
+}
+
 }  // namespace
 
 Override parseOverride(const std::string& text) {
@@ -297,7 +328,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     // The file as it stands must be right whatever is chosen: only there are all names known.
     Node asItStands = document;
     resolveScenes(asItStands);
-    Experiment experiment = readExperiment(asItStands, file, true);
+    Experiment experiment = readWhole(asItStands, file, true, configsFolder);
 
     if (experiment.isPublished()) {
         experiment.paperDocument = withProfile(document, overlays, "paper");
@@ -310,7 +341,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     applySweeps(options.sweeps, document);
     applySets(options.sets, document);
     resolveScenes(document);
-    Experiment changed = readExperiment(document, file, false);
+    Experiment changed = readWhole(document, file, false, configsFolder);
     changed.paperDocument = std::move(experiment.paperDocument);
     return changed;
 }

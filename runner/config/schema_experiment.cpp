@@ -83,6 +83,10 @@ SchemaSection content() {
           mapOf(refTo("claim_part"))},
          {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
           listOf(refTo("plot"))},
+         {"fit", "{column: printed cell}", "{}",
+          "columns held against printed cells of other tables, all of the method of `params`: the "
+          "best row is shown",
+          mapOf(refTo("fit"))},
          {"assumptions", "{NAME: assumption}", "{}",
           "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, or free text",
           mapOf(refTo("assumption_part"))}}};
@@ -189,6 +193,16 @@ SchemaSection printed() {
               pairs()}}};
 }
 
+SchemaSection fit() {
+    return {"fit",
+            "fit.COLUMN.",
+            "Only the cells that are named are read, and none of another method.",
+            {{"table", "file", "required", "of the table, in configs/", text()},
+             {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
+             {"column", "name", "required", "of that table", text()}},
+            false};
+}
+
 SchemaSection plot() {
     return {"plot",
             "plot.",
@@ -245,10 +259,11 @@ SchemaSection measure() {
 }  // namespace
 
 SchemaFile experimentSchema() {
-    SchemaFile file{"experiment",
-                    "A table, figure, section or sweep",
-                    {identity(), composition(), content(), output(), sweep(), axis(), measure(),
-                     profiles(), layout(), selection(), share(), printed(), plot(), assumption()}};
+    SchemaFile file{
+        "experiment",
+        "A table, figure, section or sweep",
+        {identity(), composition(), content(), output(), sweep(), axis(), measure(), profiles(),
+         layout(), selection(), share(), printed(), fit(), plot(), assumption()}};
     for (SchemaSection& section : claimSections()) file.sections.push_back(std::move(section));
     return file;
 }

@@ -8,6 +8,7 @@
 #include "runner/report/cell_builder.h"
 #include "runner/report/csv.h"
 #include "runner/report/default_layout.h"
+#include "runner/report/fit.h"
 #include "runner/report/frame_times.h"
 #include "runner/report/printed_parameters.h"
 
@@ -260,6 +261,9 @@ Table buildTable(const config::Experiment& given, const std::vector<Record>& rec
     buildCells(layout, cases, printed, columns, table);
     addTimes(experiment, records, table);
     layPrintedBeside(experiment, columns, table);
+    for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
+        table.notes.push_back(std::move(note));
+    }
     return table;
 }
 

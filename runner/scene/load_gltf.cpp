@@ -55,6 +55,7 @@ class SceneBuilder {
         if (scene_.triangleCount() == 0 && scene_.points.positions.empty()) {
             fail("no triangles or points in the scene");
         }
+        for (const std::size_t camera : unaimed_) aim(scene_.cameras[camera], scene_.bounds());
         return std::move(scene_);
     }
 
@@ -313,6 +314,14 @@ class SceneBuilder {
         }
     }
 
+    /// glTF has no target: it lies where the axis passes the middle of the scene most closely, in
+    /// front of the eye. One that looks away from the middle keeps its target at 1.
+    static void aim(Camera& camera, const Box& box) {
+        const glm::vec3 forward = camera.target - camera.position;
+        const float distance = glm::dot(0.5F * (box.min + box.max) - camera.position, forward);
+        if (distance > camera.nearM) camera.target = camera.position + distance * forward;
+    }
+
     /// Perspective cameras only. Without a far plane, a thousand times the default one.
     void addCamera(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode) {
         if (static_cast<std::size_t>(node.camera) >= model().cameras.size()) {
@@ -334,7 +343,13 @@ class SceneBuilder {
         camera.farM = perspective.zfar > perspective.znear ? static_cast<float>(perspective.zfar)
                                                            : std::max(1000.0F, 1e5F * camera.nearM);
         camera.position = glm::vec3(worldFromNode[3]);
-        camera.target = camera.position - unitNormal(glm::vec3(worldFromNode[2]));
+        const glm::vec3 forward = -unitNormal(glm::vec3(worldFromNode[2]));
+        const double targetM = node.extras.Has(gltf::kTargetM)
+                                   ? node.extras.Get(gltf::kTargetM).GetNumberAsDouble()
+                                   : 0.0;
+        if (!(targetM > 0.0)) unaimed_.push_back(scene_.cameras.size());
+        camera.target =
+            camera.position + (targetM > 0.0 ? static_cast<float>(targetM) : 1.0F) * forward;
         camera.up = unitNormal(glm::vec3(worldFromNode[1]));
         scene_.cameras.push_back(std::move(camera));
     }
@@ -344,6 +359,7 @@ class SceneBuilder {
     std::vector<gltf::TextureUse> textureUses_;
     std::vector<Parts> parts_;
     std::vector<bool> wasVisited_;
+    std::vector<std::size_t> unaimed_;  // cameras whose file does not say how far they look
     Scene scene_;
 };
 

@@ -12,6 +12,7 @@
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/scene/load.h"
+#include "runner/scene/load_gltf_file.h"
 
 namespace gfxrepro::scene {
 
@@ -262,6 +263,9 @@ class GlbBuilder {
         tinygltf::Node& node = addNode();
         node.name = from.name;
         node.camera = static_cast<int>(model_.cameras.size()) - 1;
+        const double targetM{glm::length(from.position - from.target)};
+        node.extras =
+            tinygltf::Value(tinygltf::Value::Object{{gltf::kTargetM, tinygltf::Value(targetM)}});
         node.matrix = matrixOf({glm::vec4(right, 0.0F), glm::vec4(glm::cross(back, right), 0.0F),
                                 glm::vec4(back, 0.0F), glm::vec4(from.position, 1.0F)});
     }

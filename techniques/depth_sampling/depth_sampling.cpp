@@ -29,7 +29,7 @@ std::vector<depth_images::View> viewsOf(const std::vector<scene::Camera>& camera
 }
 
 double percent(std::uint64_t part, std::uint64_t whole) {
-    if (whole == 0) return 0.0;
+    GFXREPRO_ASSERT(whole > 0);
     return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
@@ -44,10 +44,26 @@ void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCo
         minPct = std::min(minPct, availablePct);
         ++seen;
     }
-    const double meanPct = seen > 0 ? sumPct / seen : 0.0;
+    if (seen == 0) return;
+    const double meanPct = sumPct / seen;
     recorder.metric("available_mean_pct", meanPct, "%");
-    recorder.metric("available_min_pct", seen > 0 ? minPct : 0.0, "%");
-    recorder.metric("unavailable_mean_pct", seen > 0 ? 100.0 - meanPct : 0.0, "%");
+    recorder.metric("available_min_pct", minPct, "%");
+    recorder.metric("unavailable_mean_pct", 100.0 - meanPct, "%");
+}
+
+/// A conventional image without samples is of a view that looks past the scene. A later one of the
+/// other methods may have none: all that it sees is redundant.
+void requireSamples(const Measures& measures, Method method, const Views& views,
+                    const std::string& scene) {
+    for (std::size_t i = 0; i < measures.images.size(); ++i) {
+        if (measures.images[i].samples > 0 || (i > 0 && method != Method::Conventional)) continue;
+        const glm::vec3& eye = views.images[i].eyeWorld;
+        throw Error(fmt::format(
+            "reference image {} has no sample: from ({:g}, {:g}, {:g}) nothing of scene '{}' is in "
+            "view; change 'view_distance', 'view_spread', 'view_yaw_deg', 'view_pitch_deg' or the "
+            "scene's camera",
+            i, eye.x, eye.y, eye.z, scene));
+    }
 }
 
 }  // namespace
@@ -115,13 +131,15 @@ void DepthSampling::setup(technique::SetupContext& context) {
     }
     depth_images::requireIdsFor(scene.triangleCount());
     const Views views = makeViews(context);
+    views_ = views;
+    sceneName_ = scene.name;
     raycast::RayTracer tracer(scene);
     checkViews(tracer, views.conventional);
     if (params_.method == Method::DepthPeeling) checkViews(tracer, {&views.images[0], 1});
 
     if (params_.redundancy == Redundancy::Visibility) {
-        experiment_ =
-            std::make_unique<VisibilityExperiment>(scene, std::move(tracer), params_.method, views);
+        experiment_ = std::make_unique<VisibilityExperiment>(
+            scene, std::move(tracer), params_.method, views, params_.earlier);
         return;
     }
     auto experiment = std::make_unique<PixelExperiment>(
@@ -148,15 +166,20 @@ void DepthSampling::render(technique::FrameContext& context) {
 void DepthSampling::record(technique::Recorder& recorder) {
     if (params_.measured == Measured::OutputFrame) {
         const FrameCounts counts = pixelExperiment_->outputFrameCounts();
-        recorder.metric("available_pct", percent(counts.available, counts.samples), "%",
-                        "output_frame");
+        if (counts.samples > 0) {
+            recorder.metric("available_pct", percent(counts.available, counts.samples), "%",
+                            "output_frame");
+        }
     }
     // The reference images are the same in each frame.
     if (!measures_) {
         measures_ = experiment_->measure(params_.measures);
+        requireSamples(*measures_, params_.method, views_, sceneName_);
         if (params_.showsPictures) recordPictures(recorder);
     }
-    recordMeasures(recorder, *measures_);
+    const glm::ivec2 size = views_.images.front().sizePx;
+    recordMeasures(recorder, *measures_,
+                   static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y));
     recorder.metric("reference_image_bytes",
                     static_cast<double>(experiment_->referenceImageBytes()), "byte");
     const bool usesFrames = params_.measures.usefulness || params_.measures.availability;
@@ -179,7 +202,7 @@ void DepthSampling::recordPictures(technique::Recorder& recorder) const {
                    layers.options("output_frame"));
 }
 
-void recordMeasures(technique::Recorder& recorder, const Measures& measures) {
+void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels) {
     double occludedSumPct = 0.0;
     double usefulSumPct = 0.0;
     for (std::size_t i = 0; i < measures.images.size(); ++i) {
@@ -189,10 +212,14 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures) {
             recorder.metric(name, percent(part, whole), "%", pass);
         };
         recorder.metric("samples", static_cast<double>(counts.samples), "sample", pass);
+        share("coverage_pct", counts.samples, pixels);
+        if (counts.samples == 0) continue;
         share("redundant_pct", counts.redundant, counts.samples);
+        share("redundant_of_pixels_pct", counts.redundant, pixels);
         share("occluded_pct", counts.occluded, counts.samples);
         share("occluded_literal_pct", counts.occludedLiterally, counts.samples);
-        share("useful_pct", counts.useful, counts.occluded);
+        // Of no occluded sample none is useful: the thesis prints 0 for the first images.
+        share("useful_pct", counts.useful, std::max<std::uint64_t>(counts.occluded, 1));
         share("useful_of_samples_pct", counts.useful, counts.samples);
         occludedSumPct += percent(counts.occluded, counts.samples);
         usefulSumPct += percent(counts.useful, counts.samples);

@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "runner/technique/technique.h"
 #include "techniques/depth_sampling/experiment.h"
 #include "techniques/depth_sampling/pixel_experiment.h"
 #include "techniques/depth_sampling/reference_views.h"
+#include "techniques/depth_sampling/visibility.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -32,6 +34,7 @@ enum class Measured { ReferenceImages, OutputFrame };
 struct DepthSamplingParams {
     Method method = Method::Conventional;
     Redundancy redundancy = Redundancy::Pixel;
+    Earlier earlier = Earlier::Views;  // by visibility
     int views = 3;
     Placement placement = Placement::Fixed;
     int candidates = 16;
@@ -64,13 +67,16 @@ class DepthSampling final : public technique::Technique {
     void recordPictures(technique::Recorder& recorder) const;
 
     DepthSamplingParams params_;
+    Views views_;
+    std::string sceneName_;
     std::unique_ptr<Experiment> experiment_;
     PixelExperiment* pixelExperiment_ = nullptr;  // the same, under the pixel definition
     std::optional<Measures> measures_;            // of all frames alike: taken once
 };
 
-/// Records `measures` as metrics; percentages of nothing are 0.
-void recordMeasures(technique::Recorder& recorder, const Measures& measures);
+/// Records `measures` of images of so many pixels as metrics. An image without samples has no
+/// shares but its coverage; frames without samples have no availability.
+void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels);
 
 extern const technique::TechniqueInfo kDepthSampling;
 

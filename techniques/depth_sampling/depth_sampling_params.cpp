@@ -19,6 +19,10 @@ constexpr config::Choice<Redundancy> kRedundancies[] = {
     {Redundancy::Visibility, "visibility",
      "visible from the earlier image's view (algorithm 2); ray cast on the CPU"},
 };
+constexpr config::Choice<Earlier> kEarlier[] = {
+    {Earlier::Views, "views", "what is visible from their views, as algorithm 2 has it"},
+    {Earlier::Samples, "samples", "what they hold, with what they uncovered"},
+};
 constexpr config::Choice<Placement> kPlacements[] = {
     {Placement::Fixed, "fixed", "the triangle's corners, then evenly inside of it"},
     {Placement::Automatic, "automatic", "each next view where the images so far lack most"},
@@ -93,7 +97,10 @@ void checkPlacement(const config::Params& params, const DepthSamplingParams& rea
 
 /// Rays have neither a depth buffer nor primitives.
 void checkVisibility(const config::Params& params, const DepthSamplingParams& read) {
-    if (read.redundancy == Redundancy::Pixel) return;
+    if (read.redundancy == Redundancy::Pixel) {
+        params.refuseGiven({"earlier"}, "'redundancy: visibility'");
+        return;
+    }
     params.refuseGiven({"depth_format", "triangle_ids"}, "'redundancy: pixel'");
     if (read.measured == Measured::OutputFrame) {
         refuse(params, "measured", "'measured: output_frame' needs 'redundancy: pixel'");
@@ -114,6 +121,8 @@ DepthSamplingParams::DepthSamplingParams(config::Params& params)
     : method(params.getEnum("method", Method::Conventional, kMethods, {"which images are taken"})),
       redundancy(params.getEnum("redundancy", Redundancy::Pixel, kRedundancies,
                                 {"which samples count as captured"})),
+      earlier(params.getEnum("earlier", Earlier::Views, kEarlier,
+                             {"what of earlier images a non-redundant one leaves out"})),
       views(params.getInt("views", 3,
                           {"reference images, or layers of depth peeling", "images", 1,
                            depth_images::kMaxEarlierImages + 1})),

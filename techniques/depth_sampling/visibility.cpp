@@ -60,11 +60,12 @@ struct VisibilitySequence::Sight {
 };
 
 VisibilitySequence::VisibilitySequence(const raycast::RayTracer& tracer, std::vector<View> views,
-                                       bool isNonRedundant)
+                                       bool isNonRedundant, Earlier earlier)
     : tracer_(&tracer),
       views_(std::move(views)),
       nextOfView_(views_.size(), views_.size()),
       isNonRedundant_(isNonRedundant),
+      earlier_(earlier),
       isPeeling_(isNonRedundant) {
     for (std::size_t i = 0; i < views_.size(); ++i) {
         isPeeling_ = isPeeling_ && isSameView(views_[i], views_[0]);
@@ -119,7 +120,7 @@ bool VisibilitySequence::isReached(std::size_t index, const SurfacePoint& point)
     // From the back, where hits are hidden most often: the first that is not held decides.
     const glm::vec3 unit = sight->direction / sight->distance;
     return std::all_of(hits.rbegin(), hits.rend(), [&](const TriangleHit& hit) {
-        return anyHolds(index, {sight->eye + hit.distance * unit, hit.triangle + 1});
+        return isRedundant(index, {sight->eye + hit.distance * unit, hit.triangle + 1});
     });
 }
 
@@ -138,7 +139,17 @@ bool VisibilitySequence::anyHolds(std::size_t count, const SurfacePoint& point) 
 
 bool VisibilitySequence::holds(std::size_t index, const SurfacePoint& point) const {
     if (!isNonRedundant_ || index == 0) return isVisible(index, point);
-    return isReached(index, point) && !anyHolds(index, point);
+    return isReached(index, point) && !isRedundant(index, point);
+}
+
+bool VisibilitySequence::isRedundant(std::size_t count, const SurfacePoint& point) const {
+    // Departure [xie2017] Algorithm 2: a layer is tested against the layers before, of whose one
+    // view the algorithm would see the first alone; Earlier::Samples does so of all images.
+    if (isPeeling_ || earlier_ == Earlier::Samples) return anyHolds(count, point);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (isLastOfItsView(i, count) && isVisible(i, point)) return true;
+    }
+    return false;
 }
 
 std::optional<std::size_t> VisibilitySequence::visibleFrom(const SurfacePoint& point,
@@ -164,13 +175,13 @@ std::optional<SurfacePoint> VisibilitySequence::sample(std::size_t index, glm::i
     const auto first = tracer_->closestHit(view.eyeWorld, direction, begin, end, Faces::Drawn);
     if (!first) return std::nullopt;
     const SurfacePoint nearest = pointOf(first->distance, first->flattenedTriangle);
-    if (!isNonRedundant_ || !anyHolds(index, nearest)) return nearest;
+    if (!isNonRedundant_ || !isRedundant(index, nearest)) return nearest;
 
     std::vector<TriangleHit>& hits = hitsOfWalk(index);
     tracer_->hitsBetween(view.eyeWorld, direction, first->distance, end, Faces::Drawn, hits);
     for (const TriangleHit& hit : hits) {
         const SurfacePoint point = pointOf(hit.distance, hit.triangle);
-        if (!anyHolds(index, point)) return point;
+        if (!isRedundant(index, point)) return point;
     }
     return std::nullopt;
 }

@@ -31,11 +31,11 @@ std::vector<std::uint32_t> marksOf(const VisibilitySequence& sequence, std::size
 }  // namespace
 
 VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer,
-                                           Method method, const Views& views)
+                                           Method method, const Views& views, Earlier earlier)
     : method_(method),
       tracer_(std::move(tracer)),
       shading_(scene),
-      sequence_(tracer_, views.images, method != Method::Conventional),
+      sequence_(tracer_, views.images, method != Method::Conventional, earlier),
       conventional_(tracer_, views.conventional, false),
       frames_(tracer_, views.frames, false),
       neededBy_(tracer_, {}, false) {}

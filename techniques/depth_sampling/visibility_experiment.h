@@ -10,7 +10,7 @@ namespace gfxrepro::depth_sampling {
 class VisibilityExperiment final : public Experiment {
   public:
     VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer, Method method,
-                         const Views& views);
+                         const Views& views, Earlier earlier);
 
     void makeReferenceImages(gl::Profiler& profiler) override;
     Measures measure(const MeasureSettings& settings) override;

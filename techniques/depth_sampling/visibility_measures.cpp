@@ -29,7 +29,7 @@ VisibilityCounts countSamples(const VisibilitySequence& sequence, std::size_t in
                 const auto point = sequence.sample(index, {x, y});
                 if (!point) continue;
                 ++counts.samples;
-                counts.redundant += sequence.anyHolds(index, *point) ? 1 : 0;
+                counts.redundant += sequence.isRedundant(index, *point) ? 1 : 0;
                 if (conventional.anyHolds(earlierCount, *point)) continue;
                 ++counts.occludedLiterally;
                 if (conventional.anyHolds(viewCount, *point)) continue;

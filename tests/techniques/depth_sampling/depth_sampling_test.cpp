@@ -143,7 +143,10 @@ TEST_F(DepthSamplingTest, CoincidingViewsPeelAnalyticLayers) {
         EXPECT_EQ(peeled.at("samples/image_2"), 0) << redundancy;
         EXPECT_EQ(peeled.at("occluded_pct/image_0"), 0) << redundancy;
         EXPECT_EQ(peeled.at("occluded_pct/image_1"), 100) << redundancy;
-        EXPECT_EQ(peeled.at("occluded_pct/image_2"), 0) << redundancy;
+        EXPECT_EQ(peeled.at("coverage_pct/image_2"), 0) << redundancy;
+        EXPECT_FALSE(peeled.contains("occluded_pct/image_2")) << "a share of nothing";
+        EXPECT_EQ(peeled.at("coverage_pct/image_0"), 100) << redundancy;
+        EXPECT_NEAR(peeled.at("coverage_pct/image_1"), 100.0 / 9.0, 1e-9) << redundancy;
         EXPECT_EQ(peeled.at("useful_pct/image_1"), 0) << redundancy;
         EXPECT_EQ(peeled.at("available_min_pct"), 100) << redundancy;
         Metrics nonRedundant = run("{method: non_redundant" + common, scene);
@@ -251,21 +254,36 @@ TEST_F(DepthSamplingTest, GeometryShaderIdsGiveTheSameSamples) {
 }
 
 // The camera looks away from everything.
-TEST_F(DepthSamplingTest, NothingInViewIsZeroEverywhere) {
+TEST_F(DepthSamplingTest, NothingInViewIsAnError) {
     scene::Scene scene = cardBeforeWall();
+    scene.name = "cards";
     scene.cameras = {lookingAt({0, 0, 4}, {0, 0, 40})};
     for (const std::string method : {"conventional", "non_redundant", "depth_peeling"}) {
         for (const std::string redundancy : {"pixel", "visibility"}) {
-            const Metrics metrics = run("{method: " + method + ", redundancy: " + redundancy +
-                                            ", usefulness: true, availability: true, "
-                                            "output_frames: 2}",
-                                        scene);
-            for (const auto& [name, value] : metrics) {
-                if (name == "reference_image_bytes" || name == "output_frames") continue;
-                EXPECT_EQ(value, 0.0) << method << " " << redundancy << " " << name;
-            }
+            EXPECT_EQ(test::errorText([&] {
+                          run("{method: " + method + ", redundancy: " + redundancy +
+                                  ", view_spread: 0, usefulness: true, availability: true, "
+                                  "output_frames: 2}",
+                              scene);
+                      }),
+                      "reference image 0 has no sample: from (0, 0, 4) nothing of scene 'cards' is "
+                      "in view; change 'view_distance', 'view_spread', 'view_yaw_deg', "
+                      "'view_pitch_deg' or the scene's camera")
+                << method << ' ' << redundancy;
         }
     }
+}
+
+TEST_F(DepthSamplingTest, SharesOfPixelsAreThoseOfSamplesTimesCoverage) {
+    const Metrics metrics = run("{method: conventional, view_spread: 0.1}", clutter());
+    for (const std::string image : {"image_0", "image_1", "image_2"}) {
+        const double coverage = metrics.at("coverage_pct/" + image) / 100.0;
+        EXPECT_GT(coverage, 0.05);
+        EXPECT_LT(coverage, 0.95);
+        EXPECT_NEAR(metrics.at("redundant_of_pixels_pct/" + image),
+                    metrics.at("redundant_pct/" + image) * coverage, 1e-9);
+    }
+    EXPECT_GT(metrics.at("redundant_of_pixels_pct/image_1"), 0);
 }
 
 TEST_F(DepthSamplingTest, RefusesViewsInsideOfGeometry) {

@@ -212,6 +212,20 @@ TEST_F(LoadGltf, ReadsMaterialsAndCameras) {
     EXPECT_EQ(camera.farM, 50.0F);
 }
 
+TEST_F(LoadGltf, AimsCamerasAtTheMiddleOfTheScene) {
+    Document document = square();  // from (0, 0, 0) to (1, 1, 0)
+    document["cameras"] = R"([{"type":"perspective","perspective":{"yfov":0.5,"znear":0.125}}])";
+    document["nodes"] = R"([{"mesh":0},{"camera":0,"translation":[0.25,2,5]},
+        {"camera":0,"translation":[0.25,2,5],"rotation":[0,1,0,0]},
+        {"camera":0,"translation":[0.25,2,5],"extras":{"target_m":3}}])";
+    const Scene scene = load(document);
+    ASSERT_EQ(scene.cameras.size(), 3U);
+    EXPECT_EQ(scene.cameras[0].target, glm::vec3(0.25F, 2, 0)) << "nearest to (0.5, 0.5, 0)";
+    EXPECT_LT(glm::length(scene.cameras[1].target - glm::vec3(0.25F, 2, 6)), 1e-6F)
+        << "the middle lies behind the eye";
+    EXPECT_EQ(scene.cameras[2].target, glm::vec3(0.25F, 2, 2)) << "as the file says";
+}
+
 TEST_F(LoadGltf, DecodesPercentSignsAndStaysInItsFolder) {
     folder_.write("sub/the square.bin", squareBytes());
     EXPECT_EQ(loadWith("buffers", R"([{"byteLength":76,"uri":"sub/../sub/the%20square.bin"}])")

@@ -128,6 +128,7 @@ TEST(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     EXPECT_LT(
         glm::length(glm::normalize(eye.target - eye.position) + glm::normalize(camera.position)),
         1e-6F);
+    EXPECT_LT(glm::length(eye.target - camera.target), 1e-6F) << "the distance is kept, too";
     EXPECT_EQ(eye.verticalFovRad, camera.verticalFovRad);
     EXPECT_EQ(eye.farM, camera.farM);
 }

@@ -1,0 +1,155 @@
+#include "runner/config/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/config/checks.h"
+#include "runner/config/schema.h"
+#include "runner/config/sections.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// What a cell selects: `cell`, then the labels of its row, then those of its column.
+Selection laidOver(const Selection& under, const Selection& over) {
+    Selection result = under;
+    if (over.metric) result.metric = over.metric;
+    if (over.pass) result.pass = over.pass;
+    result.where.insert(result.where.end(), over.where.begin(), over.where.end());
+    return result;
+}
+
+Selection selectionOf(const LayoutAxis& axis, const std::string& value) {
+    Selection selection;
+    if (axis.isSweepAxis()) selection.where.emplace_back(axis.name, Node::scalar(value));
+    for (const auto& [label, chosen] : axis.labels) {
+        if (label == value) selection = chosen;
+    }
+    return selection;
+}
+
+/// The cell at `row` (beside the row axes) and a column; several column axes are not needed here.
+Selection cellSelection(const Layout& layout, const Names& row, const std::string& column) {
+    Selection selection = layout.cell;
+    for (std::size_t i = 0; i < layout.rows.size(); ++i) {
+        selection = laidOver(selection, selectionOf(layout.rows[i], row[i]));
+    }
+    if (layout.columns.size() != 1) return selection;
+    return laidOver(selection, selectionOf(layout.columns.front(), column));
+}
+
+/// The one method of a cell's cases; empty where it is not one or not said.
+std::string methodOf(const Experiment& experiment, const Selection& cell) {
+    std::string method;
+    for (const auto& [axis, value] : cell.where) {
+        if (axis == "method") method = value.isScalar() ? value.text() : "";
+    }
+    if (!method.empty()) return method;
+    for (const AxisPoint& point : expandSweep(experiment.sweep)) {
+        for (const auto& [axis, value] : point) {
+            if (axis == "method") return "";
+        }
+    }
+    const Node* fixed = experiment.params.find("method");
+    return fixed && fixed->isScalar() ? fixed->text() : "";
+}
+
+const Node& required(const Node& entry, const std::string& what, std::string_view key) {
+    const Node* value = entry.find(key);
+    if (!value) throw Error(entry.location(), fmt::format("{} needs '{}'", what, key));
+    return *value;
+}
+
+/// The labels of `row` beside the table's row axes.
+Names rowLabels(const Node& row, const Layout& layout, const std::string& what) {
+    Names axes, labels;
+    for (const LayoutAxis& axis : layout.rows) axes.push_back(axis.name);
+    requireKeys(row, what + ": row", axes);
+    for (const std::string& axis : axes) labels.push_back(required(row, what, axis).text());
+    return labels;
+}
+
+double printedValue(const Printed& printed, const Layout& layout, const Names& row,
+                    const Node& column, const std::string& what) {
+    const auto at = std::ranges::find(printed.header, column.text());
+    if (at == printed.header.end()) {
+        throw Error(column.location(),
+                    fmt::format("{}: no column '{}' is printed{}", what, column.text(),
+                                suggestion(column.text(), printed.header)));
+    }
+    for (const Names& cells : printed.rows) {
+        bool isRow = true;
+        for (std::size_t i = 0; i < layout.rows.size(); ++i) {
+            const auto axis = std::ranges::find(printed.header, layout.rows[i].name);
+            isRow =
+                isRow && cells[static_cast<std::size_t>(axis - printed.header.begin())] == row[i];
+        }
+        if (!isRow) continue;
+        const std::string& text = cells[static_cast<std::size_t>(at - printed.header.begin())];
+        if (const auto value = parseDouble(text)) return *value;
+        throw Error(column.location(),
+                    fmt::format("{}: what is printed there is no number: '{}'", what, text));
+    }
+    throw Error(column.location(), fmt::format("{}: no row {} is printed", what, joined(row)));
+}
+
+void requireSameMeasure(const Selection& ours, const Selection& theirs, const std::string& what,
+                        const SourceLocation& where) {
+    if (ours.metric == theirs.metric && ours.pass == theirs.pass) return;
+    const auto name = [](const Selection& cell) {
+        return cell.metric.value_or("nothing") + (cell.pass ? " of " + *cell.pass : "");
+    };
+    throw Error(where, fmt::format("{}: the column is {}, the printed cell {}", what, name(ours),
+                                   name(theirs)));
+}
+
+}  // namespace
+
+Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
+                     const Experiment& table) {
+    const std::string what = "fit: '" + column + "'";
+    const Node& place = required(entry, what, "table");
+    if (table.technique != fit.technique || !table.layout.isGiven) {
+        throw Error(place.location(), fmt::format("{}: {} is not measured by technique '{}'", what,
+                                                  table.id, fit.technique));
+    }
+    const Names row = rowLabels(required(entry, what, "row"), table.layout, what);
+    const Node& theirs = required(entry, what, "column");
+    const Selection cell = cellSelection(table.layout, row, lineOf(theirs, what + ": column"));
+    const Selection own = cellSelection(fit.layout, Names(fit.layout.rows.size()), column);
+    // What a fit may read compares no methods: that is how the other rows stay blind.
+    const std::string method = methodOf(fit, own), printedMethod = methodOf(table, cell);
+    if (method.empty()) {
+        throw Error(entry.location(), what + ": the cases are not all of one method in 'params'");
+    }
+    if (method != printedMethod) {
+        throw Error(theirs.location(),
+                    fmt::format("{}: the printed cell is of method '{}', the cases of '{}'; a fit "
+                                "sees what compares no methods",
+                                what, printedMethod, method));
+    }
+    requireSameMeasure(own, cell, what, theirs.location());
+    Node result = entry;
+    result.set("printed", Node::number(printedValue(table.printed, table.layout, row, theirs, what),
+                                       theirs.location()));
+    result.set("id", Node::scalar(table.id, place.location(), true));
+    return result;
+}
+
+std::vector<FitTarget> fitTargets(const Experiment& experiment) {
+    const Node* fit = experiment.document.find("fit");
+    if (!fit || fit->isNull()) return {};
+    std::vector<FitTarget> targets;
+    for (const auto& [column, entry] : fit->entries()) {
+        targets.push_back({column, required(entry, "fit", "id").text(),
+                           required(entry, "fit", "printed").asDouble()});
+    }
+    return targets;
+}
+
+}  // namespace gfxrepro::config

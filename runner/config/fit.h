@@ -1,0 +1,27 @@
+// `fit:` — columns of a table that are held against printed cells of other tables: a calibration.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+
+namespace gfxrepro::config {
+
+/// A column and the number that it is held against.
+struct FitTarget {
+    std::string column;
+    std::string table;  // "xie2017/2": where the number is printed
+    double printed = 0.0;
+};
+
+/// The `fit:` of an experiment; empty where it has none.
+std::vector<FitTarget> fitTargets(const Experiment& experiment);
+
+/// An entry of `fit` with the printed number that it names, of `table`. So no other number of the
+/// table reaches the experiment. Throws Error for a cell that is not there, is of another measure
+/// than the column, or of another method than the fit's cases: what compares methods is not seen.
+Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
+                     const Experiment& table);
+
+}  // namespace gfxrepro::config
