@@ -74,6 +74,7 @@ std::vector<ClaimPart> independentParts(const config::ClaimSpec& claim) {
 ClaimPart exactPart(const config::ClaimSpec& claim) {
     ClaimPart part{{0}, largestDifference, {}, "largest difference"};
     part.requirement.high = 0.0;
+    part.requirement.isOfCounts = true;
     part.requirement.text = claim.operands[0] + " = " +
                             (claim.low ? quantityText(*claim.low, part.requirement) : "printed");
     part.needsExpected = true;

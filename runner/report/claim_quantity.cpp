@@ -189,7 +189,10 @@ Judgement judge(Group group, const Quantity& quantity, const Requirement& requir
     std::vector<Sampled*> all;
     for (auto& operand : group.operands)
         for (Sampled& sampled : operand) all.push_back(&sampled);
-    const bool areDraws = keepRoundsOrDraws(all);
+    const bool areDraws = keepRoundsOrDraws(all) && !requirement.isOfCounts;
+    for (Sampled* sampled : all) {
+        if (sampled->areDraws && !areDraws) *sampled = {sampled->point, {}, false};
+    }
     Judgement judgement;
     const double point = quantity(pointOf(group));
     std::vector<double> values;

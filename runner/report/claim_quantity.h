@@ -28,6 +28,7 @@ struct Requirement {
     bool isLowExcluded = false;
     bool isHighExcluded = false;
     bool isInfinityAbsence = false;  // crossover alone: what is infinite is not there, and fails
+    bool isOfCounts = false;         // exact alone: of what was counted, not of what it stands for
     std::string text;                // "exponent in [0.3, 1.2]"
     bool isPercent = false;          // shown ×100 with a percent sign
 };

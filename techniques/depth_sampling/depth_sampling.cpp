@@ -208,19 +208,25 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
     for (std::size_t i = 0; i < measures.images.size(); ++i) {
         const ImageCounts& counts = measures.images[i];
         const std::string pass = imageName(i);
-        const auto share = [&](const char* name, std::uint64_t part, std::uint64_t whole) {
-            recorder.metric(name, percent(part, whole), "%", pass);
+        const auto ofSamples = [&](const char* name, std::uint64_t part) {
+            recorder.share(name, static_cast<double>(part), static_cast<double>(counts.samples),
+                           "sample", pass);
         };
         recorder.metric("samples", static_cast<double>(counts.samples), "sample", pass);
-        share("coverage_pct", counts.samples, pixels);
+        recorder.metric("coverage_pct", percent(counts.samples, pixels), "%", pass);
         if (counts.samples == 0) continue;
-        share("redundant_pct", counts.redundant, counts.samples);
-        share("redundant_of_pixels_pct", counts.redundant, pixels);
-        share("occluded_pct", counts.occluded, counts.samples);
-        share("occluded_literal_pct", counts.occludedLiterally, counts.samples);
+        ofSamples("redundant_pct", counts.redundant);
+        recorder.metric("redundant_of_pixels_pct", percent(counts.redundant, pixels), "%", pass);
+        ofSamples("occluded_pct", counts.occluded);
+        ofSamples("occluded_literal_pct", counts.occludedLiterally);
+        ofSamples("useful_of_samples_pct", counts.useful);
         // Of no occluded sample none is useful: the thesis prints 0 for the first images.
-        share("useful_pct", counts.useful, std::max<std::uint64_t>(counts.occluded, 1));
-        share("useful_of_samples_pct", counts.useful, counts.samples);
+        if (counts.occluded == 0) {
+            recorder.metric("useful_pct", 0.0, "%", pass);
+        } else {
+            recorder.share("useful_pct", static_cast<double>(counts.useful),
+                           static_cast<double>(counts.occluded), "sample", pass);
+        }
         occludedSumPct += percent(counts.occluded, counts.samples);
         usefulSumPct += percent(counts.useful, counts.samples);
     }

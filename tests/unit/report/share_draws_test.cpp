@@ -95,6 +95,18 @@ TEST(ShareDraws, ClaimsAreJudgedByTheIntervalOfWhatTheyCompare) {
     EXPECT_EQ(results[1].verdict, Verdict::Holds) << results[1].measured;
 }
 
+TEST(ShareDraws, ExactClaimsAreOfTheCountItself) {
+    std::string body = kShares;
+    body +=
+        "  half: {says: half a percent, origin: ours, bound_from: ours, exact: useful, equals: "
+        "0.5}\n";
+    const config::Experiment experiment = experimentFrom(body);
+    const Table table = buildTable(experiment, sharesCounted(2000, 200'000).records());
+    const auto results =
+        evaluateClaims(experiment, table, {"llvmpipe", "software", "quick", "abc", ""});
+    EXPECT_EQ(results.at(2).verdict, Verdict::Holds) << results.at(2).measured;
+}
+
 TEST(ShareDraws, WhereThereAreRoundsTheDrawsOfOthersAreDropped) {
     Sampled share{5.0, {{0, 4.0}, {1, 6.0}}, true};
     Sampled time{2.0, {{3, 1.0}, {4, 3.0}}, false};
