@@ -35,11 +35,6 @@ glm::vec3 forwardOf(const View& view) {
     return {-m[0].z, -m[1].z, -m[2].z};
 }
 
-bool isSameView(const View& a, const View& b) {
-    return a.eyeWorld == b.eyeWorld && a.viewFromWorld == b.viewFromWorld &&
-           a.clipFromView == b.clipFromView && a.sizePx == b.sizePx;
-}
-
 /// Memory for the hits of one walk, reused from query to query. Walks nest (a walk of image j asks
 /// for earlier images), each under its image's index; a deque keeps the outer ones in place.
 std::vector<TriangleHit>& hitsOfWalk(std::size_t index) {
@@ -49,6 +44,11 @@ std::vector<TriangleHit>& hitsOfWalk(std::size_t index) {
 }
 
 }  // namespace
+
+bool isSameView(const View& a, const View& b) {
+    return a.eyeWorld == b.eyeWorld && a.viewFromWorld == b.viewFromWorld &&
+           a.clipFromView == b.clipFromView && a.sizePx == b.sizePx;
+}
 
 struct VisibilitySequence::Sight {
     glm::vec3 eye;

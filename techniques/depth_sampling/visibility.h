@@ -23,6 +23,8 @@ enum class Earlier {
     Samples,  // what the earlier images hold, with what they uncovered
 };
 
+bool isSameView(const depth_images::View& a, const depth_images::View& b);
+
 /// Which points of the scene images with infinitely many pixels hold; their resolution does not
 /// count. What is outside of an image's frustum, before its near plane or beyond its far plane is
 /// not held, and back faces neither hide nor are held (raycast::Faces::Drawn).

@@ -22,6 +22,10 @@ VisibilityCounts countSamples(const VisibilitySequence& sequence, std::size_t in
     const glm::ivec2 size = sequence.views()[index].sizePx;
     const std::size_t viewCount = conventional.views().size();
     const std::size_t earlierCount = std::min(index, viewCount);
+    // The nearest points on a view's rays are what its conventional image holds, whatever rounding
+    // makes of a ray that is cast to one of them again.
+    const bool isConventional =
+        index == 0 && viewCount > 0 && isSameView(sequence.views()[0], conventional.views()[0]);
     const auto countRows = [&](const tbb::blocked_range<int>& rows, VisibilityCounts counts) {
         std::size_t frameBefore = 0;
         for (int y = rows.begin(); y < rows.end(); ++y) {
@@ -32,7 +36,7 @@ VisibilityCounts countSamples(const VisibilitySequence& sequence, std::size_t in
                 counts.redundant += sequence.isRedundant(index, *point) ? 1 : 0;
                 if (conventional.anyHolds(earlierCount, *point)) continue;
                 ++counts.occludedLiterally;
-                if (conventional.anyHolds(viewCount, *point)) continue;
+                if (isConventional || conventional.anyHolds(viewCount, *point)) continue;
                 ++counts.occluded;
                 const auto frame = outputs.visibleFrom(*point, frameBefore);
                 if (!frame) continue;

@@ -1,0 +1,70 @@
+// What the shipped calibrations came to is what the catalogue and the preset say.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "runner/config/node.h"
+#include "runner/core/files.h"
+
+namespace gfxrepro {
+namespace {
+
+const std::filesystem::path kSource = GFXREPRO_SOURCE_DIR;
+
+/// The values of results/calibration/SCENE.csv: scene.NAME and view_NAME.
+std::map<std::string, double> fitted(const std::string& scene) {
+    std::istringstream csv(readFile(kSource / "results/calibration" / (scene + ".csv")));
+    std::string header, row;
+    std::getline(csv, header);
+    std::getline(csv, row);
+    std::istringstream names(header), values(row);
+    std::map<std::string, double> found;
+    std::string name, value;
+    while (std::getline(names, name, ',') && std::getline(values, value, ',')) {
+        const bool isFree = name.starts_with("scene.") || name.starts_with("view_");
+        if (isFree) found[name] = std::stod(value);
+    }
+    return found;
+}
+
+class Calibration : public testing::TestWithParam<const char*> {};
+
+TEST_P(Calibration, CatalogueAndPresetHoldWhatWasFitted) {
+    const std::string scene = GetParam();
+    const std::map<std::string, double> values = fitted(scene);
+    ASSERT_GE(values.size(), 3U);
+    const auto entry = kSource / "configs/scenes/outdoor" / (scene + ".yaml");
+    const auto preset = kSource / "configs/presets/depth-sampling.yaml";
+    const config::Node catalogue = config::parseYaml(readFile(entry), entry.string());
+    const config::Node shared = config::parseYaml(readFile(preset), preset.string());
+    const config::Node& params = *catalogue.find("sources")->items().at(0).find("params");
+    const config::Node& views = *shared.find("params_by_scene")->find("outdoor/" + scene);
+    for (const auto& [name, value] : values) {
+        const bool isOfScene = name.starts_with("scene.");
+        const config::Node* node = isOfScene ? params.find(name.substr(6)) : views.find(name);
+        ASSERT_TRUE(node != nullptr) << name;
+        EXPECT_EQ(std::stod(node->text()), value) << name;
+    }
+}
+
+TEST_P(Calibration, TheLedgerSaysHowFarItIsFromThePrintedCells) {
+    const std::string scene = GetParam();
+    std::istringstream csv(readFile(kSource / "results/calibration" / (scene + ".csv")));
+    std::string row;
+    for (int line = 0; line < 2; ++line) std::getline(csv, row);
+    const double rms = std::stod(row.substr(row.rfind(',') + 1));
+    const auto preset = kSource / "configs/presets/depth-sampling.yaml";
+    const config::Node shared = config::parseYaml(readFile(preset), preset.string());
+    const std::string why = shared.find("assumptions")->find("scene")->find("why")->text();
+    const std::string said = fmt::format("{} {:.1f}", scene.substr(scene.rfind('_') + 1), rms);
+    EXPECT_NE(why.find(said), std::string::npos) << said << " is not in: " << why;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Calibration,
+                         testing::Values("bird_nest", "grass", "city", "tree"));
+
+}  // namespace
+}  // namespace gfxrepro
