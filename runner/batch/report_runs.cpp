@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "runner/batch/case_filter.h"
@@ -63,7 +64,8 @@ std::string configName(const fs::path& file) {
     const fs::path folder = file.parent_path();
     std::error_code isAbsent;
     const bool isShipped = fs::equivalent(folder.parent_path(), dataFolder("configs"), isAbsent);
-    const bool isPaper = isShipped && folder.filename() != "sweeps" && folder.filename() != "smoke";
+    static const std::set<std::string> kNamedByFile = {"calibration", "nightly", "smoke", "sweeps"};
+    const bool isPaper = isShipped && !kNamedByFile.contains(folder.filename().string());
     return isPaper ? (folder.filename() / file.stem()).string() : file.string();
 }
 

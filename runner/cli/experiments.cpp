@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint64_t kSeed = 1;
 
 bool isPaperFolder(const fs::path& folder) {
-    static const std::set<std::string> kOthers = {"nightly", "presets", "scenes",
-                                                  "schema",  "smoke",   "sweeps"};
+    static const std::set<std::string> kOthers = {"calibration", "nightly", "presets", "scenes",
+                                                  "schema",      "smoke",   "sweeps"};
     return fs::is_directory(folder) && !kOthers.contains(folder.filename().string());
 }
 

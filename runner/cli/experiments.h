@@ -12,7 +12,7 @@
 namespace gfxrepro::cli {
 
 /// The files `configs/<paper>/*.yaml` of every paper, sorted. Folders that hold no papers (scenes,
-/// presets, sweeps, smoke, nightly) are left out.
+/// calibration, presets, sweeps, smoke, nightly) are left out.
 std::vector<std::filesystem::path> paperConfigs();
 
 /// Each "PAPER" and its "PAPER/TABLE"s.
