@@ -217,6 +217,8 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
     const std::string claim = table +
                               "layout: {rows: scene, columns: {aa: m, bb: m}}\n"
                               "printed: {values: \"scene, aa\\ns, 1\"}\nclaims:\n  C:\n";
+    folder.write("p/fitted.yaml",
+                 claim.substr(0, claim.find("claims:")) + "params: {method: usual}\n");
     std::vector<Embedding> embeddings = {
         {"identity", "title: t\ntechnique: x\n", "", {}},
         {"composition", head, "", {}},
@@ -240,6 +242,11 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
          table + "layout: {rows: scene, columns: {aa: m, bb: m}}\nplots:\n  -\n",
          "    ",
          {{"x", "aa"}, {"y", "bb"}, {"panels", "scene"}}},
+        {"fit",
+         "sweep_of: c\ntitle: t\ntechnique: x\nparams: {method: usual}\n"
+         "sweep: {spread: [1, 2]}\nlayout: {rows: spread, columns: {aa: m}}\nfit:\n  aa:\n",
+         "    ",
+         {{"table", "p/fitted.yaml"}, {"row", "{scene: s}"}, {"column", "aa"}}},
         {"assumption", head + "assumptions:\n  a:\n", "    ", {{"why", "w"}}},
         {"claim", claim, "    ", {{"says", "s"}, {"order", "aa < bb"}}},
         {"because",

@@ -57,7 +57,9 @@ TEST(Fit, TakesTheRowWithTheLeastSquares) {
 }
 
 TEST(Fit, SaysNothingWithoutOne) {
-    EXPECT_THAT(fitNotes(fitOf({}, tableOf({{1, 2}})), tableOf({{1, 2}})), IsEmpty());
+    config::Experiment none;
+    none.document = config::parseYaml("title: t", "t.yaml");
+    EXPECT_THAT(fitNotes(fitOf(none, tableOf({{1, 2}})), tableOf({{1, 2}})), IsEmpty());
     const Table table = tableOf({{-1, 2}});
     EXPECT_THAT(fitNotes(fitOf(experimentOf(), table), table),
                 ElementsAre("rows of the fit that are not measured: 1"));

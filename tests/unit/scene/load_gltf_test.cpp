@@ -218,6 +218,7 @@ TEST_F(LoadGltf, AimsCamerasAtTheMiddleOfTheScene) {
     document["nodes"] = R"([{"mesh":0},{"camera":0,"translation":[0.25,2,5]},
         {"camera":0,"translation":[0.25,2,5],"rotation":[0,1,0,0]},
         {"camera":0,"translation":[0.25,2,5],"extras":{"target_m":3}}])";
+    document["scenes"] = R"([{"nodes":[0,1,2,3]}])";
     const Scene scene = load(document);
     ASSERT_EQ(scene.cameras.size(), 3U);
     EXPECT_EQ(scene.cameras[0].target, glm::vec3(0.25F, 2, 0)) << "nearest to (0.5, 0.5, 0)";
