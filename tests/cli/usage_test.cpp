@@ -82,6 +82,24 @@ TEST(Usage, RunWantsConfigsOrARun) {
               "gfxrepro: DIR: is no run directory (it has no plan.json)\n");
 }
 
+// What `reproduce` is for on a machine that has nobody's scans.
+TEST(Usage, EveryTableOfThePapersNeedsNoRealModel) {
+    const TemporaryFolder folder;
+    for (const char* profile : {"quick", "paper"}) {
+        std::vector<std::string> arguments = {"check", "--assets", folder.path(), "--profile",
+                                              profile};
+        for (const char* paper : {"xie2017", "zju2005", "zhang2012"}) {
+            for (const auto& config : std::filesystem::directory_iterator(
+                     std::filesystem::path(GFXREPRO_CONFIGS) / paper)) {
+                if (config.path().extension() == ".yaml") arguments.push_back(config.path());
+            }
+        }
+        ASSERT_GT(arguments.size(), 80U);
+        const ProcessResult result = gfxrepro(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+    }
+}
+
 TEST(Usage, DescribeSaysWhatItCannot) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"describe"}, folder),
