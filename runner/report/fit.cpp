@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/report/csv.h"
 
 namespace gfxrepro::report {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -98,6 +101,68 @@ std::string fitCsv(const Fit& fit, const Table& table) {
         line.number(best.rms).end();
     }
     return text;
+}
+
+namespace {
+
+/// Of one calibration, what concerns a table; empty where nothing does.
+std::string calibrationNote(const std::string& table, const fs::path& file) {
+    const std::string text = readFile(file);
+    CsvReader reader(text, file.string());
+    std::vector<std::string> header, row, fitted, cells;
+    reader.next(header);
+    const auto first = std::ranges::find(header, "column");
+    const auto axes = static_cast<std::size_t>(first - header.begin());
+    if (axes == header.size() || axes + 6 != header.size()) {
+        throw Error(reader.location(),
+                    "is no fit; its columns end in column, table, printed, "
+                    "measured, residual, rms");
+    }
+    std::size_t count = 0;
+    double rms = 0.0;
+    while (reader.next(row)) {
+        if (row.size() != header.size()) {
+            throw Error(reader.location(),
+                        fmt::format("{} fields; the head has {}", row.size(), header.size()));
+        }
+        const auto number = [&](std::size_t at) {
+            const auto value = parseDouble(row[axes + at]);
+            if (!value) throw Error(reader.location(), "'" + row[axes + at] + "' is no number");
+            return *value;
+        };
+        ++count;
+        rms = number(5);
+        if (row[axes + 1] != table) continue;
+        cells.push_back(fmt::format("{} {:g} → {:.2f}", row[axes], number(2), number(3)));
+        if (!fitted.empty()) continue;
+        for (std::size_t i = 0; i < axes; ++i) fitted.push_back(header[i] + " " + row[i]);
+    }
+    if (cells.empty()) return "";
+    return fmt::format(
+        "Calibrated blind, {}: {} fitted to {} printed cells that compare no methods; of this "
+        "table {} (root mean square of all residuals {:.2f})",
+        file.stem().string(), joined(fitted), count, joined(cells), rms);
+}
+
+}  // namespace
+
+std::vector<std::string> calibrationNotes(const std::string& table, const fs::path& folder) {
+    if (!fs::is_directory(folder)) return {};
+    std::set<fs::path> files;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+        if (file.path().extension() == ".csv") files.insert(file.path());
+    }
+    std::vector<std::string> notes;
+    for (const fs::path& file : files) {
+        if (std::string note = calibrationNote(table, file); !note.empty()) {
+            notes.push_back(std::move(note));
+        }
+    }
+    return notes;
+}
+
+std::vector<std::string> calibrationNotes(const std::string& table) {
+    return calibrationNotes(table, dataFolder("configs").parent_path() / "results/calibration");
 }
 
 void writeFits(const std::filesystem::path& runDir,

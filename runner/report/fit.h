@@ -34,6 +34,14 @@ std::vector<std::string> fitNotes(const Fit& fit, const Table& table);
 /// Empty without a best row.
 std::string fitCsv(const Fit& fit, const Table& table);
 
+/// What kept calibrations (`folder`/<scene>.csv, as `fitCsv` writes them) say to the page of a table
+/// whose printed cells they read: what was fitted, and printed beside measured of its cells. A note
+/// a calibration, by name; none where there is no folder. Throws Error for a file of another kind.
+std::vector<std::string> calibrationNotes(const std::string& table,
+                                          const std::filesystem::path& folder);
+/// Those of results/calibration.
+std::vector<std::string> calibrationNotes(const std::string& table);
+
 /// tables/<slug>.fit.csv of each experiment with a fit; `tables` lies beside `experiments`.
 void writeFits(const std::filesystem::path& runDir,
                const std::vector<config::Experiment>& experiments,

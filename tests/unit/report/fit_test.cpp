@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/support/support.h"
+
 namespace gfxrepro::report {
 namespace {
 
@@ -64,6 +66,23 @@ TEST(Fit, SaysNothingWithoutOne) {
     EXPECT_THAT(fitNotes(fitOf(experimentOf(), table), table),
                 ElementsAre("rows of the fit that are not measured: 1"));
     EXPECT_EQ(fitCsv(fitOf(experimentOf(), table), table), "");
+}
+
+TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
+    const TemporaryFolder folder;
+    const Table table = tableOf({{60, 50}, {73, 46}});
+    folder.write("nest.csv", fitCsv(fitOf(experimentOf(), table), table));
+    folder.write("nest.md", "not read");
+    EXPECT_THAT(calibrationNotes("p/1", folder.path()),
+                ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
+                            "compare no methods; of this table a 70 → 73.00 (root mean square of "
+                            "all residuals 3.54)"));
+    EXPECT_THAT(calibrationNotes("p/3", folder.path()), IsEmpty());
+    EXPECT_THAT(calibrationNotes("p/1", folder.path() / "none"), IsEmpty());
+    folder.write("nest.csv", "spread,column\n1,a\n");
+    EXPECT_EQ(errorText([&] { calibrationNotes("p/1", folder.path()); }, folder.path()),
+              "DIR/nest.csv:1: is no fit; its columns end in column, table, printed, measured, "
+              "residual, rms");
 }
 
 }  // namespace
