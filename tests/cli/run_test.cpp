@@ -44,6 +44,32 @@ TEST(Run, SmokeFromConfigToReport) {
     EXPECT_TRUE(fs::exists(dir + "/report.html"));
 }
 
+// A user's file has its views where the catalogue's scene has them: nothing looks past the scene.
+TEST(Run, AnExportedSceneMeasuresAsTheCataloguesDoes) {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "tree.glb";
+    const ProcessResult exported = gfxrepro({"scene", "outdoor/tree", "--export", file});
+    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    const std::string config = folder.write(
+        "tree.yaml",
+        "sweep_of: tree\ntitle: T\ntechnique: depth_sampling\nmeasure: {lane: quality}\n"
+        "params: {method: non_redundant, redundancy: visibility, view_distance: 0.55, "
+        "view_spread: 0.5, output_frames: 10, availability: true}\n"
+        "output: {width: 64, height: 64}\nsweep: {scene: [outdoor/tree, tree.glb]}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    for (const char* metric : {"redundant_pct", "occluded_pct", "available_mean_pct"}) {
+        const std::vector<report::Record> rows = rowsOf(dir, metric);
+        ASSERT_GE(rows.size(), 2U) << metric;
+        const std::size_t half = rows.size() / 2;
+        for (std::size_t i = 0; i < half; ++i) {
+            EXPECT_NEAR(rows[half + i].value, rows[i].value, 0.2) << metric;
+        }
+        EXPECT_GT(rows[half - 1].value, 20.0) << metric;
+    }
+}
+
 TEST(Run, TableThatIsOnlyPrinted) {
     const TemporaryFolder folder;
     const std::string config = folder.write(

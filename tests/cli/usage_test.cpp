@@ -100,6 +100,36 @@ TEST(Usage, EveryTableOfThePapersNeedsNoRealModel) {
     }
 }
 
+// The rows of the thesis that compare methods stay unseen, whichever cell a calibration names.
+TEST(Usage, CalibrationsCannotReadWhatComparesMethods) {
+    const TemporaryFolder folder;
+    const auto errorOf = [&](const std::string& target) {
+        const std::string config = folder.write(
+            "c.yaml",
+            "sweep_of: c\ntitle: T\nextends: [presets/depth-sampling-calibration.yaml]\n"
+            "scene: outdoor/bird_nest\nlayout: {rows: scene}\nfit:\n  " +
+                target + "\n");
+        return refusal({"check", config}, folder);
+    };
+    const std::string scene = "scene: outdoor/bird_nest}, column: ";
+    const std::string refused = "the cases of 'conventional'; a fit sees what compares no methods";
+    for (const char* method : {"non_redundant", "depth_peeling"}) {
+        const std::string name = method;
+        for (const std::string& target :
+             {"pixel_image_1: {table: xie2017/table-2.yaml, row: {measure: " + name +
+                  "_occluded, " + scene + "image_1}",
+              "pixel_avg: {table: xie2017/table-4.yaml, row: {" + scene + name + "_avg}",
+              "visibility_image_2: {table: xie2017/table-5.yaml, row: {measure: " + name +
+                  "_useful, " + scene + "image_2}",
+              "visibility_min: {table: xie2017/table-6.yaml, row: {" + scene + name + "_min}"}) {
+            const std::string error = errorOf(target);
+            EXPECT_NE(error.find("the printed cell is of method '" + name + "', " + refused),
+                      std::string::npos)
+                << error;
+        }
+    }
+}
+
 TEST(Usage, DescribeSaysWhatItCannot) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"describe"}, folder),

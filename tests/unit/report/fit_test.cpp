@@ -69,7 +69,7 @@ TEST(Fit, SaysNothingWithoutOne) {
 }
 
 TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const Table table = tableOf({{60, 50}, {73, 46}});
     folder.write("nest.csv", fitCsv(fitOf(experimentOf(), table), table));
     folder.write("nest.md", "not read");
@@ -80,7 +80,7 @@ TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
     EXPECT_THAT(calibrationNotes("p/3", folder.path()), IsEmpty());
     EXPECT_THAT(calibrationNotes("p/1", folder.path() / "none"), IsEmpty());
     folder.write("nest.csv", "spread,column\n1,a\n");
-    EXPECT_EQ(errorText([&] { calibrationNotes("p/1", folder.path()); }, folder.path()),
+    EXPECT_EQ(test::errorText([&] { calibrationNotes("p/1", folder.path()); }, folder.path()),
               "DIR/nest.csv:1: is no fit; its columns end in column, table, printed, measured, "
               "residual, rms");
 }
