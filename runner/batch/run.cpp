@@ -130,12 +130,15 @@ Completeness completeness(const StoredRun& run) {
 report::ReportContext reportContext(const StoredRun& run) {
     report::ReportContext context = reportContext(run.manifest);
     context.tried = keptSensitivity(run.plan);
+    context.calibrations =
+        report::keptCalibrations(dataFolder("configs").parent_path() / "results/calibration");
     return context;
 }
 
 Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Results& which) {
     const report::ReportContext context = reportContext(run);
     std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
+    report::addCalibrations(context.calibrations, tables);
     const std::vector<std::string> notes = notesOf(run.manifest);
     for (report::Table& table : tables) {
         table.notes.insert(table.notes.begin(), notes.begin(), notes.end());

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runner/core/files.h"
+#include "runner/report/fit.h"
 #include "runner/report/plot.h"
 #include "runner/report/report.h"
 
@@ -66,7 +67,8 @@ Page& pageOf(const std::string& id, Model& model) {
 
 void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) {
     const ReportRun& run = model.runs[index];
-    const std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
+    std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
+    report::addCalibrations(run.context.calibrations, tables);
     const std::vector<report::PlotFile> plots =
         report::writePlots(run.folder, tables, run.experiments);
     const std::vector<Shot> shots = gatherShots(run.folder, file, embeds);

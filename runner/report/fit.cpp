@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "runner/core/files.h"
@@ -105,64 +106,73 @@ std::string fitCsv(const Fit& fit, const Table& table) {
 
 namespace {
 
-/// Of one calibration, what concerns a table; empty where nothing does.
-std::string calibrationNote(const std::string& table, const fs::path& file) {
+/// A line of a kept fit, by the names of its columns.
+using FitLine = std::map<std::string, std::string>;
+
+double numberOf(const FitLine& line, const std::string& name, const SourceLocation& where) {
+    const auto value = parseDouble(line.at(name));
+    if (!value) throw Error(where, fmt::format("{} '{}' is no number", name, line.at(name)));
+    return *value;
+}
+
+/// Adds what one calibration says of the tables that it read.
+void addCalibration(const fs::path& file, KeptCalibrations& kept) {
     const std::string text = readFile(file);
     CsvReader reader(text, file.string());
-    std::vector<std::string> header, row, fitted, cells;
+    std::vector<std::string> header, row, fitted;
     reader.next(header);
     const auto first = std::ranges::find(header, "column");
-    const auto axes = static_cast<std::size_t>(first - header.begin());
-    if (axes == header.size() || axes + 6 != header.size()) {
+    if (header.end() - first != 6) {
         throw Error(reader.location(),
-                    "is no fit; its columns end in column, table, printed, "
-                    "measured, residual, rms");
+                    "is no fit, whose columns end in column, table, printed, measured, residual, "
+                    "rms");
     }
+    std::map<std::string, std::vector<std::string>> cells;  // by table
     std::size_t count = 0;
     double rms = 0.0;
-    while (reader.next(row)) {
+    for (; reader.next(row); ++count) {
         if (row.size() != header.size()) {
             throw Error(reader.location(),
                         fmt::format("{} fields; the head has {}", row.size(), header.size()));
         }
-        const auto number = [&](std::size_t at) {
-            const auto value = parseDouble(row[axes + at]);
-            if (!value) throw Error(reader.location(), "'" + row[axes + at] + "' is no number");
-            return *value;
-        };
-        ++count;
-        rms = number(5);
-        if (row[axes + 1] != table) continue;
-        cells.push_back(fmt::format("{} {:g} → {:.2f}", row[axes], number(2), number(3)));
-        if (!fitted.empty()) continue;
-        for (std::size_t i = 0; i < axes; ++i) fitted.push_back(header[i] + " " + row[i]);
+        FitLine line;
+        for (std::size_t i = 0; i < row.size(); ++i) line[header[i]] = row[i];
+        cells[line["table"]].push_back(fmt::format("{} {:g} → {:.2f}", line["column"],
+                                                   numberOf(line, "printed", reader.location()),
+                                                   numberOf(line, "measured", reader.location())));
+        rms = numberOf(line, "rms", reader.location());
+        if (count > 0) continue;
+        for (auto name = header.begin(); name != first; ++name) {
+            fitted.push_back(*name + " " + line[*name]);
+        }
     }
-    if (cells.empty()) return "";
-    return fmt::format(
-        "Calibrated blind, {}: {} fitted to {} printed cells that compare no methods; of this "
-        "table {} (root mean square of all residuals {:.2f})",
-        file.stem().string(), joined(fitted), count, joined(cells), rms);
+    for (const auto& [table, ofTable] : cells) {
+        kept[table].push_back(fmt::format(
+            "Calibrated blind, {}: {} fitted to {} printed cells that compare no methods; of this "
+            "table {} (root mean square of all residuals {:.2f})",
+            file.stem().string(), joined(fitted), count, joined(ofTable), rms));
+    }
 }
 
 }  // namespace
 
-std::vector<std::string> calibrationNotes(const std::string& table, const fs::path& folder) {
-    if (!fs::is_directory(folder)) return {};
+KeptCalibrations keptCalibrations(const fs::path& folder) {
+    KeptCalibrations kept;
+    if (!fs::is_directory(folder)) return kept;
     std::set<fs::path> files;
     for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
         if (file.path().extension() == ".csv") files.insert(file.path());
     }
-    std::vector<std::string> notes;
-    for (const fs::path& file : files) {
-        if (std::string note = calibrationNote(table, file); !note.empty()) {
-            notes.push_back(std::move(note));
-        }
-    }
-    return notes;
+    for (const fs::path& file : files) addCalibration(file, kept);
+    return kept;
 }
 
-std::vector<std::string> calibrationNotes(const std::string& table) {
-    return calibrationNotes(table, dataFolder("configs").parent_path() / "results/calibration");
+void addCalibrations(const KeptCalibrations& kept, std::vector<Table>& tables) {
+    for (Table& table : tables) {
+        const auto notes = kept.find(table.id);
+        if (notes == kept.end()) continue;
+        table.notes.insert(table.notes.end(), notes->second.begin(), notes->second.end());
+    }
 }
 
 void writeFits(const std::filesystem::path& runDir,

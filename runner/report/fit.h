@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runner/config/fit.h"
+#include "runner/report/claims.h"
 #include "runner/report/table.h"
 
 namespace gfxrepro::report {
@@ -34,13 +35,12 @@ std::vector<std::string> fitNotes(const Fit& fit, const Table& table);
 /// Empty without a best row.
 std::string fitCsv(const Fit& fit, const Table& table);
 
-/// What kept calibrations (`folder`/<scene>.csv, as `fitCsv` writes them) say to the page of a table
-/// whose printed cells they read: what was fitted, and printed beside measured of its cells. A note
-/// a calibration, by name; none where there is no folder. Throws Error for a file of another kind.
-std::vector<std::string> calibrationNotes(const std::string& table,
-                                          const std::filesystem::path& folder);
-/// Those of results/calibration.
-std::vector<std::string> calibrationNotes(const std::string& table);
+/// What kept calibrations (`folder`/<scene>.csv, as `fitCsv` writes them) say on the page of each
+/// table whose printed cells they read: what was fitted, and printed beside measured. Empty where
+/// there is no folder. Throws Error for a file of another kind.
+KeptCalibrations keptCalibrations(const std::filesystem::path& folder);
+/// Puts them among the notes of the tables that they are about.
+void addCalibrations(const KeptCalibrations& kept, std::vector<Table>& tables);
 
 /// tables/<slug>.fit.csv of each experiment with a fit; `tables` lies beside `experiments`.
 void writeFits(const std::filesystem::path& runDir,

@@ -264,9 +264,6 @@ Table buildTable(const config::Experiment& given, const std::vector<Record>& rec
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));
     }
-    if (table.isPublished) {
-        for (std::string& note : calibrationNotes(table.id)) table.notes.push_back(std::move(note));
-    }
     return table;
 }
 

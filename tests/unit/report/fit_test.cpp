@@ -70,19 +70,34 @@ TEST(Fit, SaysNothingWithoutOne) {
 
 TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
     const test::TemporaryFolder folder;
-    const Table table = tableOf({{60, 50}, {73, 46}});
-    folder.write("nest.csv", fitCsv(fitOf(experimentOf(), table), table));
+    const Table grid = tableOf({{60, 50}, {73, 46}});
+    folder.write("nest.csv", fitCsv(fitOf(experimentOf(), grid), grid));
     folder.write("nest.md", "not read");
-    EXPECT_THAT(calibrationNotes("p/1", folder.path()),
+    std::vector<Table> tables(2);
+    tables[0].id = "p/1";
+    tables[1].id = "p/3";
+    addCalibrations(keptCalibrations(folder.path()), tables);
+    EXPECT_THAT(tables[0].notes,
                 ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
                             "compare no methods; of this table a 70 → 73.00 (root mean square of "
                             "all residuals 3.54)"));
-    EXPECT_THAT(calibrationNotes("p/3", folder.path()), IsEmpty());
-    EXPECT_THAT(calibrationNotes("p/1", folder.path() / "none"), IsEmpty());
-    folder.write("nest.csv", "spread,column\n1,a\n");
-    EXPECT_EQ(test::errorText([&] { calibrationNotes("p/1", folder.path()); }, folder.path()),
-              "DIR/nest.csv:1: is no fit; its columns end in column, table, printed, measured, "
+    EXPECT_THAT(tables[1].notes, IsEmpty());
+    EXPECT_THAT(keptCalibrations(folder.path() / "none"), IsEmpty());
+}
+
+TEST(Fit, RefusesKeptFilesOfAnotherKind) {
+    const test::TemporaryFolder folder;
+    const auto errorOf = [&](const std::string& text) {
+        folder.write("nest.csv", text);
+        return test::errorText([&] { keptCalibrations(folder.path()); }, folder.path());
+    };
+    EXPECT_EQ(errorOf("spread,column\n1,a\n"),
+              "DIR/nest.csv:1: is no fit, whose columns end in column, table, printed, measured, "
               "residual, rms");
+    const std::string head = "spread,column,table,printed,measured,residual,rms\n";
+    EXPECT_EQ(errorOf(head + "1,a,p/1,70\n"), "DIR/nest.csv:2: 4 fields; the head has 7");
+    EXPECT_EQ(errorOf(head + "1,a,p/1,many,73,3,3\n"),
+              "DIR/nest.csv:2: printed 'many' is no number");
 }
 
 }  // namespace
