@@ -30,8 +30,9 @@ static_assert(4 * kRunLength < 1 << 16, "places of vertices take 16 bits");
 /// Half pixels are stored in 16 bits.
 constexpr int kMaxSizePx = ((1 << 16) - 1) / 2;
 
-gl::Defines passDefines() {
-    return {{"DEPTH_UNIT", kDepthUnit},
+gl::Defines passDefines(const ReconstructionSettings& settings) {
+    return {{"MERGE_ROWS", settings.mergesRows ? 1 : 0},
+            {"DEPTH_UNIT", kDepthUnit},
             {"ID_UNIT", kIdUnit},
             {"OFFSET_DEPTH_UNIT", kOffsetDepthUnit},
             {"OFFSET_ID_UNIT", kOffsetIdUnit},
@@ -48,9 +49,12 @@ gl::Defines passDefines() {
             {"RUN_LENGTH", kRunLength}};
 }
 
-gl::Program pass(const gl::ShaderLibrary& shaders, const char* name, Reconstruction method) {
-    const char* suffix = method == Reconstruction::Hybrid ? "hybrid" : "classic";
-    return {shaders, {fmt::format("soft_shadows/{}_{}.comp.glsl", name, suffix)}, passDefines()};
+gl::Program pass(const gl::ShaderLibrary& shaders, const char* name,
+                 const ReconstructionSettings& settings) {
+    const char* suffix = settings.method == Reconstruction::Hybrid ? "hybrid" : "classic";
+    return {shaders,
+            {fmt::format("soft_shadows/{}_{}.comp.glsl", name, suffix)},
+            passDefines(settings)};
 }
 
 GLuint groupsFor(int count, int groupSize) {
@@ -87,16 +91,16 @@ glm::mat4 worldFromCorner(const depth_images::View& view) {
 Reconstructor::Reconstructor(const gl::ShaderLibrary& shaders,
                              const ReconstructionSettings& settings)
     : settings_(settings),
-      classify_(pass(shaders, "classify", settings.method)),
-      count_(pass(shaders, "count", settings.method)),
-      scan_(shaders, {"soft_shadows/scan.comp.glsl"}, passDefines()),
-      emit_(pass(shaders, "emit", settings.method)) {}
+      classify_(pass(shaders, "classify", settings)),
+      count_(pass(shaders, "count", settings)),
+      scan_(shaders, {"soft_shadows/scan.comp.glsl"}, passDefines(settings)),
+      emit_(pass(shaders, "emit", settings)) {}
 
 void Reconstructor::resizeScratch(glm::ivec2 imageSizePx) {
     if (cornersSize_ == imageSizePx + 1) return;
     cornersSize_ = imageSizePx + 1;
     runsPerRow_ = (cornersSize_.x + kRunLength - 1) / kRunLength;
-    flags_ = gl::Texture::make2D(GL_R8UI, cornersSize_);
+    flags_ = gl::Texture::make2D(GL_R16UI, cornersSize_);
     places_ = gl::Texture::make2D(GL_R32UI, cornersSize_);
     const auto runs = static_cast<std::size_t>(runsPerRow_ * cornersSize_.y);
     runs_ = gl::Buffer((runs + 1) * sizeof(glm::uvec4));

@@ -28,6 +28,9 @@ struct ReconstructionSettings {
     /// as many footprints a pixel is met as it is; beyond, corners at outlines would stand out as
     /// spikes. Of ½ … 16, 1 to 4 gave the fewest wrong pixels.
     float grazingLimitPx = 2.0F;
+    /// Beyond the thesis, hybrid only: samples side by side in a row whose quads lie within one
+    /// triangle become one quad of the same plane. What it no longer uses of the vertices stays.
+    bool mergesRows = false;
 };
 
 /// A vertex of a reconstructed mesh.
@@ -48,8 +51,8 @@ struct ReconstructedMesh {
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
     std::uint32_t sampleCount = 0;    // samples of the image
-    std::uint32_t sharedCorners = 0;  // corners of quads taken from H (hybrid)
-    std::uint32_t fittedCorners = 0;  // corners of quads from planes (hybrid)
+    std::uint32_t sharedCorners = 0;  // corners of samples' quads taken from H (hybrid)
+    std::uint32_t fittedCorners = 0;  // corners of samples' quads from planes (hybrid)
 
     std::size_t sizeBytes() const;
 };
@@ -88,7 +91,7 @@ class Reconstructor {
     // A texel a corner, where up to four pixels meet: (width + 1) × (height + 1).
     glm::ivec2 cornersSize_{0};
     int runsPerRow_ = 0;
-    gl::Texture flags_;   // R8UI, what classify_ decided
+    gl::Texture flags_;   // R16UI, what classify_ decided
     gl::Texture places_;  // R32UI, places of the corner's vertices and triangles in its run
     gl::Buffer runs_;     // uvec4 a run of corners: counts, then places; behind them the totals
 };

@@ -61,6 +61,8 @@ ReconstructionSettings readReconstruction(config::Params& params) {
     settings.grazingLimitPx = number(
         params, "grazing_limit", static_cast<double>(settings.grazingLimitPx),
         {"how far a plane-fitted corner may lie before or behind its sample", "pixels", 0.0, 1e6});
+    settings.mergesRows = params.getBool("merge_rows", false,
+                                         {"samples of one triangle side by side become one quad"});
     return settings;
 }
 
@@ -102,13 +104,14 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
                {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
     params.finish();
     if (!reconstructs()) {
-        params.refuseGiven({"reference_images", "reference_size", "reconstruction", "discontinuity",
-                            "grazing_limit", "simplify_to", "simplification_error", "export_mesh"},
-                           "a method that takes depth images: non_redundant, conventional or "
-                           "depth_peeling");
+        params.refuseGiven(
+            {"reference_images", "reference_size", "reconstruction", "discontinuity",
+             "grazing_limit", "merge_rows", "simplify_to", "simplification_error", "export_mesh"},
+            "a method that takes depth images: non_redundant, conventional or "
+            "depth_peeling");
     }
     if (reconstruction.method == Reconstruction::Classic) {
-        params.refuseGiven({"grazing_limit"}, "'reconstruction: hybrid'");
+        params.refuseGiven({"grazing_limit", "merge_rows"}, "'reconstruction: hybrid'");
     }
     if (measured == Measured::DepthAndPass) {
         if (method == Method::RayTraced || isFiltered()) {

@@ -8,7 +8,8 @@ layout(local_size_x = GROUP_WIDTH, local_size_y = GROUP_HEIGHT) in;
 layout(binding = OFFSET_DEPTH_UNIT) uniform sampler2D depthOfH;
 layout(binding = OFFSET_ID_UNIT) uniform usampler2D idOfH;
 // Bit k: the pixel that this is corner k of holds a sample. Bit 4 + k: the corner is valid for it.
-layout(binding = FLAGS_UNIT, r8ui) uniform restrict writeonly uimage2D flags;
+// Bit 8 + k: H's sample there is of the same triangle.
+layout(binding = FLAGS_UNIT, r16ui) uniform restrict writeonly uimage2D flags;
 
 uniform float discontinuityPx;
 
@@ -25,11 +26,12 @@ void main() {
     for (int k = 0; k < 4; ++k) {
         Surfel s = surfelOfI(corner - kCornerOfPixel[k]);
         // Two samples of one triangle have no discontinuity between them, however it slants.
-        bool isContinuous = sharedId == s.id || abs(sharedDepth - depthOnPlane(s, vec2(corner))) <=
-                                                    discontinuityPx * footprint(s);
+        bool isOfTriangle = s.id != 0u && sharedId == s.id;
+        bool isContinuous = isOfTriangle || abs(sharedDepth - depthOnPlane(s, vec2(corner))) <=
+                                                discontinuityPx * footprint(s);
         bool isSample = s.id != 0u;
         bool isValid = isSample && sharedId != 0u && isContinuous;
-        bits |= (isSample ? 1u : 0u) << k | (isValid ? 16u : 0u) << k;
+        bits |= ((isSample ? 1u : 0u) | (isValid ? 16u : 0u) | (isOfTriangle ? 256u : 0u)) << k;
     }
     imageStore(flags, corner, uvec4(bits));
 }

@@ -35,9 +35,12 @@ void main() {
     }
 
     if ((samplesAround(bits) & 1u) == 0u) return;  // pixel (x, y) holds no sample
-    ivec2 pixel = corner;
-    uint c0 = vertexAt(pixel, 0), c1 = vertexAt(pixel, 1), c2 = vertexAt(pixel, 2),
-         c3 = vertexAt(pixel, 3);
+    ivec2 first = corner;
+    if (joinsLeft(first)) return;
+    ivec2 last = first;  // of the samples that the quad stands for
+    while (joinsLeft(last + ivec2(1, 0))) ++last.x;
+    uint c0 = vertexAt(first, 0), c1 = vertexAt(last, 1), c2 = vertexAt(last, 2),
+         c3 = vertexAt(first, 3);
     uint triangle = firstTriangleAt(corner);
     writeTriangle(triangle, c0, c1, c2);
     writeTriangle(triangle + 1u, c2, c3, c0);

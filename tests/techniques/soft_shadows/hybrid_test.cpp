@@ -262,6 +262,60 @@ TEST_F(HybridTest, TheThresholdCountsInFootprints) {
     }
 }
 
+/// The quads of a merged mesh, as the pixels between their corners.
+std::map<std::pair<int, int>, std::size_t> pixelsOfQuads(const HostMesh& merged) {
+    std::map<std::pair<int, int>, std::size_t> quadOf;
+    for (std::size_t i = 0; i < merged.triangles.size(); i += 2) {
+        const CornerVertex& low = merged.vertices[merged.triangles[i].x];
+        const CornerVertex& high = merged.vertices[merged.triangles[i].z];
+        EXPECT_EQ(high.yHalfPx, low.yHalfPx + 2) << "one row";
+        for (int x = low.xHalfPx / 2; x < high.xHalfPx / 2; ++x) {
+            EXPECT_TRUE(quadOf.emplace(std::pair(x, low.yHalfPx / 2), i / 2).second);
+        }
+    }
+    return quadOf;
+}
+
+// The same surface from fewer quads: each sample in one, and only samples of one triangle in it.
+TEST_F(HybridTest, MergedRowsCoverTheSameSamplesInTheSamePlanes) {
+    ReconstructionSettings merging;
+    merging.mergesRows = true;
+    for (const auto& [name, mesh] : meshes()) {
+        SCOPED_TRACE(name);
+        const scene::Camera camera = scene::framingCamera(mesh.bounds(), 1.2F);
+        const ImagePair images = traceImages(mesh, camera, {160, 120});
+        const std::vector<glm::vec3> normals = reference::normalsOf(mesh);
+        const HostMesh whole = reconstruct(images, normals, kSettings);
+        const HostMesh merged = reconstruct(images, normals, merging);
+        expectFacesEye(merged);
+        EXPECT_EQ(merged.vertices.size(), whole.vertices.size());
+        const auto quadOf = pixelsOfQuads(merged);
+        EXPECT_EQ(quadOf.size(), whole.mesh.sampleCount);
+        std::map<std::size_t, std::set<std::uint32_t>> trianglesOfQuad;
+        for (const auto& [pixel, quad] : quadOf) {
+            const auto at = images.image.indexOf({pixel.first, pixel.second});
+            trianglesOfQuad[quad].insert(images.image.triangleId[at]);
+        }
+        for (const auto& [quad, ids] : trianglesOfQuad) EXPECT_EQ(ids.size(), 1U);
+        EXPECT_LE(merged.triangles.size(), whole.triangles.size());
+    }
+}
+
+TEST_F(HybridTest, AWallOfOneTriangleIsAQuadARow) {
+    ImagePair images = emptyPair({40, 30});
+    for (depth_images::HostDepthImage* image : {&images.image, &images.offset}) {
+        std::ranges::fill(image->depthM, 10.0F);
+        std::ranges::fill(image->triangleId, 1U);
+    }
+    const std::vector<glm::vec3> normals{glm::vec3(0.0F, 0.0F, 1.0F)};
+    ReconstructionSettings merging;
+    merging.mergesRows = true;
+    const HostMesh merged = reconstruct(images, normals, merging);
+    EXPECT_EQ(merged.mesh.sampleCount, 1200U);
+    // H ends before the last column's and the last row's outer corners: those keep their quads.
+    EXPECT_EQ(merged.mesh.triangleCount, 2 * (29 * 2 + 40));
+}
+
 TEST_F(HybridTest, AnImageWithoutSamplesIsAnEmptyMesh) {
     const ImagePair images = emptyPair({40, 30});
     const HostMesh measured = reconstruct(images, std::vector<glm::vec3>(1), kSettings);
