@@ -60,6 +60,38 @@ Shares sharesOf(int i, int from, int to) {
     return shares;
 }
 
+/// The source pixels, of `size` in all, within three `sigma` of `middle`.
+Shares gaussianShares(double middle, double sigma, int size) {
+    const int first = std::max(static_cast<int>(std::ceil(middle - 3.0 * sigma - 0.5)), 0);
+    const int last = std::min(static_cast<int>(std::floor(middle + 3.0 * sigma - 0.5)), size - 1);
+    Shares shares{first, {}};
+    double sum = 0.0;
+    for (int i = first; i <= last; ++i) {
+        const double away = (i + 0.5 - middle) / sigma;
+        shares.weights.push_back(static_cast<float>(std::exp(-0.5 * away * away)));
+        sum += static_cast<double>(shares.weights.back());
+    }
+    for (float& weight : shares.weights) weight /= static_cast<float>(sum);
+    return shares;
+}
+
+/// Each row made of the shares of columns, as an image on its side: twice is upright again.
+ImageF weightedAcross(const ImageF& image, const std::vector<Shares>& columns) {
+    ImageF result(image.height(), static_cast<int>(columns.size()), image.channels());
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < result.height(); ++x) {
+            const Shares& shares = columns[static_cast<std::size_t>(x)];
+            for (std::size_t i = 0; i < shares.weights.size(); ++i) {
+                for (int c = 0; c < image.channels(); ++c) {
+                    result.at(y, x, c) +=
+                        shares.weights[i] * image.at(shares.first + static_cast<int>(i), y, c);
+                }
+            }
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 ImageF averaged(const ImageF& image, int factor) {
@@ -74,6 +106,21 @@ ImageF averaged(const ImageF& image, int factor) {
         }
     }
     return result;
+}
+
+ImageF gaussianAveraged(const ImageF& image, int factor, double sigma) {
+    GFXREPRO_ASSERT(image.width() % factor == 0 && image.height() % factor == 0);
+    // A block's own pixels are within reach.
+    GFXREPRO_ASSERT(3.0 * sigma >= 0.5);
+    const auto sharesAlong = [&](int size) {
+        std::vector<Shares> shares;
+        for (int i = 0; i < size / factor; ++i) {
+            shares.push_back(gaussianShares((i + 0.5) * factor, sigma, size));
+        }
+        return shares;
+    };
+    return weightedAcross(weightedAcross(image, sharesAlong(image.width())),
+                          sharesAlong(image.height()));
 }
 
 Image8 cropped(const Image8& image, const Rectangle& part, int scale) {

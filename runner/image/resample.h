@@ -10,6 +10,10 @@ namespace gfxrepro::image {
 
 /// The means of blocks of factor² pixels; both sides are multiples of `factor`.
 ImageF averaged(const ImageF& image, int factor);
+/// As many pixels as averaged() gives, each the mean around its block's middle weighted by a
+/// Gaussian of this standard deviation, in pixels of `image`, a sixth or more; beyond three of
+/// them, and beyond the border, nothing weighs.
+ImageF gaussianAveraged(const ImageF& image, int factor, double sigma);
 
 /// Pixels from (left, top) on.
 struct Rectangle {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <limits>
 
 #include "runner/image/contact_sheet.h"
@@ -48,6 +50,33 @@ TEST(Cropped, RefusesWhatIsNoPart) {
                   cropped(image, {0, 0, 4, 2}, 8193);
               }),
               "4x2 pixels from (0, 0) cannot be magnified 8193 times; 1 to 8192 times are allowed");
+}
+
+/// A single white pixel gives each pixel its own weight: the product of two normalized Gaussians.
+TEST(GaussianAveraged, WeighsByDistanceToTheBlocksMiddle) {
+    ImageF image(12, 8, 2);
+    image.at(5, 2, 1) = 1.0F;
+    const ImageF half = gaussianAveraged(image, 2, 1.5);
+    ASSERT_EQ(half.width(), 6);
+    ASSERT_EQ(half.height(), 4);
+    const auto weight = [](double middle, int pixel, int size) {
+        const auto at = [&](int i) {
+            const double away = (i + 0.5 - middle) / 1.5;
+            return std::abs(away) <= 3.0 ? std::exp(-0.5 * away * away) : 0.0;
+        };
+        double sum = 0.0;
+        for (int i = 0; i < size; ++i) sum += at(i);
+        return at(pixel) / sum;
+    };
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < 6; ++x) {
+            EXPECT_NEAR(half.at(x, y, 1), weight(2 * x + 1, 5, 12) * weight(2 * y + 1, 2, 8), 1e-6);
+            EXPECT_EQ(half.at(x, y, 0), 0.0F);
+        }
+    }
+    // What is the same everywhere stays, at the border, too.
+    const ImageF grey = gaussianAveraged(ImageF(8, 8, 1, 0.25F), 4, 4.0);
+    for (const float value : grey.values()) EXPECT_NEAR(value, 0.25F, 1e-6F);
 }
 
 /// Light is averaged, not sRGB values: black and white make 188, not 128.
