@@ -29,6 +29,7 @@ enum class ModelShape {
     Hip,
     Hugo,
     LinkedTori,
+    Lion,
     Sphere,
     Torus,
     Wagner
@@ -47,6 +48,7 @@ constexpr config::Choice<ModelShape> kModelShapes[] = {
     {ModelShape::Hip, "hip", "hip bone with socket and foramen"},
     {ModelShape::Hugo, "hugo", "standing man"},
     {ModelShape::LinkedTori, "linked_tori", "two rings through each other"},
+    {ModelShape::Lion, "lion", "sitting lion on a plinth"},
     {ModelShape::Sphere, "sphere", "radius 1"},
     {ModelShape::Torus, "torus", "radius 0.7, tube 0.3"},
     {ModelShape::Wagner, "wagner", "bust with beret"},
@@ -76,6 +78,8 @@ sdf::Shape shapeOf(ModelShape shape, std::uint32_t seed) {
             return shapes::hugo(seed);
         case ModelShape::LinkedTori:
             return shapes::linkedTori(seed);
+        case ModelShape::Lion:
+            return shapes::lion(seed);
         case ModelShape::Torus:
             return shapes::torus(seed);
         case ModelShape::Wagner:

@@ -106,6 +106,52 @@ Shape bunny(std::uint32_t seed) {
     return bunny;
 }
 
+Shape lion(std::uint32_t seed) {
+    Shape lion;
+    lion.add(box({0, -0.9F, 0}, {0.52F, 0.1F, 0.85F}, 0.03F));  // plinth
+    lion.add(capsule({0, -0.42F, -0.42F}, {0, 0.12F, 0.14F}, 0.36F, 0.32F), 0.02F);
+    lion.add(ellipsoid({0, -0.06F, 0.28F}, {0.3F, 0.38F, 0.22F}), 0.12F);            // chest
+    lion.addPair(ellipsoid({0.29F, -0.53F, -0.36F}, {0.18F, 0.29F, 0.36F}), 0.06F);  // haunches
+    lion.addPair(ellipsoid({0.38F, -0.75F, 0.02F}, {0.12F, 0.08F, 0.26F}), 0.03F);   // hind paws
+    lion.addPair(capsule({0.2F, -0.05F, 0.36F}, {0.22F, -0.7F, 0.44F}, 0.15F, 0.1F), 0.05F);
+    for (const float x : {0.14F, 0.22F, 0.3F}) {  // toes
+        lion.addPair(capsule({x, -0.76F, 0.46F}, {x, -0.77F, 0.62F}, 0.06F, 0.05F), 0.02F);
+    }
+    lion.add(capsule({0.1F, -0.7F, -0.74F}, {0.46F, -0.74F, -0.6F}, 0.06F, 0.05F), 0.04F);  // tail
+    lion.add(capsule({0.46F, -0.74F, -0.6F}, {0.47F, -0.72F, -0.3F}, 0.05F, 0.09F), 0.03F);
+    // The mane: locks around the face, in two rows, and down the chest.
+    lion.add(ellipsoid({0, 0.46F, 0.22F}, {0.4F, 0.46F, 0.3F}), 0.1F);
+    constexpr int kLocks = 18;
+    for (int i = 0; i < kLocks; ++i) {
+        const float turnRad = 6.2831853F * static_cast<float>(i) / static_cast<float>(kLocks);
+        const vec3 out(sdf::sine(turnRad), sdf::cosine(turnRad), 0);
+        const vec3 face(0, 0.5F, 0.4F), nape(0, 0.44F, 0.16F);
+        lion.add(capsule(face + 0.25F * out, nape + 0.42F * out, 0.07F, 0.05F), 0.02F);
+        lion.add(
+            capsule(nape + 0.36F * out, nape + 0.47F * out - vec3(0, 0.1F, 0.14F), 0.07F, 0.025F),
+            0.02F);
+    }
+    for (const float x : {0.0F, 0.1F, 0.2F}) {
+        lion.addPair(capsule({x, 0.2F, 0.46F}, {0.7F * x, -0.2F - x, 0.5F}, 0.06F, 0.02F), 0.02F);
+    }
+    lion.add(ellipsoid({0, 0.54F, 0.44F}, {0.25F, 0.27F, 0.24F}), 0.03F);          // head
+    lion.addPair(ellipsoid({0.075F, 0.43F, 0.64F}, {0.11F, 0.1F, 0.12F}), 0.03F);  // muzzle
+    lion.add(capsule({0, 0.62F, 0.62F}, {0, 0.52F, 0.74F}, 0.06F, 0.07F), 0.04F);  // nose
+    lion.add(ellipsoid({0, 0.51F, 0.78F}, {0.07F, 0.04F, 0.04F}), 0.02F);
+    lion.add(ellipsoid({0, 0.32F, 0.58F}, {0.12F, 0.06F, 0.13F}), 0.03F);  // jaw
+    lion.cut(capsule({-0.13F, 0.355F, 0.74F}, {0.13F, 0.355F, 0.74F}, 0.018F, 0.018F), 0.02F);
+    for (const float side : {-1.0F, 1.0F}) {
+        lion.cut(ellipsoid({side * 0.12F, 0.6F, 0.68F}, {0.06F, 0.04F, 0.05F}), 0.03F);
+        lion.add(ball({side * 0.12F, 0.6F, 0.64F}, 0.035F), 0.008F);
+        lion.add(capsule({side * 0.05F, 0.67F, 0.66F}, {side * 0.19F, 0.68F, 0.6F}, 0.03F, 0.02F),
+                 0.03F);
+        lion.add(ball({side * 0.25F, 0.8F, 0.36F}, 0.085F), 0.03F);  // ears
+        lion.cut(ball({side * 0.255F, 0.81F, 0.43F}, 0.055F), 0.02F);
+    }
+    lion.setRelief({Relief::Kind::Bumps, 0.006F, 14.0F, seed});
+    return lion;
+}
+
 Shape hugo(std::uint32_t) {
     Shape man;
     man.add(ellipsoid({0, 0.4F, 0}, {0.23F, 0.25F, 0.14F}));                         // chest

@@ -18,6 +18,7 @@ sdf::Shape hand(std::uint32_t seed);
 sdf::Shape head(std::uint32_t seed);
 sdf::Shape hip(std::uint32_t seed);
 sdf::Shape hugo(std::uint32_t seed);
+sdf::Shape lion(std::uint32_t seed);
 sdf::Shape wagner(std::uint32_t seed);
 
 // Bodies with known answers.

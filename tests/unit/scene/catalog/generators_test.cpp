@@ -60,7 +60,7 @@ TEST_P(ModelShape, IsClosedManifoldOutwardAndOfTheWantedCounts) {
 INSTANTIATE_TEST_SUITE_P(All, ModelShape,
                          testing::Values("blade", "brain", "buddha", "bunny", "cube", "dragon",
                                          "duck", "hand", "head", "hip", "hugo", "linked_tori",
-                                         "sphere", "torus", "wagner"),
+                                         "lion", "sphere", "torus", "wagner"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Generators, SameSeedSameBytes) {
