@@ -97,8 +97,10 @@ CompressedPoint compressed(const glm::vec3& position, const glm::vec3& normal, f
     };
     const std::uint32_t x = place(0), y = place(1), z = place(2);
     CompressedPoint point;
-    point.position =
-        x >> 3 | (y >> 3) << 8 | (z >> 2) << 16 | (x & 7U) << 24 | (y & 7U) << 27 | (z & 3U) << 30;
+    const std::array<std::uint32_t, 6> places{x >> 3, y >> 3, z >> 2, x & 7U, y & 7U, z & 3U};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        point.position |= layout::kPosition[i].put(places[i]);
+    }
 
     float angle = std::atan2(normal.z, normal.x);
     if (angle < 0.0F) angle += glm::two_pi<float>();
@@ -107,23 +109,22 @@ CompressedPoint compressed(const glm::vec3& position, const glm::vec3& normal, f
         placeOn(std::acos(std::clamp(normal.y, -1.0F, 1.0F)), 0.0F, glm::pi<float>(), kAngleSteps);
     // Of the normal that will be decoded: its tangent must not vanish.
     const auto choice = static_cast<std::uint32_t>(tangentChoice(normalAt(theta, phi)));
-    point.surface = theta | phi << 8 | choice << 16 |
-                    static_cast<std::uint32_t>(nearestRadius(radiusTable, radius)) << 24;
+    point.surface = layout::kTheta.put(theta) | layout::kPhi.put(phi) |
+                    layout::kTangent.put(choice) |
+                    layout::kRadius.put(nearestRadius(radiusTable, radius));
     return point;
 }
 
 DecodedPoint decoded(const CompressedPoint& point, const scene::Box& patchBounds,
                      std::span<const float> radiusTable) {
-    const std::uint32_t p = point.position;
-    const glm::vec3 place((p & 0xFFU) << 3 | ((p >> 24) & 7U),
-                          ((p >> 8) & 0xFFU) << 3 | ((p >> 27) & 7U),
-                          ((p >> 16) & 0xFFU) << 2 | (p >> 30));
+    const auto at = [&](std::size_t i) { return layout::kPosition[i].of(point.position); };
+    const glm::vec3 place(at(0) << 3 | at(3), at(1) << 3 | at(4), at(2) << 2 | at(5));
     DecodedPoint result;
     result.position = patchBounds.min + (place + 0.5F) / kPlaces * patchBounds.size();
-    result.normal = normalAt(point.surface & 0xFFU, (point.surface >> 8) & 0xFFU);
-    result.tangent = tangentOf(result.normal, static_cast<int>((point.surface >> 16) & 3U));
+    result.normal = normalAt(layout::kTheta.of(point.surface), layout::kPhi.of(point.surface));
+    result.tangent = tangentOf(result.normal, static_cast<int>(layout::kTangent.of(point.surface)));
     result.bitangent = glm::cross(result.normal, result.tangent);
-    result.radius = radiusTable[point.surface >> 24];
+    result.radius = radiusTable[layout::kRadius.of(point.surface)];
     return result;
 }
 

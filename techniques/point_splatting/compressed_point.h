@@ -1,6 +1,7 @@
 // A point in 8 bytes (zju2005 Table 3.1, Sec. 3.3.2).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -10,12 +11,33 @@
 
 namespace gfxrepro::point_splatting {
 
-/// As the vertex stage reads it (shaders/decode_point.glsl), lowest bits first:
-///   position: x, y, z of the 256³ grid in the patch's box (8 bits each), then the cell's x (3),
-///             y (3) and z (2) within
-///   surface:  theta (8), phi (8), tangent (2), bitangent (2), corner (2), unused (2), radius (8)
-/// The corner is 0: a quad's corner is the number of its vertex, so that a drawn point takes one
-/// record. The thesis keeps it in the record, of which a point then takes four.
+/// Bits of a word.
+struct BitField {
+    int shift, bits;
+    constexpr std::uint32_t put(std::uint32_t value) const { return value << shift; }
+    constexpr std::uint32_t of(std::uint32_t word) const {
+        return word >> shift & ((1U << bits) - 1U);
+    }
+};
+constexpr int bitsOf(std::span<const BitField> fields) {
+    int sum = 0;
+    for (const BitField& field : fields) sum += field.bits;
+    return sum;
+}
+
+/// Where they are, as the vertex stage reads them (shaders/decode_point.glsl).
+namespace layout {
+/// Of `position`: x, y, z of the 256³ grid in the patch's box, then the cell's x, y and z within.
+inline constexpr std::array<BitField, 6> kPosition{
+    {{0, 8}, {8, 8}, {16, 8}, {24, 3}, {27, 3}, {30, 2}}};
+/// Of `surface`. The tangent's byte has six bits more, in which the thesis keeps the second
+/// tangent's choice and the corner.
+inline constexpr BitField kTheta{0, 8}, kPhi{8, 8}, kTangent{16, 2}, kRadius{24, 8};
+}  // namespace layout
+
+/// A quad's corner is the number of its vertex and the second tangent a cross product, so that a
+/// drawn point takes one record. The thesis keeps both in the record, of which a point then takes
+/// four.
 struct CompressedPoint {
     std::uint32_t position = 0;
     std::uint32_t surface = 0;

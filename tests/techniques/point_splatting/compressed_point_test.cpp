@@ -86,6 +86,36 @@ TEST(CompressedPoint, RadiiAreHalfAGapOfTheTableOffAtTheMost) {
     EXPECT_GT(worst, 0.95F);
 }
 
+/// Each bit turned on its own changes what it is counted for, and nothing else but what follows.
+TEST(CompressedPoint, BitsCarryWhatTheyAreCountedFor) {
+    const scene::Box box{{0, 0, 0}, {1, 1, 1}};
+    std::vector<float> radii(256);
+    for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = static_cast<float>(i + 1);
+    const CompressedPoint point =
+        compressed({0.3F, 0.6F, 0.8F}, {0.48F, 0.6F, 0.64F}, 77, box, radii);
+    const DecodedPoint before = decoded(point, box, radii);
+    int position = 0, normal = 0, tangent = 0, radius = 0, none = 0;
+    for (int bit = 0; bit < 64; ++bit) {
+        CompressedPoint turned = point;
+        (bit < 32 ? turned.position : turned.surface) ^= 1U << (bit % 32);
+        const DecodedPoint after = decoded(turned, box, radii);
+        if (after.position != before.position) ++position;
+        if (after.normal != before.normal) {
+            ++normal;
+        } else if (after.tangent != before.tangent) {
+            ++tangent;
+        }
+        if (after.radius != before.radius) ++radius;
+        none += after.position == before.position && after.normal == before.normal &&
+                after.tangent == before.tangent && after.radius == before.radius;
+    }
+    EXPECT_EQ(position, bitsOf(layout::kPosition));
+    EXPECT_EQ(normal, layout::kTheta.bits + layout::kPhi.bits);
+    EXPECT_EQ(tangent, layout::kTangent.bits);
+    EXPECT_EQ(radius, layout::kRadius.bits);
+    EXPECT_EQ(none, 6);
+}
+
 TEST(CompressedPoint, CornersOfTheBoxAndPolesSurvive) {
     const std::vector<float> table{1.0F};
     for (const glm::vec3& corner : {kBox.min, kBox.max}) {
