@@ -16,7 +16,7 @@ namespace gfxrepro::point_splatting {
 /// `minPatchPoints`.
 struct TreeSettings {
     std::uint32_t maxPatchPoints = 4096;
-    std::uint32_t minPatchPoints = 256;
+    std::uint32_t minPatchPoints = 64;
     float patchConeRad = 0.35F;
 };
 

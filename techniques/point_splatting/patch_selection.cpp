@@ -34,32 +34,42 @@ bool isOutside(const std::array<glm::vec4, 6>& planes, const scene::Box& box, fl
     });
 }
 
-/// How the patch's normals stand to the rays from the eye to its points. A disc faces the eye where
-/// its centre does, however large it is.
-enum class Facing { Towards, Silhouette, Away };
-
-Facing facingOf(const Patch& patch, const glm::vec3& eye) {
+/// Whether no normal of the patch faces the eye. A disc does where its centre does, however large
+/// it is.
+bool isTurnedAway(const Patch& patch, const glm::vec3& eye) {
     const glm::vec3 toEye = eye - patch.bounds.centre();
     const float distance = glm::length(toEye);
     const float reach = 0.5F * glm::length(patch.bounds.size());
-    if (distance <= reach) return Facing::Silhouette;  // the eye is among the points
+    if (distance <= reach) return false;  // the eye is among the points
     // The ray to any point is within asin(sinSpread) of that to the centre: normals lie within that
     // and the cone of an angle of cosine `facing` to it. All by sines, without arcs.
     const float sinSpread = reach / distance;
     const float cosSpread = std::sqrt(1.0F - sinSpread * sinSpread);
     const float sinCone = std::sin(patch.coneRad), cosCone = std::cos(patch.coneRad);
     if (cosCone * cosSpread - sinCone * sinSpread <= 0.0F || cosCone <= 0.0F) {
-        return Facing::Silhouette;  // together 90° or more
+        return false;  // together 90° or more
     }
     const float sinBoth = sinCone * cosSpread + cosCone * sinSpread;
-    const float facing = glm::dot(patch.meanNormal, toEye) / distance;
-    if (facing < -sinBoth) return Facing::Away;
-    return facing < sinBoth ? Facing::Silhouette : Facing::Towards;
+    return glm::dot(patch.meanNormal, toEye) < -sinBoth * distance;
 }
 
-std::uint32_t levelFor(const Patch& patch, std::span<const Level> levels, float depth,
+/// Of the angle between the view ray to the patch's middle and its mean normal.
+float facingCosine(const Patch& patch, const glm::vec3& eye) {
+    const glm::vec3 toEye = eye - patch.bounds.centre();
+    const float distance = glm::length(toEye);
+    return distance > 0.0F ? std::abs(glm::dot(patch.meanNormal, toEye)) / distance : 0.0F;
+}
+
+/// Of the nearest of the box's eight corners, at least the near plane's.
+float nearestCornerDistance(const scene::Box& box, const PatchView& view) {
+    const glm::vec3 toMin = glm::abs(box.min - view.eyeModel);
+    const glm::vec3 toMax = glm::abs(box.max - view.eyeModel);
+    return std::max(glm::length(glm::min(toMin, toMax)), view.nearM);
+}
+
+std::uint32_t levelFor(const Patch& patch, std::span<const Level> levels, float distance,
                        float targetPx, const PatchView& view) {
-    const float largest = targetPx * depth / view.focalPx;
+    const float largest = targetPx * distance / view.focalPx;
     for (std::uint32_t l = 0; l < patch.levelCount; ++l) {
         if (levels[patch.firstLevel + l].maxRadius <= largest) return l;
     }
@@ -126,6 +136,7 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
     SelectionCounts counts;
     const std::array<glm::vec4, 6> planes = frustumPlanes(view.clipFromView * view.viewFromModel);
     const auto cEtaOfView = static_cast<float>(cEta(static_cast<double>(view.fovRad)));
+    const float sinSilhouette = std::sin(settings.silhouetteRad);
     for (std::uint32_t p = 0; p < patches.size(); ++p) {
         const Patch& patch = patches[p];
         // The first level's discs are the largest.
@@ -134,32 +145,29 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
             ++counts.outside;
             continue;
         }
-        const Facing facing = facingOf(patch, view.eyeModel);
-        if (settings.cullsCones && facing == Facing::Away) {
+        if (settings.cullsCones && isTurnedAway(patch, view.eyeModel)) {
             ++counts.turnedAway;
             continue;
         }
-        const float depth = nearestDepth(patch.bounds, view);
-        const bool isFine = facing == Facing::Silhouette ||
-                            patch.curvature > settings.curvedAbove ||
-                            patch.coneRad > settings.wideAboveRad;
+        const float distance = nearestCornerDistance(patch.bounds, view);
+        const float cosine = facingCosine(patch, view.eyeModel);
+        const bool isSilhouette = cosine < sinSilhouette;
         DrawnPatch item;
         item.patch = p;
         item.level = arrivedLevel(patch, levels, settings.prefixShare);
         if (settings.choosesLevels) {
-            const float target = settings.targetRadiusPx * (isFine ? 0.5F : 1.0F);
-            item.level = std::min(item.level, levelFor(patch, levels, depth, target, view));
+            const bool isFine = isSilhouette || patch.curvature > settings.curvedAbove ||
+                                patch.coneRad > settings.wideAboveRad;
+            const float target = isFine ? settings.fineRadiusPx : settings.targetRadiusPx;
+            item.level = std::min(item.level, levelFor(patch, levels, distance, target, view));
         }
         const Level& level = levels[patch.firstLevel + item.level];
         item.mode = fixedMode(settings.method);
-        if (settings.method == SplatMethod::Adaptive && facing != Facing::Silhouette) {
-            // S_proj of the level's mean radius, as it faces the eye, in pixels.
-            const glm::vec3 toEye = glm::normalize(view.eyeModel - patch.bounds.centre());
-            const float cosine = std::abs(glm::dot(patch.meanNormal, toEye));
-            const float radiusPx = level.meanRadius * view.focalPx / depth;
-            const float lowPass = settings.lowPassRadiusPx;
-            item.mode =
-                modeFor(radiusPx * radiusPx * cosine / (lowPass * lowPass), cEtaOfView, settings);
+        if (settings.method == SplatMethod::Adaptive && !isSilhouette) {
+            // S_proj of the level's mean radius, as it faces the eye, by S_h.
+            const float radii =
+                level.meanRadius * view.focalPx / (distance * settings.lowPassRadiusPx);
+            item.mode = modeFor(radii * radii * cosine, cEtaOfView, settings);
         }
         drawn.push_back(item);
         ++counts.drawn;

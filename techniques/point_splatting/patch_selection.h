@@ -25,13 +25,15 @@ struct SelectionSettings {
     SplatMethod method = SplatMethod::Adaptive;
     bool cullsFrustum = true, cullsCones = true, choosesLevels = true;
     float cMin = 0.3F, cMax = 3.0F;
-    float lowPassRadiusPx = 0.7F;  // r_h
+    float lowPassRadiusPx = 1.0F;  // r_h: the distance between pixels
     /// The level is the coarsest whose largest radius is at most this many pixels at the nearest
-    /// corner of the patch's box; half of it for patches that are curved, have wide cones or lie at
-    /// the silhouette (Sec. 3.3.1.2, which gives no thresholds).
-    float targetRadiusPx = 2.0F;
+    /// corner of the patch's box: `fine` for patches that are curved, have wide cones or lie at the
+    /// silhouette (Sec. 3.3.1.2, which gives no thresholds).
+    float targetRadiusPx = 3.0F, fineRadiusPx = 0.6F;
     float curvedAbove = 0.02F;  // λ₀ / Σλ; a sphere's cap of 40° has it
     float wideAboveRad = 0.6F;
+    /// At the silhouette: where the view ray is so near to a right angle to the mean normal.
+    float silhouetteRad = 0.35F;
     /// Of each patch's points, those that have arrived: finer levels are not drawn (Sec. 3.5:
     /// progressive transmission).
     float prefixShare = 1.0F;
@@ -52,7 +54,7 @@ struct PatchView {
 };
 PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx);
 
-/// Distance along the view axis of the box's nearest corner, at least the near plane's.
+/// Distance along the view axis of the box's nearest point, at least the near plane's.
 float nearestDepth(const scene::Box& box, const PatchView& view);
 
 struct DrawnPatch {
@@ -71,10 +73,10 @@ struct SelectionCounts {
     std::uint64_t points = 0;  // drawn
 };
 
-/// The visible patches in the model's order, into `drawn` (cleared). Distances are to the nearest
-/// point of the box, so that nothing is taken for farther than it is. A patch is at the silhouette
-/// when its cone holds normals on both sides of its view rays; such are always drawn by full EWA
-/// where the method is Adaptive (Sec. 3.3.1.3).
+/// The visible patches in the model's order, into `drawn` (cleared). A patch is as far as the
+/// nearest of its box's eight corners (Sec. 3.3.1.2); one at the silhouette, by the angle between
+/// the view ray and the mean normal (Sec. 3.2.1), is always drawn by full EWA where the method is
+/// Adaptive (Sec. 3.3.1.3).
 SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Level> levels,
                               const PatchView& view, const SelectionSettings& settings,
                               std::vector<DrawnPatch>& drawn);

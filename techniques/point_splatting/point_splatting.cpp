@@ -133,7 +133,7 @@ image::ImageF PointSplatting::drawnWith(const SplatSettings& splats,
     selectPatches(model_->patches(), model_->levels(), view, selection, drawn);
     gl::Profiler unread(false);
     renderer.render(drawn, view, unread);
-    return renderer.output().readImage(3);
+    return renderer.output().readImage(4);
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/point_splatting/compute_splatter.h"
 #include "techniques/point_splatting/model_file.h"
+#include "techniques/point_splatting/model_picture.h"
 #include "techniques/point_splatting/patch_selection.h"
 #include "techniques/point_splatting/plain_points.h"
 #include "techniques/point_splatting/splat_renderer.h"
@@ -70,7 +71,7 @@ class PointSplatting final : public technique::Technique {
     const gl::Texture& output() const;
     std::size_t pointBytes() const;
     std::size_t targetBytes() const;
-    /// What another way of drawing shows of the last view, `scale` times as large.
+    /// What another way of drawing shows of the last view, `scale` times as large: RGBA.
     image::ImageF drawnWith(const SplatSettings& splats, const SelectionSettings& selection,
                             int scale) const;
 
@@ -80,9 +81,12 @@ class PointSplatting final : public technique::Technique {
     /// The selection alone, without what follows from it: the median of many.
     double selectionMs() const;
     void recordSpeed(technique::Recorder& recorder);
-    image::ImageF supersampledTruth() const;
-    void recordErrors(technique::Recorder& recorder, const image::ImageF& picture,
-                      const image::ImageF& supersampled) const;
+    /// All points, uncompressed, by full EWA at many samples a pixel: RGBA.
+    image::ImageF supersampled() const;
+    void recordModes(technique::Recorder& recorder) const;
+    void recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
+                      const image::ImageF& samples) const;
+    double facingPct() const;
 
     PointSplattingParams params_;
     std::optional<SourceLocation> pointsAt_;  // of the parameter `points` where given

@@ -57,10 +57,8 @@ SplatSettings readSplats(config::Params& params) {
     SplatSettings settings;
     settings.storage = params.getEnum("storage", PointStorage::Compressed, kStorages,
                                       {"how points lie on the device"});
-    // Together 0.75 pixels: little more than √½, where a round splat holds a pixel's centre
-    // wherever it lies. README.md has what other pairs do.
     settings.lowPassRadiusPx =
-        number(params, "low_pass_radius_px", 0.5F,
+        number(params, "low_pass_radius_px", 1.0F,
                {"r_h: the low-pass filter's standard deviation", "pixels", 0.1, 8.0});
     settings.cutoff =
         number(params, "cutoff", 1.5F, {"where a splat ends", "standard deviations", 0.5, 4.0});
@@ -82,15 +80,22 @@ SelectionSettings readSelection(config::Params& params, Method method) {
     settings.targetRadiusPx =
         number(params, "target_radius_px", settings.targetRadiusPx,
                {"largest radius of a level on the screen", "pixels", 0.05, 64.0});
+    settings.fineRadiusPx = number(
+        params, "fine_radius_px", settings.fineRadiusPx,
+        {"the same of patches that are curved, wide or at the silhouette", "pixels", 0.05, 64.0});
     settings.cMin = number(params, "c_min", settings.cMin,
                            {"below it C_η·S_proj / S_h is low-pass alone", "1", 0.0, 1e6});
     settings.cMax = number(params, "c_max", settings.cMax,
                            {"above it S_proj / S_h is reconstruction alone", "1", 0.0, 1e6});
     settings.curvedAbove = number(params, "curved_above", settings.curvedAbove,
-                                  {"λ₀ / Σλ of patches that take half the radius", "1", 0.0, 1.0});
+                                  {"λ₀ / Σλ of patches that are curved", "1", 0.0, 1.0});
     settings.wideAboveRad =
         glm::radians(number(params, "wide_above_deg", glm::degrees(settings.wideAboveRad),
-                            {"normal cone of patches that take half the radius", "°", 0.0, 180.0}));
+                            {"normal cone of patches that are wide", "°", 0.0, 180.0}));
+    settings.silhouetteRad = glm::radians(
+        number(params, "silhouette_deg", 20.0F,
+               {"at the silhouette the view ray is so near to a right angle to the mean normal",
+                "°", 0.0, 90.0}));
     settings.prefixShare = number(
         params, "progressive_share", 1.0F,
         {"of each patch's points, what has arrived: progressive transmission", "1", 0.0, 1.0});
@@ -161,7 +166,7 @@ PointSplattingParams::PointSplattingParams(config::Params& params)
                            "a method of splats");
     }
     if (!selection.choosesLevels) {
-        params.refuseGiven({"target_radius_px", "curved_above", "wide_above_deg"},
+        params.refuseGiven({"target_radius_px", "fine_radius_px", "curved_above", "wide_above_deg"},
                            "'level: by_size'");
     }
     if (selection.cMin > selection.cMax) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <span>
 
 #include "runner/gl/gl.h"
 #include "runner/image/resample.h"
@@ -10,6 +12,7 @@
 #include "runner/metrics/image_error.h"
 #include "runner/metrics/statistics.h"
 #include "techniques/point_splatting/compression_errors.h"
+#include "techniques/point_splatting/model_picture.h"
 #include "techniques/point_splatting/point_splatting.h"
 #include "techniques/shared/image_layers.h"
 
@@ -28,15 +31,27 @@ image::ImageF shown(const image::ImageF& linear) {
     return result;
 }
 
-void recordDifference(technique::Recorder& recorder, const image::ImageF& truth,
-                      const image::ImageF& picture, const char* truthName) {
+/// PSNR and FLIP over the model's pixels, SSIM, whose windows reach beyond, over all. Returns FLIP.
+image::ImageF recordDifference(technique::Recorder& recorder, const image::ImageF& truth,
+                               const image::ImageF& picture, const ModelPixels& model,
+                               const char* truthName) {
     // Equal images would have no number.
     constexpr double kMostDb = 100.0;
     const image::ImageF a = shown(truth), b = shown(picture);
-    recorder.metric("psnr_db", std::min(metrics::peakSignalToNoiseDb(a, b), kMostDb), "dB",
+    recorder.metric("psnr_db",
+                    std::min(metrics::peakSignalToNoiseDb(model.of(a), model.of(b)), kMostDb), "dB",
                     truthName);
     recorder.metric("ssim", metrics::structuralSimilarity(a, b), "1", truthName);
-    recorder.metric("flip_mean", metrics::flip(truth, picture), "1", truthName);
+    image::ImageF flip = metrics::flipMap(truth, picture);
+    recorder.metric("flip_mean", metrics::meanOfFlip(model.of(flip)), "1", truthName);
+    return flip;
+}
+
+/// With a model of less than half the picture a second image has it alone.
+void recordPicture(technique::Recorder& recorder, const std::string& name,
+                   const ModelPicture& picture, const technique::ImageOptions& options) {
+    recorder.image(name, picture.color, options);
+    if (const auto part = picture.enlarged()) recorder.image("enlarged_" + name, *part);
 }
 
 /// Unit, world space; 0 where no splat is.
@@ -65,17 +80,28 @@ void PointSplatting::record(technique::Recorder& recorder) {
     if (params_.measuresCompression) recordCompression(recorder);
     if (params_.measuresSpeed) recordSpeed(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
-    const image::ImageF picture = output().readImage(3);
-    std::optional<image::ImageF> truth;
-    if (params_.measuresErrors) truth = supersampledTruth();
+    const ModelPicture picture(output().readImage(4));
+    std::optional<image::ImageF> samples;
+    if (params_.measuresErrors) samples = supersampled();
     if (params_.showsPictures) {
         depth_images::ImageLayers layers(depth_images::viewOf(camera_, sizePx_));
         const bool hasNormals = renderer_ && params_.method != Method::Sprites;
         if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
-        if (truth) layers.errors(picture, *truth, "supersampled");
-        recorder.image("image", picture, layers.options());
+        if (samples) {
+            const ModelPicture truth(image::averaged(*samples, kSupersampling));
+            layers.errors(picture.color, truth.color, "supersampled");
+        }
+        recordPicture(recorder, "image", picture, layers.options());
+        if (params_.method == Method::Adaptive) recordModes(recorder);
     }
-    if (truth) recordErrors(recorder, picture, *truth);
+    if (samples) recordErrors(recorder, picture, *samples);
+}
+
+void PointSplatting::recordModes(technique::Recorder& recorder) const {
+    SplatSettings splats = params_.splats;
+    splats.showsModes = true;
+    recordPicture(recorder, "modes", ModelPicture(drawnWith(splats, params_.selection, 1)),
+                  depth_images::seenFrom(depth_images::viewOf(camera_, sizePx_)));
 }
 
 void PointSplatting::recordModel(technique::Recorder& recorder) const {
@@ -108,6 +134,7 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     const auto all = static_cast<double>(model_->positions().size());
     recorder.metric("drawn_points", drawn, "point");
     recorder.metric("drawn_pct", percent(drawn, all), "%");
+    recorder.metric("facing_pct", facingPct(), "%");
     recorder.metric("patches_drawn", counts_.drawn, "patch");
     recorder.metric("patches_outside", counts_.outside, "patch");
     recorder.metric("patches_turned_away", counts_.turnedAway, "patch");
@@ -124,31 +151,47 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     }
 }
 
+double PointSplatting::facingPct() const {
+    const std::span<const glm::vec3> positions = model_->positions(), normals = model_->normals();
+    std::size_t facing = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        facing += glm::dot(normals[i], view_.eyeModel - positions[i]) > 0.0F ? 1 : 0;
+    }
+    return percent(static_cast<double>(facing), static_cast<double>(positions.size()));
+}
+
 void PointSplatting::recordCompression(technique::Recorder& recorder) const {
-    // Table 3.1; `bits_stored` of the tangents is their byte, shared with the quad's corner.
+    // Table 3.1, as the records are laid out; `bits_stored` of the tangents is their byte.
     struct Attribute {
         const char* name;
-        int before, after, stored;
+        std::size_t bytesBefore;
+        int after, stored;
     };
-    constexpr Attribute kAttributes[] = {
-        {"position", 96, 32, 32}, {"normal", 96, 16, 16}, {"tangents", 192, 4, 8},
-        {"corner", 64, 2, 0},     {"radius", 32, 8, 8},
+    const int positionBits = bitsOf(layout::kPosition);
+    const int normalBits = layout::kTheta.bits + layout::kPhi.bits;
+    const Attribute kAttributes[] = {
+        {"position", sizeof(FullPoint::position), positionBits, positionBits},
+        {"normal", sizeof(FullPoint::normal), normalBits, normalBits},
+        {"tangents", sizeof(FullPoint::tangent) + sizeof(FullPoint::bitangent),
+         layout::kTangent.bits, layout::kRadius.shift - layout::kTangent.shift},
+        {"corner", sizeof(FullPoint::corner), 0, 0},
+        {"radius", sizeof(FullPoint::radius), layout::kRadius.bits, layout::kRadius.bits},
     };
     Attribute total{"total", 0, 0, 0};
     const auto bits = [&](const Attribute& attribute) {
-        recorder.metric("bits_before", attribute.before, "bit", attribute.name);
+        recorder.metric("bits_before", 8.0 * static_cast<double>(attribute.bytesBefore), "bit",
+                        attribute.name);
         recorder.metric("bits_after", attribute.after, "bit", attribute.name);
         recorder.metric("bits_stored", attribute.stored, "bit", attribute.name);
     };
     for (const Attribute& attribute : kAttributes) {
         bits(attribute);
-        total.before += attribute.before;
+        total.bytesBefore += attribute.bytesBefore;
         total.after += attribute.after;
         total.stored += attribute.stored;
     }
-    static_assert(sizeof(FullPoint) * 8 == 480 && sizeof(CompressedPoint) * 8 == 64);
-    GFXREPRO_ASSERT_EQ(total.before, static_cast<int>(8 * sizeof(FullPoint)));
-    GFXREPRO_ASSERT_EQ(total.stored, static_cast<int>(8 * sizeof(CompressedPoint)));
+    GFXREPRO_ASSERT_EQ(total.bytesBefore, sizeof(FullPoint));
+    GFXREPRO_ASSERT_EQ(static_cast<std::size_t>(total.stored), 8 * sizeof(CompressedPoint));
     bits(total);
     // What the device holds, with the radius table and colours where there are any.
     recorder.metric(
@@ -205,41 +248,53 @@ void PointSplatting::recordSpeed(technique::Recorder& recorder) {
                     static_cast<double>(model_->positions().size()) / median, "point/s");
 }
 
-/// All points, uncompressed, by full EWA at 4 × 4 samples a pixel.
-image::ImageF PointSplatting::supersampledTruth() const {
+image::ImageF PointSplatting::supersampled() const {
     SplatSettings splats = params_.splats;
     splats.storage = PointStorage::Uncompressed;
     SelectionSettings all = params_.selection;
     all.method = SplatMethod::FullEwa;
     all.choosesLevels = false;
     all.prefixShare = 1.0F;
-    return image::averaged(drawnWith(splats, all, kSupersampling), kSupersampling);
+    return drawnWith(splats, all, kSupersampling);
 }
 
-void PointSplatting::recordErrors(technique::Recorder& recorder, const image::ImageF& picture,
-                                  const image::ImageF& supersampled) const {
+void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
+                                  const image::ImageF& samples) const {
     const depth_images::View view = depth_images::viewOf(camera_, sizePx_);
-    const auto compare = [&](const image::ImageF& truth, const char* name) {
-        recordDifference(recorder, truth, picture, name);
+    const auto compare = [&](const ModelPicture& truth, const ModelPixels& model,
+                             const char* name) {
+        const image::ImageF flip =
+            recordDifference(recorder, truth.color, picture.color, model, name);
         if (!params_.showsPictures) return;
-        recorder.image(name, truth, depth_images::seenFrom(view, "image"));
-        recorder.image(fmt::format("flip_{}", name), metrics::flipMap(truth, picture),
-                       depth_images::seenFrom(view));
+        recordPicture(recorder, name, truth, depth_images::seenFrom(view, "image"));
+        recorder.image(fmt::format("flip_{}", name), flip, depth_images::seenFrom(view));
     };
-    compare(supersampled, "supersampled");
+    const ModelPicture boxed(image::averaged(samples, kSupersampling));
+    const ModelPixels model(boxed, picture);
+    compare(boxed, model, "supersampled");
+    // The filter of Eq. (1): V^h, less what a sample's own has of it.
+    const double lowPass = kSupersampling * static_cast<double>(params_.splats.lowPassRadiusPx);
+    const double sigma = lowPass * std::sqrt(1.0 - 1.0 / (kSupersampling * kSupersampling));
+    compare(ModelPicture(image::gaussianAveraged(samples, kSupersampling, sigma)), model,
+            "filtered");
 
+    const auto compareDrawn = [&](const SplatSettings& splats, const SelectionSettings& selection,
+                                  const char* name) {
+        const ModelPicture drawn(drawnWith(splats, selection, 1));
+        compare(drawn, ModelPixels(drawn, picture), name);
+    };
     // The same levels and bytes by full EWA.
     if (params_.method != Method::FullEwa) {
         SelectionSettings fullEwa = params_.selection;
         fullEwa.method = SplatMethod::FullEwa;
-        compare(drawnWith(params_.splats, fullEwa, 1), "full_ewa");
+        compareDrawn(params_.splats, fullEwa, "full_ewa");
     }
     // The same levels and filters of 60 bytes a point.
     SplatSettings splats = params_.splats;
     splats.storage = PointStorage::Uncompressed;
     if (params_.splats.storage == PointStorage::Compressed && params_.method != Method::Compute &&
         params_.method != Method::GlPoints) {
-        compare(drawnWith(splats, params_.selection, 1), "uncompressed");
+        compareDrawn(splats, params_.selection, "uncompressed");
     }
 }
 

@@ -62,9 +62,22 @@ gl::Defines passDefines(const DevicePoints& points) {
     return defines;
 }
 
+/// Colours of modes, linear: orange, blue, green.
+const char* colorOf(SplatMode mode) {
+    switch (mode) {
+        case SplatMode::Reconstruction:
+            return "vec3(0.08, 0.3, 1.0)";
+        case SplatMode::LowPass:
+            return "vec3(0.12, 0.75, 0.15)";
+        default:
+            return "vec3(1.0, 0.35, 0.05)";
+    }
+}
+
 gl::Program modeProgram(const gl::ShaderLibrary& shaders, const gl::Defines& common, SplatMode mode,
-                        bool isVisibility) {
+                        bool isVisibility, bool showsModes) {
     gl::Defines defines = common;
+    if (showsModes) defines["MODE_COLOR"] = std::string(colorOf(mode));
     if (mode == SplatMode::Reconstruction) defines["DISC"] = 1;
     if (mode == SplatMode::LowPass) defines["ROUND"] = 1;
     if (isVisibility) defines["VISIBILITY"] = 1;
@@ -121,16 +134,18 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
     : settings_(settings),
       sizePx_(sizePx),
       points_(model, settings.storage),
+      hasColors_(settings.showsModes || points_.hasColors()),
       quadIndices_(quadIndices()),
       drawnArray_(drawnArray(quadIndices_)) {
     settings_.lightDirectionView = glm::normalize(settings.lightDirectionView);
     maxPointPx_ = maxPointSizePx();
-    const gl::Defines defines = passDefines(points_);
+    gl::Defines defines = passDefines(points_);
+    if (hasColors_) defines["COLORS"] = 1;
     for (const SplatMode mode :
          {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass}) {
         ModePrograms& programs = modes_[static_cast<std::size_t>(mode)];
-        programs.visibility = modeProgram(shaders, defines, mode, true);
-        programs.splats = modeProgram(shaders, defines, mode, false);
+        programs.visibility = modeProgram(shaders, defines, mode, true, settings.showsModes);
+        programs.splats = modeProgram(shaders, defines, mode, false, settings.showsModes);
     }
     sprites_ = {
         shaders, {"point_splatting/sprite.vert.glsl", "point_splatting/sprite.frag.glsl"}, defines};
@@ -143,7 +158,7 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
     normalSums_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
     output_ = gl::Texture::make2D(GL_RGBA8, sizePx);
     std::vector<const gl::Texture*> sums{&normalSums_};
-    if (points_.hasColors()) {
+    if (hasColors_) {
         colorSums_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
         sums.push_back(&colorSums_);
     }
@@ -156,7 +171,7 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
 
 std::size_t SplatRenderer::targetBytes() const {
     std::size_t size = depth_.sizeBytes() + normalSums_.sizeBytes() + output_.sizeBytes();
-    if (points_.hasColors()) size += colorSums_.sizeBytes();
+    if (hasColors_) size += colorSums_.sizeBytes();
     return size;
 }
 
@@ -233,7 +248,7 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         visibilityTarget_.bind();
     } else {
         sumTarget_.clearColour(0, glm::vec4(0.0F));
-        if (points_.hasColors()) sumTarget_.clearColour(1, glm::vec4(0.0F));
+        if (hasColors_) sumTarget_.clearColour(1, glm::vec4(0.0F));
         sumTarget_.bind();
         glDepthMask(GL_FALSE);
         glEnable(GL_BLEND);
@@ -271,7 +286,7 @@ void SplatRenderer::normalize(const PatchView& view) {
     glDisable(GL_DEPTH_TEST);
     setUp(normalization_, view);
     normalSums_.bind(kNormalSumUnit);
-    if (points_.hasColors()) colorSums_.bind(kColorSumUnit);
+    if (hasColors_) colorSums_.bind(kColorSumUnit);
     noAttributes_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -16,6 +16,7 @@ struct SplatSettings {
     float cutoff = 2.0F;            // a splat ends where its exponent is −½·cutoff²
     float visibilityOffset = 1.0F;  // ε, in radii of the splat, along the view ray
     glm::vec3 lightDirectionView{0.3F, 0.5F, 0.8F};
+    bool showsModes = false;  // colours by SplatMode instead of the model's
 };
 
 /// A model on the device. Each mode has programs of its own, so that it does its own work only.
@@ -52,6 +53,7 @@ class SplatRenderer {
     SplatSettings settings_;
     glm::ivec2 sizePx_;
     DevicePoints points_;
+    bool hasColors_;
     std::array<ModePrograms, 3> modes_;  // by SplatMode
     gl::Program sprites_, normalization_;
     gl::Texture normalSums_, colorSums_, depth_, output_;

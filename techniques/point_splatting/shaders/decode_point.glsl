@@ -61,7 +61,9 @@ SplatPoint pointAt(uint index, vec3 boxMin, vec3 boxSize) {
 }
 #endif
 
-#ifdef COLORS
+#ifdef MODE_COLOR
+vec3 colorAt(uint index) { return MODE_COLOR; }
+#elif defined(COLORS)
 layout(std430, binding = COLOR_BINDING) restrict readonly buffer Colors { uint colors[]; };
 
 /// Linear.

@@ -1,0 +1,33 @@
+// A picture of a model before nothing, and errors over the model alone.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "runner/image/image.h"
+
+namespace gfxrepro::point_splatting {
+
+/// Linear, multiplied by how much of each pixel is covered.
+struct ModelPicture {
+    image::ImageF color, coverage;  // of 3 channels and 1
+
+    explicit ModelPicture(const image::ImageF& rgba);
+    /// The part where something is, of whole pixels as large as make it fill the picture; none
+    /// where twice as large is too large.
+    std::optional<image::ImageF> enlarged() const;
+};
+
+/// The pixels that one of two pictures covers: means over black would say how much of it there is.
+class ModelPixels {
+  public:
+    ModelPixels(const ModelPicture& a, const ModelPicture& b);
+    /// These of an image, in a row; one of black where there are none.
+    image::ImageF of(const image::ImageF& image) const;
+
+  private:
+    std::vector<std::size_t> pixels_;
+};
+
+}  // namespace gfxrepro::point_splatting
