@@ -78,14 +78,15 @@ Shares gaussianShares(double middle, double sigma, int size) {
 /// Each row made of the shares of columns, as an image on its side: twice is upright again.
 ImageF weightedAcross(const ImageF& image, const std::vector<Shares>& columns) {
     ImageF result(image.height(), static_cast<int>(columns.size()), image.channels());
+    const auto channels = static_cast<std::size_t>(image.channels());
     for (int y = 0; y < image.height(); ++y) {
         for (int x = 0; x < result.height(); ++x) {
             const Shares& shares = columns[static_cast<std::size_t>(x)];
-            for (std::size_t i = 0; i < shares.weights.size(); ++i) {
-                for (int c = 0; c < image.channels(); ++c) {
-                    result.at(y, x, c) +=
-                        shares.weights[i] * image.at(shares.first + static_cast<int>(i), y, c);
-                }
+            const float* source = &image.at(shares.first, y);
+            float* sum = &result.at(y, x);
+            for (const float weight : shares.weights) {
+                for (std::size_t c = 0; c < channels; ++c) sum[c] += weight * source[c];
+                source += channels;
             }
         }
     }
