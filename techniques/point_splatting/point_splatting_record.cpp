@@ -47,10 +47,9 @@ image::ImageF recordDifference(technique::Recorder& recorder, const image::Image
     return flip;
 }
 
-/// With a model of less than half the picture a second image has it alone.
-void recordPicture(technique::Recorder& recorder, const std::string& name,
-                   const ModelPicture& picture, const technique::ImageOptions& options) {
-    recorder.image(name, picture.color, options);
+/// Of a model that fills less than half the picture, a second image has it alone.
+void recordEnlarged(technique::Recorder& recorder, const std::string& name,
+                    const ModelPicture& picture) {
     if (const auto part = picture.enlarged()) recorder.image("enlarged_" + name, *part);
 }
 
@@ -91,7 +90,8 @@ void PointSplatting::record(technique::Recorder& recorder) {
             const ModelPicture truth(image::averaged(*samples, kSupersampling));
             layers.errors(picture.color, truth.color, "supersampled");
         }
-        recordPicture(recorder, "image", picture, layers.options());
+        recorder.image("image", picture.color, layers.options());
+        recordEnlarged(recorder, "image", picture);
         if (params_.method == Method::Adaptive) recordModes(recorder);
     }
     if (samples) recordErrors(recorder, picture, *samples);
@@ -100,8 +100,10 @@ void PointSplatting::record(technique::Recorder& recorder) {
 void PointSplatting::recordModes(technique::Recorder& recorder) const {
     SplatSettings splats = params_.splats;
     splats.showsModes = true;
-    recordPicture(recorder, "modes", ModelPicture(drawnWith(splats, params_.selection, 1)),
-                  depth_images::seenFrom(depth_images::viewOf(camera_, sizePx_)));
+    const ModelPicture modes(drawnWith(splats, params_.selection, 1));
+    recorder.image("modes", modes.color,
+                   depth_images::seenFrom(depth_images::viewOf(camera_, sizePx_)));
+    recordEnlarged(recorder, "modes", modes);
 }
 
 void PointSplatting::recordModel(technique::Recorder& recorder) const {
@@ -266,7 +268,7 @@ void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPict
         const image::ImageF flip =
             recordDifference(recorder, truth.color, picture.color, model, name);
         if (!params_.showsPictures) return;
-        recordPicture(recorder, name, truth, depth_images::seenFrom(view, "image"));
+        recorder.image(name, truth.color, depth_images::seenFrom(view, "image"));
         recorder.image(fmt::format("flip_{}", name), flip, depth_images::seenFrom(view));
     };
     const ModelPicture boxed(image::averaged(samples, kSupersampling));
@@ -275,8 +277,9 @@ void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPict
     // The filter of Eq. (1): V^h, less what a sample's own has of it.
     const double lowPass = kSupersampling * static_cast<double>(params_.splats.lowPassRadiusPx);
     const double sigma = lowPass * std::sqrt(1.0 - 1.0 / (kSupersampling * kSupersampling));
-    compare(ModelPicture(image::gaussianAveraged(samples, kSupersampling, sigma)), model,
-            "filtered");
+    const ModelPicture filtered(image::gaussianAveraged(samples, kSupersampling, sigma));
+    compare(filtered, model, "filtered");
+    if (params_.showsPictures) recordEnlarged(recorder, "filtered", filtered);
 
     const auto compareDrawn = [&](const SplatSettings& splats, const SelectionSettings& selection,
                                   const char* name) {
