@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "runner/batch/case_variation.h"
 #include "runner/config/scene_reference.h"
@@ -155,6 +156,26 @@ void requireReadable(const config::Experiment& experiment, const Assumption& ass
     }
 }
 
+/// A range of numbers holds what is measured: else it says nothing of how the outcome depends on
+/// it. What is swept says so itself.
+void requireMeasuredWithin(const Assumption& assumption, const std::vector<Case>& cases) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Node& value : listOf(assumption)) {
+        const auto number = value.isScalar() ? parseDouble(value.text()) : std::nullopt;
+        if (!number) return;
+        low = std::min(low, *number);
+        high = std::max(high, *number);
+    }
+    for (const Case& item : cases) {
+        const Node* value = item.params.find(assumption.name);
+        if (!value || !value->isScalar() || item.axes.find(assumption.name)) continue;
+        const auto number = parseDouble(value->text());
+        if (!number || (*number >= low && *number <= high)) continue;
+        refuseRange(assumption, assumption.range,
+                    fmt::format("one that holds what is measured, {}", value->text()));
+    }
+}
+
 }  // namespace
 
 void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& cases,
@@ -181,7 +202,8 @@ void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& ca
     }
 }
 
-void requireRanges(const config::Experiment& experiment, const scene::Catalog& catalog,
+void requireRanges(const config::Experiment& experiment, const std::vector<Case>& cases,
+                   const scene::Catalog& catalog,
                    std::span<const technique::TechniqueInfo> techniques) {
     constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000;
     for (const Assumption& assumption : experiment.assumptions) {
@@ -195,6 +217,7 @@ void requireRanges(const config::Experiment& experiment, const scene::Catalog& c
         } else {
             requireReadable(experiment, assumption,
                             technique::findTechnique(techniques, experiment.technique, {}));
+            requireMeasuredWithin(assumption, cases);
         }
     }
 }

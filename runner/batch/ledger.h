@@ -17,8 +17,10 @@ void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& ca
                      std::span<const technique::TechniqueInfo> techniques);
 
 /// Throws Error at the first value of a bound assumption's range that a case cannot take: every
-/// case is made with it. A range of `scene` has catalogued scenes, at hand or not.
-void requireRanges(const config::Experiment& experiment, const scene::Catalog& catalog,
+/// case is made with it. A range of numbers holds what `cases`, the experiment's, measure; one of
+/// `scene` has catalogued scenes, at hand or not.
+void requireRanges(const config::Experiment& experiment, const std::vector<Case>& cases,
+                   const scene::Catalog& catalog,
                    std::span<const technique::TechniqueInfo> techniques);
 
 /// A scene of the config and those that may take its place, of a range of `scene`; `scenes` are

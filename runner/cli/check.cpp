@@ -16,7 +16,7 @@ int check(const Context& context, const Selection& selection) {
         const std::vector<batch::Case> cases =
             batch::resolveCases(experiment, catalog, context.techniques, 1);
         batch::bindAssumptions(experiment, cases, catalog, context.techniques);
-        batch::requireRanges(experiment, catalog, context.techniques);
+        batch::requireRanges(experiment, cases, catalog, context.techniques);
         const std::size_t caseCount = cases.size();
         report::requireProvenance(experiment, report::buildTable(experiment, {}));
         batch::resolvePaperCases(experiment, catalog, context.techniques);

@@ -258,6 +258,32 @@ bool isReadable(const ClaimSpec& claim, const Table& table) {
 
 }  // namespace
 
+namespace {
+
+/// Whether a claim about times holds them against a number, so that a faster machine decides it:
+/// quotients of times do not.
+bool asksForATimeAsSuch(const ClaimSpec& claim) {
+    using Type = ClaimSpec::Type;
+    const auto isQuotient = [](const std::string& operand) {
+        return operand.find('/') != std::string::npos;
+    };
+    const auto isNumber = [](const std::string& operand) {
+        return parseDouble(operand).has_value();
+    };
+    switch (claim.type) {
+        case Type::Bound:
+        case Type::Exact:
+        case Type::Tolerance:
+            return !std::ranges::all_of(claim.operands, isQuotient);
+        case Type::Order:
+            return std::ranges::any_of(claim.operands, isNumber);
+        default:
+            return false;
+    }
+}
+
+}  // namespace
+
 void requireProvenance(const config::Experiment& experiment, const Table& table) {
     const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
     Table read;  // outlives its reader
@@ -278,6 +304,12 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
             complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
         }
         if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
+        if (isOfDocument && claim.timeKind == ClaimSpec::TimeKind::Algorithmic &&
+            asksForATimeAsSuch(claim)) {
+            complain(
+                "holds a time against a number, which no count of work decides; its 'kind' "
+                "is architectural | absolute");
+        }
     }
 }
 

@@ -81,11 +81,11 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
 
 // Sec. 4.7.1 counts what holds colours and depths of the screen and of a cluster as frame buffers.
 void ClusteredReflections::recordMemory(technique::Recorder& recorder) const {
-    const std::size_t frameBuffers =
+    const std::size_t ofScreen =
         gbuffer_->sizeBytes() + target_->sizeBytes() + composite_->sizeBytes();
-    recorder.metric("memory_bytes", static_cast<double>(frameBuffers + tracer_->sizeBytes()),
-                    "byte");
-    recorder.metric("frame_buffer_bytes", static_cast<double>(frameBuffers), "byte");
+    recorder.metric("memory_bytes", static_cast<double>(ofScreen + tracer_->sizeBytes()), "byte");
+    recorder.metric("frame_buffer_bytes",
+                    static_cast<double>(ofScreen + tracer_->frameBufferBytes()), "byte");
 }
 
 const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuffer& gbuffer) {

@@ -135,6 +135,10 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
     }
 }
 
+std::size_t ClusteredTracer::frameBufferBytes() const {
+    return impl_->images.sizeBytes();
+}
+
 std::size_t ClusteredTracer::sizeBytes() const {
     return impl_->builder.sizeBytes() + impl_->clusterCameras.sizeBytes() +
            impl_->images.sizeBytes() + impl_->intersection.sizeBytes() + impl_->places.sizeBytes() +

@@ -46,6 +46,7 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     void trace(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
                reflections::ReflectionTarget& target, gl::Profiler& profiler) override;
     std::size_t sizeBytes() const override;
+    std::size_t frameBufferBytes() const override;
 
     /// Of the last trace(); these read back and wait for the device.
     int clusterCount() const;

@@ -58,6 +58,8 @@ class ReflectionTracer {
                        gl::Profiler& profiler) = 0;
     /// Held on the device by this method, the scene itself not counted.
     virtual std::size_t sizeBytes() const = 0;
+    /// Of them, colours and depths that it draws reflections from.
+    virtual std::size_t frameBufferBytes() const { return 0; }
 };
 
 }  // namespace gfxrepro::reflections

@@ -66,8 +66,11 @@ struct Ledger {
         return experiment;
     }
     std::string errorOf(const std::string& lines) const {
-        return test::errorText([&] { requireRanges(bound(lines), catalog(), kTechniques); },
-                               folder.path());
+        const auto check = [&] {
+            const config::Experiment experiment = bound(lines);
+            requireRanges(experiment, cases(experiment), catalog(), kTechniques);
+        };
+        return test::errorText(check, folder.path());
     }
 };
 
@@ -101,6 +104,16 @@ TEST(Ledger, RefusesWhatIsNotTheParameters) {
     EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {range: [0, 1], why: open}\n"),
               "DIR/t.yaml:5:3: assumption 'biass' needs 'value': it is no parameter of technique "
               "'still'; did you mean 'bias'?");
+}
+
+TEST(Ledger, RefusesRangesWithoutWhatIsMeasured) {
+    const Ledger ledger;
+    const std::string range = "assumptions:\n  bias: {range: [0.5, 1], why: open}\n";
+    EXPECT_EQ(ledger.errorOf("params: {bias: 0.25}\n" + range),
+              "DIR/t.yaml:6:17: assumption 'bias': range is [0.5, 1]; allowed: one that holds what "
+              "is measured, 0.25");
+    EXPECT_EQ(ledger.errorOf("params: {bias: 0.75}\n" + range), "no error");
+    EXPECT_EQ(ledger.errorOf("sweep: {bias: [0.25, 1]}\n" + range), "no error");
 }
 
 TEST(Ledger, RefusesRangesThatACaseCannotTake) {

@@ -229,6 +229,14 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: much}, origin: document, kind: "
                               "algorithmic"),
               "claim 'C' has a 'kind' and reads no time");
+    const std::string isAbsolute =
+        "claim 'C' holds a time against a number, which no count of work decides; its 'kind' is "
+        "architectural | absolute";
+    const std::string ofTime =
+        ", at: {e: slow}, origin: document, bound_from: text, kind: algorithmic";
+    EXPECT_EQ(provenanceError("bound: a, below: 100" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("bound: a / a, below: 100" + ofTime), "no error");
 }
 
 TEST(Claims, ATimeAsSuchIsJudgedAtThePrintedParametersAlone) {
