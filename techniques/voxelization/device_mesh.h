@@ -16,12 +16,27 @@ enum class Rule {
     Conservative,  // every voxel whose closed cube meets the triangle
 };
 
+/// How synthesis reads the sheets of x and y; the grids are equal bit by bit.
+enum class Merging {
+    PerVoxel,    // a fetch a voxel. [zju2005] Sec. 2.3.2 (3)
+    Transposed,  // tiles of C³ voxels, a fetch a texel
+    Sparse,      // as Transposed, and only tiles that hold fragments; surfaces only
+};
+
+/// How the worksheet method finds the bits of a voxel.
+enum class Addressing {
+    Instructions,  // shifts and masks
+    Tables,        // dependent look-ups. [zju2005] Sec. 2.3.2; synthesis per voxel, one sheet
+};
+
 /// A mesh and how it is to become voxels. `mesh` must outlive what is made of this.
 struct MeshRequest {
     const scene::Mesh& mesh;
     scene::Box box;  // cubic, world space
     GridSettings settings;
     Rule rule = Rule::Rasterized;
+    Merging merging = Merging::Transposed;
+    Addressing addressing = Addressing::Instructions;
 
     bool isSolid() const { return settings.fill == Fill::Solid; }
     /// Decided on the lattice, not by the hardware.

@@ -11,11 +11,12 @@ class WorksheetMethod : public MeshMethod {
     WorksheetMethod(technique::SetupContext& context, const MeshRequest& request,
                     const DeviceMesh& mesh, OpenMesh openMesh)
         : rasterization_(context, request, mesh),
-          texelization_(context.shaders, request),
+          texelization_(context.shaders, request, rasterization_.fragments()),
           synthesis_(context.shaders, request),
           sheets_(request.settings.layout),
           grid_{makeSheets(request.settings.layout), request.settings.layout, request.box},
           openMesh_(openMesh) {
+        if (request.addressing == Addressing::Tables) tables_.emplace(request.settings.layout);
         if (request.isSolid()) solidFill_.emplace(context.shaders, request.settings.layout);
     }
 
@@ -27,6 +28,7 @@ class WorksheetMethod : public MeshMethod {
         }
         {
             gl::GpuScope scope(profiler, "texelization");
+            if (tables_) tables_->bind();
             texelization_.run(rasterization_.fragments(), sheets_, grid_);
         }
         if (solidFill_) {
@@ -34,7 +36,7 @@ class WorksheetMethod : public MeshMethod {
             solidFill_->run(texelization_, sheets_, grid_, statistics_);
         }
         gl::GpuScope scope(profiler, "synthesis");
-        synthesis_.run(sheets_, grid_, statistics_);
+        synthesis_.run(sheets_, grid_, texelization_.tiles(), statistics_);
     }
 
     const VoxelGrid* grid() const override { return &grid_; }
@@ -57,12 +59,14 @@ class WorksheetMethod : public MeshMethod {
 
     std::size_t sizeBytes() const override {
         return 3 * grid_.layout.sizeBytes() + rasterization_.fragments().sizeBytes() +
-               texelization_.sizeBytes() + statistics_.sizeBytes();
+               texelization_.sizeBytes() + statistics_.sizeBytes() +
+               (tables_ ? tables_->sizeBytes() : 0);
     }
 
   private:
     Rasterization rasterization_;
     Texelization texelization_;
+    std::optional<LookupTables> tables_;
     std::optional<SolidFill> solidFill_;
     Synthesis synthesis_;
     DirectionalSheets sheets_;
@@ -76,7 +80,12 @@ class WorksheetMethod : public MeshMethod {
 MeshVoxelizer::MeshVoxelizer(const MeshVoxelizerSettings& settings, const scene::Mesh& mesh,
                              const scene::Box& box)
     : settings_(settings),
-      request_{.mesh = mesh, .box = box, .settings = settings.grid, .rule = settings.rule} {}
+      request_{.mesh = mesh,
+               .box = box,
+               .settings = settings.grid,
+               .rule = settings.rule,
+               .merging = settings.merging,
+               .addressing = settings.addressing} {}
 
 void MeshVoxelizer::setup(technique::SetupContext& context) {
     {

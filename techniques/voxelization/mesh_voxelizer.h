@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "techniques/voxelization/grid_source.h"
+#include "techniques/voxelization/lookup_tables.h"
 #include "techniques/voxelization/mesh_draw.h"
 #include "techniques/voxelization/synthesis.h"
 
@@ -26,6 +27,8 @@ struct MeshVoxelizerSettings {
     Rule rule = Rule::Rasterized;
     Split split = Split::Once;
     OpenMesh openMesh = OpenMesh::Report;
+    Merging merging = Merging::Transposed;
+    Addressing addressing = Addressing::Instructions;
 };
 
 /// One way of making (or, as a yardstick, not making) the grid; passes are timed inside.

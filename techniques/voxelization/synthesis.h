@@ -22,11 +22,14 @@ class SolidFill {
 class Synthesis {
   public:
     Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request);
-    /// `statistics` holds SolidStatistics (used by solid only).
-    void run(const DirectionalSheets& sheets, const VoxelGrid& grid, const gl::Buffer& statistics);
+    /// `tiles` are texelization's (used by Merging::Sparse only), `statistics` holds
+    /// SolidStatistics (used by solid only); look-up tables, where they are used, are bound.
+    void run(const DirectionalSheets& sheets, const VoxelGrid& grid, const TileList& tiles,
+             const gl::Buffer& statistics);
 
   private:
     gl::Program program_;
+    Merging merging_;
 };
 
 }  // namespace gfxrepro::voxelization

@@ -43,6 +43,16 @@ constexpr config::Choice<OpenMesh> kOpenMeshes[] = {
     {OpenMesh::Refuse, "refuse", "an error with the number of ambiguous scan lines"},
     {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
 };
+constexpr config::Choice<Merging> kMergings[] = {
+    {Merging::PerVoxel, "per_voxel", "a fetch a voxel, as the thesis"},
+    {Merging::Transposed, "transposed", "tiles of voxels, a fetch a texel"},
+    {Merging::Sparse, "sparse",
+     "as transposed, and only tiles that hold fragments; not for solids"},
+};
+constexpr config::Choice<Addressing> kAddressings[] = {
+    {Addressing::Instructions, "instructions", "shifts and masks"},
+    {Addressing::Tables, "tables", "look-up textures, as the thesis; with synthesis: per_voxel"},
+};
 
 /// An integer that is one of `allowed`.
 template <std::size_t N>
@@ -98,6 +108,36 @@ void checkSolid(const config::Params& params, const MeshVoxelizerSettings& setti
     }
 }
 
+/// How the stages of the worksheet method address voxels; every way makes the same grid.
+void readStages(config::Params& params, MeshVoxelizerSettings& settings) {
+    const bool isSolid = settings.grid.fill == Fill::Solid;
+    settings.merging =
+        params.getEnum("synthesis", isSolid ? Merging::Transposed : Merging::Sparse, kMergings,
+                       {"how the sheets of x and y are read, for the same grid"});
+    settings.addressing = params.getEnum("addressing", Addressing::Instructions, kAddressings,
+                                         {"how texelization and synthesis find a voxel's bits"});
+    if (settings.method != Method::Worksheet) {
+        params.refuseGiven({"synthesis", "addressing"}, "'method: worksheet'");
+    }
+    if (isSolid && settings.merging == Merging::Sparse) {
+        throw Error(params.locationOf("synthesis"),
+                    "'synthesis: sparse' skips tiles without a surface, which solids fill; allowed "
+                    "with 'fill: solid': per_voxel, transposed");
+    }
+    if (settings.addressing == Addressing::Instructions) return;
+    if (settings.merging != Merging::PerVoxel) {
+        throw Error(params.locationOf("addressing"),
+                    "'addressing: tables' needs 'synthesis: per_voxel'");
+    }
+    if (settings.grid.layout.layers() > 1) {
+        throw Error(params.locationOf("addressing"),
+                    fmt::format("'addressing: tables' needs a grid of one worksheet; {}³ voxels of "
+                                "{} bits take {}",
+                                settings.grid.layout.resolution(), settings.grid.layout.voxelBits(),
+                                settings.grid.layout.layers()));
+    }
+}
+
 MeshVoxelizerSettings readVoxelizer(config::Params& params) {
     MeshVoxelizerSettings settings;
     const int resolution =
@@ -128,6 +168,7 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
                     "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
     }
     checkSolid(params, settings);
+    readStages(params, settings);
     return settings;
 }
 
@@ -142,8 +183,8 @@ void checkInput(const config::Params& params, const VoxelizationParams& read) {
         }
         return;
     }
-    params.refuseGiven({"collision", "compare", "csg", "method", "offset_b", "open_mesh", "padding",
-                        "rule", "scene_b", "split"},
+    params.refuseGiven({"addressing", "collision", "compare", "csg", "method", "offset_b",
+                        "open_mesh", "padding", "rule", "scene_b", "split", "synthesis"},
                        "'input: mesh'");
     if (read.drawing.draw.mode == DrawMode::Mixed) {
         throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");

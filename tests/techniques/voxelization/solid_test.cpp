@@ -90,6 +90,18 @@ TEST_F(SolidTest, EqualsTheReference) {
     }
 }
 
+TEST_F(SolidTest, EverySynthesisMakesTheSameSolid) {
+    const scene::Mesh mesh = shapes::torus(glm::vec3(0), 0.7F, 0.3F, 60, 30);
+    for (const int bits : {1, 8, 16, 32}) {
+        auto s = solid(64, bits);
+        const DenseGrid expected = voxelize(mesh, s).grid;
+        s.merging = Merging::PerVoxel;
+        EXPECT_EQ(voxelize(mesh, s).grid, expected) << bits;
+        s.addressing = Addressing::Tables;
+        EXPECT_EQ(voxelize(mesh, s).grid, expected) << bits;
+    }
+}
+
 TEST_F(SolidTest, VolumesAreRight) {
     const auto s = solid(128);
     const scene::Mesh sphere = shapes::sphere(glm::vec3(0.0F), 1.0F, 5);

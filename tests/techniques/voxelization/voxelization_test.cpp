@@ -68,6 +68,17 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:37: 'fill: solid' needs 'value: occupancy'");
     EXPECT_EQ(message("{method: slices, rule: thin}"),
               "case.yaml:1:24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'");
+    EXPECT_EQ(message("{method: slices, rule: rasterized, synthesis: sparse}"),
+              "case.yaml:1:47: 'synthesis' needs 'method: worksheet'");
+    EXPECT_EQ(message("{fill: solid, synthesis: sparse}"),
+              "case.yaml:1:26: 'synthesis: sparse' skips tiles without a surface, which solids "
+              "fill; allowed with 'fill: solid': per_voxel, transposed");
+    EXPECT_EQ(message("{addressing: tables}"),
+              "case.yaml:1:14: 'addressing: tables' needs 'synthesis: per_voxel'");
+    EXPECT_EQ(message("{addressing: tables, synthesis: per_voxel, voxel_bits: 32}"),
+              "case.yaml:1:14: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of "
+              "32 bits take 4");
+    EXPECT_EQ(message("{addressing: tables, synthesis: per_voxel}"), "no error");
     EXPECT_EQ(message("box_min: [0, 0, 0]"),
               "case.yaml:1:10: box_min and box_max must be given together");
     EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 2, 1]}"),
