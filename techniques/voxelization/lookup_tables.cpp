@@ -26,15 +26,17 @@ gl::Texture makePowerOfTwo() {
 gl::Texture makeFromZ(const WorksheetLayout& layout, Axis axis) {
     using Texel = glm::u16vec4;
     const int n = layout.resolution();
+    std::vector<glm::ivec3> slabCorners;  // by w
+    for (int w = 0; w < n; ++w) slabCorners.push_back(layout.texel({0, 0, w}));
     std::vector<Texel> texels(layout.wordCount());
     for (int z = 0; z < n; z += layout.voxelsPerTexel()) {
         for (int y = 0; y < n; ++y) {
+            Texel* row = &texels[layout.wordIndex({0, y, z})];
             for (int x = 0; x < n; ++x) {
-                const glm::ivec3 voxel(x, y, z);
-                const glm::ivec3 local = localFromVolume(axis, voxel);
-                const glm::ivec3 at = layout.texel(local);
+                const glm::ivec3 local = localFromVolume(axis, glm::ivec3(x, y, z));
+                const glm::ivec3& corner = slabCorners[static_cast<std::size_t>(local.z)];
                 const int shift = layout.shift(local.z);
-                texels[layout.wordIndex(voxel)] = Texel(at.x, at.y, shift / 8, shift % 8);
+                row[x] = Texel(corner.x + local.x, corner.y + local.y, shift / 8, shift % 8);
             }
         }
     }

@@ -15,9 +15,10 @@ class WorksheetMethod : public MeshMethod {
           synthesis_(context.shaders, request),
           sheets_(request.settings.layout),
           grid_{makeSheets(request.settings.layout), request.settings.layout, request.box},
-          openMesh_(openMesh) {
+          openMesh_(openMesh),
+          takesMajority_(request.fillsByCrossings()) {
         if (request.addressing == Addressing::Tables) tables_.emplace(request.settings.layout);
-        if (request.isSolid()) solidFill_.emplace(context.shaders, request.settings.layout);
+        if (request.isSolid()) solidFill_.emplace(context.shaders, request);
     }
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
@@ -54,7 +55,9 @@ class WorksheetMethod : public MeshMethod {
                             3 * grid_.layout.resolution() * grid_.layout.resolution()));
         }
         recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines, "scan line");
-        recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
+        if (takesMajority_) {
+            recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
+        }
     }
 
     std::size_t sizeBytes() const override {
@@ -73,6 +76,7 @@ class WorksheetMethod : public MeshMethod {
     VoxelGrid grid_;
     gl::Buffer statistics_ = gl::Buffer(sizeof(SolidStatistics));
     OpenMesh openMesh_;
+    bool takesMajority_;
 };
 
 }  // namespace
@@ -85,7 +89,8 @@ MeshVoxelizer::MeshVoxelizer(const MeshVoxelizerSettings& settings, const scene:
                .settings = settings.grid,
                .rule = settings.rule,
                .merging = settings.merging,
-               .addressing = settings.addressing} {}
+               .addressing = settings.addressing,
+               .fillRule = settings.fillRule} {}
 
 void MeshVoxelizer::setup(technique::SetupContext& context) {
     {

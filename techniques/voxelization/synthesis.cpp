@@ -22,9 +22,15 @@ gl::Defines synthesisDefines(const MeshRequest& request) {
     defines["GROUP_EDGE"] = kGroupEdge;
     if (request.merging == Merging::Sparse) defines["SPARSE"] = 1;
     if (request.addressing == Addressing::Tables) defines["TABLES"] = 1;
-    defines[request.isSolid()     ? "COMBINE_MAJORITY"
-            : request.hasValues() ? "COMBINE_MAX"
-                                  : "COMBINE_OR"] = 1;
+    defines[request.fillsByCrossings() ? "COMBINE_MAJORITY"
+            : request.hasValues()      ? "COMBINE_MAX"
+                                       : "COMBINE_OR"] = 1;
+    return defines;
+}
+
+gl::Defines fillDefines(const MeshRequest& request) {
+    gl::Defines defines = passDefines(request.settings.layout);
+    if (!request.fillsByCrossings()) defines["FLIP_AT_VOXELS"] = 1;
     return defines;
 }
 
@@ -41,9 +47,9 @@ void finishImages() {
 
 }  // namespace
 
-SolidFill::SolidFill(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout)
-    : program_(shaders, {"voxelization/fill.comp.glsl"}, passDefines(layout)),
-      groupsAcross_(static_cast<unsigned>(layout.resolution() / kFillGroupSize)) {}
+SolidFill::SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request)
+    : program_(shaders, {"voxelization/fill.comp.glsl"}, fillDefines(request)),
+      groupsAcross_(static_cast<unsigned>(request.settings.layout.resolution() / kFillGroupSize)) {}
 
 void SolidFill::run(const Texelization& texelization, const DirectionalSheets& sheets,
                     const VoxelGrid& grid, gl::Buffer& statistics) {

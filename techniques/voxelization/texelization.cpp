@@ -14,9 +14,9 @@ gl::Defines texelizeDefines(const MeshRequest& request) {
     gl::Defines defines = passDefines(request.settings.layout);
     defines["GROUP_SIZE"] = kGroupSize;
     defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
-    defines[request.isSolid()     ? "ACCUMULATE_XOR"
-            : request.hasValues() ? "ACCUMULATE_MAX"
-                                  : "ACCUMULATE_OR"] = 1;
+    defines[request.fillsByCrossings() ? "ACCUMULATE_XOR"
+            : request.hasValues()      ? "ACCUMULATE_MAX"
+                                       : "ACCUMULATE_OR"] = 1;
     if (request.merging == Merging::Sparse) defines["LIST_TILES"] = 1;
     if (request.addressing == Addressing::Tables) defines["TABLES"] = 1;
     return defines;

@@ -30,6 +30,11 @@ constexpr config::Choice<Fill> kFills[] = {
     {Fill::Surface, "surface", "voxels of the surface"},
     {Fill::Solid, "solid", "voxels whose centre lies inside, by scan-line parity on three axes"},
 };
+constexpr config::Choice<FillRule> kFillRules[] = {
+    {FillRule::Crossings, "crossings", "exact crossings of the surface; two of three axes decide"},
+    {FillRule::SurfaceVoxels, "surface_voxels",
+     "rasterized voxels of the surface, as the thesis: leaves streaks"},
+};
 constexpr config::Choice<VoxelValue> kValues[] = {
     {VoxelValue::Occupancy, "occupancy", "full or empty"},
     {VoxelValue::Normal, "normal", "octahedral normal"},
@@ -92,13 +97,27 @@ std::optional<scene::Box> readBox(config::Params& params) {
     return scene::Box{minimum, minimum + static_cast<float>(longest)};
 }
 
-/// Solids are decided by crossings of scan lines, in the worksheets, and say occupancy only.
+/// Solids are decided along scan lines, in the worksheets, and say occupancy only.
 void checkSolid(const config::Params& params, const MeshVoxelizerSettings& settings) {
-    if (settings.grid.fill != Fill::Solid) return;
-    if (params.isGiven("rule") && settings.rule != Rule::Thin) {
+    if (settings.grid.fill != Fill::Solid) {
+        params.refuseGiven({"fill_rule"}, "'fill: solid'");
+        return;
+    }
+    const bool isByCrossings = settings.fillRule == FillRule::Crossings;
+    if (params.isGiven("rule") &&
+        settings.rule != (isByCrossings ? Rule::Thin : Rule::Rasterized)) {
         throw Error(params.locationOf("rule"),
-                    "'fill: solid' decides by crossings of scan lines; leave 'rule' out or give "
-                    "'thin'");
+                    isByCrossings
+                        ? "'fill: solid' decides by crossings of scan lines; leave 'rule' "
+                          "out or give 'thin'"
+                        : "'fill_rule: surface_voxels' flips at rasterized voxels; leave "
+                          "'rule' out or give 'rasterized'");
+    }
+    if (!isByCrossings && settings.openMesh == OpenMesh::Refuse) {
+        throw Error(
+            params.locationOf("open_mesh"),
+            "'open_mesh: refuse' needs 'fill_rule: crossings'; flags that flip at voxels end "
+            "inside closed meshes, too");
     }
     if (settings.method != Method::Worksheet) {
         throw Error(params.locationOf("method"), "'fill: solid' needs 'method: worksheet'");
@@ -149,8 +168,12 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
     settings.grid.value = params.getEnum("value", VoxelValue::Occupancy, kValues,
                                          {"what a voxel says; more than occupancy needs 8 bits"});
     settings.grid.fill = params.getEnum("fill", Fill::Surface, kFills, {"which voxels are full"});
+    settings.fillRule = params.getEnum("fill_rule", FillRule::Crossings, kFillRules,
+                                       {"what flips the inside flag along a solid's scan lines"});
     settings.method = params.getEnum("method", Method::Worksheet, kMethods, {"what is measured"});
-    settings.rule = params.getEnum("rule", Rule::Rasterized, kRules,
+    const bool isRasterizedOnly =
+        settings.method == Method::Slices || settings.method == Method::DepthOnly;
+    settings.rule = params.getEnum("rule", isRasterizedOnly ? Rule::Rasterized : Rule::Thin, kRules,
                                    {"which voxels a triangle fills (surface)"});
     settings.split =
         params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
@@ -161,8 +184,6 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
                     "a voxel of 1 bit says occupancy only; allowed with 'value: normal' and "
                     "'value: color': voxel_bits 8, 16 or 32");
     }
-    const bool isRasterizedOnly =
-        settings.method == Method::Slices || settings.method == Method::DepthOnly;
     if (isRasterizedOnly && settings.rule != Rule::Rasterized) {
         throw Error(params.locationOf("rule"),
                     "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
@@ -183,9 +204,10 @@ void checkInput(const config::Params& params, const VoxelizationParams& read) {
         }
         return;
     }
-    params.refuseGiven({"addressing", "collision", "compare", "csg", "method", "offset_b",
-                        "open_mesh", "padding", "rule", "scene_b", "split", "synthesis"},
-                       "'input: mesh'");
+    params.refuseGiven(
+        {"addressing", "collision", "compare", "csg", "fill_rule", "method", "offset_b",
+         "open_mesh", "padding", "rule", "scene_b", "split", "synthesis"},
+        "'input: mesh'");
     if (read.drawing.draw.mode == DrawMode::Mixed) {
         throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");
     }
