@@ -80,7 +80,8 @@ void Voxelization::setupMesh(technique::SetupContext& context) {
     if (params_.drawing.isOn()) {
         const bool showsBoth =
             params_.combination.findsCollision && !params_.combination.csg.has_value();
-        drawing_.setup(context, layout, box_, isInHead || params_.box ? box_ : bounds, showsBoth);
+        const scene::Box shown = isInHead ? headBounds(box_) : params_.box ? *params_.box : bounds;
+        drawing_.setup(context, layout, box_, shown, showsBoth);
     }
 }
 
