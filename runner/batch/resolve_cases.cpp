@@ -1,5 +1,7 @@
 // The cases of an experiment, every parameter resolved by the technique that declares it.
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "runner/batch/case_variation.h"
 #include "runner/batch/plan.h"
@@ -32,6 +34,17 @@ void requireKnownAt(const config::Printed& printed, const config::Node& params) 
         if (isKnown) continue;
         throw Error(value.location(),
                     "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
+    }
+}
+
+/// Throws Error for two cases that are alike. Those whose scenes have two names, but one content,
+/// makePlan finds.
+void requireDistinct(const config::Experiment& experiment, const std::vector<Case>& cases) {
+    std::set<std::string> known;
+    for (const Case& item : cases) {
+        if (known.insert(item.toJson().dump()).second) continue;
+        throw Error(experiment.file.string() + ": the sweep gives the case '" + item.title() +
+                    "' twice");
     }
 }
 
@@ -82,6 +95,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
     }
     requireTaken(experiment, cases, catalog);
     requireSceneNames(experiment, cases, catalog);
+    requireDistinct(experiment, cases);
     return cases;
 }
 

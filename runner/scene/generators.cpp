@@ -166,6 +166,9 @@ Scene sdfModel(config::Params& params, std::uint64_t seed) {
         "vertices", 0,
         {"exact count; more than the surface needs are made by seams; 0: as many as it needs", "",
          0, 60e6});
+    constexpr double kAsMade[] = {1.0, 1.0, 1.0};
+    const std::vector<double> stretch = params.getVector(
+        "stretch", kAsMade, {"factors along x, y and z; the counts stay", "", 0.1, 10});
     params.finish();
     if (triangles % 2 != 0) {
         throw Error(params.locationOf("triangles"),
@@ -179,8 +182,10 @@ Scene sdfModel(config::Params& params, std::uint64_t seed) {
         mesh = cube();
     } else {
         mesh = polygonizedBelow(shapeOf(shape, static_cast<std::uint32_t>(seed)), triangleCount);
-        mesh.normals = vertexNormals(mesh);
     }
+    const glm::vec3 factors(stretch[0], stretch[1], stretch[2]);
+    for (glm::vec3& position : mesh.positions) position *= factors;
+    if (shape != ModelShape::Cube) mesh.normals = vertexNormals(mesh);
     mesh = refinedTo(std::move(mesh), triangles);
     const std::size_t least = mesh.positions.size();
     if (vertices != 0) {

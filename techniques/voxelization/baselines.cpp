@@ -81,7 +81,7 @@ class DepthOnlyMethod : public MeshMethod {
         program_.use();
         program_.set("boxCentreWorld", boxCentreWorld_);
         program_.set("clipFromWorldScale", clipFromWorldScale_);
-        mesh.drawIndexed({0, mesh.ranges.back().first + mesh.ranges.back().count});
+        mesh.drawIndexed(mesh.allTriangles());
     }
     const VoxelGrid* grid() const override { return nullptr; }
     void record(technique::Recorder&) override {}

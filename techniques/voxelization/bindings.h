@@ -13,9 +13,17 @@ enum StorageBinding : unsigned {
     kAttributeBinding = 4,
     kBehindBinding = 5,
     kStatisticsBinding = 6,
+    kTileBinding = 7,
 };
 
 enum ImageUnit : unsigned { kSheetUnit = 0, kSheetXUnit = 1, kSheetYUnit = 2 };
+
+enum TextureUnit : unsigned {
+    kBitOfByteUnit = 0,
+    kPowerOfTwoUnit = 1,
+    kXFromZUnit = 2,
+    kYFromZUnit = 3,
+};
 
 enum VertexLocation : unsigned { kPositionLocation = 0, kAttributeLocation = 1 };
 

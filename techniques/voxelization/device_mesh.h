@@ -16,16 +16,39 @@ enum class Rule {
     Conservative,  // every voxel whose closed cube meets the triangle
 };
 
+/// How synthesis reads the sheets of x and y; the grids are equal bit by bit.
+enum class Merging {
+    PerVoxel,    // a fetch a voxel. [zju2005] Sec. 2.3.2 (3)
+    Transposed,  // tiles of C³ voxels, a fetch a texel
+    Sparse,      // as Transposed, and only tiles that hold fragments; surfaces only
+};
+
+/// How the worksheet method finds the bits of a voxel.
+enum class Addressing {
+    Instructions,  // shifts and masks
+    Tables,        // dependent look-ups. [zju2005] Sec. 2.3.2; synthesis per voxel, one sheet
+};
+
+/// What flips the inside flag along a scan line of a solid.
+enum class FillRule {
+    Crossings,      // each exact crossing of the surface; two of three axes decide
+    SurfaceVoxels,  // each voxel that the hardware samples; any axis decides. [zju2005] Sec. 2.2.3
+};
+
 /// A mesh and how it is to become voxels. `mesh` must outlive what is made of this.
 struct MeshRequest {
     const scene::Mesh& mesh;
     scene::Box box;  // cubic, world space
     GridSettings settings;
     Rule rule = Rule::Rasterized;
+    Merging merging = Merging::Transposed;
+    Addressing addressing = Addressing::Instructions;
+    FillRule fillRule = FillRule::Crossings;
 
     bool isSolid() const { return settings.fill == Fill::Solid; }
     /// Decided on the lattice, not by the hardware.
-    bool isExact() const { return rule != Rule::Rasterized || isSolid(); }
+    bool isExact() const { return isSolid() ? fillsByCrossings() : rule != Rule::Rasterized; }
+    bool fillsByCrossings() const { return isSolid() && fillRule == FillRule::Crossings; }
     /// Every triangle is drawn along every axis, not only along its dominant one.
     bool drawsAllAxes() const { return rule == Rule::Thin || isSolid(); }
     /// The largest value of a voxel wins (its bits are not simply OR-ed).
@@ -43,6 +66,7 @@ struct DeviceMesh {
     DeviceMesh(const MeshRequest& request, const AxisSplit& split, const gl::DeviceLimits& limits);
     /// Replaces the indices: the dynamic index buffer of [zju2005] Sec. 2.3.1.
     void update(const AxisSplit& split);
+    TriangleRange allTriangles() const { return {0, ranges[2].first + ranges[2].count}; }
     /// Draws these triangles with the program in use, in pieces: the memory that a software device
     /// takes for a draw then does not grow with the mesh.
     void drawIndexed(TriangleRange range) const;

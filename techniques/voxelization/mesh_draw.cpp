@@ -10,7 +10,7 @@ gl::Defines drawDefines(const MeshRequest& request, DrawTarget target) {
     defines["VALUE"] = static_cast<int>(request.settings.value);
     defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
     if (request.isExact()) {
-        defines[request.isSolid()            ? "RULE_TOGGLE"
+        defines[request.fillsByCrossings()   ? "RULE_TOGGLE"
                 : request.rule == Rule::Thin ? "RULE_THIN"
                                              : "RULE_CONSERVATIVE"] = 1;
     }
@@ -50,7 +50,8 @@ void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
     }
     program_.set("boxCentreWorld", boxCentreWorld_);
     program_.set("clipFromWorldScale", clipFromWorldScale_);
-    mesh.drawIndexed(mesh.ranges[static_cast<std::size_t>(axis)]);
+    mesh.drawIndexed(drawsAllAxes_ ? mesh.allTriangles()
+                                   : mesh.ranges[static_cast<std::size_t>(axis)]);
 }
 
 void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice) const {
@@ -60,7 +61,7 @@ void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice) const {
 
 void MeshDraw::drawExact(const DeviceMesh& mesh, Axis axis) const {
     TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
-    if (drawsAllAxes_) range = {0, mesh.ranges[2].first + mesh.ranges[2].count};
+    if (drawsAllAxes_) range = mesh.allTriangles();
     mesh.positions.bindStorage(kPositionBinding);
     mesh.triangles.bindStorage(kTriangleBinding);
     mesh.attributes.bindStorage(kAttributeBinding);

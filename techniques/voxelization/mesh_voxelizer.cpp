@@ -11,12 +11,14 @@ class WorksheetMethod : public MeshMethod {
     WorksheetMethod(technique::SetupContext& context, const MeshRequest& request,
                     const DeviceMesh& mesh, OpenMesh openMesh)
         : rasterization_(context, request, mesh),
-          texelization_(context.shaders, request),
+          texelization_(context.shaders, request, rasterization_.fragments()),
           synthesis_(context.shaders, request),
           sheets_(request.settings.layout),
           grid_{makeSheets(request.settings.layout), request.settings.layout, request.box},
-          openMesh_(openMesh) {
-        if (request.isSolid()) solidFill_.emplace(context.shaders, request.settings.layout);
+          openMesh_(openMesh),
+          takesMajority_(request.fillsByCrossings()) {
+        if (request.addressing == Addressing::Tables) tables_.emplace(request.settings.layout);
+        if (request.isSolid()) solidFill_.emplace(context.shaders, request);
     }
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
@@ -27,6 +29,7 @@ class WorksheetMethod : public MeshMethod {
         }
         {
             gl::GpuScope scope(profiler, "texelization");
+            if (tables_) tables_->bind();
             texelization_.run(rasterization_.fragments(), sheets_, grid_);
         }
         if (solidFill_) {
@@ -34,7 +37,7 @@ class WorksheetMethod : public MeshMethod {
             solidFill_->run(texelization_, sheets_, grid_, statistics_);
         }
         gl::GpuScope scope(profiler, "synthesis");
-        synthesis_.run(sheets_, grid_, statistics_);
+        synthesis_.run(sheets_, grid_, texelization_.tiles(), statistics_);
     }
 
     const VoxelGrid* grid() const override { return &grid_; }
@@ -52,23 +55,28 @@ class WorksheetMethod : public MeshMethod {
                             3 * grid_.layout.resolution() * grid_.layout.resolution()));
         }
         recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines, "scan line");
-        recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
+        if (takesMajority_) {
+            recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
+        }
     }
 
     std::size_t sizeBytes() const override {
         return 3 * grid_.layout.sizeBytes() + rasterization_.fragments().sizeBytes() +
-               texelization_.sizeBytes() + statistics_.sizeBytes();
+               texelization_.sizeBytes() + statistics_.sizeBytes() +
+               (tables_ ? tables_->sizeBytes() : 0);
     }
 
   private:
     Rasterization rasterization_;
     Texelization texelization_;
+    std::optional<LookupTables> tables_;
     std::optional<SolidFill> solidFill_;
     Synthesis synthesis_;
     DirectionalSheets sheets_;
     VoxelGrid grid_;
     gl::Buffer statistics_ = gl::Buffer(sizeof(SolidStatistics));
     OpenMesh openMesh_;
+    bool takesMajority_;
 };
 
 }  // namespace
@@ -76,7 +84,13 @@ class WorksheetMethod : public MeshMethod {
 MeshVoxelizer::MeshVoxelizer(const MeshVoxelizerSettings& settings, const scene::Mesh& mesh,
                              const scene::Box& box)
     : settings_(settings),
-      request_{.mesh = mesh, .box = box, .settings = settings.grid, .rule = settings.rule} {}
+      request_{.mesh = mesh,
+               .box = box,
+               .settings = settings.grid,
+               .rule = settings.rule,
+               .merging = settings.merging,
+               .addressing = settings.addressing,
+               .fillRule = settings.fillRule} {}
 
 void MeshVoxelizer::setup(technique::SetupContext& context) {
     {

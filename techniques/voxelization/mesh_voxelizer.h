@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "techniques/voxelization/grid_source.h"
+#include "techniques/voxelization/lookup_tables.h"
 #include "techniques/voxelization/mesh_draw.h"
 #include "techniques/voxelization/synthesis.h"
 
@@ -26,6 +27,9 @@ struct MeshVoxelizerSettings {
     Rule rule = Rule::Rasterized;
     Split split = Split::Once;
     OpenMesh openMesh = OpenMesh::Report;
+    Merging merging = Merging::Transposed;
+    Addressing addressing = Addressing::Instructions;
+    FillRule fillRule = FillRule::Crossings;
 };
 
 /// One way of making (or, as a yardstick, not making) the grid; passes are timed inside.
@@ -47,8 +51,8 @@ class MeshVoxelizer : public GridSource {
     void setup(technique::SetupContext& context) override;
     void render(gl::Profiler& profiler) override;
     const VoxelGrid* grid() const override { return method_->grid(); }
-    /// fragments, memory_bytes; solid: ambiguous_scan_lines, disagreeing_voxels. Throws Error for
-    /// a solid of an open mesh when those are to be refused.
+    /// fragments, memory_bytes; solid: ambiguous_scan_lines, by crossings disagreeing_voxels.
+    /// Throws Error for a solid of an open mesh when those are to be refused.
     void record(technique::Recorder& recorder) override;
 
     const MeshRequest& request() const { return request_; }

@@ -12,6 +12,8 @@ namespace {
 // All positions in the cube [-1, 1]³.
 constexpr glm::vec3 kCavityCentre{0.0F, 0.22F, -0.06F};
 constexpr glm::vec3 kCavityRadii{0.47F, 0.50F, 0.60F};
+constexpr glm::vec3 kHeadMin{-0.64F, -1.0F, -0.79F};  // ear, neck, occiput
+constexpr glm::vec3 kHeadMax{0.64F, 0.85F, 0.73F};    // ear, crown, nose
 constexpr float kBoneThickness = 0.05F;
 constexpr float kSkinThickness = 0.035F;
 
@@ -189,6 +191,11 @@ scene::Box headBoxAround(const scene::Box& brain) {
     const float half = std::max({scale.x, scale.y, scale.z});
     const glm::vec3 centre = brain.centre() - half * kCavityCentre;
     return {centre - half, centre + half};
+}
+
+scene::Box headBounds(const scene::Box& cube) {
+    const glm::vec3 half = 0.5F * cube.size();
+    return {cube.centre() + half * kHeadMin, cube.centre() + half * kHeadMax};
 }
 
 }  // namespace gfxrepro::voxelization

@@ -22,4 +22,7 @@ gl::Texture makeHeadTexture(int resolution, std::uint64_t seed);
 /// The cube that a head must fill so that a brain with these bounds sits in its skull.
 scene::Box headBoxAround(const scene::Box& brain);
 
+/// What the head takes of that cube.
+scene::Box headBounds(const scene::Box& cube);
+
 }  // namespace gfxrepro::voxelization

@@ -6,10 +6,11 @@
 
 namespace gfxrepro::voxelization {
 
-/// Solid only: turns the crossings in the sheets into inside flags, scan line by scan line.
+/// Solid only: turns the crossings (or surface voxels) in the sheets into inside flags, scan line
+/// by scan line.
 class SolidFill {
   public:
-    SolidFill(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout);
+    SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request);
     void run(const Texelization& texelization, const DirectionalSheets& sheets,
              const VoxelGrid& grid, gl::Buffer& statistics);
 
@@ -18,15 +19,19 @@ class SolidFill {
     unsigned groupsAcross_;
 };
 
-/// Merges the sheets of x and y into the grid's: OR, the largest value, or the majority (solid).
+/// Merges the sheets of x and y into the grid's: OR, the largest value, or the majority
+/// (solid by crossings).
 class Synthesis {
   public:
     Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request);
-    /// `statistics` holds SolidStatistics (used by solid only).
-    void run(const DirectionalSheets& sheets, const VoxelGrid& grid, const gl::Buffer& statistics);
+    /// `tiles` are texelization's (used by Merging::Sparse only), `statistics` holds
+    /// SolidStatistics (used by solid only); look-up tables, where they are used, are bound.
+    void run(const DirectionalSheets& sheets, const VoxelGrid& grid, const TileList& tiles,
+             const gl::Buffer& statistics);
 
   private:
     gl::Program program_;
+    Merging merging_;
 };
 
 }  // namespace gfxrepro::voxelization

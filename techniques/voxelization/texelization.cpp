@@ -14,22 +14,43 @@ gl::Defines texelizeDefines(const MeshRequest& request) {
     gl::Defines defines = passDefines(request.settings.layout);
     defines["GROUP_SIZE"] = kGroupSize;
     defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
-    defines[request.isSolid()     ? "ACCUMULATE_XOR"
-            : request.hasValues() ? "ACCUMULATE_MAX"
-                                  : "ACCUMULATE_OR"] = 1;
+    defines[request.fillsByCrossings() ? "ACCUMULATE_XOR"
+            : request.hasValues()      ? "ACCUMULATE_MAX"
+                                       : "ACCUMULATE_OR"] = 1;
+    if (request.merging == Merging::Sparse) defines["LIST_TILES"] = 1;
+    if (request.addressing == Addressing::Tables) defines["TABLES"] = 1;
     return defines;
+}
+
+/// A tile is listed by one of its fragments.
+TileList makeTileList(const WorksheetLayout& layout, const FragmentList& fragments) {
+    const auto across = static_cast<std::size_t>(layout.slabCount());
+    const std::size_t tiles = across * across * across;
+    std::size_t listed = 0;
+    for (std::uint32_t capacity : fragments.capacities) listed += capacity;
+    listed = std::max<std::size_t>(std::min(tiles, listed), 1);
+    const std::size_t flagWords = (tiles + 31) / 32;
+    return {gl::Buffer((1 + flagWords + listed) * sizeof(std::uint32_t)), listed};
 }
 
 }  // namespace
 
-Texelization::Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request)
+Texelization::Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request,
+                           const FragmentList& fragments)
     : program_(shaders, {"voxelization/texelize.comp.glsl"}, texelizeDefines(request)) {
     const auto n = static_cast<std::size_t>(request.settings.layout.resolution());
     for (gl::Buffer& lines : behind_) lines = gl::Buffer(request.isSolid() ? n * n / 8 : 4);
+    if (request.merging == Merging::Sparse) {
+        tiles_ = makeTileList(request.settings.layout, fragments);
+    }
 }
 
 void Texelization::run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid) {
     program_.use();
+    if (tiles_.capacity > 0) {
+        tiles_.buffer.clear();
+        tiles_.buffer.bindStorage(kTileBinding);
+    }
     for (Axis axis : kAxes) {
         gl::Texture& sheet = axis == Axis::X ? sheets.x : axis == Axis::Y ? sheets.y : grid.sheets;
         gl::Buffer& behind = behind_[static_cast<std::size_t>(axis)];
@@ -47,7 +68,7 @@ void Texelization::run(const FragmentList& fragments, DirectionalSheets& sheets,
 }
 
 std::size_t Texelization::sizeBytes() const {
-    return 3 * behind_[0].sizeBytes();
+    return 3 * behind_[0].sizeBytes() + tiles_.buffer.sizeBytes();
 }
 
 }  // namespace gfxrepro::voxelization

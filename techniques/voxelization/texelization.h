@@ -20,19 +20,30 @@ struct SolidStatistics {
     std::uint32_t disagreeingVoxels = 0;   // where the three axes differ
 };
 
+/// The tiles of C³ voxels that hold fragments (tiles.glsl): how many, a flag each, their indices.
+/// Empty unless synthesis is sparse.
+struct TileList {
+    gl::Buffer buffer;
+    std::size_t capacity = 0;
+};
+
 class Texelization {
   public:
-    Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request);
+    /// `fragments` holds what rasterization can make of the mesh.
+    Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request,
+                 const FragmentList& fragments);
 
     /// Clears the three sheets (that of z is grid's) and writes every fragment's voxel.
     void run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid);
     /// Solid: scan lines whose crossing lies behind the grid, one bit each, for each axis.
     const gl::Buffer& behind(Axis axis) const { return behind_[static_cast<std::size_t>(axis)]; }
+    const TileList& tiles() const { return tiles_; }
     std::size_t sizeBytes() const;
 
   private:
     gl::Program program_;
     std::array<gl::Buffer, 3> behind_;
+    TileList tiles_;
 };
 
 }  // namespace gfxrepro::voxelization

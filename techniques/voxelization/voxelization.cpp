@@ -31,6 +31,13 @@ std::unique_ptr<GridSource> makeFormulaSource(const VoxelizationParams& read,
     return nullptr;
 }
 
+/// Voxels that are full in either grid of one layout.
+DenseGrid together(const DenseGrid& a, const DenseGrid& b) {
+    std::vector<std::uint32_t> words(a.words().begin(), a.words().end());
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] |= b.words()[i];
+    return {a.layout(), std::move(words)};
+}
+
 }  // namespace
 
 Voxelization::Voxelization(config::Params& params)
@@ -73,7 +80,8 @@ void Voxelization::setupMesh(technique::SetupContext& context) {
     if (params_.drawing.isOn()) {
         const bool showsBoth =
             params_.combination.findsCollision && !params_.combination.csg.has_value();
-        drawing_.setup(context, layout, box_, isInHead || params_.box ? box_ : bounds, showsBoth);
+        const scene::Box shown = isInHead ? headBounds(box_) : params_.box ? *params_.box : bounds;
+        drawing_.setup(context, layout, box_, shown, showsBoth);
     }
 }
 
@@ -133,6 +141,10 @@ void Voxelization::recordMisses(technique::Recorder& recorder, const DenseGrid& 
         const DenseGrid expected = reference::solid(mesh, resolution).grid;
         count("missed_solid_voxels", expected, grid);
         count("added_solid_voxels", grid, expected);
+        if (params_.voxelizer.fillRule == FillRule::SurfaceVoxels) {
+            count("stray_voxels", grid,
+                  together(expected, reference::conservative(mesh, resolution)));
+        }
         return;
     }
     count("missed_thin_voxels", reference::thin(mesh, resolution), grid);

@@ -43,6 +43,7 @@ class Voxelization final : public technique::Technique {
     void setupMesh(technique::SetupContext& context);
     const VoxelGrid* grid() const;
     void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const;
+    /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.
     void recordMisses(technique::Recorder& recorder, const DenseGrid& grid) const;
 
     VoxelizationParams params_;

@@ -30,6 +30,11 @@ constexpr config::Choice<Fill> kFills[] = {
     {Fill::Surface, "surface", "voxels of the surface"},
     {Fill::Solid, "solid", "voxels whose centre lies inside, by scan-line parity on three axes"},
 };
+constexpr config::Choice<FillRule> kFillRules[] = {
+    {FillRule::Crossings, "crossings", "exact crossings of the surface; two of three axes decide"},
+    {FillRule::SurfaceVoxels, "surface_voxels",
+     "rasterized voxels of the surface, as the thesis: leaves streaks"},
+};
 constexpr config::Choice<VoxelValue> kValues[] = {
     {VoxelValue::Occupancy, "occupancy", "full or empty"},
     {VoxelValue::Normal, "normal", "octahedral normal"},
@@ -42,6 +47,16 @@ constexpr config::Choice<Split> kSplits[] = {
 constexpr config::Choice<OpenMesh> kOpenMeshes[] = {
     {OpenMesh::Refuse, "refuse", "an error with the number of ambiguous scan lines"},
     {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
+};
+constexpr config::Choice<Merging> kMergings[] = {
+    {Merging::PerVoxel, "per_voxel", "a fetch a voxel, as the thesis"},
+    {Merging::Transposed, "transposed", "tiles of voxels, a fetch a texel"},
+    {Merging::Sparse, "sparse",
+     "as transposed, and only tiles that hold fragments; not for solids"},
+};
+constexpr config::Choice<Addressing> kAddressings[] = {
+    {Addressing::Instructions, "instructions", "shifts and masks"},
+    {Addressing::Tables, "tables", "look-up textures, as the thesis; with synthesis: per_voxel"},
 };
 
 /// An integer that is one of `allowed`.
@@ -82,19 +97,63 @@ std::optional<scene::Box> readBox(config::Params& params) {
     return scene::Box{minimum, minimum + static_cast<float>(longest)};
 }
 
-/// Solids are decided by crossings of scan lines, in the worksheets, and say occupancy only.
+/// Solids are decided along scan lines, in the worksheets, and say occupancy only.
 void checkSolid(const config::Params& params, const MeshVoxelizerSettings& settings) {
-    if (settings.grid.fill != Fill::Solid) return;
-    if (params.isGiven("rule") && settings.rule != Rule::Thin) {
+    if (settings.grid.fill != Fill::Solid) {
+        params.refuseGiven({"fill_rule"}, "'fill: solid'");
+        return;
+    }
+    const bool isByCrossings = settings.fillRule == FillRule::Crossings;
+    if (params.isGiven("rule") &&
+        settings.rule != (isByCrossings ? Rule::Thin : Rule::Rasterized)) {
         throw Error(params.locationOf("rule"),
-                    "'fill: solid' decides by crossings of scan lines; leave 'rule' out or give "
-                    "'thin'");
+                    isByCrossings
+                        ? "'fill: solid' decides by crossings of scan lines; leave 'rule' "
+                          "out or give 'thin'"
+                        : "'fill_rule: surface_voxels' flips at rasterized voxels; leave "
+                          "'rule' out or give 'rasterized'");
+    }
+    if (!isByCrossings && settings.openMesh == OpenMesh::Refuse) {
+        throw Error(
+            params.locationOf("open_mesh"),
+            "'open_mesh: refuse' needs 'fill_rule: crossings'; flags that flip at voxels end "
+            "inside closed meshes, too");
     }
     if (settings.method != Method::Worksheet) {
         throw Error(params.locationOf("method"), "'fill: solid' needs 'method: worksheet'");
     }
     if (settings.grid.value != VoxelValue::Occupancy) {
         throw Error(params.locationOf("value"), "'fill: solid' needs 'value: occupancy'");
+    }
+}
+
+/// How the stages of the worksheet method address voxels; every way makes the same grid.
+void readStages(config::Params& params, MeshVoxelizerSettings& settings) {
+    const bool isSolid = settings.grid.fill == Fill::Solid;
+    settings.merging =
+        params.getEnum("synthesis", isSolid ? Merging::Transposed : Merging::Sparse, kMergings,
+                       {"how the sheets of x and y are read, for the same grid"});
+    settings.addressing = params.getEnum("addressing", Addressing::Instructions, kAddressings,
+                                         {"how texelization and synthesis find a voxel's bits"});
+    if (settings.method != Method::Worksheet) {
+        params.refuseGiven({"synthesis", "addressing"}, "'method: worksheet'");
+    }
+    if (isSolid && settings.merging == Merging::Sparse) {
+        throw Error(params.locationOf("synthesis"),
+                    "'synthesis: sparse' skips tiles without a surface, which solids fill; allowed "
+                    "with 'fill: solid': per_voxel, transposed");
+    }
+    if (settings.addressing == Addressing::Instructions) return;
+    if (settings.merging != Merging::PerVoxel) {
+        throw Error(params.locationOf("addressing"),
+                    "'addressing: tables' needs 'synthesis: per_voxel'");
+    }
+    if (settings.grid.layout.layers() > 1) {
+        throw Error(params.locationOf("addressing"),
+                    fmt::format("'addressing: tables' needs a grid of one worksheet; {}³ voxels of "
+                                "{} bits take {}",
+                                settings.grid.layout.resolution(), settings.grid.layout.voxelBits(),
+                                settings.grid.layout.layers()));
     }
 }
 
@@ -109,8 +168,12 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
     settings.grid.value = params.getEnum("value", VoxelValue::Occupancy, kValues,
                                          {"what a voxel says; more than occupancy needs 8 bits"});
     settings.grid.fill = params.getEnum("fill", Fill::Surface, kFills, {"which voxels are full"});
+    settings.fillRule = params.getEnum("fill_rule", FillRule::Crossings, kFillRules,
+                                       {"what flips the inside flag along a solid's scan lines"});
     settings.method = params.getEnum("method", Method::Worksheet, kMethods, {"what is measured"});
-    settings.rule = params.getEnum("rule", Rule::Rasterized, kRules,
+    const bool isRasterizedOnly =
+        settings.method == Method::Slices || settings.method == Method::DepthOnly;
+    settings.rule = params.getEnum("rule", isRasterizedOnly ? Rule::Rasterized : Rule::Thin, kRules,
                                    {"which voxels a triangle fills (surface)"});
     settings.split =
         params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
@@ -121,13 +184,12 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
                     "a voxel of 1 bit says occupancy only; allowed with 'value: normal' and "
                     "'value: color': voxel_bits 8, 16 or 32");
     }
-    const bool isRasterizedOnly =
-        settings.method == Method::Slices || settings.method == Method::DepthOnly;
     if (isRasterizedOnly && settings.rule != Rule::Rasterized) {
         throw Error(params.locationOf("rule"),
                     "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
     }
     checkSolid(params, settings);
+    readStages(params, settings);
     return settings;
 }
 
@@ -142,9 +204,10 @@ void checkInput(const config::Params& params, const VoxelizationParams& read) {
         }
         return;
     }
-    params.refuseGiven({"collision", "compare", "csg", "method", "offset_b", "open_mesh", "padding",
-                        "rule", "scene_b", "split"},
-                       "'input: mesh'");
+    params.refuseGiven(
+        {"addressing", "collision", "compare", "csg", "fill_rule", "method", "offset_b",
+         "open_mesh", "padding", "rule", "scene_b", "split", "synthesis"},
+        "'input: mesh'");
     if (read.drawing.draw.mode == DrawMode::Mixed) {
         throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");
     }

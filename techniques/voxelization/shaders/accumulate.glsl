@@ -4,13 +4,21 @@
 // next voxel when a voxel is hit twice; image atomics do not.
 // Defines: ACCUMULATE_OR, ACCUMULATE_XOR or ACCUMULATE_MAX; SHEET_UNIT.
 
+#ifdef TABLES
+#include "voxelization/lookup_tables.glsl"
+#endif
+
 layout(binding = SHEET_UNIT, r32ui) uniform restrict coherent uimage2DArray sheet;
 
 void accumulate(ivec3 local, uint value) {
     ivec3 texel = worksheetTexel(local);
     int shift = worksheetShift(local.z);
 #if defined(ACCUMULATE_OR)
+#ifdef TABLES
+    imageAtomicOr(sheet, texel, lookedUpPlace(value, local.z));
+#else
     imageAtomicOr(sheet, texel, value << shift);
+#endif
 #elif defined(ACCUMULATE_XOR)
     imageAtomicXor(sheet, texel, value << shift);
 #elif VOXEL_BITS == 32

@@ -3,6 +3,9 @@
 // [zju2005] Sec. 2.2.3. Within a word the flags are a prefix XOR, between words a carry.
 // Reads and writes a sheet of toggles; counts the scan lines whose flag does not return to outside
 // (crossings behind the grid, in `behind`, count).
+//  FLIP_AT_VOXELS  the sheet holds voxels of the surface, not crossings: the flag flips at each, as
+//                  the thesis has it, and they are full themselves. Two crossings in one voxel flip
+//                  it once, and the line goes on inside out: the thesis's streaks (Sec. 2.5.2).
 #include "voxelization/worksheet.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -23,8 +26,11 @@ void main() {
         uint flags = toggles;
         for (int shift = VOXEL_BITS; shift < 32; shift *= 2) flags ^= flags << shift;
         flags ^= carry;
-        if (flags != toggles) imageStore(sheet, texel, uvec4(flags));
         carry = (flags & 0x80000000u) != 0u ? 0xFFFFFFFFu : 0u;
+#ifdef FLIP_AT_VOXELS
+        flags |= toggles;
+#endif
+        if (flags != toggles) imageStore(sheet, texel, uvec4(flags));
     }
     uint line = uint(column.y * RESOLUTION + column.x);
     bool isBehind = ((behind[line / 32u] >> (line % 32u)) & 1u) != 0u;

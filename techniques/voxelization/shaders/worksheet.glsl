@@ -2,6 +2,7 @@
 // VOXEL_BITS, VOXELS_PER_TEXEL (C), PATCHES_X, PATCHES_PER_SHEET and LANE_MASK.
 // Departure [zju2005] Sec. 2.3.2: integer instructions instead of lookup textures (256×8 bits of a
 // byte, 8×1 powers of two, sheet to sheet): shader model 2 had none; the addresses are the same.
+// The stages of the worksheet method can look up instead (lookup_tables.glsl).
 
 // Local (u, v, w) of an axis (0 x, 1 y, 2 z), w along it: x: (y, z, x), y: (z, x, y), z: (x, y, z).
 ivec3 localFromVolume(int axis, ivec3 p) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }

@@ -90,6 +90,56 @@ TEST_F(SolidTest, EqualsTheReference) {
     }
 }
 
+TEST_F(SolidTest, EverySynthesisMakesTheSameSolid) {
+    const scene::Mesh mesh = shapes::torus(glm::vec3(0), 0.7F, 0.3F, 60, 30);
+    for (const int bits : {1, 8, 16, 32}) {
+        auto s = solid(64, bits);
+        const DenseGrid expected = voxelize(mesh, s).grid;
+        s.merging = Merging::PerVoxel;
+        EXPECT_EQ(voxelize(mesh, s).grid, expected) << bits;
+        s.addressing = Addressing::Tables;
+        EXPECT_EQ(voxelize(mesh, s).grid, expected) << bits;
+    }
+}
+
+MeshVoxelizerSettings byVoxels(int resolution, int voxelBits = 1) {
+    MeshVoxelizerSettings result;
+    result.grid.layout = WorksheetLayout(resolution, voxelBits);
+    result.grid.fill = Fill::Solid;
+    result.fillRule = FillRule::SurfaceVoxels;
+    return result;
+}
+
+// [zju2005] Sec. 2.2.3. Every line through a cube of whole voxels enters and leaves in a voxel of
+// its own: the flag that flips at voxels is right, and the voxels of the surface are full.
+TEST_F(SolidTest, FlippingAtVoxelsFillsACube) {
+    const scene::Mesh cube = shapes::cube(glm::vec3(1.2F), glm::vec3(28.8F));
+    const scene::Box box{glm::vec3(0.0F), glm::vec3(32.0F)};
+    for (const int bits : {1, 8, 16, 32}) {
+        for (const Merging merging : {Merging::Transposed, Merging::PerVoxel}) {
+            auto s = byVoxels(32, bits);
+            s.merging = merging;
+            const Voxelized result = voxelize(cube, s, box);
+            EXPECT_EQ(result.grid.countFull(), 28U * 28 * 28) << bits;
+            EXPECT_EQ(result.metrics.at("ambiguous_scan_lines"), 0.0);
+            EXPECT_FALSE(result.metrics.contains("disagreeing_voxels"));
+        }
+    }
+}
+
+// A plate that is thinner than a voxel: lines across it meet one voxel, and the flag stays on to
+// the grid's end, where the exact crossings come out.
+TEST_F(SolidTest, FlippingAtVoxelsLeavesStreaks) {
+    const scene::Mesh plate = shapes::cube(glm::vec3(4, 4, 10.2F), glm::vec3(14, 14, 10.4F));
+    const scene::Box box{glm::vec3(0.0F), glm::vec3(32.0F)};
+    const Voxelized streaked = voxelize(plate, byVoxels(32), box);
+    EXPECT_EQ(streaked.metrics.at("ambiguous_scan_lines"), 100.0);
+    EXPECT_EQ(streaked.grid.countFull(), 100U * 22);  // from z = 10 to 31
+    const Voxelized exact = voxelize(plate, solid(32), box);
+    EXPECT_EQ(exact.metrics.at("ambiguous_scan_lines"), 0.0);
+    EXPECT_EQ(exact.grid.countFull(), 0U);  // no voxel has its centre inside
+}
+
 TEST_F(SolidTest, VolumesAreRight) {
     const auto s = solid(128);
     const scene::Mesh sphere = shapes::sphere(glm::vec3(0.0F), 1.0F, 5);

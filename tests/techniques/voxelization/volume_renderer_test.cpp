@@ -249,6 +249,21 @@ TEST(OrbitCamera, HoldsTheWholeBox) {
     }
 }
 
+TEST(PhantomTest, TheHeadFillsItsBounds) {
+    constexpr int n = 64;
+    const std::vector<float> densities = headDensities(n, 1);
+    scene::Box found;
+    for (int i = 0; i < n * n * n; ++i) {
+        if (densities[static_cast<std::size_t>(i)] < 0.05F) continue;
+        found.add((glm::vec3(i % n, i / n % n, i / n / n) + 0.5F) / float{n});
+    }
+    const scene::Box bounds = headBounds({glm::vec3(0.0F), glm::vec3(1.0F)});
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(found.min[axis], bounds.min[axis], 0.025F) << axis;
+        EXPECT_NEAR(found.max[axis], bounds.max[axis], 0.025F) << axis;
+    }
+}
+
 TEST(HeadPhantom, HasSkinBoneAndBrainInThatOrder) {
     const std::vector<float> densities = headDensities(64, 1);
     const auto at = [&](int x, int y, int z) {

@@ -62,12 +62,34 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:21: 'fill: solid' decides by crossings of scan lines; leave 'rule' out "
               "or give 'thin'");
     EXPECT_EQ(message("{fill: solid, rule: thin}"), "no error");
+    EXPECT_EQ(message("fill_rule: surface_voxels"),
+              "case.yaml:1:12: 'fill_rule' needs 'fill: solid'");
+    EXPECT_EQ(
+        message("{fill: solid, fill_rule: surface_voxels, rule: thin}"),
+        "case.yaml:1:48: 'fill_rule: surface_voxels' flips at rasterized voxels; leave 'rule' "
+        "out or give 'rasterized'");
+    EXPECT_EQ(
+        message("{fill: solid, fill_rule: surface_voxels, open_mesh: refuse}"),
+        "case.yaml:1:53: 'open_mesh: refuse' needs 'fill_rule: crossings'; flags that flip at "
+        "voxels end inside closed meshes, too");
+    EXPECT_EQ(message("{fill: solid, fill_rule: surface_voxels}"), "no error");
     EXPECT_EQ(message("{fill: solid, method: direct}"),
               "case.yaml:1:23: 'fill: solid' needs 'method: worksheet'");
     EXPECT_EQ(message("{fill: solid, voxel_bits: 8, value: normal}"),
               "case.yaml:1:37: 'fill: solid' needs 'value: occupancy'");
     EXPECT_EQ(message("{method: slices, rule: thin}"),
               "case.yaml:1:24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'");
+    EXPECT_EQ(message("{method: slices, rule: rasterized, synthesis: sparse}"),
+              "case.yaml:1:47: 'synthesis' needs 'method: worksheet'");
+    EXPECT_EQ(message("{fill: solid, synthesis: sparse}"),
+              "case.yaml:1:26: 'synthesis: sparse' skips tiles without a surface, which solids "
+              "fill; allowed with 'fill: solid': per_voxel, transposed");
+    EXPECT_EQ(message("{addressing: tables}"),
+              "case.yaml:1:14: 'addressing: tables' needs 'synthesis: per_voxel'");
+    EXPECT_EQ(message("{addressing: tables, synthesis: per_voxel, voxel_bits: 32}"),
+              "case.yaml:1:14: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of "
+              "32 bits take 4");
+    EXPECT_EQ(message("{addressing: tables, synthesis: per_voxel}"), "no error");
     EXPECT_EQ(message("box_min: [0, 0, 0]"),
               "case.yaml:1:10: box_min and box_max must be given together");
     EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 2, 1]}"),
@@ -104,10 +126,35 @@ TEST_F(VoxelizationTest, TimesPreprocessAndReadBackEachFrame) {
     EXPECT_FALSE(metrics.contains("voxels"));
 }
 
+// A model of one's own has no pinholes unless it asks for the thesis's rule.
+TEST_F(VoxelizationTest, IsThinUnlessAskedOtherwise) {
+    const auto metrics = run("{resolution: 64, compare: true}", sphere_);
+    EXPECT_EQ(metrics.at("missed_thin_voxels"), 0.0);
+    EXPECT_EQ(metrics.at("digest"), run("{resolution: 64, rule: thin}", sphere_).at("digest"));
+    EXPECT_GT(
+        run("{resolution: 64, compare: true, rule: rasterized}", sphere_).at("missed_thin_voxels"),
+        0.0);
+}
+
+TEST_F(VoxelizationTest, CountsStrayVoxels) {
+    const scene::Scene plate =
+        scene::sceneOf(shapes::cube(glm::vec3(4, 4, 10.2F), glm::vec3(14, 14, 10.4F)));
+    const auto metrics = run(
+        "{resolution: 32, fill: solid, fill_rule: surface_voxels, compare: true, box_min: [0, 0, "
+        "0], box_max: [32, 32, 32]}",
+        plate);
+    EXPECT_EQ(metrics.at("voxels"), 2200.0);
+    EXPECT_EQ(metrics.at("added_solid_voxels"), 2200.0);
+    EXPECT_EQ(metrics.at("stray_voxels"), 2100.0);  // without the plate's own voxels
+}
+
 TEST_F(VoxelizationTest, DigestTellsGridsApart) {
     const auto first = run("{resolution: 32}", sphere_);
     EXPECT_EQ(run("{resolution: 32}", sphere_).at("digest"), first.at("digest"));
     EXPECT_EQ(run("{resolution: 32, method: direct}", sphere_).at("digest"), first.at("digest"));
+    EXPECT_EQ(
+        run("{resolution: 32, synthesis: per_voxel, addressing: tables}", sphere_).at("digest"),
+        first.at("digest"));
     EXPECT_NE(run("{resolution: 32, fill: solid}", sphere_).at("digest"), first.at("digest"));
 }
 

@@ -74,6 +74,18 @@ struct Ledger {
     }
 };
 
+TEST(ResolveCases, RefusesACaseGivenTwice) {
+    const Ledger ledger;
+    EXPECT_EQ(test::errorText(
+                  [&] {
+                      ledger.cases(ledger.load(
+                          "sweep: {zip: [{bias: [0.5, 0.5], static: [true, true]}]}\n"));
+                  },
+                  ledger.folder.path()),
+              "DIR/t.yaml: the sweep gives the case 'sweep/t bias=0.5 static=true' twice");
+    EXPECT_EQ(ledger.cases(ledger.load("sweep: {zip: [{bias: [0.5, 0.25]}]}\n")).size(), 2U);
+}
+
 TEST(Ledger, TakesValueAndUnitFromTheCases) {
     const config::Experiment experiment = Ledger().bound(
         "sweep: {scene: [grass, scan], bias: [0.1, 0.2]}\noutput: {width: 64, height: 32}\n"

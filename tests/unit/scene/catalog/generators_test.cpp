@@ -124,6 +124,19 @@ TEST(Generators, PolynomialSineIsASine) {
     }
 }
 
+TEST(Generators, StretchKeepsTheCounts) {
+    const Mesh made = generated("{shape: torus, triangles: 1000}").meshes[0];
+    const Mesh wide = generated("{shape: torus, triangles: 1000, stretch: [2, 1, 0.5]}").meshes[0];
+    EXPECT_EQ(wide.triangles.size(), made.triangles.size());
+    const glm::vec3 before = made.bounds().size();
+    const glm::vec3 after = wide.bounds().size();
+    // A twentieth: which edges are halved to the count depends on their lengths.
+    EXPECT_NEAR(after.x, 2.0F * before.x, 0.05F * after.x);
+    EXPECT_NEAR(after.y, before.y, 0.05F * after.y);
+    EXPECT_NEAR(after.z, 0.5F * before.z, 0.05F * after.z);
+    for (const glm::vec3& normal : wide.normals) EXPECT_NEAR(glm::length(normal), 1.0F, 1e-5F);
+}
+
 TEST(Generators, BadParametersAreLocated) {
     EXPECT_EQ(test::errorText([] { generated("{shape: sphere, triangles: 1001}"); }),
               "t.yaml:1:28: triangles: 1001 is odd, but a closed surface has an even number");
@@ -136,6 +149,9 @@ TEST(Generators, BadParametersAreLocated) {
         "t.yaml:1:9: generator 'sdf_model': shape is 'dargon'; allowed: blade | brain | buddha | "
         "bunny | cube | dragon | duck | hand | head | hip | hugo | linked_tori | sphere | torus | "
         "wagner");
+    EXPECT_EQ(test::errorText([] { generated("{stretch: [1, 0, 1]}"); }),
+              "t.yaml:1:11: generator 'sdf_model': stretch is [1, 0, 1]; allowed: a list of 3 "
+              "numbers, each 0.1 … 10");
     EXPECT_EQ(test::errorText([] { generated("{triangels: 1000}"); }),
               "t.yaml:1:2: generator 'sdf_model': unknown parameter 'triangels'; did you mean "
               "'triangles'?");

@@ -1,0 +1,28 @@
+// The look-up textures of lookup_tables.h. A texel's four bytes are the channels of the thesis's
+// sheets; telling them apart takes an instruction here, as the sheets are of one channel.
+// [zju2005] Sec. 2.3.2. Defines: VOXEL_BITS, LANE_MASK and the units.
+
+layout(binding = BIT_OF_BYTE_UNIT) uniform usampler2D bitOfByte;
+layout(binding = POWER_OF_TWO_UNIT) uniform usampler2D powerOfTwo;
+layout(binding = X_FROM_Z_UNIT) uniform usampler2D xFromZ;
+layout(binding = Y_FROM_Z_UNIT) uniform usampler2D yFromZ;
+
+// (1) The value of the voxel that begins at a bit of a byte of its texel.
+uint lookedUpVoxel(uint word, uint byteInTexel, uint bitInByte) {
+    uint fromByte = word >> (8u * byteInTexel);
+#if VOXEL_BITS == 1
+    return texelFetch(bitOfByte, ivec2(fromByte & 255u, bitInByte), 0).r;
+#else
+    return fromByte & LANE_MASK;
+#endif
+}
+
+// (2) A voxel's value at its place in a texel's word, else zeros; w along the sheet's axis.
+uint lookedUpPlace(uint value, int w) {
+#if VOXEL_BITS == 1
+    uint power = texelFetch(powerOfTwo, ivec2(w % 8, 0), 0).r;
+    return value * power << (w % 32 / 8 * 8);
+#else
+    return value << (w % (32 / VOXEL_BITS) * VOXEL_BITS);
+#endif
+}

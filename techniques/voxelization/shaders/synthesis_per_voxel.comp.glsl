@@ -1,0 +1,60 @@
+#version 450 core
+// Synthesis as the thesis has it: each texel of the z layout fetches its C voxels one by one from
+// the sheets of x and y, of which it knows where they have the first: the others follow by offset.
+// [zju2005] Sec. 2.3.2 (3). synthesis.comp.glsl makes the same grid with a fetch a texel.
+//  TABLES  the place of the first voxel, and a bit's value, by look-up textures
+#include "voxelization/worksheet.glsl"
+#include "voxelization/combine.glsl"
+#ifdef TABLES
+#include "voxelization/lookup_tables.glsl"
+#endif
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(binding = SHEET_X_UNIT, r32ui) uniform restrict readonly uimage2DArray sheetX;
+layout(binding = SHEET_Y_UNIT, r32ui) uniform restrict readonly uimage2DArray sheetY;
+layout(binding = SHEET_UNIT, r32ui) uniform restrict uimage2DArray sheet;
+
+// Where a sheet has a texel's first voxel: the texel, and in its word the byte and bit of a byte.
+struct Place {
+    ivec3 texel;
+    uvec2 bits;
+};
+
+#ifdef TABLES
+Place placeOf(uvec4 entry) { return Place(ivec3(entry.xy, 0), entry.zw); }
+uint voxelAt(uint word, Place place) { return lookedUpVoxel(word, place.bits.x, place.bits.y); }
+#else
+Place placeOf(ivec3 local) {
+    uint shift = uint(worksheetShift(local.z));
+    return Place(worksheetTexel(local), uvec2(shift / 8u, shift % 8u));
+}
+uint voxelAt(uint word, Place place) {
+    return (word >> (8u * place.bits.x + place.bits.y)) & LANE_MASK;
+}
+#endif
+
+void main() {
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+#ifdef TABLES
+    Place inX = placeOf(texelFetch(xFromZ, texel.xy, 0));
+    Place inY = placeOf(texelFetch(yFromZ, texel.xy, 0));
+#else
+    ivec2 patchXY = texel.xy / RESOLUTION;
+    int slab = texel.z * PATCHES_PER_SHEET + patchXY.y * PATCHES_X + patchXY.x;
+    ivec3 voxel = ivec3(texel.xy % RESOLUTION, slab * VOXELS_PER_TEXEL);
+    Place inX = placeOf(localFromVolume(0, voxel));
+    Place inY = placeOf(localFromVolume(1, voxel));
+#endif
+    uint x = 0u;
+    uint y = 0u;
+    for (int k = 0; k < VOXELS_PER_TEXEL; ++k) {  // along z: rows of x's sheet, columns of y's
+        uint wordX = imageLoad(sheetX, inX.texel + ivec3(0, k, 0)).r;
+        uint wordY = imageLoad(sheetY, inY.texel + ivec3(k, 0, 0)).r;
+        x |= voxelAt(wordX, inX) << worksheetShift(k);
+        y |= voxelAt(wordY, inY) << worksheetShift(k);
+    }
+    uint z = imageLoad(sheet, texel).r;
+    uint result = combined(x, y, z);
+    if (result != z) imageStore(sheet, texel, uvec4(result));
+}
