@@ -26,6 +26,19 @@ HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& setti
     return range;
 }
 
+glm::vec2 edgeEndsM(const TerrainMetadata& metadata, const TileSettings& settings,
+                    const Patch& patch, Edge edge) {
+    const int last = settings.blocksPerPatch - 1;
+    const glm::ivec2 first(edge == kEast ? 1 : 0, edge == kSouth ? 1 : 0);
+    const auto heightAt = [&](glm::ivec2 corner) {
+        const glm::ivec2 block = patch.firstBlock + last * corner;
+        return metadata.block(patch.level, block.x, block.y)
+            .cornersM[static_cast<std::size_t>(corner.x + 2 * corner.y)];
+    };
+    const bool isAlongZ = edge == kWest || edge == kEast;
+    return {heightAt(first), heightAt(first + (isAlongZ ? glm::ivec2(0, 1) : glm::ivec2(1, 0)))};
+}
+
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const Patch& patch, Edge edge) {
     const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
@@ -39,8 +52,9 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
     const double span = settings.tile.blocksPerPatch * blockSamples;
     const double spacing = metadata.spacingM();
     const HeightRange range = edgeRange(metadata, settings.tile, patch, edge);
-    const double distance = span * spacing;  // D
-    const double length =                    // L_AB, Eq. (3)
+    const glm::dvec2 ends = edgeEndsM(metadata, settings.tile, patch, edge);
+    const double distance = std::hypot(span * spacing, ends.y - ends.x);  // D, in space
+    const double length =                                                 // L_AB, Eq. (3)
         std::max(double(range.maxM) - range.minM, distance) + range.errorM;
     glm::dvec2 middle = glm::dvec2(patch.firstBlock * blockSamples) + 0.5 * span;
     if (edge == kWest) middle.x -= 0.5 * span;

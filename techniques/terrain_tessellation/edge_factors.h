@@ -41,6 +41,10 @@ Patch patchOf(const Tile& tile, const TileSettings& settings, int index);
 HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& settings,
                       const Patch& patch, Edge edge);
 
+/// The heights of the ends of the patch's edge, the northern or western one first.
+glm::vec2 edgeEndsM(const TerrainMetadata& metadata, const TileSettings& settings,
+                    const Patch& patch, Edge edge);
+
 /// Eq. (3) and (4).
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const Patch& patch, Edge edge);

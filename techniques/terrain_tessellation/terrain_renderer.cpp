@@ -40,6 +40,7 @@ gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& s
             {"PAGE_BORDER", HeightPages::kBorder},
             {"PATCHES_PER_TILE_SIDE", factors.tile.patchesPerTile},
             {"BLOCKS_PER_PATCH", factors.tile.blocksPerPatch},
+            {"BLOCK_FLOATS", kBlockFloats},
             {"BLOCK_SEGMENTS", terrain.metadata().settings().blockSegments},
             {"LEVEL_COUNT", terrain.metadata().levelCount()},
             {"SEGMENT", static_cast<int>(factors.segment)},
