@@ -85,14 +85,26 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
                       double(settings.greatest));
 }
 
-double triangleBound(const std::array<double, 4>& outer, InnerFactors inner) {
-    const auto innerOf = [&](double a, double b) {
-        if (inner == InnerFactors::Mean) return 0.5 * (a + b);
-        return inner == InnerFactors::Minimum ? std::min(a, b) : std::max(a, b);
+double innerFactor(InnerFactors inner, double a, double b) {
+    if (inner == InnerFactors::Mean) return 0.5 * (a + b);
+    return inner == InnerFactors::Minimum ? std::min(a, b) : std::max(a, b);
+}
+
+int patchVertices(const std::array<double, 4>& outer, InnerFactors inner) {
+    const auto segments = [](double factor) {
+        return 2 * static_cast<int>(std::ceil(0.5 * std::max(factor, 2.0)));
     };
+    const int across = segments(innerFactor(inner, outer[1], outer[3]));
+    const int down = segments(innerFactor(inner, outer[0], outer[2]));
+    int count = (across - 1) * (down - 1);
+    for (const double factor : outer) count += segments(factor);
+    return count;
+}
+
+double triangleBound(const std::array<double, 4>& outer, InnerFactors inner) {
     // No spacing makes more than the factor and two segments of it.
-    const double across = innerOf(outer[1], outer[3]) + 2.0;
-    const double down = innerOf(outer[0], outer[2]) + 2.0;
+    const double across = innerFactor(inner, outer[1], outer[3]) + 2.0;
+    const double down = innerFactor(inner, outer[0], outer[2]) + 2.0;
     double rim = 0.0;
     for (const double factor : outer) rim += factor + 2.0;
     return 2.0 * across * down + rim;

@@ -53,6 +53,12 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
                   const depth_images::View& view, const glm::dmat4& clipFromWorld,
                   const Patch& patch, Edge edge);
 
+/// A patch's factor along a pair of opposite edges, from theirs.
+double innerFactor(InnerFactors inner, double a, double b);
+
+/// The vertices that a patch of these outer factors is cut into by fractional even spacing.
+int patchVertices(const std::array<double, 4>& outer, InnerFactors inner);
+
 /// No fewer triangles than a patch of these outer factors is cut into, whatever the spacing.
 double triangleBound(const std::array<double, 4>& outer, InnerFactors inner);
 
