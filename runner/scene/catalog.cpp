@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runner/config/scene_reference.h"
+#include "runner/core/files.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
 #include "runner/image/png_io.h"
@@ -21,6 +22,9 @@ namespace fs = std::filesystem;
 using config::Node;
 
 namespace {
+
+/// Goes up when resampled() makes other heights.
+constexpr int kResamplingVersion = 1;
 
 /// "file, refined to N triangles" or "generator g, seed n: {params}".
 std::string descriptionOf(const SceneSource& source) {
@@ -89,12 +93,25 @@ image::Image8 rgbOf(const image::Image8& image) {
     return rgb;
 }
 
+std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source) {
+    const HeightMapSource& how = *source.heightMap;
+    const std::string colours =
+        how.colourMap.empty() ? "" : " colours " + sha256OfFile(assetsFolder / how.colourMap);
+    return colours + fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM,
+                                 how.units.heightScaleM, how.units.noData.value_or(0.0F),
+                                 how.resampleTo.value_or(0), how.detailM, source.seed);
+}
+
 Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     const HeightMapSource& how = *source.heightMap;
     Scene scene;
     scene.heights = loadHeightMap(assetsFolder / source.file, how.units);
     if (how.resampleTo) {
-        scene.heights = resampled(*scene.heights, *how.resampleTo, how.detailM, source.seed);
+        const std::string key = sha256(fmt::format("resampled {} of file {}{}", kResamplingVersion,
+                                                   sha256OfFile(assetsFolder / source.file),
+                                                   heightMapKey(assetsFolder, source)));
+        scene.heights = resampledInFile(*scene.heights, *how.resampleTo, how.detailM, source.seed,
+                                        cacheFolder() / "heights", key);
     }
     if (!how.colourMap.empty()) {
         scene.textures.push_back(rgbOf(image::readPng8(assetsFolder / how.colourMap)));
@@ -104,15 +121,6 @@ Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     }
     addTerrainCameras(scene);
     return scene;
-}
-
-std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source) {
-    const HeightMapSource& how = *source.heightMap;
-    const std::string colours =
-        how.colourMap.empty() ? "" : " colours " + sha256OfFile(assetsFolder / how.colourMap);
-    return colours + fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM,
-                                 how.units.heightScaleM, how.units.noData.value_or(0.0F),
-                                 how.resampleTo.value_or(0), how.detailM, source.seed);
 }
 
 /// "the file s.obj", "generator grass".

@@ -93,10 +93,10 @@ SceneSource readHeightMapSource(const Node& node) {
         map.units.noData = static_cast<float>(noData->asDouble());
     }
     if (const auto samples = readCount(node, "resample_to", "samples")) {
-        if (*samples > kMaxHeightMapSide) {
+        if (*samples > kMaxHeightFileSide) {
             throw Error(
                 node.find("resample_to")->location(),
-                fmt::format("resample_to is {}; allowed: 1 to {}", *samples, kMaxHeightMapSide));
+                fmt::format("resample_to is {}; allowed: 1 to {}", *samples, kMaxHeightFileSide));
         }
         map.resampleTo = static_cast<int>(*samples);
         source.kind = Origin::Kind::StandIn;

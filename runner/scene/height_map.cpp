@@ -81,12 +81,32 @@ std::vector<int> everyNth(int count, int maxCount) {
 
 }  // namespace
 
+float HeightMap::clampedHeightM(int column, int row, int level) const {
+    const glm::ivec2 at(std::max(column, 0), std::max(row, 0));
+    // The border itself need not be on a level's grid.
+    if (!file || level >= file->levelCount() || at.x >= sizeSamples.x || at.y >= sizeSamples.y) {
+        return clampedHeightM(column, row);
+    }
+    const auto width = static_cast<std::size_t>(file->sizeSamples(level).x);
+    return file->heightsM(level)[static_cast<std::size_t>(at.y >> level) * width +
+                                 static_cast<std::size_t>(at.x >> level)];
+}
+
+HeightMap::Extremes HeightMap::extremes() const {
+    GFXREPRO_ASSERT(!isEmpty());
+    if (file) return {file->lowestM(), file->highestM(), file->highestSample()};
+    const auto lowest = std::min_element(heightsM.begin(), heightsM.end());
+    const auto highest = std::max_element(heightsM.begin(), heightsM.end());
+    const auto index = static_cast<int>(highest - heightsM.begin());
+    return {*lowest, *highest, {index % sizeSamples.x, index / sizeSamples.x}};
+}
+
 Box HeightMap::bounds() const {
     Box box;
     if (isEmpty()) return box;
-    const auto [low, high] = std::minmax_element(heightsM.begin(), heightsM.end());
-    box.add(glm::vec3(0.0F, *low, 0.0F));
-    box.add(glm::vec3(static_cast<float>(sizeSamples.x - 1) * spacingM, *high,
+    const Extremes ends = extremes();
+    box.add(glm::vec3(0.0F, ends.lowestM, 0.0F));
+    box.add(glm::vec3(static_cast<float>(sizeSamples.x - 1) * spacingM, ends.highestM,
                       static_cast<float>(sizeSamples.y - 1) * spacingM));
     return box;
 }

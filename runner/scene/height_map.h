@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
+
+#include "runner/scene/height_file.h"
 
 namespace gfxrepro::scene {
 
@@ -14,24 +17,41 @@ struct Box;
 struct Mesh;
 
 /// Sample (column, row) stands at (column · spacingM, height, row · spacingM): x is east, z south,
-/// y up; the north-western sample is at x = z = 0. All heights are finite.
+/// y up; the north-western sample is at x = z = 0. All heights are finite. They are in memory, or
+/// in a file of which only what is looked at is read.
 struct HeightMap {
     glm::ivec2 sizeSamples{0};  // x: columns from west to east, y: rows from north to south
     float spacingM = 1.0F;
-    std::vector<float> heightsM;  // row by row, the northernmost first
+    std::vector<float> heightsM;  // row by row, the northernmost first; empty with a file
+    // Shared, against the house's rule: copies of a scene look at one file.
+    std::shared_ptr<const HeightFile> file;
     std::size_t filledCount = 0;  // samples without data in the source, filled from around
     bool isEightBit = false;      // of a source with 256 steps: terraces are to be expected
 
-    bool isEmpty() const { return heightsM.empty(); }
+    bool isEmpty() const { return heightsM.empty() && !file; }
     float heightM(int column, int row) const {
-        return heightsM[static_cast<std::size_t>(row) * static_cast<std::size_t>(sizeSamples.x) +
-                        static_cast<std::size_t>(column)];
+        const float* all = file ? file->heightsM(0) : heightsM.data();
+        return all[static_cast<std::size_t>(row) * static_cast<std::size_t>(sizeSamples.x) +
+                   static_cast<std::size_t>(column)];
     }
     /// The sample's, or that of the nearest one on the border for places beyond it.
     float clampedHeightM(int column, int row) const {
         return heightM(glm::clamp(column, 0, sizeSamples.x - 1),
                        glm::clamp(row, 0, sizeSamples.y - 1));
     }
+    /// The same for a place whose column and row are multiples of 2^level, as a file has it at
+    /// hand.
+    float clampedHeightM(int column, int row, int level) const;
+    /// What was looked at of a file's heights leaves the memory (HeightFile::release()).
+    void release() const {
+        if (file) file->release();
+    }
+    struct Extremes {
+        float lowestM = 0.0F, highestM = 0.0F;
+        glm::ivec2 highestSample{0};  // the first of them, row by row
+    };
+    /// Of a map with samples.
+    Extremes extremes() const;
     glm::vec3 position(int column, int row) const {
         return {static_cast<float>(column) * spacingM, heightM(column, row),
                 static_cast<float>(row) * spacingM};
@@ -39,7 +59,8 @@ struct HeightMap {
     Box bounds() const;
 };
 
-constexpr int kMaxHeightMapSide = 16385;
+/// Of heights in memory, and of those in a file.
+constexpr int kMaxHeightMapSide = 16385, kMaxHeightFileSide = 65537;
 
 /// How a file's values become metres: height = value · heightScaleM.
 struct HeightMapUnits {
@@ -73,6 +94,11 @@ HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed);
 /// The same ground with `sizeSamples` a side (bicubic, through the old samples) and fractal detail
 /// between the old samples, at most `detailM` up or down: a stand-in for a finer survey.
 HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed);
+/// The same in a file of `folder`, made there a few rows at a time unless `key`, which stands for
+/// all of these, is there. In memory where the folder cannot be written, which throws Error beyond
+/// kMaxHeightMapSide.
+HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
+                          const std::filesystem::path& folder, const std::string& key);
 
 /// Triangles over every n-th sample (and the last), at most `maxSamples` a side, for previews.
 Mesh heightMapMesh(const HeightMap& map, int maxSamples = 513);

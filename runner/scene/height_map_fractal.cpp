@@ -186,6 +186,61 @@ float shareAt(const HeightMap& map, const std::vector<float>& shares, double x, 
                    between(at(west, south), at(east, south), fx), fy);
 }
 
+/// The new ground, row by row.
+class Resampling {
+  public:
+    /// Throws Error for sizes that cannot be reached.
+    Resampling(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed)
+        : map_(map), detailM_(detailM), seed_(seed) {
+        GFXREPRO_ASSERT(!map.isEmpty() && detailM >= 0.0F);
+        const int longSide = std::max(map.sizeSamples.x, map.sizeSamples.y);
+        if (longSide < 2 || sizeSamples < longSide) {
+            throw Error(
+                fmt::format("a height map of {} x {} samples cannot be resampled to {}; "
+                            "allowed: at least 2 and no more than it becomes",
+                            map.sizeSamples.x, map.sizeSamples.y, sizeSamples));
+        }
+        step_ = static_cast<double>(longSide - 1) / static_cast<double>(sizeSamples - 1);
+        for (int axis = 0; axis < 2; ++axis) {
+            sizeSamples_[axis] =
+                1 + static_cast<int>(std::floor((map.sizeSamples[axis] - 1) / step_ + 1e-6));
+        }
+        if (detailM > 0.0F) shares_ = detailShares(map, detailM);
+    }
+
+    glm::ivec2 sizeSamples() const { return sizeSamples_; }
+    float spacingM() const {
+        return static_cast<float>(static_cast<double>(map_.spacingM) * step_);
+    }
+
+    void makeRow(int row, float* heights) const {
+        RowResampler(map_, step_).evaluate(row, heights, sizeSamples_.x);
+        if (shares_.empty()) return;
+        std::vector<float> noise(static_cast<std::size_t>(sizeSamples_.x));
+        double frequency = 1.0;
+        float amplitudeM = 0.5F * detailM_;  // halved each octave: less than detailM together
+        // As long as a wave has four new samples; its lattice holds all old samples.
+        for (int octave = 0; step_ * frequency <= 0.25; ++octave) {
+            NoiseRow(octave, seed_)
+                .evaluate(0.0, frequency * step_ * row, frequency * step_, noise);
+            for (std::size_t i = 0; i < noise.size(); ++i) {
+                heights[i] += amplitudeM * noise[i] *
+                              shareAt(map_, shares_, static_cast<double>(i) * step_, row * step_);
+            }
+            frequency *= 2.0;
+            amplitudeM *= 0.5F;
+        }
+    }
+
+  private:
+    const HeightMap& map_;
+    float detailM_;
+    std::uint64_t seed_;
+    double step_ = 1.0;
+    glm::ivec2 sizeSamples_{0};
+    std::vector<float> shares_;
+};
+
 }  // namespace
 
 HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed) {
@@ -207,45 +262,37 @@ HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed) {
 }
 
 HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed) {
-    GFXREPRO_ASSERT(!map.isEmpty() && sizeSamples <= kMaxHeightMapSide && detailM >= 0.0F);
-    const int longSide = std::max(map.sizeSamples.x, map.sizeSamples.y);
-    if (longSide < 2 || sizeSamples < longSide) {
-        throw Error(
-            fmt::format("a height map of {} x {} samples cannot be resampled to {}; "
-                        "allowed: at least 2 and no more than it becomes",
-                        map.sizeSamples.x, map.sizeSamples.y, sizeSamples));
-    }
-    const double step = static_cast<double>(longSide - 1) / static_cast<double>(sizeSamples - 1);
+    GFXREPRO_ASSERT(sizeSamples <= kMaxHeightMapSide);
+    const Resampling rows(map, sizeSamples, detailM, seed);
     HeightMap result;
     result.filledCount = map.filledCount;
     result.isEightBit = map.isEightBit;
-    result.spacingM = static_cast<float>(static_cast<double>(map.spacingM) * step);
-    for (int axis = 0; axis < 2; ++axis) {
-        result.sizeSamples[axis] =
-            1 + static_cast<int>(std::floor((map.sizeSamples[axis] - 1) / step + 1e-6));
-    }
+    result.spacingM = rows.spacingM();
+    result.sizeSamples = rows.sizeSamples();
     const auto width = static_cast<std::size_t>(result.sizeSamples.x);
     result.heightsM.resize(width * static_cast<std::size_t>(result.sizeSamples.y));
-    const std::vector<float> shares =
-        detailM > 0.0F ? detailShares(map, detailM) : std::vector<float>();
     tbb::parallel_for(0, result.sizeSamples.y, [&](int row) {
-        float* heights = &result.heightsM[static_cast<std::size_t>(row) * width];
-        RowResampler(map, step).evaluate(row, heights, result.sizeSamples.x);
-        if (shares.empty()) return;
-        std::vector<float> noise(width);
-        double frequency = 1.0;
-        float amplitudeM = 0.5F * detailM;  // halved each octave: less than detailM together
-        // As long as a wave has four new samples; its lattice holds all old samples.
-        for (int octave = 0; step * frequency <= 0.25; ++octave) {
-            NoiseRow(octave, seed).evaluate(0.0, frequency * step * row, frequency * step, noise);
-            for (std::size_t i = 0; i < width; ++i) {
-                heights[i] += amplitudeM * noise[i] *
-                              shareAt(map, shares, static_cast<double>(i) * step, row * step);
-            }
-            frequency *= 2.0;
-            amplitudeM *= 0.5F;
-        }
+        rows.makeRow(row, &result.heightsM[static_cast<std::size_t>(row) * width]);
     });
+    return result;
+}
+
+HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
+                          const std::filesystem::path& folder, const std::string& key) {
+    const Resampling rows(map, sizeSamples, detailM, seed);
+    HeightMap result;
+    result.filledCount = map.filledCount;
+    result.isEightBit = map.isEightBit;
+    result.spacingM = rows.spacingM();
+    result.sizeSamples = rows.sizeSamples();
+    try {
+        result.file =
+            HeightFile::openOrBuild(folder, key, result.sizeSamples,
+                                    [&](int row, float* heights) { rows.makeRow(row, heights); });
+    } catch (const Error&) {
+        if (sizeSamples > kMaxHeightMapSide) throw;
+        return resampled(map, sizeSamples, detailM, seed);
+    }
     return result;
 }
 

@@ -30,6 +30,7 @@ gl::Program makeDepthProgram(const gl::ShaderLibrary& shaders, const StepDeclara
     gl::Defines defines = gpu_scene::attributeDefines();
     defines["FRAGMENT_WORK"] = step.fragmentWork ? 1 : 0;
     defines["MOMENTS"] = settings.filter == Filter::Variance ? 1 : 0;
+    defines["SLOPE"] = settings.bias.slopeScale > 0.0F ? 1 : 0;
     std::vector<std::string> files{"shadow_mapping/depth_map.vert.glsl"};
     if (step.fragmentWork) files.emplace_back("shadow_mapping/depth_map.frag.glsl");
     return {shaders, files, defines};

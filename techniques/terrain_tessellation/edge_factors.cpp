@@ -26,6 +26,19 @@ HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& setti
     return range;
 }
 
+glm::vec2 edgeEndsM(const TerrainMetadata& metadata, const TileSettings& settings,
+                    const Patch& patch, Edge edge) {
+    const int last = settings.blocksPerPatch - 1;
+    const glm::ivec2 first(edge == kEast ? 1 : 0, edge == kSouth ? 1 : 0);
+    const auto heightAt = [&](glm::ivec2 corner) {
+        const glm::ivec2 block = patch.firstBlock + last * corner;
+        return metadata.block(patch.level, block.x, block.y)
+            .cornersM[static_cast<std::size_t>(corner.x + 2 * corner.y)];
+    };
+    const bool isAlongZ = edge == kWest || edge == kEast;
+    return {heightAt(first), heightAt(first + (isAlongZ ? glm::ivec2(0, 1) : glm::ivec2(1, 0)))};
+}
+
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const Patch& patch, Edge edge) {
     const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
@@ -39,8 +52,9 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
     const double span = settings.tile.blocksPerPatch * blockSamples;
     const double spacing = metadata.spacingM();
     const HeightRange range = edgeRange(metadata, settings.tile, patch, edge);
-    const double distance = span * spacing;  // D
-    const double length =                    // L_AB, Eq. (3)
+    const glm::dvec2 ends = edgeEndsM(metadata, settings.tile, patch, edge);
+    const double distance = std::hypot(span * spacing, ends.y - ends.x);  // D, in space
+    const double length =                                                 // L_AB, Eq. (3)
         std::max(double(range.maxM) - range.minM, distance) + range.errorM;
     glm::dvec2 middle = glm::dvec2(patch.firstBlock * blockSamples) + 0.5 * span;
     if (edge == kWest) middle.x -= 0.5 * span;
@@ -71,14 +85,26 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
                       double(settings.greatest));
 }
 
-double triangleBound(const std::array<double, 4>& outer, InnerFactors inner) {
-    const auto innerOf = [&](double a, double b) {
-        if (inner == InnerFactors::Mean) return 0.5 * (a + b);
-        return inner == InnerFactors::Minimum ? std::min(a, b) : std::max(a, b);
+double innerFactor(InnerFactors inner, double a, double b) {
+    if (inner == InnerFactors::Mean) return 0.5 * (a + b);
+    return inner == InnerFactors::Minimum ? std::min(a, b) : std::max(a, b);
+}
+
+int patchVertices(const std::array<double, 4>& outer, InnerFactors inner) {
+    const auto segments = [](double factor) {
+        return 2 * static_cast<int>(std::ceil(0.5 * std::max(factor, 2.0)));
     };
+    const int across = segments(innerFactor(inner, outer[1], outer[3]));
+    const int down = segments(innerFactor(inner, outer[0], outer[2]));
+    int count = (across - 1) * (down - 1);
+    for (const double factor : outer) count += segments(factor);
+    return count;
+}
+
+double triangleBound(const std::array<double, 4>& outer, InnerFactors inner) {
     // No spacing makes more than the factor and two segments of it.
-    const double across = innerOf(outer[1], outer[3]) + 2.0;
-    const double down = innerOf(outer[0], outer[2]) + 2.0;
+    const double across = innerFactor(inner, outer[1], outer[3]) + 2.0;
+    const double down = innerFactor(inner, outer[0], outer[2]) + 2.0;
     double rim = 0.0;
     for (const double factor : outer) rim += factor + 2.0;
     return 2.0 * across * down + rim;

@@ -41,6 +41,10 @@ Patch patchOf(const Tile& tile, const TileSettings& settings, int index);
 HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& settings,
                       const Patch& patch, Edge edge);
 
+/// The heights of the ends of the patch's edge, the northern or western one first.
+glm::vec2 edgeEndsM(const TerrainMetadata& metadata, const TileSettings& settings,
+                    const Patch& patch, Edge edge);
+
 /// Eq. (3) and (4).
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const Patch& patch, Edge edge);
@@ -48,6 +52,12 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
                   const depth_images::View& view, const glm::dmat4& clipFromWorld,
                   const Patch& patch, Edge edge);
+
+/// A patch's factor along a pair of opposite edges, from theirs.
+double innerFactor(InnerFactors inner, double a, double b);
+
+/// The vertices that a patch of these outer factors is cut into by fractional even spacing.
+int patchVertices(const std::array<double, 4>& outer, InnerFactors inner);
 
 /// No fewer triangles than a patch of these outer factors is cut into, whatever the spacing.
 double triangleBound(const std::array<double, 4>& outer, InnerFactors inner);

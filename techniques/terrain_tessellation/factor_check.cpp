@@ -1,8 +1,11 @@
 #include "techniques/terrain_tessellation/factor_check.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <map>
+
+#include "runner/core/error.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -29,6 +32,43 @@ std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles,
     glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return factors.read<PatchFactors>(count);
+}
+
+FactorHalving compareHalving(const FactorSettings& settings, std::span<const PatchFactors> factors,
+                             std::span<const PatchFactors> coarser) {
+    GFXREPRO_ASSERT_EQ(factors.size(), coarser.size());
+    FactorHalving halving;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        for (int edge = 0; edge < 4; ++edge) {
+            const float fine = factors[i].outer[edge], coarse = coarser[i].outer[edge];
+            if (fine < 0.0F) continue;
+            ++halving.edges;
+            if (fine >= settings.greatest) ++halving.greatestEdges;
+            if (fine >= settings.greatest || coarse <= settings.smallest) continue;
+            ++halving.unclampedEdges;
+            if (fine != 2.0F * coarse) ++halving.unhalvedEdges;
+        }
+    }
+    return halving;
+}
+
+EdgeJumps edgeJumps(std::span<const PatchFactors> factors, InnerFactors inner) {
+    EdgeJumps jumps;
+    double sum = 0.0;
+    int count = 0;
+    for (const PatchFactors& patch : factors) {
+        if (patch.outer.x < 0.0F) continue;
+        for (int edge = 0; edge < 4; ++edge) {
+            const double outer = patch.outer[edge], opposite = patch.outer[(edge + 2) % 4];
+            const double jump = outer / innerFactor(inner, outer, opposite);
+            if (jump <= 1.0) continue;
+            sum += jump;
+            ++count;
+            jumps.greatest = std::max(jumps.greatest, jump);
+        }
+    }
+    if (count > 0) jumps.mean = sum / count;
+    return jumps;
 }
 
 EdgeAgreement compareEdges(std::span<const Tile> tiles, const TileSettings& settings,

@@ -15,6 +15,7 @@ class FactorReplay {
     FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
                  const RenderSettings& settings);
     std::vector<PatchFactors> run(std::span<const Tile> tiles, const depth_images::View& view);
+    void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
     const DeviceTerrain* terrain_;
@@ -26,6 +27,24 @@ struct EdgeAgreement {
     int sharedEdges = 0;   // between two patches of one level, neither culled
     int unequalEdges = 0;  // of these, with factors that differ in any bit
 };
+/// Sec. 6 of [zhang2012]: twice the ΔS halves the factors.
+struct FactorHalving {
+    int edges = 0;           // of patches that are not culled
+    int greatestEdges = 0;   // of these, at the greatest factor
+    int unclampedEdges = 0;  // … at neither limit at ΔS and at 2 ΔS
+    int unhalvedEdges = 0;   // of these, not halved to the bit
+};
+/// Of the same patches at ΔS and at 2 ΔS.
+FactorHalving compareHalving(const FactorSettings& settings, std::span<const PatchFactors> factors,
+                             std::span<const PatchFactors> coarser);
+
+/// How many times as large an edge's factor is as that of its patch's inside along it, over edges
+/// where it is larger: how suddenly vertices thin out.
+struct EdgeJumps {
+    double mean = 1.0, greatest = 1.0;
+};
+EdgeJumps edgeJumps(std::span<const PatchFactors> factors, InnerFactors inner);
+
 EdgeAgreement compareEdges(std::span<const Tile> tiles, const TileSettings& settings,
                            std::span<const PatchFactors> factors);
 

@@ -92,7 +92,7 @@ void HeightPages::fill(int layer, const Tile& tile) {
     for (int j = 0; j < side; ++j) {
         for (int i = 0; i < side; ++i) {
             const glm::ivec2 at = tile.originSample + (glm::ivec2(i, j) - kBorder) * step;
-            heightsM.push_back(map_->clampedHeightM(at.x, at.y));
+            heightsM.push_back(map_->clampedHeightM(at.x, at.y, tile.level));
         }
     }
     const bool isFloat = format_ == HeightFormat::Float32;
@@ -105,6 +105,7 @@ void HeightPages::fill(int layer, const Tile& tile) {
                         isFloat ? static_cast<const void*>(heightsM.data())
                                 : static_cast<const void*>(texels.data()));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    map_->release();
     ++loadedCount_;
 }
 

@@ -37,9 +37,10 @@ class PatchCosts {
         const int m = settings_.tile.patchesPerTile;
         std::uint32_t number = 0;
         for (const Tile& tile : patches_.tiles) {
-            for (int i = 0; i < m * m; ++i) {
+            for (int i = 0; i < m * m; ++i, ++number) {
+                if (!patches_.hasSurface) continue;
                 costs.push_back(ofPatch(patchOf(tile, settings_.tile, i)));
-                costs.back().number = number++;
+                costs.back().number = number;
             }
             for (int i = 0; patches_.hasSkirts && i < 4 * m; ++i) {
                 const Edge rim = static_cast<Edge>(i / m);

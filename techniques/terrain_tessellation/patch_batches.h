@@ -22,6 +22,7 @@ struct PatchesToDraw {
     bool hasSkirts = true;  // numbered after the tile's patches, as patches.glsl does
     float footM = 0.0F;     // of the skirts
     bool isCulling = true;  // the control stage drops patches outside the frustum
+    bool hasSurface = true;
 };
 
 /// Patches of one call. No more triangles than the limits, unless a patch alone has more.
@@ -31,7 +32,8 @@ struct PatchBatch {
 };
 
 struct PatchBatches {
-    /// The numbers of all patches and skirts, once each, the nearest first as far as calls allow.
+    /// The numbers of the patches and skirts to draw, once each, the nearest first as far as calls
+    /// allow.
     std::vector<std::uint32_t> order;
     std::vector<PatchBatch> batches;
 };

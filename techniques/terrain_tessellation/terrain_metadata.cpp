@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -19,7 +20,7 @@ namespace gfxrepro::terrain_tessellation {
 namespace {
 
 /// Goes up when the file's layout or what a value means changes.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr char kMagic[8] = {'g', 'f', 'x', 't', 'e', 'r', 'r', 'a'};
 
 struct Header {
@@ -91,68 +92,107 @@ class SquareErrors {
     std::vector<float> grid_;
 };
 
-/// The samples from `begin` on in direction `along`, against the line through every 2^level-th.
-/// It depends on these samples alone, so that both neighbours of an edge find the same.
-HeightRange edgeRange(const scene::HeightMap& map, glm::ivec2 begin, glm::ivec2 along, int size,
-                      int level) {
+/// Rows of finest squares whose samples a file's heights keep in memory at a time.
+constexpr int kSquareRowsAtOnce = 8;
+
+/// fill(row) of many rows at once; what they looked at leaves the memory with every few.
+template <class Fill>
+void forRows(const scene::HeightMap& map, int rows, const Fill& fill) {
+    for (int first = 0; first < rows; first += kSquareRowsAtOnce) {
+        tbb::parallel_for(first, std::min(rows, first + kSquareRowsAtOnce), fill);
+        map.release();
+    }
+}
+
+/// `size` samples and one more from `begin` on along an axis, against the line through every
+/// 2^level-th. It depends on these samples alone, so that both neighbours of an edge find the same.
+HeightRange pieceRange(const scene::HeightMap& map, glm::ivec2 begin, int axis, int size,
+                       int level) {
     const int step = 1 << level;
+    glm::ivec2 along(0);
+    along[axis] = 1;
     const auto heightAt = [&](int i) {
-        const glm::ivec2 at = begin + along * i;
+        const glm::ivec2 at = begin + along * (i - begin[axis]);
         return map.clampedHeightM(at.x, at.y);
     };
     HeightRange range = kNothing;
-    for (int from = 0; from < size; from += step) {
-        const float a = heightAt(from);
-        const float b = heightAt(from + step);
-        for (int i = 0; i <= step; ++i) {
-            const float t = static_cast<float>(i) / static_cast<float>(step);
-            const float height = heightAt(from + i);
-            range.add({height, height, std::abs(height - between(a, b, t))});
-        }
+    for (int i = begin[axis]; i <= begin[axis] + size; ++i) {
+        const int from = i >> level << level;
+        const float t = static_cast<float>(i - from) / static_cast<float>(step);
+        const float height = heightAt(i);
+        const float line = between(heightAt(from), heightAt(from + step), t);
+        range.add({height, height, std::abs(height - line)});
     }
     return range;
 }
 
-std::array<HeightRange, 4> edgeRanges(const scene::HeightMap& map, const Square& block, int level) {
-    const glm::ivec2 east(1, 0);
-    const glm::ivec2 south(0, 1);
-    const int size = block.size;
-    std::array<HeightRange, 4> edges;
-    edges[kWest] = edgeRange(map, block.origin, south, size, level);
-    edges[kNorth] = edgeRange(map, block.origin, east, size, level);
-    edges[kEast] = edgeRange(map, block.origin + size * east, south, size, level);
-    edges[kSouth] = edgeRange(map, block.origin + size * south, east, size, level);
-    return edges;
-}
+/// A grid of ranges.
+struct Ranges {
+    int width = 0;
+    std::vector<HeightRange> values;
 
-/// One level's ranges over all squares of the size of a finest block: work of equal pieces at every
-/// level, however few blocks it has.
-std::vector<HeightRange> finestRanges(const scene::HeightMap& map, int level, int squaresPerSide,
-                                      int squareSize) {
-    std::vector<HeightRange> ranges(static_cast<std::size_t>(squaresPerSide) *
-                                    static_cast<std::size_t>(squaresPerSide));
-    tbb::parallel_for(0, squaresPerSide, [&](int row) {
-        SquareErrors errors(map, level);
-        for (int column = 0; column < squaresPerSide; ++column) {
-            ranges[static_cast<std::size_t>(row) * static_cast<std::size_t>(squaresPerSide) +
-                   static_cast<std::size_t>(column)] =
-                errors.over({{column * squareSize, row * squareSize}, squareSize});
-        }
-    });
-    return ranges;
-}
-
-HeightRange greatestOf(const std::vector<HeightRange>& ranges, int perSide, glm::ivec2 first,
-                       int count) {
-    HeightRange range = kNothing;
-    for (int row = first.y; row < first.y + count; ++row) {
-        for (int column = first.x; column < first.x + count; ++column) {
-            range.add(ranges[static_cast<std::size_t>(row) * static_cast<std::size_t>(perSide) +
-                             static_cast<std::size_t>(column)]);
-        }
+    Ranges(int columns, int rows)
+        : width(columns),
+          values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kNothing) {}
+    HeightRange& at(int column, int row) {
+        return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(column)];
     }
-    return range;
-}
+    HeightRange greatestOf(glm::ivec2 first, glm::ivec2 count) {
+        HeightRange range = kNothing;
+        for (int row = first.y; row < first.y + count.y; ++row) {
+            for (int column = first.x; column < first.x + count.x; ++column) {
+                range.add(at(column, row));
+            }
+        }
+        return range;
+    }
+};
+
+/// One level's ranges over all squares of the size of a finest block, and over pieces of its
+/// blocks' edges as long as that: work of equal parts at every level, however few blocks it has.
+struct FinestRanges {
+    Ranges squares;
+    Ranges alongZ;  // column: of a block's western edge, row: of the piece
+    Ranges alongX;  // column: of the piece, row: of a block's northern edge
+
+    FinestRanges(const scene::HeightMap& map, int level, int perSide, int squareSize)
+        : squares(perSide, perSide),
+          alongZ((perSide >> level) + 1, perSide),
+          alongX(perSide, (perSide >> level) + 1) {
+        const int blockSize = squareSize << level;
+        forRows(map, perSide + 1, [&](int row) {
+            const int z = row * squareSize;
+            if (z % blockSize == 0) {
+                for (int column = 0; column < perSide; ++column) {
+                    alongX.at(column, z / blockSize) =
+                        pieceRange(map, {column * squareSize, z}, 0, squareSize, level);
+                }
+            }
+            if (row == perSide) return;  // of the southern rim alone
+            SquareErrors errors(map, level);
+            for (int column = 0; column < perSide; ++column) {
+                squares.at(column, row) = errors.over({{column * squareSize, z}, squareSize});
+            }
+            for (int column = 0; column < alongZ.width; ++column) {
+                alongZ.at(column, row) =
+                    pieceRange(map, {column * blockSize, z}, 1, squareSize, level);
+            }
+        });
+    }
+
+    Block block(glm::ivec2 place, int level) {
+        const int count = 1 << level;
+        const glm::ivec2 first = place * count;
+        Block block;
+        block.whole = squares.greatestOf(first, {count, count});
+        block.edges[kWest] = alongZ.greatestOf({place.x, first.y}, {1, count});
+        block.edges[kEast] = alongZ.greatestOf({place.x + 1, first.y}, {1, count});
+        block.edges[kNorth] = alongX.greatestOf({first.x, place.y}, {count, 1});
+        block.edges[kSouth] = alongX.greatestOf({first.x, place.y + 1}, {count, 1});
+        return block;
+    }
+};
 
 void checkSettings(const MetadataSettings& settings) {
     const auto isPowerOfTwo = [](int value) {
@@ -234,27 +274,30 @@ std::size_t TerrainMetadata::blockIndex(int level, int column, int row) const {
 TerrainMetadata TerrainMetadata::build(const scene::HeightMap& map,
                                        const MetadataSettings& settings) {
     TerrainMetadata result(map, settings);
-    const int finestPerSide = result.blocksPerSide(0);
     for (int level = 0; level < result.levelCount_; ++level) {
-        const std::vector<HeightRange> finest =
-            finestRanges(map, level, finestPerSide, settings.blockSegments);
-        const int side = result.blocksPerSide(level);
+        FinestRanges finest(map, level, result.blocksPerSide(0), settings.blockSegments);
         const int size = result.blockSizeSamples(level);
-        const int finestPerBlock = 1 << level;
-        tbb::parallel_for(0, side * side, [&](int i) {
-            const glm::ivec2 place(i % side, i / side);
-            Block& block = result.blocks_[result.blockIndex(level, place.x, place.y)];
-            block.whole = greatestOf(finest, finestPerSide, place * finestPerBlock, finestPerBlock);
-            block.edges = edgeRanges(map, {place * size, size}, level);
+        const int side = result.blocksPerSide(level);
+        forRows(map, side, [&](int row) {
+            for (int column = 0; column < side; ++column) {
+                Block& block = result.blocks_[result.blockIndex(level, column, row)];
+                block = finest.block({column, row}, level);
+                for (int i = 0; i < 4; ++i) {
+                    block.cornersM[static_cast<std::size_t>(i)] =
+                        map.clampedHeightM((column + i % 2) * size, (row + i / 2) * size, level);
+                }
+            }
         });
     }
     return result;
 }
 
 std::string TerrainMetadata::keyOf(const scene::HeightMap& map, const MetadataSettings& settings) {
+    const std::string heights =
+        map.file ? "file " + map.file->key() : sha256(std::as_bytes(std::span(map.heightsM)));
     return sha256(fmt::format("terrain {} {} {} {} {} {}", kVersion, map.sizeSamples.x,
                               map.sizeSamples.y, settings.blockSegments, settings.tileBlocks,
-                              sha256(std::as_bytes(std::span(map.heightsM)))));
+                              heights));
 }
 
 TerrainMetadata TerrainMetadata::openOrBuild(const std::filesystem::path& folder,

@@ -36,15 +36,17 @@ struct HeightRange {
 /// The order of gl_TessLevelOuter for quads whose u runs east (x) and v south (z).
 enum Edge { kWest, kNorth, kEast, kSouth };
 
-/// 15 floats without padding, as an std430 array of float sees them. Neighbours of one level have
+/// 19 floats without padding, as an std430 array of float sees them. Neighbours of one level have
 /// equal values on the edge that they share.
 struct Block {
     HeightRange whole;
     std::array<HeightRange, 4> edges;  // by Edge
+    std::array<float, 4> cornersM{};   // heights: north-west, north-east, south-west, south-east
 
     bool operator==(const Block&) const = default;
 };
-static_assert(sizeof(Block) == 15 * sizeof(float));
+constexpr int kBlockFloats = 19;
+static_assert(sizeof(Block) == kBlockFloats * sizeof(float));
 
 struct MetadataSettings {
     int blockSegments = 32;  // a side of a block, at its level's spacing: 33 × 33 vertices
@@ -65,7 +67,7 @@ class TerrainMetadata {
     static TerrainMetadata openOrBuild(const std::filesystem::path& folder,
                                        const scene::HeightMap& map,
                                        const MetadataSettings& settings);
-    /// A digest of heights and settings.
+    /// A digest of heights (of a file its key) and settings.
     static std::string keyOf(const scene::HeightMap& map, const MetadataSettings& settings);
 
     const MetadataSettings& settings() const { return settings_; }

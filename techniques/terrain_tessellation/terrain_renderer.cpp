@@ -40,13 +40,16 @@ gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& s
             {"PAGE_BORDER", HeightPages::kBorder},
             {"PATCHES_PER_TILE_SIDE", factors.tile.patchesPerTile},
             {"BLOCKS_PER_PATCH", factors.tile.blocksPerPatch},
+            {"BLOCK_FLOATS", kBlockFloats},
             {"BLOCK_SEGMENTS", terrain.metadata().settings().blockSegments},
             {"LEVEL_COUNT", terrain.metadata().levelCount()},
             {"SEGMENT", static_cast<int>(factors.segment)},
             {"INNER", static_cast<int>(factors.inner)},
             {"OWN_FACTORS", factors.edges == EdgeRule::OwnPatch ? 1 : 0},
             {"SPACING", std::string(spacingName(settings.spacing))},
-            {"SHADING", static_cast<int>(settings.shading)}};
+            {"CAPTURE", settings.capturesVertices ? 1 : 0},
+            {"SHADING", static_cast<int>(hasColourMap(settings.shading) ? Shading::ColourMap
+                                                                        : settings.shading)}};
 }
 
 gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers) {
@@ -115,6 +118,8 @@ TerrainRenderer::TerrainRenderer(const gl::ShaderLibrary& shaders, DeviceTerrain
     defines["MORPH"] = 1;
     morphed_ = gl::Program(shaders, {folder + "grid.vert.glsl", fragment}, defines);
     counters_ = gl::Buffer(sizeof(std::uint32_t));
+    const std::array<const gl::Texture*, 1> colours{&nothing_};
+    nowhere_ = gl::Framebuffer(colours, nullptr);
 }
 
 void TerrainRenderer::bindShading(const gl::Program& program) const {
@@ -128,7 +133,7 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     settings_.showsUnderside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
-    if (settings_.shading == Shading::ColourMap) settings_.colourMap->bind(kColourUnit);
+    if (hasColourMap(settings_.shading)) settings_.colourMap->bind(kColourUnit);
     if (program.isActive("lastSample")) {
         program.set("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
     }
@@ -182,9 +187,10 @@ int TerrainRenderer::drawBatches(const PatchBatches& patches) const {
 }
 
 DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                                        const depth_images::View& view) const {
+                                        const depth_images::View& view, Parts parts) const {
     const int m = settings_.factors.tile.patchesPerTile;
-    const int patchesPerTile = m * m + (settings_.hasSkirts ? 4 * m : 0);
+    const bool hasSkirts = parts == Parts::Skirts || (parts == Parts::AsSet && settings_.hasSkirts);
+    const int patchesPerTile = m * m + (hasSkirts ? 4 * m : 0);
     // Skirts end below the lowest sample, by more than depth's rounding.
     const float relief = terrain_->highestM() - terrain_->lowestM();
     const float foot =
@@ -195,9 +201,14 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<c
     DrawCounts counts;
     const int tileCount = static_cast<int>(tiles.size());
     if (settings_.batches) {
-        counts.drawCalls = drawBatches(batchPatches(
-            terrain_->metadata(), settings_.factors, view,
-            {tiles, settings_.hasSkirts, foot, settings_.cullsPatches}, *settings_.batches));
+        counts.drawCalls = drawBatches(
+            batchPatches(terrain_->metadata(), settings_.factors, view,
+                         {tiles, hasSkirts, foot, settings_.cullsPatches, parts != Parts::Skirts},
+                         *settings_.batches));
+    } else if (parts == Parts::Skirts) {
+        for (int tile = 0; tile < tileCount; ++tile, ++counts.drawCalls) {
+            glDrawArrays(GL_PATCHES, 4 * (patchesPerTile * tile + m * m), 4 * 4 * m);
+        }
     } else {
         glDrawArrays(GL_PATCHES, 0, 4 * patchesPerTile * tileCount);
         counts.drawCalls = 1;
@@ -206,16 +217,20 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<c
     return counts;
 }
 
-DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
-                                            const depth_images::View& view,
-                                            const gl::Framebuffer& target) {
-    target.bind();
+void TerrainRenderer::bindTessellated(const depth_images::View& view) {
     bindShading(tessellated_);
     bindTerrain(tessellated_, *terrain_, view);
     bindFactors(tessellated_, *terrain_, settings_, view);
     counters_.clear();
     counters_.bindStorage(kCounterBinding);
     glPatchParameteri(GL_PATCH_VERTICES, 4);
+}
+
+DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
+                                            const depth_images::View& view,
+                                            const gl::Framebuffer& target) {
+    target.bind();
+    bindTessellated(view);
     DrawCounts counts =
         drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
             return drawPatches(some, layers, view);
@@ -223,6 +238,55 @@ DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     counts.culledPatches = static_cast<int>(counters_.read<std::uint32_t>(1).front());
     return counts;
+}
+
+/// Every triangle is culled. Not GL_RASTERIZER_DISCARD, with which llvmpipe counts no primitives.
+void TerrainRenderer::bindNothing() const {
+    nowhere_.bind();
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT_AND_BACK);
+}
+
+std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
+                                                   const depth_images::View& view) {
+    bindTessellated(view);
+    bindNothing();
+    const DrawCounts counts =
+        drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
+            return drawPatches(some, layers, view, Parts::Skirts);
+        });
+    return counts.triangles;
+}
+
+std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles,
+                                                     const depth_images::View& view) {
+    GFXREPRO_ASSERT(settings_.capturesVertices);
+    bindTessellated(view);
+    bindNothing();
+    std::vector<CapturedVertex> vertices;
+    const int side = settings_.factors.tile.patchesPerTile;
+    const auto turn = static_cast<std::size_t>(terrain_->pages().capacity());
+    for (std::size_t first = 0; first < tiles.size(); first += turn) {
+        const auto some = tiles.subspan(first, std::min(turn, tiles.size() - first));
+        const std::vector<int> layers = terrain_->pages().load(some);
+        primitives_.begin();
+        drawPatches(some, layers, view, Parts::Surface);
+        primitives_.end();
+        const std::size_t count = 3 * primitives_.result();
+        if (count == 0) continue;
+        const gl::Buffer captured(count * sizeof(CapturedVertex));
+        glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, captured.id());
+        glBeginTransformFeedback(GL_TRIANGLES);
+        drawPatches(some, layers, view, Parts::Surface);
+        glEndTransformFeedback();
+        glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+        for (CapturedVertex vertex : captured.read<CapturedVertex>(count)) {
+            vertex.patch += side * side * static_cast<int>(first);
+            vertices.push_back(vertex);
+        }
+    }
+    glDisable(GL_CULL_FACE);
+    return vertices;
 }
 
 int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {

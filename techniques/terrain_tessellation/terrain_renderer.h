@@ -17,9 +17,14 @@ namespace gfxrepro::terrain_tessellation {
 enum class Spacing { FractionalEven, FractionalOdd, Equal };
 enum class Shading {
     SlopeAltitude,
-    Height,     // the height in metres as drawn, in red: for tests and errors
-    ColourMap,  // RenderSettings::colourMap, lit likewise
+    Height,        // the height in metres as drawn, in red: for tests and errors
+    ColourMap,     // RenderSettings::colourMap, lit likewise
+    GeneratedMap,  // … with groundPicture()
 };
+
+inline bool hasColourMap(Shading shading) {
+    return shading == Shading::ColourMap || shading == Shading::GeneratedMap;
+}
 
 struct RenderSettings {
     FactorSettings factors;
@@ -28,9 +33,11 @@ struct RenderSettings {
     bool hasSkirts = true;
     bool isWireframe = false;
     Shading shading = Shading::SlopeAltitude;
-    /// Over the whole height map, north at v = 0; outlives the renderer. Of Shading::ColourMap.
+    /// Over the whole height map, north at v = 0; outlives the renderer. Of Shading::ColourMap and
+    /// GeneratedMap.
     const gl::Texture* colourMap = nullptr;
-    bool showsUnderside = false;  // of terrain, with an alpha of 0; to find cracks
+    bool showsUnderside = false;    // of terrain, with an alpha of 0; to find cracks
+    bool capturesVertices = false;  // for TerrainRenderer::capture()
     /// For a software rasterizer; without, one call draws all.
     std::optional<BatchLimits> batches;
 };
@@ -44,6 +51,15 @@ struct DrawCounts {
 
     void add(const DrawCounts& other);
 };
+
+/// A vertex of a triangle of a tessellated patch, as the rasterizer gets it.
+struct CapturedVertex {
+    glm::vec2 at{0.0F};      // samples
+    std::int32_t patch = 0;  // M² a tile, row by row
+    std::int32_t rim = 0;    // −1: of the surface
+    glm::vec4 positionClip{0.0F};
+};
+static_assert(sizeof(CapturedVertex) == 32);
 
 /// Sets of the morphing grid: level l is drawn unmorphed up to rangesM[l]·startShare from the eye
 /// and as level l + 1 from rangesM[l] on. [strugar2009]
@@ -68,9 +84,15 @@ class TerrainRenderer {
     TerrainRenderer(const gl::ShaderLibrary& shaders, DeviceTerrain& terrain,
                     const RenderSettings& settings);
 
-    /// [zhang2012] Sec. 2.2 to 2.4.
+    /// [zhang2012] Sec. 3.2, 4.2 and 5.
     DrawCounts drawTessellated(std::span<const Tile> tiles, const depth_images::View& view,
                                const gl::Framebuffer& target);
+    /// Of these, the triangles of skirts; draws nothing.
+    std::uint64_t countSkirtTriangles(std::span<const Tile> tiles, const depth_images::View& view);
+    /// Three vertices a triangle of what drawTessellated() draws, without skirts; draws nothing.
+    /// Needs RenderSettings::capturesVertices.
+    std::vector<CapturedVertex> capture(std::span<const Tile> tiles,
+                                        const depth_images::View& view);
     /// Every sample of each tile's level: of level 0, the full resolution (the truth).
     DrawCounts drawGrid(std::span<const Tile> tiles, const depth_images::View& view,
                         const gl::Framebuffer& target);
@@ -85,8 +107,11 @@ class TerrainRenderer {
     /// draw(tiles, layers) of as many tiles as there are pages at a time.
     template <class Draw>
     DrawCounts drawInTurns(std::span<const Tile> tiles, const Draw& draw);
+    enum class Parts { AsSet, Surface, Skirts };
     DrawCounts drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                           const depth_images::View& view) const;
+                           const depth_images::View& view, Parts parts = Parts::AsSet) const;
+    void bindTessellated(const depth_images::View& view);
+    void bindNothing() const;
     int drawBatches(const PatchBatches& patches) const;
     int drawGridTile(const gl::Program& program, int tile) const;
     void bindShading(const gl::Program& program) const;
@@ -95,6 +120,8 @@ class TerrainRenderer {
     RenderSettings settings_;
     gl::Program tessellated_, grid_, morphed_;
     gl::Buffer counters_;
+    gl::Texture nothing_ = gl::Texture::make2D(GL_R8, {1, 1});
+    gl::Framebuffer nowhere_;
     gl::VertexArray noAttributes_;
     gl::PrimitiveQuery primitives_;
 };

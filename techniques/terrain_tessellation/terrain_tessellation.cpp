@@ -8,6 +8,7 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/gl.h"
+#include "techniques/terrain_tessellation/ground_picture.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -24,30 +25,29 @@ TileView tileViewOf(const depth_images::View& view) {
             0.5F * static_cast<float>(view.sizePx.x) * view.clipFromView[0].x};
 }
 
-/// The picture of the ground: the colours of the scene's first material.
-gl::Texture colourMapOf(const scene::Scene& scene) {
+constexpr bool kIsSrgb = true;
+/// Of a picture of the ground that is made here: at the papers' map, 80 m a texel.
+constexpr int kGroundPicturePx = 2048;
+
+/// The picture of the ground: the colours of the scene's first material, or one made of heights.
+gl::Texture colourMapOf(const scene::Scene& scene, Shading shading) {
+    if (shading == Shading::GeneratedMap) {
+        return gl::Texture::fromImage(groundPicture(*scene.heights, kGroundPicturePx), kIsSrgb);
+    }
     const int index = scene.materials.empty() ? -1 : scene.materials.front().baseColorTexture;
     if (index < 0) {
         throw Error(
             "'shading: colour_map' needs a scene with a colour map; sources of height maps take "
             "one as 'colour_map'");
     }
-    constexpr bool kIsSrgb = true;
-    gl::Texture texture =
-        gl::Texture::fromImage(scene.textures[static_cast<std::size_t>(index)], kIsSrgb);
-    texture.setWrap(GL_CLAMP_TO_EDGE);
-    return texture;
+    return gl::Texture::fromImage(scene.textures[static_cast<std::size_t>(index)], kIsSrgb);
 }
 
-/// Adaptive where it tessellates; patches as they come take one segment an edge.
-RenderSettings rendererSettings(const TerrainTessellationParams& params, bool isSoftwareDevice) {
-    RenderSettings settings = params.render;
-    if (isSoftwareDevice) settings.batches.emplace();
-    if (params.method == Method::Patches) {
-        settings.factors.smallest = settings.factors.greatest = 1.0F;
-        settings.spacing = Spacing::Equal;
-        settings.hasSkirts = false;
-    }
+/// Patches as they come take one segment an edge.
+RenderSettings untessellated(RenderSettings settings) {
+    settings.factors.smallest = settings.factors.greatest = 1.0F;
+    settings.spacing = Spacing::Equal;
+    settings.hasSkirts = false;
     return settings;
 }
 
@@ -86,12 +86,18 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
     tree_.emplace(*metadata_, params_.render.factors.tile);
     terrain_.emplace(map, *metadata_, params_.heights);
     camera_.emplace(*scene_, params_.view);
-    RenderSettings settings = rendererSettings(params_, context.device.info().isSoftware);
-    if (settings.shading == Shading::ColourMap) {
-        colourMap_ = colourMapOf(*scene_);
+    RenderSettings settings = params_.render;
+    if (context.device.info().isSoftware) settings.batches.emplace();
+    if (params_.method == Method::Patches) settings = untessellated(settings);
+    if (hasColourMap(settings.shading)) {
+        colourMap_ = colourMapOf(*scene_, settings.shading);
+        colourMap_.setWrap(GL_CLAMP_TO_EDGE);
         settings.colourMap = &colourMap_;
     }
     renderer_.emplace(context.shaders, *terrain_, settings);
+    if (params_.drawsYardstick) {
+        yardstick_.emplace(context.shaders, *terrain_, untessellated(settings));
+    }
     target_.emplace(sizePx_);
 }
 

@@ -3,10 +3,12 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "runner/technique/technique.h"
+#include "techniques/terrain_tessellation/factor_check.h"
 #include "techniques/terrain_tessellation/terrain_measures.h"
 #include "techniques/terrain_tessellation/terrain_renderer.h"
 #include "techniques/terrain_tessellation/terrain_views.h"
@@ -32,12 +34,14 @@ struct TerrainTessellationParams {
     Culling culling = Culling::TileAndPatch;
     RenderSettings render;
     MetadataSettings metadata;
-    float maxTileErrorPx = 4.0F;  // τ
+    float maxTileErrorPx = 1.0F;  // τ
     float finestRangeM = 0.0F;    // of CDLOD; 0: where a cell is ΔS pixels wide
     HeightPageSettings heights;
     std::string view = "valley";
     bool keepsMetadata = true;
     bool measuresErrors = false;
+    bool checksSeams = false;
+    bool drawsYardstick = false;
     bool showsPictures = false;
     int supersampling = 1;  // of pictures and errors, along each axis
 
@@ -83,6 +87,9 @@ class TerrainTessellation final : public technique::Technique {
     Drawn drawnAgain(Method method, const TileSelection& selection, bool showsUnderside);
 
     void recordDrawn(technique::Recorder& recorder);
+    void recordFactors(technique::Recorder& recorder);
+    void recordNetRate(technique::Recorder& recorder);
+    void recordSeams(technique::Recorder& recorder, std::span<const PatchFactors> drawn);
     void recordCulling(technique::Recorder& recorder);
     void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Drawn& truth);
 
@@ -96,8 +103,9 @@ class TerrainTessellation final : public technique::Technique {
     std::optional<TileTree> tree_;
     std::optional<TerrainView> camera_;
     std::optional<DeviceTerrain> terrain_;
-    gl::Texture colourMap_;  // of `shading: colour_map`
+    gl::Texture colourMap_;  // of `shading: colour_map` and `generated_map`
     std::optional<TerrainRenderer> renderer_;
+    std::optional<TerrainRenderer> yardstick_;  // patches as they come
     std::optional<Target> target_;
 
     depth_images::View view_;  // of the last frame

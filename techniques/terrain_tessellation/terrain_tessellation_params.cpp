@@ -19,6 +19,7 @@ constexpr config::Choice<Culling> kCullings[] = {
 constexpr config::Choice<Shading> kShadings[] = {
     {Shading::SlopeAltitude, "slope_altitude", "grass, rock and snow"},
     {Shading::ColourMap, "colour_map", "the scene's picture of the ground"},
+    {Shading::GeneratedMap, "generated_map", "a picture of the ground, made from the heights"},
 };
 constexpr config::Choice<Segment> kSegments[] = {
     {Segment::Vertical, "vertical", "along the world's up, as printed"},
@@ -101,7 +102,7 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
     render.isWireframe = params.getBool("wireframe", false, {"draws the triangles' edges"});
     render.cullsPatches = culling == Culling::TileAndPatch;
     maxTileErrorPx = static_cast<float>(params.getDouble(
-        "tau", 4.0, {"τ: a tile with a smaller ρ is not divided", "pixels", 0.0, 1e6}));
+        "tau", 1.0, {"τ: a tile with a smaller ρ is not divided", "pixels", 0.0, 1e6}));
     finestRangeM = static_cast<float>(params.getDouble(
         "finest_range", 0.0,
         {"to where cdlod draws every sample; 0: to where a cell is delta_s wide", "m", 0.0, 1e9}));
@@ -117,6 +118,11 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
                           {"a camera or path of the scene, or overview, valley or round_flight"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});
     measuresErrors = params.getBool("errors", false, {"compares with the full resolution"});
+    checksSeams = params.getBool("seams", false,
+                                 {"captures the triangles and looks for edges that fit no other"});
+    drawsYardstick = params.getBool(
+        "yardstick", false,
+        {"draws the frame's patches untessellated, too: what the window alone costs"});
     showsPictures = params.getBool("pictures", false, {"the picture, and what is wrong in it"});
     supersampling = params.getInt(
         "supersampling", 1, {"samples a pixel along each axis of errors and pictures", "1", 1, 8});
@@ -125,8 +131,9 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
     requireShape(metadata.blockSegments, tile, params);
     const bool tessellates = method == Method::Adaptive;
     if (!tessellates) {
-        params.refuseGiven({"segment", "inner", "edges", "partitioning", "skirts"},
-                           "'method: adaptive'");
+        params.refuseGiven(
+            {"segment", "inner", "edges", "partitioning", "skirts", "seams", "yardstick"},
+            "'method: adaptive'");
         if (culling == Culling::TileAndPatch && params.isGiven("culling")) {
             throw Error(params.locationOf("culling"),
                         "'culling: tile_and_patch' needs 'method: adaptive'");

@@ -1,7 +1,9 @@
 // What is recorded of a frame: what was drawn, how far it is from the full resolution, pictures.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
@@ -9,10 +11,13 @@
 #include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
+#include "techniques/terrain_tessellation/seam_check.h"
 #include "techniques/terrain_tessellation/terrain_tessellation.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 double percent(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
@@ -64,6 +69,8 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     count("tile_error_px", errorPx, "pixel");
     count("preprocess_ms", preprocessMs_, "ms");
     count("loaded_tiles", static_cast<double>(loadedTiles_), "tile");
+    const glm::dvec2 samples(scene_->heights->sizeSamples);
+    count("map_mib", samples.x * samples.y * sizeof(float) / (1 << 20), "MiB");
     count("memory_bytes", static_cast<double>(terrain_->sizeBytes()), "byte");
     const bool hasPatches = params_.method == Method::Adaptive || params_.method == Method::Patches;
     if (!hasPatches) return;
@@ -71,11 +78,77 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     count("culled_patches", counts_.culledPatches, "patch");
     count("culled_patches_pct", percent(counts_.culledPatches, counts_.patches), "%");
     if (params_.method != Method::Adaptive) return;
+    const auto skirts =
+        params_.render.hasSkirts
+            ? static_cast<double>(renderer_->countSkirtTriangles(selection_.tiles, view_))
+            : 0.0;
+    count("surface_triangles", triangles - skirts, "triangle");
+    recordFactors(recorder);
+    if (params_.drawsYardstick) recordNetRate(recorder);
+}
+
+void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
+    const FactorSettings& factors = renderer_->settings().factors;
     FactorReplay replay(*shaders_, *terrain_, renderer_->settings());
-    const EdgeAgreement agreement = compareEdges(selection_.tiles, params_.render.factors.tile,
-                                                 replay.run(selection_.tiles, view_));
-    count("shared_edges", agreement.sharedEdges, "edge");
-    count("factor_mismatches", agreement.unequalEdges, "edge");
+    const std::vector<PatchFactors> drawn = replay.run(selection_.tiles, view_);
+    const EdgeAgreement agreement = compareEdges(selection_.tiles, factors.tile, drawn);
+    recorder.metric("shared_edges", agreement.sharedEdges, "edge");
+    recorder.metric("factor_mismatches", agreement.unequalEdges, "edge");
+    if (params_.checksSeams) recordSeams(recorder, drawn);
+    const EdgeJumps jumps = edgeJumps(drawn, factors.inner);
+    recorder.metric("edge_jump", jumps.mean, "1", "mean");
+    recorder.metric("edge_jump", jumps.greatest, "1", "max");
+    replay.setSegmentPx(2.0F * factors.segmentPx);
+    const FactorHalving halving =
+        compareHalving(factors, drawn, replay.run(selection_.tiles, view_));
+    recorder.metric("edges_at_greatest_pct", percent(halving.greatestEdges, halving.edges), "%");
+    recorder.metric("unclamped_edges", halving.unclampedEdges, "edge");
+    recorder.metric("unhalved_edges", halving.unhalvedEdges, "edge");
+    if (params_.render.spacing != Spacing::FractionalEven ||
+        params_.render.factors.edges != EdgeRule::Shared) {
+        return;
+    }
+    int most = 0;
+    for (const PatchFactors& patch : drawn) {
+        if (patch.outer.x < 0.0F) continue;
+        const glm::dvec4 outer(patch.outer);
+        most = std::max(most, patchVertices({outer.x, outer.y, outer.z, outer.w}, factors.inner));
+    }
+    recorder.metric("most_patch_vertices", most, "vertex");
+}
+
+/// What clearing the window and shading its ground cost without tessellation is taken off.
+void TerrainTessellation::recordNetRate(technique::Recorder& recorder) {
+    constexpr int kDraws = 3;
+    double leastS = std::numeric_limits<double>::infinity();
+    DrawCounts counts;
+    for (int i = 0; i < kDraws; ++i) {
+        device_->finish("before the yardstick");
+        const Clock::time_point begin = Clock::now();
+        target_->clear();
+        counts = yardstick_->drawTessellated(selection_.tiles, view_, target_->framebuffer);
+        device_->finish("drawing the yardstick");
+        leastS = std::min(leastS, std::chrono::duration<double>(Clock::now() - begin).count());
+    }
+    recorder.metric("yardstick_ms", 1000.0 * leastS, "ms");
+    const auto triangles =
+        static_cast<double>(counts_.triangles) - static_cast<double>(counts.triangles);
+    if (drawS_ <= leastS) return;
+    recorder.metric("triangles_per_second", triangles / (drawS_ - leastS), "triangle/s", "net");
+}
+
+void TerrainTessellation::recordSeams(technique::Recorder& recorder,
+                                      std::span<const PatchFactors> drawn) {
+    RenderSettings settings = renderer_->settings();
+    settings.capturesVertices = true;
+    TerrainRenderer captured(*shaders_, *terrain_, settings);
+    const Seams seams = checkSeams(selection_.tiles, settings.factors.tile, drawn,
+                                   captured.capture(selection_.tiles, view_));
+    recorder.metric("seam_edges", static_cast<double>(seams.edges), "edge");
+    recorder.metric("seam_edges", static_cast<double>(seams.patchEdges), "edge", "patches");
+    recorder.metric("seam_edges", static_cast<double>(seams.tileEdges), "edge", "tiles");
+    recorder.metric("open_edges", static_cast<double>(seams.openEdges), "edge");
+    recorder.metric("largest_fan", static_cast<double>(seams.largestFan), "triangle");
 }
 
 void TerrainTessellation::recordCulling(technique::Recorder& recorder) {
@@ -84,6 +157,7 @@ void TerrainTessellation::recordCulling(technique::Recorder& recorder) {
     recorder.image("culling", cullingPicture(*scene_->heights, tiles, params_.render.factors.tile,
                                              replay.run(tiles, view_), tileView_.clipFromWorld,
                                              params_.culling != Culling::None, sizePx_.y));
+    scene_->heights->release();
 }
 
 TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
@@ -119,6 +193,7 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     const Drawn framed = drawnAgain(params_.method, selection_, false);
     const HeightErrors height =
         heightErrors(framed.depths, [&](float x, float z) { return heightAt(map, x, z); });
+    map.release();
     recorder.metric("height_error_m", height.meanM, "m", "mean");
     recorder.metric("height_error_m", height.maxM, "m", "max");
     recorder.metric("height_error_px", height.meanPx / params_.supersampling, "pixel", "mean");

@@ -30,11 +30,10 @@ Frame frameOf(const scene::HeightMap& map) {
     const glm::vec2 size = glm::vec2(map.sizeSamples - 1) * map.spacingM;
     frame.centre = 0.5F * size;
     frame.sideM = std::max({size.x, size.y, map.spacingM});
-    const auto [lowest, highest] = std::minmax_element(map.heightsM.begin(), map.heightsM.end());
+    const scene::HeightMap::Extremes ends = map.extremes();
     // A sixth of the relief over the ground is a low flight; over a plain, a hundredth of its side.
-    frame.clearanceM = std::max((*highest - *lowest) / 6.0F, 0.01F * frame.sideM);
-    const auto index = static_cast<int>(highest - map.heightsM.begin());
-    frame.summit = map.position(index % map.sizeSamples.x, index / map.sizeSamples.x);
+    frame.clearanceM = std::max((ends.highestM - ends.lowestM) / 6.0F, 0.01F * frame.sideM);
+    frame.summit = map.position(ends.highestSample.x, ends.highestSample.y);
     return frame;
 }
 

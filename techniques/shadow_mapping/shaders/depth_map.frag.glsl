@@ -8,7 +8,9 @@ in vec2 clipZW;
 uniform vec3 planes;  // near, far, 1: perspective
 layout(location = 0) out vec2 moments;
 #else
+#if SLOPE
 uniform float slopeScale;
+#endif
 layout(location = 0) out float depth;
 #endif
 
@@ -21,8 +23,10 @@ void main() {
     // The texel holds a piece of a plane: the variance of d over it, for a Gaussian of half a texel
     // ([Donnelly and Lauritzen 2006] Sec. 4.1).
     moments = vec2(d, d * d + 0.25 * dot(slope, slope));
-#else
-    // The same shift as glPolygonOffset gives to the depth test.
+#elif SLOPE
+    // The same shift as glPolygonOffset gives to the depth test. The thesis has none.
     depth = min(z + slopeScale * max(abs(dFdx(z)), abs(dFdy(z))), 1.0);
+#else
+    depth = z;
 #endif
 }

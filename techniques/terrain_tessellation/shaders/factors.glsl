@@ -1,7 +1,8 @@
-// [zhang2012] Eq. (2) to (4): the tessellation factor of an edge, and the culling of patches. Used
+// [zhang2012] Eq. (2) to (4): the tessellation factor of an edge; Sec. 4.2: the culling of patches. Used
 // by the control stage and by its replay; edge_factors.cpp has it in double precision.
 layout(std430, binding = BLOCK_BINDING) readonly buffer Blocks {
-    // A block has 15: (h_min, h_max, ε) whole and of its west, north, east and south edge.
+    // A block has BLOCK_FLOATS: (h_min, h_max, ε) whole and of its west, north, east and south
+    // edge, then the heights of its corners: north-west, north-east, south-west, south-east.
     float blockValues[];
 };
 layout(std430, binding = FIRST_BLOCK_BINDING) readonly buffer FirstBlocks {
@@ -16,10 +17,14 @@ uniform vec2 factorLimits;   // smallest, greatest
 uniform float nearDistance;  // view distances below are taken as this close: greatest factor
 uniform int isCulling;
 
-vec3 blockRange(int level, ivec2 block, int part) {
+int blockPlace(int level, ivec2 block) {
     int side = 1 << (LEVEL_COUNT - 1 - level);
     ivec2 inside = clamp(block, ivec2(0), ivec2(side - 1));
-    int at = 15 * (firstBlocks[level] + inside.y * side + inside.x) + 3 * part;
+    return BLOCK_FLOATS * (firstBlocks[level] + inside.y * side + inside.x);
+}
+
+vec3 blockRange(int level, ivec2 block, int part) {
+    int at = blockPlace(level, block) + 3 * part;
     return vec3(blockValues[at], blockValues[at + 1], blockValues[at + 2]);
 }
 
@@ -40,6 +45,12 @@ vec3 edgeRange(Patch p, int edge) {
     return range;
 }
 
+// The height at a corner of the patch.
+float cornerHeight(Patch p, ivec2 corner) {
+    ivec2 block = p.origin / (BLOCK_SEGMENTS << p.level) + (BLOCKS_PER_PATCH - 1) * corner;
+    return blockValues[blockPlace(p.level, block) + 15 + corner.x + 2 * corner.y];
+}
+
 // Eq. (3) and (4). The end points are named by their places on the terrain, not by the patch that
 // asks, and every step is `precise`: the two patches of an edge get the same bits.
 float edgeFactor(Patch p, int edge) {
@@ -47,7 +58,11 @@ float edgeFactor(Patch p, int edge) {
     ivec2 first = p.origin + ivec2(edge == 2 ? span : 0, edge == 3 ? span : 0);
     ivec2 along = (edge & 1) == 0 ? ivec2(0, span) : ivec2(span, 0);
     vec3 range = edgeRange(p, edge);
-    precise float D = float(span) * spacing;
+    ivec2 corner = ivec2(edge == 2 ? 1 : 0, edge == 3 ? 1 : 0);
+    ivec2 next = corner + ((edge & 1) == 0 ? ivec2(0, 1) : ivec2(1, 0));
+    precise float across = float(span) * spacing;
+    precise float up = cornerHeight(p, next) - cornerHeight(p, corner);
+    precise float D = sqrt(across * across + up * up);  // in space
     precise float L = max(range.y - range.x, D) + range.z;  // Eq. (3): L_AB
     // Departure [zhang2012] Eq. (4): the midpoint's height is not said; the mean of the extremes.
     precise vec3 middle = worldOf(vec2(first) + 0.5 * vec2(along), 0.5 * (range.x + range.y));
@@ -76,7 +91,7 @@ bool isOutside(vec3 centre, float radius) {
 }
 
 // The sphere about the box of the patch with its heights (a skirt's: of the rim down to `foot`).
-// Departure [zhang2012] Sec. 3.2: the printed sphere, the flat patch's diagonal, loses displaced
+// Departure [zhang2012] Sec. 4.2: the printed sphere, the flat patch's diagonal, loses displaced
 // ground at the image's border.
 bool isPatchCulled(Patch p, float foot) {
     if (isCulling == 0) return false;

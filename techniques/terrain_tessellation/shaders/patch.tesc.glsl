@@ -1,5 +1,5 @@
 #version 450 core
-// [zhang2012] Sec. 3.2: drops patches outside the frustum, sets the factors of the others.
+// [zhang2012] Sec. 4.2: drops patches outside the frustum; Sec. 3.2: sets the factors of the others.
 #include "terrain_tessellation/terrain.glsl"
 #include "terrain_tessellation/patches.glsl"
 #include "terrain_tessellation/factors.glsl"
@@ -15,6 +15,9 @@ in vec2 controlPoint[];
 out vec2 cornerSamples[];
 patch out ivec4 drawnTile;
 patch out int drawnRim;
+#if CAPTURE
+patch out int drawnPatch;
+#endif
 
 float innerOf(float a, float b) {
 #if INNER == 0
@@ -63,6 +66,9 @@ void main() {
     Patch p = patchOfIndex(patchIndex[0], patchesPerTile);
     drawnTile = tiles[patchIndex[0] / patchesPerTile];
     drawnRim = p.rim;
+#if CAPTURE
+    drawnPatch = patchIndex[0];
+#endif
     if (isPatchCulled(p, skirtFoot)) {
         if (p.rim == kSurface) atomicAdd(culledPatches, 1u);
         setFactors(vec4(-1.0), vec2(-1.0));

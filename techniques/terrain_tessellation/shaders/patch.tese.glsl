@@ -1,5 +1,5 @@
 #version 450 core
-// [zhang2012] Sec. 3.3: bilinear position, displaced by the height map; skirts hang from the rim.
+// [zhang2012] Sec. 5: bilinear position, displaced by the height map; Sec. 3.1: skirts hang from the rim.
 #include "terrain_tessellation/terrain.glsl"
 #include "terrain_tessellation/patches.glsl"
 
@@ -8,6 +8,15 @@ uniform float skirtFoot;
 in vec2 cornerSamples[];
 patch in ivec4 drawnTile;
 patch in int drawnRim;
+#if CAPTURE
+// What the rasterizer gets, written out: CapturedVertex. Not gl_Position itself, which llvmpipe
+// leaves empty.
+patch in int drawnPatch;
+layout(xfb_buffer = 0, xfb_stride = 32) out;
+layout(xfb_offset = 0) out vec2 capturedAt;
+layout(xfb_offset = 8) flat out ivec2 capturedPatch;
+layout(xfb_offset = 16) out vec4 capturedPosition;
+#endif
 out vec3 surfaceNormal;
 out float surfaceHeight;
 #if SHADING == 2
@@ -37,4 +46,9 @@ void main() {
 #endif
     precise vec4 position = clipFromWorld * vec4(worldOf(at, height), 1.0);
     gl_Position = position;
+#if CAPTURE
+    capturedAt = at;
+    capturedPosition = position;
+    capturedPatch = ivec2(drawnPatch, drawnRim);
+#endif
 }

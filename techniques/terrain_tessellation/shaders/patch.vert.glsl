@@ -1,5 +1,5 @@
 #version 450 core
-// [zhang2012] Sec. 2.2: the four control points of each patch, by number alone.
+// [zhang2012] Sec. 2, Fig. 4: the four control points of each patch, by number alone.
 #include "terrain_tessellation/terrain.glsl"
 #include "terrain_tessellation/patches.glsl"
 

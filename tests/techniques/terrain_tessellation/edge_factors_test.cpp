@@ -47,6 +47,58 @@ TEST_F(TerrainTest, AKnownEdgeHasItsFactorByHand) {
     EXPECT_NEAR(edgeFactor(*metadata, set.factors, view, {0, {0, 0}}, kNorth), expected, 1e-3);
 }
 
+TEST_F(TerrainTest, ASlopingEdgeIsAsLongAsInSpace) {
+    scene::HeightMap slope = roughMap(257, 0.0F);
+    for (int i = 0; i < 257 * 257; ++i) {
+        slope.heightsM[static_cast<std::size_t>(i)] = 0.75F * static_cast<float>(i % 257);
+    }
+    makeTerrain(slope);
+    RenderSettings set = settings();
+    set.factors.segmentPx = 1.0F;
+    set.cullsPatches = false;
+    // From (0, 0, 0) to (16, 12, 0): D = 20, more than the 12 between the heights. Seen from 40 in
+    // front of its middle.
+    const depth_images::View view = viewAt({8, 6, -40}, {8, 6, 0});
+    const double expected = 20.0 * 50.0 / std::tan(0.45) / 40.0;
+    EXPECT_NEAR(edgeFactor(*metadata, set.factors, view, {0, {0, 0}}, kNorth), expected, 1e-3);
+    const std::vector<Tile> tiles = tilesOf(0);
+    FactorReplay replay(shaders, *terrain, set);
+    EXPECT_NEAR(replay.run(tiles, view)[0].outer[kNorth], expected, 1e-3 * expected);
+    EXPECT_EQ(edgeEndsM(*metadata, tile, {0, {2, 0}}, kSouth), glm::vec2(12.0F, 24.0F));
+    EXPECT_EQ(edgeEndsM(*metadata, tile, {0, {2, 0}}, kEast), glm::vec2(24.0F, 24.0F));
+    EXPECT_EQ(edgeEndsM(*metadata, tile, {1, {2, 2}}, kNorth), glm::vec2(24.0F, 48.0F));
+}
+
+TEST_F(TerrainTest, TwiceTheDeltaSHalvesFactorsThatMeetNoLimit) {
+    makeTerrain(roughMap(257, 40.0F));
+    RenderSettings set = settings();
+    FactorReplay replay(shaders, *terrain, set);
+    const std::vector<Tile> tiles = tilesOf(0);
+    const depth_images::View view = viewAt(kViews[0][0], kViews[0][1]);
+    const auto factorsAt = [&](float segmentPx) {
+        replay.setSegmentPx(segmentPx);
+        return replay.run(tiles, view);
+    };
+    const auto fine = factorsAt(1.5F);
+    const FactorHalving halving = compareHalving(set.factors, fine, factorsAt(3.0F));
+    EXPECT_GT(halving.unclampedEdges, 100);
+    EXPECT_LT(halving.unclampedEdges, halving.edges);
+    EXPECT_EQ(halving.unhalvedEdges, 0);
+    // Negative control: another ratio.
+    const FactorHalving other = compareHalving(set.factors, fine, factorsAt(3.001F));
+    EXPECT_GT(other.unhalvedEdges, 100);
+    const FactorHalving near = compareHalving(set.factors, factorsAt(0.1F), factorsAt(0.2F));
+    EXPECT_GT(near.greatestEdges, 0);
+}
+
+TEST(EdgeJumpsTest, AreThoseOfEdgesOverTheirInside) {
+    // West 4, north 10, east 12, south 10; a culled patch does not count.
+    const std::array patches{PatchFactors{{4, 10, 12, 10}}, PatchFactors{{-1, -1, -1, -1}}};
+    EXPECT_DOUBLE_EQ(edgeJumps(patches, InnerFactors::Mean).mean, 1.5);
+    EXPECT_DOUBLE_EQ(edgeJumps(patches, InnerFactors::Minimum).greatest, 3.0);
+    EXPECT_DOUBLE_EQ(edgeJumps(patches, InnerFactors::Maximum).mean, 1.0);
+}
+
 TEST_F(TerrainTest, BothPatchesOfAnEdgeGetTheSameBits) {
     makeTerrain(roughMap(257, 40.0F));
     RenderSettings set = settings();

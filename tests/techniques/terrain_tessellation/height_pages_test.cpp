@@ -39,6 +39,26 @@ TEST_F(TerrainTest, PagesHoldTheSamplesOfTheirTilesAndABorder) {
     }
 }
 
+TEST_F(TerrainTest, PagesOfAFileAreThoseOfTheSameHeightsInMemory) {
+    const test::TemporaryFolder folder;
+    scene::HeightMap coarse = roughMap(65, 40.0F);
+    coarse.sizeSamples = {65, 50};  // tiles reach beyond the map
+    coarse.heightsM.resize(65 * 50);
+    makeTerrain(scene::resampled(coarse, 257, 5.0F, 1));
+    const scene::HeightMap inFile =
+        scene::resampledInFile(coarse, 257, 5.0F, 1, folder.path(), "key");
+    ASSERT_NE(inFile.file, nullptr);
+    DeviceTerrain other(inFile, *metadata);
+    for (int level = 0; level < 3; ++level) {
+        const std::vector<Tile> tiles = tilesOf(level);
+        const auto texelsOf = [&](HeightPages& pages) {
+            pages.load(tiles);
+            return pages.texture().read<float>(GL_RED, GL_FLOAT, 1);
+        };
+        EXPECT_EQ(texelsOf(terrain->pages()), texelsOf(other.pages())) << level;
+    }
+}
+
 TEST_F(TerrainTest, ThePageOutOfUseForLongestGoes) {
     makeTerrain(roughMap(257, 40.0F));
     terrain.emplace(map, *metadata, HeightPageSettings{HeightFormat::Float32, 3 * kPageBytes + 99});

@@ -74,6 +74,10 @@ TEST(TerrainMetadata, EqualsBruteForce) {
                 expectNear(block.edges[kNorth], bruteForce(map, a, {b.x, a.y}, level));
                 expectNear(block.edges[kEast], bruteForce(map, {b.x, a.y}, b, level));
                 expectNear(block.edges[kSouth], bruteForce(map, {a.x, b.y}, b, level));
+                const std::array corners{map.clampedHeightM(a.x, a.y), map.clampedHeightM(b.x, a.y),
+                                         map.clampedHeightM(a.x, b.y),
+                                         map.clampedHeightM(b.x, b.y)};
+                EXPECT_EQ(block.cornersM, corners);
             }
         }
     }
@@ -158,6 +162,21 @@ TEST(TerrainMetadata, ComesBackFromTheCacheUnlessDamaged) {
         EXPECT_EQ(readFile(file), whole);
     }
     EXPECT_NE(TerrainMetadata::keyOf(map, {16, 4}), TerrainMetadata::keyOf(map, settings));
+}
+
+TEST(TerrainMetadata, OfAFileIsThatOfTheSameHeightsInMemory) {
+    const test::TemporaryFolder folder;
+    const MetadataSettings settings{8, 4};
+    scene::HeightMap coarse = randomMap(33, 21);
+    const scene::HeightMap inMemory = scene::resampled(coarse, 129, 5.0F, 1);
+    const scene::HeightMap inFile =
+        scene::resampledInFile(coarse, 129, 5.0F, 1, folder.path(), "key");
+    ASSERT_NE(inFile.file, nullptr);
+    const TerrainMetadata a = TerrainMetadata::build(inMemory, settings);
+    const TerrainMetadata b = TerrainMetadata::build(inFile, settings);
+    EXPECT_TRUE(
+        std::equal(a.blocks().begin(), a.blocks().end(), b.blocks().begin(), b.blocks().end()));
+    EXPECT_NE(TerrainMetadata::keyOf(inFile, settings), TerrainMetadata::keyOf(inMemory, settings));
 }
 
 }  // namespace

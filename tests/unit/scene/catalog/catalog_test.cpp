@@ -1,6 +1,9 @@
 #include "runner/scene/catalog.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cstdlib>
 
 #include "runner/scene/topology.h"
 #include "tests/support/support.h"
@@ -63,6 +66,37 @@ TEST(Catalog, TakesAGeneratedSceneAtAnotherSeed) {
     folders.folder.write("assets/x/full.obj", kTriangle);
     EXPECT_EQ(errorOf("m/x@1"),
               "table.yaml:5:8: scene 'm/x' has no seed: it is the file x/full.obj");
+}
+
+TEST(Catalog, KeepsResampledHeightsByWhatTheyAreMadeOf) {
+    const Folders folders;
+    const std::filesystem::path cache = folders.folder.path() / "cache";
+    ASSERT_EQ(setenv("XDG_CACHE_HOME", cache.c_str(), 1), 0);
+    const auto source = [&](int detailM) {
+        folders.entry(
+            fmt::format("scene: m/x\ndoc: an x\nsources:\n"
+                        "  - {{height_map: a.raw, spacing_m: 8, resample_to: 9, "
+                        "detail_m: {}, seed: 1}}\n",
+                        detailM));
+    };
+    folders.folder.write("assets/a.raw.yaml", "{width: 2, height: 2, type: u16}");
+    folders.folder.write("assets/a.raw", std::string("\0\1\0\2\0\3\0\4", 8));
+    source(2);
+    const Scene first = folders.catalog().load(reference("m/x"));
+    ASSERT_TRUE(first.heights && first.heights->file);
+    EXPECT_EQ(first.heights->sizeSamples, glm::ivec2(9));
+    EXPECT_EQ(first.heights->heightM(8, 0), 512.0F);
+    const auto keyOf = [&](const std::string& name) {
+        return folders.catalog().load(reference(name)).heights->file->key();
+    };
+    EXPECT_EQ(keyOf("m/x"), first.heights->file->key());
+    EXPECT_NE(keyOf("m/x@2"), first.heights->file->key());
+    source(3);
+    EXPECT_NE(keyOf("m/x"), first.heights->file->key());
+    source(2);
+    folders.folder.write("assets/a.raw", std::string("\0\1\0\2\0\3\0\5", 8));
+    EXPECT_NE(keyOf("m/x"), first.heights->file->key());
+    unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(Catalog, TakesAGeneratedSceneWithOtherParameters) {
