@@ -114,6 +114,7 @@ struct Gathered {
     std::optional<Samples> whole;  // of a share
     Status worst = Status::Ok;
     std::string message;
+    bool isUntimed = false;  // ambiguous for being a time of the quality lane
     std::set<std::string> units;
     std::vector<std::string> caseIds;
     /// How many samples each of the values is a share of, where they are shares that say so.
@@ -130,6 +131,7 @@ struct Gathered {
 void takeRow(const Record& record, const CellQuery& query, int unit,
              std::map<int, std::vector<double>>& process, Gathered& gathered) {
     if (isTimeMetric(query.metric) && record.lane == "quality") {
+        if (gathered.worst < Status::Ambiguous) gathered.isUntimed = true;
         gathered.note(Status::Ambiguous,
                       "measured in the quality lane, where cases run side by "
                       "side; a time needs the timing lane");
@@ -206,6 +208,7 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
     }
     if (const std::optional<CellQuery> whole = wholeOf(query)) {
         Gathered all = gather(*whole, cases);
+        if (gathered.worst < all.worst) gathered.isUntimed = all.isUntimed;
         gathered.note(all.worst, all.message);
         if (all.samples.processes.empty()) {
             if (!gathered.samples.processes.empty()) {
@@ -365,7 +368,8 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
         fillValues(query, gathered, cell);
         fillProcessTimes(query, cases, gathered.samples, cell);
     }
-    const std::string word(statusName(cell.status));
+    const bool isUntimed = gathered.isUntimed && cell.status == Status::Ambiguous;
+    const std::string word(isUntimed ? "not timed" : statusName(cell.status));
     const bool isFlaky = hasSamples && cell.status == Status::Flaky;
     cell.isPartial = hasSamples && cell.status != Status::Ok && !isFlaky;
     if (isFlaky) cell.measured += " (flaky)";

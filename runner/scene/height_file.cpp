@@ -226,11 +226,9 @@ HeightFile::HeightFile(const fs::path& path, std::string key, glm::ivec2 sizeSam
     highestSample_ = header.highestSample;
 }
 
-std::shared_ptr<const HeightFile> HeightFile::openOrBuild(const fs::path& folder,
-                                                          const std::string& key,
-                                                          glm::ivec2 sizeSamples,
-                                                          const RowMaker& makeRow,
-                                                          std::uintmax_t mostBytes) {
+std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
+    const fs::path& folder, const std::string& key, glm::ivec2 sizeSamples, const RowMaker& makeRow,
+    const Preparation& prepare, std::uintmax_t mostBytes) {
     GFXREPRO_ASSERT(sizeSamples.x >= 1 && sizeSamples.y >= 1);
     const fs::path path = folder / (key + ".heights");
     std::error_code failure;
@@ -241,6 +239,7 @@ std::shared_ptr<const HeightFile> HeightFile::openOrBuild(const fs::path& folder
     const OpenFile lock(folder / "lock", O_RDWR | O_CREAT);
     lock.lock();
     if (!isThere(path, sizeSamples)) {
+        prepare();
         build(path, sizeSamples, makeRow);
         makeRoom(folder, path, mostBytes);
     }

@@ -22,15 +22,15 @@ class HeightFile {
     static constexpr std::uintmax_t kMostBytes = std::uintmax_t{12} << 30;
     /// Fills a row of sizeSamples.x heights; called from several threads.
     using RowMaker = std::function<void(int row, float* heightsM)>;
+    /// What has to be known before the first row; called once where the file is made.
+    using Preparation = std::function<void()>;
 
     /// Maps `folder`/<key>.heights, made first where it is not there, is cut off, or is another
     /// version's: a few rows at a time, under a temporary name that is renamed when it is whole, by
     /// one process while others wait. Throws Error where the folder cannot be written.
-    static std::shared_ptr<const HeightFile> openOrBuild(const std::filesystem::path& folder,
-                                                         const std::string& key,
-                                                         glm::ivec2 sizeSamples,
-                                                         const RowMaker& makeRow,
-                                                         std::uintmax_t mostBytes = kMostBytes);
+    static std::shared_ptr<const HeightFile> openOrBuild(
+        const std::filesystem::path& folder, const std::string& key, glm::ivec2 sizeSamples,
+        const RowMaker& makeRow, const Preparation& prepare, std::uintmax_t mostBytes = kMostBytes);
 
     const std::string& key() const { return key_; }
     float lowestM() const { return lowestM_; }

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "runner/scene/height_file.h"
@@ -90,6 +91,9 @@ struct FractalTerrain {
     float ridges = 0.7F;  // 0: rolling hills only, 1: ridges only
 };
 HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed);
+/// The same in a file of `folder`, as resampledInFile() keeps it.
+HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed,
+                               const std::filesystem::path& folder, const std::string& key);
 
 /// The same ground with `sizeSamples` a side (bicubic, through the old samples) and fractal detail
 /// between the old samples, at most `detailM` up or down: a stand-in for a finer survey.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "runner/core/error.h"
 #include "runner/scene/height_map.h"
@@ -241,6 +242,20 @@ class Resampling {
     std::vector<float> shares_;
 };
 
+/// The lowest and the highest of all rows, before they are scaled.
+glm::vec2 fractalEnds(const FractalTerrain& terrain, std::uint64_t seed) {
+    std::vector<glm::vec2> ends(static_cast<std::size_t>(terrain.sizeSamples));
+    tbb::parallel_for(0, terrain.sizeSamples, [&](int row) {
+        std::vector<float> heights(static_cast<std::size_t>(terrain.sizeSamples));
+        fractalRow(terrain, seed, row, heights.data());
+        const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+        ends[static_cast<std::size_t>(row)] = {*low, *high};
+    });
+    glm::vec2 all = ends.front();
+    for (const glm::vec2& row : ends) all = {std::min(all.x, row.x), std::max(all.y, row.y)};
+    return all;
+}
+
 }  // namespace
 
 HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed) {
@@ -277,6 +292,28 @@ HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::u
     return result;
 }
 
+HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed,
+                               const std::filesystem::path& folder, const std::string& key) {
+    HeightMap map;
+    map.sizeSamples = glm::ivec2(terrain.sizeSamples);
+    map.spacingM = terrain.spacingM;
+    // The rows are made twice: how high they reach decides their scale.
+    std::optional<glm::vec2> ends;
+    const auto makeRow = [&](int row, float* heights) {
+        fractalRow(terrain, seed, row, heights);
+        const float scale = ends->y > ends->x ? terrain.reliefM / (ends->y - ends->x) : 0.0F;
+        for (int i = 0; i < terrain.sizeSamples; ++i) heights[i] = (heights[i] - ends->x) * scale;
+    };
+    const auto prepare = [&] { ends = fractalEnds(terrain, seed); };
+    try {
+        map.file = HeightFile::openOrBuild(folder, key, map.sizeSamples, makeRow, prepare);
+    } catch (const Error&) {
+        if (terrain.sizeSamples > kMaxHeightMapSide) throw;
+        return fractalTerrain(terrain, seed);
+    }
+    return map;
+}
+
 HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
                           const std::filesystem::path& folder, const std::string& key) {
     const Resampling rows(map, sizeSamples, detailM, seed);
@@ -286,9 +323,9 @@ HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, 
     result.spacingM = rows.spacingM();
     result.sizeSamples = rows.sizeSamples();
     try {
-        result.file =
-            HeightFile::openOrBuild(folder, key, result.sizeSamples,
-                                    [&](int row, float* heights) { rows.makeRow(row, heights); });
+        result.file = HeightFile::openOrBuild(
+            folder, key, result.sizeSamples,
+            [&](int row, float* heights) { rows.makeRow(row, heights); }, [] {});
     } catch (const Error&) {
         if (sizeSamples > kMaxHeightMapSide) throw;
         return resampled(map, sizeSamples, detailM, seed);

@@ -220,7 +220,7 @@ TEST(Table, TimesOfTheQualityLaneStayOut) {
     maker.add("triangles", {7.0});
     const Table table = buildTable(experimentFrom(kPlain), maker.records());
     EXPECT_EQ(table.rows[1].cells[1].status, Status::Ambiguous);
-    EXPECT_EQ(table.rows[1].cells[1].measured, "ambiguous");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "not timed");
     EXPECT_EQ(table.rows[1].cells[1].message,
               "measured in the quality lane, where cases run side by side; a time needs the timing "
               "lane");
