@@ -108,8 +108,7 @@ std::optional<CellQuery> wholeOf(const CellQuery& query) {
     return whole;
 }
 
-/// What the records of a cell came to.
-struct Gathered {
+struct Gathered {  // what the records of a cell came to
     Samples samples;
     std::optional<Samples> whole;  // of a share
     Status worst = Status::Ok;
@@ -117,8 +116,7 @@ struct Gathered {
     bool isUntimed = false;  // ambiguous for being a time of the quality lane
     std::set<std::string> units;
     std::vector<std::string> caseIds;
-    /// How many samples each of the values is a share of, where they are shares that say so.
-    std::vector<double> shareCounts;
+    std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
 
     void note(Status status, const std::string& why) {
         if (status > worst) {
@@ -133,8 +131,8 @@ void takeRow(const Record& record, const CellQuery& query, int unit,
     if (isTimeMetric(query.metric) && record.lane == "quality") {
         if (gathered.worst < Status::Ambiguous) gathered.isUntimed = true;
         gathered.note(Status::Ambiguous,
-                      "measured in the quality lane, where cases run side by "
-                      "side; a time needs the timing lane");
+                      "measured in the quality lane, where cases run side "
+                      "by side; a time needs the timing lane");
         return;
     }
     if (record.status != Status::Ok) gathered.note(record.status, record.message);
@@ -368,8 +366,8 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
         fillValues(query, gathered, cell);
         fillProcessTimes(query, cases, gathered.samples, cell);
     }
-    const bool isUntimed = gathered.isUntimed && cell.status == Status::Ambiguous;
-    const std::string word(isUntimed ? "not timed" : statusName(cell.status));
+    const bool isTimed = !gathered.isUntimed || cell.status != Status::Ambiguous;
+    const std::string word(isTimed ? statusName(cell.status) : "not timed");
     const bool isFlaky = hasSamples && cell.status == Status::Flaky;
     cell.isPartial = hasSamples && cell.status != Status::Ok && !isFlaky;
     if (isFlaky) cell.measured += " (flaky)";

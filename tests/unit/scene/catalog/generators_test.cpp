@@ -147,7 +147,8 @@ TEST(Generators, BadParametersAreLocated) {
     EXPECT_EQ(
         test::errorText([] { generated("{shape: dargon}"); }),
         "t.yaml:1:9: generator 'sdf_model': shape is 'dargon'; allowed: blade | brain | buddha | "
-        "bunny | cube | dragon | duck | hand | head | hip | hugo | linked_tori | sphere | torus | "
+        "bunny | cube | dragon | duck | hand | head | hip | hugo | linked_tori | lion | sphere | "
+        "torus | "
         "wagner");
     EXPECT_EQ(test::errorText([] { generated("{stretch: [1, 0, 1]}"); }),
               "t.yaml:1:11: generator 'sdf_model': stretch is [1, 0, 1]; allowed: a list of 3 "
