@@ -223,7 +223,7 @@ std::string tableHtml(const Page& page, const Model& model) {
     if (!overlay.isOnlyPrinted()) {
         html +=
             "<p class=\"soft small\">Under a number: its 95 % interval a–b (of a share that was "
-            "counted once: by its count), or, of too few "
+            "counted once: by its count alone, other scenes may differ by more), or, of too few "
             "processes for one, the range a … b; and, where it was measured at the printed "
             "parameters, × what is printed. Point at a row for its cases; click to keep "
             "them.</p>\n";

@@ -95,12 +95,24 @@ std::string markdownCell(const Cell& cell, bool isOnlyPrinted) {
     return text;
 }
 
+bool hasCountedShares(const Table& table) {
+    return std::ranges::any_of(table.rows, [](const TableRow& row) {
+        return std::ranges::any_of(row.cells, [](const Cell& cell) {
+            return cell.hasShownBounds() && cell.bounds() == Bounds::Interval && cell.unit == "%";
+        });
+    });
+}
+
 /// What the bounds beside the numbers are.
 std::string boundsLegend(const Table& table) {
-    return fmt::format(
-        "Printed → measured{}{}.", table.hasShown(Bounds::Interval) ? " [95 % interval]" : "",
-        table.hasShown(Bounds::Range) ? " (range, min … max: too few processes for an interval)"
-                                      : "");
+    const char* interval = hasCountedShares(table)
+                               ? " [95 % interval; of a share that was counted once, by its count "
+                                 "alone: other scenes may differ by more]"
+                               : " [95 % interval]";
+    return fmt::format("Printed → measured{}{}.", table.hasShown(Bounds::Interval) ? interval : "",
+                       table.hasShown(Bounds::Range)
+                           ? " (range, min … max: too few processes for an interval)"
+                           : "");
 }
 
 std::string tableMarkdown(const Table& table) {
