@@ -59,6 +59,15 @@ std::string methodOf(const Experiment& experiment, const Selection& cell) {
     return fixed && fixed->isScalar() ? fixed->text() : "";
 }
 
+/// Whether the paper holds the method against a usual one, as the table says.
+bool isCompared(const Experiment& table, const std::string& method) {
+    const Node* printed = table.document.find("printed");
+    const Node* compared = printed ? printed->find("compared") : nullptr;
+    if (!compared) return false;
+    return std::ranges::any_of(compared->items(),
+                               [&](const Node& name) { return name.text() == method; });
+}
+
 const Node& required(const Node& entry, const std::string& what, std::string_view key) {
     const Node* value = entry.find(key);
     if (!value) throw Error(entry.location(), fmt::format("{} needs '{}'", what, key));
@@ -132,6 +141,12 @@ Node withPrintedCell(const Node& entry, const std::string& column, const Experim
                     fmt::format("{}: the printed cell is of method '{}', the cases of '{}'; a fit "
                                 "sees what compares no methods",
                                 what, printedMethod, method));
+    }
+    if (isCompared(table, method)) {
+        throw Error(theirs.location(),
+                    fmt::format("{}: {} compares method '{}' with a usual one ('compared'); a fit "
+                                "sees what compares no methods",
+                                what, table.id, method));
     }
     requireSameMeasure(own, cell, what, theirs.location());
     Node result = entry;

@@ -102,6 +102,10 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     printed.location = node.location();
     if (const Node* hardware = node.find("hardware")) printed.hardware = hardware->text();
     if (const Node* remark = node.find("remark")) printed.remark = trimmed(remark->text());
+    if (const Node* compared = node.find("compared")) {
+        if (!compared->isSequence()) throwNotAllowed(*compared, "printed: compared", "[methods]");
+        for (const Node& method : compared->items()) lineOf(method, "printed: compared");
+    }
     if (const Node* at = node.find("at")) {
         if (!layout) throw Error(node.keyLocation("at"), "printed: 'at' without 'technique'");
         printed.at = readAt(*at);

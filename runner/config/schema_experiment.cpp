@@ -187,6 +187,9 @@ SchemaSection printed() {
               "none",
               "a header of row axes and columns, then the rows",
               {{"type", "string"}}},
+             {"compared", "[method]", "[]",
+              "methods that the paper compares with a usual one: no fit reads their cells",
+              listOf(text())},
              {"at", "{parameter: value}", "{}",
               "what the paper measured at, where the profile paper departs from it: a parameter, "
               "scene, output.width, output.height, measure.frames",

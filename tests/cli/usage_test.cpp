@@ -126,6 +126,10 @@ TEST(Usage, CalibrationsCannotReadWhatComparesMethods) {
             EXPECT_NE(error.find("the printed cell is of method '" + name + "', " + refused),
                       std::string::npos)
                 << error;
+            const std::string measured = errorOf(target + "\nparams: {method: " + name + "}");
+            EXPECT_NE(measured.find("compares method '" + name + "' with a usual one"),
+                      std::string::npos)
+                << measured;
         }
     }
 }

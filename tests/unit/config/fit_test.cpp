@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "runner/core/files.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
@@ -72,6 +73,17 @@ TEST_F(FitTest, RefusesWhatComparesMethods) {
                         "layout: {rows: method, columns: {a: redundant_pct}}\n"
                         "fit:\n  a: {table: p/table.yaml, row: {scene: grass}, column: plain}\n"),
               "DIR/zju/a.yaml:8:6: fit: 'a': the cases are not all of one method in 'params'");
+}
+
+TEST_F(FitTest, RefusesMethodsThatThePaperComparesEvenIfItMeasuresThem) {
+    EXPECT_EQ(errorOf("grass", "ours", "params: {method: better}"), "no error");
+    const std::string path = "p/table.yaml";
+    const std::string table = readFile(folder.path() / path);
+    folder.write(path, table + "  compared: [better]\n");
+    EXPECT_EQ(errorOf("grass", "ours", "params: {method: better}"),
+              "DIR/zju/a.yaml:9:57: fit: 'a': p/1 compares method 'better' with a usual one "
+              "('compared'); a fit sees what compares no methods");
+    EXPECT_EQ(errorOf("grass", "plain"), "no error");
 }
 
 TEST_F(FitTest, RefusesCellsThatAreNotThere) {
