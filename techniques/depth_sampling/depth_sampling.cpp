@@ -196,10 +196,10 @@ void DepthSampling::recordPictures(technique::Recorder& recorder) const {
     }
     const MarkedImage frame =
         experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
-    const depth_images::ImageLayers layers = depth_images::layersOf(frame.image);
-    recorder.image("output_frame", availabilityPicture(frame.image, frame.marks), layers.options());
-    recorder.image("output_frame_truth", depth_images::shadingPicture(frame.image),
-                   layers.options("output_frame"));
+    recorder.image("output_frame", depth_images::shadingPicture(frame.image),
+                   depth_images::layersOf(frame.image).options());
+    recorder.image("unavailable", availabilityPicture(frame.image, frame.marks),
+                   depth_images::seenFrom(frame.image.view));
 }
 
 void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels) {
