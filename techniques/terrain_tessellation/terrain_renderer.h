@@ -20,6 +20,7 @@ enum class Shading {
     Height,        // the height in metres as drawn, in red: for tests and errors
     ColourMap,     // RenderSettings::colourMap, lit likewise
     GeneratedMap,  // … with groundPicture()
+    Patches,       // a chequer of the tessellated patches, lit likewise
 };
 
 inline bool hasColourMap(Shading shading) {

@@ -20,6 +20,7 @@ constexpr config::Choice<Shading> kShadings[] = {
     {Shading::SlopeAltitude, "slope_altitude", "grass, rock and snow"},
     {Shading::ColourMap, "colour_map", "the scene's picture of the ground"},
     {Shading::GeneratedMap, "generated_map", "a picture of the ground, made from the heights"},
+    {Shading::Patches, "patches", "a chequer of the patches, those of coarser tiles darker"},
 };
 constexpr config::Choice<Segment> kSegments[] = {
     {Segment::Vertical, "vertical", "along the world's up, as printed"},
@@ -115,7 +116,7 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
                           "MiB", 0.001, 65536.0}) *
         (1 << 20));
     view = params.getText("view", "valley",
-                          {"a camera or path of the scene, or overview, valley or round_flight"});
+                          {"a camera or path of the scene, or overview, valley, steep or round_flight"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});
     measuresErrors = params.getBool("errors", false, {"compares with the full resolution"});
     checksSeams = params.getBool("seams", false,
@@ -139,6 +140,12 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
                         "'culling: tile_and_patch' needs 'method: adaptive'");
         }
         render.cullsPatches = false;
+    }
+    const bool hasPatches = tessellates || method == Method::Patches;
+    if (render.shading == Shading::Patches && (!hasPatches || measuresErrors)) {
+        throw Error(params.locationOf("shading"),
+                    "'shading: patches' needs 'method: adaptive' or 'patches', without 'errors: "
+                    "true': the truth has none");
     }
     if (method == Method::UniformGrid) params.refuseGiven({"tau", "delta_s"}, "another method");
     if (method == Method::Patches) params.refuseGiven({"delta_s"}, "another method");

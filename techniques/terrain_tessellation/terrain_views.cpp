@@ -83,6 +83,14 @@ scene::Camera valley(const scene::HeightMap& map) {
     return camera(frame, eye, target);
 }
 
+/// Down at the ground that the valley is seen from.
+scene::Camera steep(const scene::HeightMap& map) {
+    const Frame frame = frameOf(map);
+    const scene::Camera from = valley(map);
+    const glm::vec3 target(from.position.x, from.position.y - frame.clearanceM, from.position.z);
+    return camera(frame, target + 0.05F * frame.sideM * glm::vec3(0.0F, 1.0F, 0.7F), target);
+}
+
 scene::CameraPath flight(const scene::HeightMap& map) {
     const Frame frame = frameOf(map);
     constexpr int kKeys = 25;  // the last one is the first again
@@ -130,12 +138,14 @@ TerrainView::TerrainView(const scene::Scene& scene, const std::string& name)
         still_ = overview(map);
     } else if (name == "valley") {
         still_ = valley(map);
+    } else if (name == "steep") {
+        still_ = steep(map);
     } else if (name == "round_flight") {
         flight_ = flight(map);
     } else {
         throw Error(
             fmt::format("the scene has no path or camera '{}', and it is none of overview, "
-                        "valley, round_flight",
+                        "valley, steep, round_flight",
                         name));
     }
 }

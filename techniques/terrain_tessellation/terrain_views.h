@@ -12,6 +12,7 @@ namespace gfxrepro::terrain_tessellation {
 /// heights alone:
 /// `overview`: the whole map from high above its southern border;
 /// `valley`: a low flight towards the highest summit;
+/// `steep`: down at the ground that the valley is seen from, a few patches wide;
 /// `round_flight`: a low round flight about the map's centre, as a path.
 class TerrainView {
   public:

@@ -9,6 +9,8 @@ out vec3 surfaceNormal;
 out float surfaceHeight;
 #if SHADING == 2
 out vec2 surfaceSample;
+#elif SHADING == 4
+flat out ivec2 surfacePatch;
 #endif
 #if MORPH
 uniform vec3 eye;
@@ -29,6 +31,8 @@ void main() {
     surfaceHeight = ground.height;
 #if SHADING == 2
     surfaceSample = at;
+#elif SHADING == 4
+    surfacePatch = ivec2(0, tile.z);  // a tile has no patches here
 #endif
     gl_Position = clipFromWorld * vec4(worldOf(at, ground.height), 1.0);
 }

@@ -18,6 +18,9 @@ patch out int drawnRim;
 #if CAPTURE
 patch out int drawnPatch;
 #endif
+#if SHADING == 4
+patch out int drawnParity;
+#endif
 
 float innerOf(float a, float b) {
 #if INNER == 0
@@ -68,6 +71,9 @@ void main() {
     drawnRim = p.rim;
 #if CAPTURE
     drawnPatch = patchIndex[0];
+#endif
+#if SHADING == 4
+    drawnParity = (p.cell.x + p.cell.y) & 1;
 #endif
     if (isPatchCulled(p, skirtFoot)) {
         if (p.rim == kSurface) atomicAdd(culledPatches, 1u);

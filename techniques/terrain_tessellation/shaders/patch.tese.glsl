@@ -21,6 +21,9 @@ out vec3 surfaceNormal;
 out float surfaceHeight;
 #if SHADING == 2
 out vec2 surfaceSample;
+#elif SHADING == 4
+patch in int drawnParity;
+flat out ivec2 surfacePatch;
 #endif
 
 void main() {
@@ -43,6 +46,8 @@ void main() {
     surfaceHeight = top;
 #if SHADING == 2
     surfaceSample = at;
+#elif SHADING == 4
+    surfacePatch = ivec2(drawnParity, drawnTile.z);
 #endif
     precise vec4 position = clipFromWorld * vec4(worldOf(at, height), 1.0);
     gl_Position = position;

@@ -1,5 +1,5 @@
 #version 450 core
-// Shades by slope and altitude or by a colour map, lit from the west and above; or writes the height. Alpha is
+// Shades by slope and altitude, by a colour map or by patch, lit from the west and above; or writes the height. Alpha is
 // 0 where the surface is seen from below or a skirt from inside, which from above the ground happens
 // through cracks only, and is drawn only where cracks are counted.
 in vec3 surfaceNormal;
@@ -8,6 +8,8 @@ in float surfaceHeight;
 in vec2 surfaceSample;
 uniform vec2 lastSample;  // the south-eastern one
 layout(binding = COLOUR_UNIT) uniform sampler2D colourMap;
+#elif SHADING == 4
+flat in ivec2 surfacePatch;  // on the chequer: 0 or 1; level
 #else
 uniform vec2 heightExtent;  // lowest, highest
 #endif
@@ -21,6 +23,9 @@ void main() {
     vec3 n = normalize(surfaceNormal);
 #if SHADING == 2
     vec3 ground = texture(colourMap, surfaceSample / lastSample).rgb;
+#elif SHADING == 4
+    vec3 ground = (surfacePatch.x == 0 ? vec3(0.80, 0.78, 0.70) : vec3(0.42, 0.30, 0.62)) *
+                  exp2(-0.3 * float(surfacePatch.y));
 #else
     // A flat terrain has no altitudes: 1e-6 m keeps the division finite.
     float altitude = (surfaceHeight - heightExtent.x) / max(heightExtent.y - heightExtent.x, 1e-6);

@@ -140,7 +140,7 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     EXPECT_EQ(TerrainView(scene, "valley").camera(0, 1, 1.0F).position, camera.position);
     EXPECT_EQ(
         test::errorText([&] { TerrainView(scene, "moon"); }),
-        "the scene has no path or camera 'moon', and it is none of overview, valley, round_flight");
+        "the scene has no path or camera 'moon', and it is none of overview, valley, steep, round_flight");
 }
 
 }  // namespace

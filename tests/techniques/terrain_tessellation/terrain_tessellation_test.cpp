@@ -64,6 +64,11 @@ TEST(TerrainTessellationParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:24: 'seams' needs 'method: adaptive'");
     EXPECT_EQ(message("{method: patches, yardstick: true}"),
               "case.yaml:1:30: 'yardstick' needs 'method: adaptive'");
+    const std::string chequer =
+        ": 'shading: patches' needs 'method: adaptive' or 'patches', without 'errors: true': the "
+        "truth has none";
+    EXPECT_EQ(message("{method: cdlod, shading: patches}"), "case.yaml:1:26" + chequer);
+    EXPECT_EQ(message("{errors: true, shading: patches}"), "case.yaml:1:25" + chequer);
     EXPECT_EQ(message("{supersampling: 2}"),
               "case.yaml:1:17: 'supersampling' needs 'errors: true' or 'pictures: true'");
 }
@@ -251,11 +256,18 @@ TEST_F(TerrainTessellationTest, UntessellatedPatchesAreTwoTriangles) {
 TEST_F(TerrainTessellationTest, EveryViewAndMethodDraws) {
     const scene::Scene scene = terrain({200, 90});
     for (const char* method : {"adaptive", "patches", "uniform_grid", "cdlod"}) {
-        for (const char* view : {"overview", "valley", "round_flight"}) {
+        for (const char* view : {"overview", "valley", "steep", "round_flight"}) {
             const auto m = measured(fmt::format("method: {}, view: {}", method, view), scene);
             EXPECT_GT(m.at("drawn_triangles"), 0.0) << method << " " << view;
         }
     }
+}
+
+TEST_F(TerrainTessellationTest, PatchesAreAChequerWhereThereAreAny) {
+    const scene::Scene scene = terrain({257, 257});
+    const std::string chequer = "shading: patches, pictures: true, view: steep, method: ";
+    EXPECT_GT(measured(chequer + "adaptive", scene).at("patches"), 1.0);
+    EXPECT_GT(measured(chequer + "patches", scene).at("patches"), 1.0);
 }
 
 TEST_F(TerrainTessellationTest, DrawsTinyAndFlatTerrain) {
