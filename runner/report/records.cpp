@@ -10,7 +10,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
@@ -25,8 +28,8 @@ namespace {
 
 constexpr std::string_view kHeader =
     "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
-    "value,status,message";
-constexpr std::size_t kColumnCount = 17;
+    "value,status,message,rows";
+constexpr std::size_t kColumnCount = 18;
 
 constexpr std::array<std::string_view, 10> kStatusNames = {
     "ok",  "ambiguous", "flaky",       "unsupported", "timeout",
@@ -46,13 +49,14 @@ std::string statusNames() {
     throw Error("cannot write " + path.string() + ": " + std::strerror(reason));
 }
 
-void appendRow(std::string& out, const Record& record) {
+void appendRow(std::string& out, const Record& record, int unitRows) {
     CsvRow row(out);
     row.integer(Record::kSchema).text(record.caseId).text(record.table).text(record.technique);
     row.text(record.method).text(record.scene).text(record.params);
     row.integer(record.frame).integer(record.repeat).integer(record.process);
     row.text(record.lane).text(record.pass).text(record.metric).text(record.unit);
-    row.number(record.value).text(statusName(record.status)).text(record.message).end();
+    row.number(record.value).text(statusName(record.status)).text(record.message);
+    row.integer(unitRows).end();
 }
 
 int integerField(const SourceLocation& where, std::string_view column, const std::string& text) {
@@ -123,34 +127,92 @@ void checkHeader(const fs::path& path, std::string_view text) {
     }
 }
 
-/// The whole cases of a file, and where they end. Before a torn row the other rows of its case are
-/// left out too: a crash in the middle of a case's write leaves some.
-struct WholeCases {
+/// A case in one process: what is measured, and written, together.
+using UnitKey = std::pair<std::string_view, int>;
+UnitKey unitOf(const Record& record) {
+    return {record.caseId, record.process};
+}
+
+/// What names a value within a run.
+auto keyOf(const Record& record) {
+    return std::tie(record.caseId, record.process, record.frame, record.repeat, record.pass,
+                    record.metric);
+}
+
+struct Row {
+    Record record;
+    int line = 0;
+    int unitRows = 0;         // as written
+    std::size_t endByte = 0;  // in the file
+};
+
+/// Throws Error where a value is given again.
+void checkKeys(const fs::path& path, const std::vector<Row>& rows) {
+    std::vector<const Row*> order;
+    for (const Row& row : rows) {
+        if (row.record.status == Status::Ok) order.push_back(&row);
+    }
+    std::ranges::stable_sort(order, {}, [](const Row* row) { return keyOf(row->record); });
+    const auto twice = std::ranges::adjacent_find(
+        order, {}, [](const Row* row) { return keyOf(row->record); });
+    if (twice == order.end()) return;
+    const Record& record = (*twice)->record;
+    throw Error({path.string(), (*(twice + 1))->line, 0},
+                "'" + record.metric + "' of case " + record.caseId + ", process " +
+                    std::to_string(record.process) + ", frame " + std::to_string(record.frame) +
+                    ", repeat " + std::to_string(record.repeat) + " was given in line " +
+                    std::to_string((*twice)->line) + " already; a value is recorded once");
+}
+
+/// Leaves out the last unit where rows of it are missing: its write was cut. Throws Error where
+/// rows of another one are.
+void requireWholeUnits(const fs::path& path, std::vector<Row>& rows) {
+    std::map<UnitKey, int> counts;
+    for (const Row& row : rows) ++counts[unitOf(row.record)];
+    const std::optional<UnitKey> last =
+        rows.empty() ? std::nullopt : std::optional(unitOf(rows.back().record));
+    std::size_t whole = rows.size();
+    for (std::size_t i = rows.size(); i-- > 0;) {
+        const Row& row = rows[i];
+        const int count = counts.at(unitOf(row.record));
+        if (count == row.unitRows) continue;
+        if (unitOf(row.record) != *last || count > row.unitRows) {
+            throw Error({path.string(), row.line, 0},
+                        "case " + row.record.caseId + ", process " +
+                            std::to_string(row.record.process) + " has " + std::to_string(count) +
+                            " of " + std::to_string(row.unitRows) + " rows");
+        }
+        whole = i;
+    }
+    rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(whole), rows.end());
+}
+
+/// The whole units of a file, and where they end.
+struct WholeUnits {
     std::vector<Record> records;
     std::size_t endBytes = 0;
 };
-WholeCases readWholeCases(const fs::path& path, std::string_view text) {
+WholeUnits readWholeUnits(const fs::path& path, std::string_view text) {
     checkHeader(path, text);
     CsvReader reader(text, path.string());
     std::vector<std::string> fields;
-    std::vector<std::size_t> ends;  // of the header and of each record
-    WholeCases result;
+    std::vector<Row> rows;
+    WholeUnits result;
     while (reader.next(fields)) {
-        ends.push_back(reader.rowEnd());
-        if (ends.size() > 1) {
-            result.records.push_back(recordFromFields(reader.location(), fields));
+        if (result.endBytes == 0) {
+            result.endBytes = reader.rowEnd();  // the header's
+            continue;
         }
+        const SourceLocation where = reader.location();
+        Record record = recordFromFields(where, fields);
+        rows.push_back({std::move(record), where.line, integerField(where, "rows", fields.back()),
+                        reader.rowEnd()});
     }
-    const bool isTorn = reader.rowEnd() < text.size();
-    const std::string tornCase = fields.size() > 1 ? fields[1] : "";  // perhaps not all of it
-    if (isTorn && !result.records.empty()) {
-        const std::string last = result.records.back().caseId;
-        while (last.starts_with(tornCase) && !result.records.empty() &&
-               result.records.back().caseId == last) {
-            result.records.pop_back();
-        }
-    }
-    if (!ends.empty()) result.endBytes = ends[result.records.size()];
+    checkKeys(path, rows);
+    requireWholeUnits(path, rows);
+    if (!rows.empty()) result.endBytes = rows.back().endByte;
+    result.records.reserve(rows.size());
+    for (Row& row : rows) result.records.push_back(std::move(row.record));
     return result;
 }
 
@@ -173,7 +235,7 @@ RecordWriter::RecordWriter(const fs::path& path) : path_(path) {
         const std::string header = std::string(kHeader) + '\n';
         const MappedFile file(path);
         const bool isNew = header != file.text() && header.starts_with(file.text());
-        const std::size_t length = isNew ? 0 : readWholeCases(path, file.text()).endBytes;
+        const std::size_t length = isNew ? 0 : readWholeUnits(path, file.text()).endBytes;
         if (::ftruncate(fd_, static_cast<off_t>(length)) != 0) failWriting(path, errno);
         if (isNew) writeBlock(header);
     } catch (...) {
@@ -187,8 +249,10 @@ RecordWriter::~RecordWriter() {
 }
 
 void RecordWriter::append(const std::vector<Record>& rows) {
+    std::map<UnitKey, int> counts;
+    for (const Record& row : rows) ++counts[unitOf(row)];
     std::string block;
-    for (const Record& row : rows) appendRow(block, row);
+    for (const Record& row : rows) appendRow(block, row, counts.at(unitOf(row)));
     if (!block.empty()) writeBlock(block);
 }
 
@@ -209,7 +273,7 @@ void RecordWriter::writeBlock(std::string_view block) {
 
 std::vector<Record> readRecords(const fs::path& path) {
     const MappedFile file(path);
-    return readWholeCases(path, file.text()).records;
+    return readWholeUnits(path, file.text()).records;
 }
 
 }  // namespace gfxrepro::report

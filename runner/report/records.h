@@ -29,9 +29,10 @@ Status statusFromName(std::string_view name);
 /// metric and pass that frames have values of, too, these are no part.
 inline constexpr int kSetup = -1;
 
-/// A row of records.csv. Columns in this order, schema version first.
+/// A row of records.csv. Columns in this order, schema version first; the last one, `rows`, says how
+/// many rows the row's unit (its case in its process) has.
 struct Record {
-    static constexpr int kSchema = 1;
+    static constexpr int kSchema = 2;
 
     std::string caseId;
     std::string table;  // "zju2005/2.1"
@@ -53,13 +54,14 @@ struct Record {
     bool operator==(const Record&) const = default;
 };
 
-/// Appends whole cases: a case's rows reach the disk together, or not at all.
+/// Appends whole units: the rows of a case in a process reach the disk together, or not at all.
 class RecordWriter {
   public:
-    /// Creates the file with its header, or opens it for appending after cutting off a torn last
-    /// line, and with it the other rows of its case.
+    /// Creates the file with its header, or opens it for appending after cutting off a last unit
+    /// that is not whole.
     explicit RecordWriter(const std::filesystem::path& path);
-    /// One write, then flushed to the disk. Throws Error, leaving the file as it was.
+    /// One write, then flushed to the disk; of a unit, all rows. Throws Error, leaving the file as
+    /// it was.
     void append(const std::vector<Record>& rows);
 
     ~RecordWriter();
@@ -73,8 +75,9 @@ class RecordWriter {
     int fd_ = -1;
 };
 
-/// Reads records.csv. A torn last line (no newline) is ignored with the other rows of its case; any
-/// other malformed row is an Error with file and line.
+/// Reads records.csv. A last unit whose write was cut, be it at a line's end, is left out. Throws
+/// Error with file and line for any other unit without all of its rows, for a malformed row, and
+/// for a value (case, process, frame, repeat, pass, metric) that is there twice.
 std::vector<Record> readRecords(const std::filesystem::path& path);
 
 }  // namespace gfxrepro::report

@@ -20,7 +20,7 @@ using test::TemporaryFolder;
 
 constexpr const char* kHeader =
     "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
-    "value,status,message\n";
+    "value,status,message,rows\n";
 
 Record sample(const std::string& caseId, double value) {
     Record record;
@@ -49,7 +49,7 @@ TEST(Records, WriteTheDocumentedColumns) {
               std::string(kHeader) +
                   "1,abc,zju2005/2.1,voxelization,worksheet,models/duck,"
                   "\"{\"\"resolution\"\":256,\"\"method\"\":\"\"worksheet\"\"}\",1,2,3,timing,"
-                  "rasterization,gpu_time_ms,ms,0.1,ok,\n");
+                  "rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
 }
 
 TEST(Records, ReadBackAsWritten) {
@@ -59,9 +59,11 @@ TEST(Records, ReadBackAsWritten) {
     for (const double value : {0.0, -0.0, 1.0 / 3.0, 1e-300, 6.02214076e23, 5e-324,
                                std::numeric_limits<double>::infinity(), 123456789.0}) {
         rows.push_back(sample("abc", value));
+        rows.back().repeat = static_cast<int>(rows.size());
     }
     for (const std::string text : {"", ",", "\"", "a\nb", "a\r\nb", "\"\"", " lead", "ü,\"ß\"\n"}) {
         rows.push_back(sample("abc", 1.0));
+        rows.back().repeat = static_cast<int>(rows.size());
         rows.back().message = text;
         rows.back().scene = text + "x";
     }
@@ -81,7 +83,7 @@ TEST(Records, FailedCaseHasAnEmptyValue) {
     row.status = Status::DeviceLost;
     row.message = "the context was reset";
     RecordWriter(path).append({row});
-    EXPECT_THAT(readFile(path), testing::EndsWith(",ms,,device-lost,the context was reset\n"));
+    EXPECT_THAT(readFile(path), testing::EndsWith(",ms,,device-lost,the context was reset,1\n"));
     const std::vector<Record> read = readRecords(path);
     ASSERT_EQ(read.size(), 1u);
     EXPECT_TRUE(std::isnan(read[0].value));
@@ -89,23 +91,22 @@ TEST(Records, FailedCaseHasAnEmptyValue) {
 }
 
 /// Whatever the byte at which a write was cut: what is read, and what is there after reopening, are
-/// the cases before it.
+/// the cases before it; also behind a row's end.
 TEST(Records, CutAtAnyByteLosesOnlyTheLastCase) {
     const TemporaryFolder folder;
     const auto whole = folder.path() / "whole.csv";
     std::vector<Record> first = {sample("aaa", 1.0), sample("aaa", 2.0)};
     first[1].message = "two\nlines";
+    first[1].repeat = 3;
     RecordWriter(whole).append(first);
     const std::size_t firstEnd = readFile(whole).size();
     std::vector<Record> second = {sample("bbb", 3.0), sample("bbb", 4.0)};
     second[0].message = "a \"quoted\"\nnewline";
+    second[0].repeat = 3;
     RecordWriter(whole).append(second);
     const std::string text = readFile(whole);
-    const std::size_t rowEnd = text.find("1,bbb", firstEnd + 1);
 
     for (std::size_t length = firstEnd + 3; length < text.size(); ++length) {
-        // A cut exactly behind a row cannot be told from a case that has one row less.
-        if (length == rowEnd) continue;
         const auto path = folder.write("cut.csv", text.substr(0, length));
         EXPECT_EQ(readRecords(path), first) << "cut at " << length;
         RecordWriter(path).append(second);
@@ -129,25 +130,25 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
         const auto path = folder.write("records.csv", content);
         return errorText([&] { readRecords(path); }, folder.path());
     };
-    const std::string good = "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,\n";
+    const std::string good = "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,,1\n";
     EXPECT_EQ(error("a,b\n"),
               "DIR/records.csv:1: expected the header "
               "'schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,"
-              "metric,unit,value,status,message', found 'a,b'");
-    EXPECT_EQ(error(kHeader + good + "1,c,t\n"), "DIR/records.csv:3: expected 17 columns, found 3");
-    EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,\n"),
-              "DIR/records.csv:3: expected records of schema 1, found 2");
-    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0.5,0,0,timing,p,x,ms,1,ok,\n"),
+              "metric,unit,value,status,message,rows', found 'a,b'");
+    EXPECT_EQ(error(kHeader + good + "2,c,t\n"), "DIR/records.csv:3: expected 18 columns, found 3");
+    EXPECT_EQ(error(kHeader + good + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,,1\n"),
+              "DIR/records.csv:3: expected records of schema 2, found 1");
+    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0.5,0,0,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
-    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,-2,timing,p,x,ms,1,ok,\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,-2,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:2: column 'process': expected 0 or more, found '-2'");
-    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,fast,ok,\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,fast,ok,,1\n"),
               "DIR/records.csv:2: column 'value': expected a number or nothing, found 'fast'");
-    EXPECT_EQ(error(std::string(kHeader) + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,fine,\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,fine,,1\n"),
               "DIR/records.csv:2: column 'status': found 'fine'; allowed: ok, ambiguous, flaky, "
               "unsupported, timeout, oom, crash, device-lost, missing, error");
-    EXPECT_EQ(error(std::string(kHeader) + "1,\"two\nlines\",t\n" + good),
-              "DIR/records.csv:2: expected 17 columns, found 3");
+    EXPECT_EQ(error(std::string(kHeader) + "2,\"two\nlines\",t\n" + good),
+              "DIR/records.csv:2: expected 18 columns, found 3");
     EXPECT_EQ(error(std::string(kHeader) + "1,c\"d,t\n"),
               "DIR/records.csv:2: expected a comma or the end of the line after 'c', found '\"'");
     EXPECT_EQ(error(std::string(kHeader) + "1,\"c\"d,t\n"),
@@ -157,6 +158,35 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
     EXPECT_EQ(errorText([] { statusFromName("fine"); }),
               "unknown status 'fine'; allowed: ok, ambiguous, flaky, unsupported, timeout, oom, "
               "crash, device-lost, missing, error");
+}
+
+/// A row of case `caseId` as written, which says that its unit has `rows` rows.
+std::string rowText(const std::string& caseId, int frame, int process, int rows) {
+    return "2," + caseId + ",t,q,m,s,{}," + std::to_string(frame) + ",0," +
+           std::to_string(process) + ",timing,p,x,ms,1,ok,," + std::to_string(rows) + "\n";
+}
+
+TEST(Records, AValueGivenTwiceIsAnError) {
+    const TemporaryFolder folder;
+    const auto error = [&](const std::string& rows) {
+        const auto path = folder.write("records.csv", kHeader + rows);
+        return errorText([&] { readRecords(path); }, folder.path());
+    };
+    const std::string other = rowText("c", 0, 1, 1);
+    EXPECT_EQ(error(rowText("c", 0, 0, 2) + rowText("c", 1, 0, 2) + other), "no error");
+    EXPECT_EQ(error(rowText("c", 1, 0, 2) + other + rowText("c", 1, 0, 2)),
+              "DIR/records.csv:4: 'x' of case c, process 0, frame 1, repeat 0 was given in line 2 "
+              "already; a value is recorded once");
+}
+
+TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
+    const TemporaryFolder folder;
+    const std::string whole = rowText("c", 0, 0, 2) + rowText("c", 1, 0, 2);
+    const std::string cut = rowText("c", 0, 1, 3) + rowText("c", 1, 1, 3);
+    EXPECT_EQ(readRecords(folder.write("records.csv", kHeader + whole + cut)).size(), 2u);
+    const auto path = folder.write("records.csv", kHeader + cut + whole);
+    EXPECT_EQ(errorText([&] { readRecords(path); }, folder.path()),
+              "DIR/records.csv:3: case c, process 1 has 2 of 3 rows");
 }
 
 TEST(Records, WriterRefusesAnotherFile) {
@@ -178,6 +208,7 @@ TEST(Records, HundredThousandRows) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "records.csv";
     std::vector<Record> rows(100'000, sample("0123456789ab", 1.25));
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].frame = static_cast<int>(i);
     RecordWriter(path).append(rows);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Record> read = readRecords(path);
