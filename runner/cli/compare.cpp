@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -24,9 +25,13 @@ namespace {
 using regression::Difference;
 using regression::Pairing;
 
+/// Of a whole run; its cases have limits of their own.
+constexpr std::chrono::hours kRunLimit{24};
+
 /// A run's series with what they were measured on.
 struct Measured {
     regression::SeriesMap series;
+    regression::Failures failures;
     std::string machine;
     std::string commit;
     bool isSoftware = false;
@@ -36,12 +41,11 @@ struct Measured {
 
 Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    Measured measured{regression::seriesOf(run.records),
-                      batch::machineName(run.manifest),
-                      run.manifest.at("commit").get<std::string>(),
-                      run.plan.deviceClass == "software",
-                      {},
-                      batch::notesOf(run.manifest)};
+    Measured measured{
+        regression::seriesOf(run.records),  regression::failuresOf(run.records),
+        batch::machineName(run.manifest),   run.manifest.at("commit").get<std::string>(),
+        run.plan.deviceClass == "software", {},
+        batch::notesOf(run.manifest)};
     const std::vector<std::string>& configs = run.plan.request.configs;
     for (std::size_t i = 0; i < std::min(configs.size(), run.plan.experiments.size()); ++i) {
         measured.configs[run.plan.experiments[i].id] = configs[i];
@@ -56,9 +60,9 @@ void requireSameMachine(const Measured& a, const Measured& b) {
 }
 
 /// Runs a program to its end; its output is shown when it fails. Exit code 4 (a case did not
-/// finish) passes: the series tell what is missing.
+/// finish) passes: the records tell how.
 void runProgram(const std::vector<std::string>& arguments) {
-    const batch::ProgramEnd end = batch::runToEnd(arguments);
+    const batch::ProgramEnd end = batch::runToEnd(arguments, kRunLimit);
     if (end.exitCode == kExitOk || end.exitCode == kExitIncomplete) return;
     throw Error(fmt::format("{}: exit code {}: {}", arguments.front(), end.exitCode, end.output));
 }
@@ -79,6 +83,8 @@ class Turns {
     }
     /// The newer program's rounds, without those that confirm.
     const Measured& newer() const { return newer_; }
+    /// Whether a case of either program failed.
+    bool hasFailures() const { return hasFailures_; }
 
   private:
     void takeRound(regression::Sides& sides, const std::set<std::string>& tables) {
@@ -90,6 +96,10 @@ class Turns {
         sides.isSoftware = measured[1].isSoftware;
         regression::append(sides.before, measured[0].series);
         regression::append(sides.after, measured[1].series);
+        sides.failuresBefore.merge(measured[0].failures);
+        sides.failuresAfter.merge(measured[1].failures);
+        hasFailures_ =
+            hasFailures_ || !sides.failuresBefore.empty() || !sides.failuresAfter.empty();
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
         measured[1].series = std::move(newer_.series);
@@ -118,6 +128,7 @@ class Turns {
     const CompareOptions& options_;
     fs::path folder_;
     int roundCount_ = 0;
+    bool hasFailures_ = false;
     Measured newer_;
 };
 
@@ -132,14 +143,20 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
 /// What two runs say that were measured for themselves.
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer) {
     requireSameMachine(older, newer);
-    return regression::compare(older.series, newer.series, Pairing::Apart,
-                               {.isSoftware = newer.isSoftware});
+    std::vector<Difference> differences = regression::compare(
+        older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
+    regression::noteFailures(differences, older.failures, newer.failures);
+    return differences;
 }
 
 void say(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
     for (const Difference& difference : comparison.differences) {
         if (!difference.isAlarm()) continue;
+        if (difference.verdict == regression::Verdict::Lost) {
+            fmt::print("{}: lost: {}\n", difference.key.title(), difference.reason);
+            continue;
+        }
         fmt::print("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
                    regression::verdictName(difference.verdict), difference.ratio,
                    difference.interval.low, difference.interval.high);
@@ -163,14 +180,17 @@ int compare(const CompareOptions& options) {
         options.out.empty() ? batch::defaultRunPath("compare") : fs::path(options.out);
     regression::Comparison comparison;
     Measured newer;
+    bool hasFailures = false;
     if (options.areBinaries) {
         Turns turns(options, folder);
         comparison.differences = turns.compare();
         newer = turns.newer();
+        hasFailures = turns.hasFailures();
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
         comparison.differences = compareRuns(older, newer);
+        hasFailures = !older.failures.empty() || !newer.failures.empty();
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);
@@ -183,7 +203,8 @@ int compare(const CompareOptions& options) {
     writeFileAtomic(folder / "benchmark.json",
                     regression::smallerIsBetterJson(comparison.differences));
     say(comparison, folder);
-    return comparison.isAlarm() ? kExitClaimFailed : kExitOk;
+    if (comparison.isAlarm()) return kExitClaimFailed;
+    return hasFailures ? kExitIncomplete : kExitOk;
 }
 
 }  // namespace gfxrepro::cli

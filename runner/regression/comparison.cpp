@@ -57,7 +57,7 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
 }
 
 Difference missing(const SeriesKey& key, const Series& values, bool isBefore) {
-    Difference result{.key = key, .verdict = Verdict::Missing};
+    Difference result{.key = key, .verdict = isBefore ? Verdict::Lost : Verdict::Missing};
     (isBefore ? result.before : result.after) = medianOf(values);
     result.reason = isBefore ? "measured before only" : "measured after only";
     return result;
@@ -170,6 +170,7 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         Rules own = rules;
         own.isSoftware = sides.isSoftware;
         differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
+        noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
         const bool isDecided = std::ranges::none_of(
             differences, [](const Difference& one) { return one.verdict == Verdict::CannotTell; });
         if (isDecided) break;
@@ -193,6 +194,8 @@ std::string_view verdictName(Verdict verdict) {
             return "changed";
         case Verdict::Missing:
             return "missing";
+        case Verdict::Lost:
+            return "lost";
     }
     return "cannot tell";
 }
@@ -235,6 +238,23 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
     }
     std::ranges::sort(differences, {}, &Difference::key);
     return differences;
+}
+
+void noteFailures(std::vector<Difference>& differences, const Failures& before,
+                  const Failures& after) {
+    for (const auto& [title, failure] : after) {
+        bool isSaid = before.contains(title);
+        for (Difference& difference : differences) {
+            if (difference.verdict != Verdict::Lost || difference.key.caseTitle() != title)
+                continue;
+            difference.reason = failure.text;
+            isSaid = true;
+        }
+        if (isSaid) continue;
+        differences.push_back(
+            {.key = failure.key, .verdict = Verdict::Lost, .reason = failure.text});
+    }
+    std::ranges::sort(differences, {}, &Difference::key);
 }
 
 void confirm(std::vector<Difference>& differences, const std::vector<Difference>& again) {

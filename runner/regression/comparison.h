@@ -13,9 +13,10 @@
 
 namespace gfxrepro::regression {
 
-/// Times are faster, slower, same or cannot tell; other metrics same or changed. A case that only
-/// one side has is Missing.
-enum class Verdict { Faster, Slower, Same, CannotTell, Changed, Missing };
+/// Times are faster, slower, same or cannot tell; other metrics same or changed. What the earlier
+/// build measured and the later one did not is Lost, and so is a case that failed in the later one
+/// alone; what only the later one has is Missing.
+enum class Verdict { Faster, Slower, Same, CannotTell, Changed, Missing, Lost };
 std::string_view verdictName(Verdict verdict);
 
 /// Whether the sides were measured by turns (round i of one beside round i of the other), so that
@@ -46,9 +47,12 @@ struct Difference {
     metrics::Interval interval{1.0, 1.0};  // of the ratio, at 95 %
     double floor = 0.0;                    // the smallest change that counts, relative
     Verdict verdict = Verdict::CannotTell;
-    std::string reason{};  // of CannotTell and Missing
+    std::string reason{};  // of CannotTell, Missing and Lost
 
-    bool isAlarm() const { return verdict == Verdict::Slower || verdict == Verdict::Changed; }
+    bool isAlarm() const {
+        return verdict == Verdict::Slower || verdict == Verdict::Changed ||
+               verdict == Verdict::Lost;
+    }
 };
 
 /// The smallest relative change that `values`, measured in turn, can show: half the 95 % interval
@@ -63,6 +67,11 @@ double detectableChange(const Series& values, const Rules& rules);
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
                                 const Rules& rules = {});
 
+/// Says of what was lost how its cases failed, and adds a Lost for each case that failed afterwards
+/// alone and of which nothing else was lost.
+void noteFailures(std::vector<Difference>& differences, const Failures& before,
+                  const Failures& after);
+
 /// An alarm counts when measuring once more in fresh processes gives it again; else it becomes
 /// CannotTell with the reason. Other verdicts stay. Both in the order of their keys.
 void confirm(std::vector<Difference>& differences, const std::vector<Difference>& again);
@@ -70,6 +79,7 @@ void confirm(std::vector<Difference>& differences, const std::vector<Difference>
 /// What both sides have given so far.
 struct Sides {
     SeriesMap before, after;
+    Failures failuresBefore, failuresAfter;
     bool isSoftware = false;  // the device, as in Rules
 };
 /// Appends further rounds by turns; of `tables` alone where there are some.

@@ -79,12 +79,16 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
 
 }  // namespace
 
-std::string SeriesKey::title() const {
+std::string SeriesKey::caseTitle() const {
     std::string text = fmt::format("{} {}", table, technique);
     for (const std::string* part : {&method, &scene}) {
         if (!part->empty()) text += fmt::format(" {}", *part);
     }
-    text += fmt::format(" {}", metric);
+    return text;
+}
+
+std::string SeriesKey::title() const {
+    std::string text = fmt::format("{} {}", caseTitle(), metric);
     if (!pass.empty()) text += fmt::format("/{}", pass);
     return text;
 }
@@ -107,6 +111,23 @@ SeriesMap seriesOf(const std::vector<report::Record>& records) {
         }
     }
     return series;
+}
+
+Failures failuresOf(const std::vector<report::Record>& records) {
+    Failures failures;
+    for (const report::Record& record : records) {
+        if (record.status == report::Status::Ok || record.status == report::Status::Ambiguous) {
+            continue;
+        }
+        const SeriesKey key{record.table,  record.technique,
+                            record.method, record.scene,
+                            record.params, "",
+                            "status",      ""};
+        std::string text(report::statusName(record.status));
+        if (!record.message.empty()) text += ": " + record.message;
+        failures.insert_or_assign(key.caseTitle(), Failure{key, text});
+    }
+    return failures;
 }
 
 void append(SeriesMap& series, const SeriesMap& more) {

@@ -26,7 +26,9 @@ struct SeriesKey {
     /// The time of a frame, by the clock or of all the process's threads.
     bool isTime() const { return metric == "wall_time_ms" || isProcessTime(); }
     bool isProcessTime() const { return metric == "process_time_ms"; }
-    /// "zju2005/2.1 TECHNIQUE worksheet models/duck wall_time_ms"; parameters are left away.
+    /// "zju2005/2.1 TECHNIQUE worksheet models/duck"; parameters are left away.
+    std::string caseTitle() const;
+    /// … wall_time_ms
     std::string title() const;
 };
 
@@ -41,6 +43,15 @@ using SeriesMap = std::map<SeriesKey, Series>;
 /// unit of time or a rate, or "time" in the name) and what is about the machine (memory of the
 /// process, counts that the order of parallel work changes).
 SeriesMap seriesOf(const std::vector<report::Record>& records);
+
+/// A case that did not end as it should, be it that its second try did.
+struct Failure {
+    SeriesKey key;     // its metric is "status"
+    std::string text;  // "crash: SIGSEGV: …"
+};
+/// By SeriesKey::caseTitle().
+using Failures = std::map<std::string, Failure>;
+Failures failuresOf(const std::vector<report::Record>& records);
 
 /// Puts `more`'s processes behind those of `series`: rounds of alternating runs.
 void append(SeriesMap& series, const SeriesMap& more);

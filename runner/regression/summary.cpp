@@ -16,7 +16,7 @@ std::size_t countOf(const std::vector<Difference>& differences, Verdict verdict)
 }
 
 std::string ratioText(const Difference& difference) {
-    if (difference.verdict == Verdict::Missing) return "";
+    if (difference.verdict == Verdict::Missing || difference.verdict == Verdict::Lost) return "";
     return fmt::format("{:.3f} [{:.3f}, {:.3f}]", difference.ratio, difference.interval.low,
                        difference.interval.high);
 }
@@ -31,8 +31,8 @@ std::string verdictText(const Difference& difference) {
 
 std::string summaryLine(const std::vector<Difference>& differences) {
     std::string text;
-    for (const Verdict verdict : {Verdict::Slower, Verdict::Faster, Verdict::Changed, Verdict::Same,
-                                  Verdict::CannotTell, Verdict::Missing}) {
+    for (const Verdict verdict : {Verdict::Lost, Verdict::Slower, Verdict::Faster, Verdict::Changed,
+                                  Verdict::Same, Verdict::CannotTell, Verdict::Missing}) {
         const std::size_t count = countOf(differences, verdict);
         if (count == 0) continue;
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));

@@ -65,6 +65,25 @@ TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
         std::string::npos);
 }
 
+TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
+    const fs::path config = writeMockConfig(folder, "measure: {lane: quality}\n");
+    const fs::path crashing = folder.write(
+        "crashing", "#!/bin/sh\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\" --set behaviour=crash\n");
+    fs::permissions(crashing, fs::perms::owner_all);
+    const auto compared = [&](const std::string& older, const std::string& newer) {
+        fs::remove_all(out);
+        return mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software",
+                             "--out", out, older, newer, config});
+    };
+    const ProcessResult lost = compared(program("old", 0), crashing);
+    EXPECT_EQ(lost.exitCode, 1) << lost.out << lost.err;
+    EXPECT_NE(lost.out.find(": lost: crash: "), std::string::npos) << lost.out;
+    EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"lost: crash: "),
+              std::string::npos);
+    const ProcessResult both = compared(crashing, crashing);
+    EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+}
+
 TEST_F(Compare, RefusesWhatIsNoPair) {
     EXPECT_EQ(mockGfxrepro({"compare", "a"}).err, "gfxrepro: compare: needs two run directories\n");
     EXPECT_EQ(mockGfxrepro({"compare", "--binaries", "a", "b"}).err,

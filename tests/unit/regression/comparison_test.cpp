@@ -230,7 +230,28 @@ TEST(Comparison, AParameterThatOneBuildDoesNotKnowIsNoDifference) {
         {{key(R"({"size":1,"new":false})"), values}, {key(R"({"size":1,"new":true})"), values}},
         Pairing::Apart);
     ASSERT_EQ(varied.size(), 3U);
-    for (const Difference& difference : varied) EXPECT_EQ(difference.verdict, Verdict::Missing);
+    EXPECT_EQ(std::ranges::count(varied, Verdict::Missing, &Difference::verdict), 2);
+    EXPECT_EQ(std::ranges::count(varied, Verdict::Lost, &Difference::verdict), 1);
+}
+
+TEST(Comparison, WhatFailsAfterwardsAloneIsAnAlarm) {
+    const SeriesKey a = test::timeOf("a"), b = test::timeOf("b"), c = test::timeOf("c");
+    const Series values = {10, 10, 10, 10, 10, 10};
+    const auto failed = [](const SeriesKey& key) {
+        return std::pair{key.caseTitle(), Failure{key, "crash: SIGSEGV"}};
+    };
+    std::vector<Difference> differences =
+        compare({{a, values}, {b, values}}, {{b, values}, {c, values}}, Pairing::ByTurns);
+    EXPECT_EQ(std::ranges::count_if(differences, &Difference::isAlarm), 1);
+    EXPECT_EQ(differences[0].reason, "measured before only");
+    noteFailures(differences, {failed(c)}, {failed(a), failed(b), failed(c)});
+    ASSERT_EQ(differences.size(), 4U) << "that of b had some rounds only";
+    for (const Difference& difference : differences) {
+        const bool isLost = difference.verdict == Verdict::Lost;
+        EXPECT_EQ(difference.isAlarm(), isLost);
+        if (isLost) EXPECT_EQ(difference.reason, "crash: SIGSEGV");
+    }
+    EXPECT_EQ(std::ranges::count_if(differences, &Difference::isAlarm), 2);
 }
 
 TEST(Comparison, QualityIsTheSameOrChanged) {
