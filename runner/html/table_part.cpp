@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
@@ -21,6 +23,7 @@ namespace {
 class Overlay {
   public:
     explicit Overlay(const Page& page) {
+        std::set<std::vector<std::string>> seen;
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
             if (!page.parts[run].experiment) continue;
             const Table& table = page.parts[run].table;
@@ -30,9 +33,12 @@ class Overlay {
                 const auto isSame = [&](const auto& known) { return known.label == column.label; };
                 if (std::ranges::none_of(columns_, isSame)) columns_.push_back(column);
             }
+            std::map<std::vector<std::string>, const TableRow*>& byLabels = rowOf_.emplace_back();
             for (const TableRow& row : table.rows) {
-                if (std::ranges::find(rows_, row.labels) == rows_.end()) {
-                    rows_.push_back(row.labels);
+                byLabels.try_emplace(row.labels, &row);
+                if (seen.insert(row.labels).second) rows_.push_back(row.labels);
+                for (std::size_t c = 0; c < row.cells.size(); ++c) {
+                    if (row.cells[c].printed) printedColumns_.insert(table.columns[c].label);
                 }
             }
         }
@@ -44,10 +50,8 @@ class Overlay {
 
     /// A row of the i-th table; null where it has none.
     const TableRow* find(std::size_t i, const std::vector<std::string>& labels) const {
-        const auto& rows = tables_[i]->rows;
-        const auto row =
-            std::ranges::find_if(rows, [&](const auto& r) { return r.labels == labels; });
-        return row == rows.end() ? nullptr : &*row;
+        const auto row = rowOf_[i].find(labels);
+        return row == rowOf_[i].end() ? nullptr : row->second;
     }
     const Cell* find(std::size_t i, const TableRow* row, const std::string& column) const {
         if (!row) return nullptr;
@@ -65,10 +69,7 @@ class Overlay {
         }
         return std::nullopt;
     }
-    bool hasPrinted(const std::string& column) const {
-        return std::ranges::any_of(
-            rows_, [&](const auto& row) { return printed(row, column).has_value(); });
-    }
+    bool hasPrinted(const std::string& column) const { return printedColumns_.contains(column); }
     bool isOnlyPrinted() const { return tables_.front()->isOnlyPrinted; }
     const Table& first() const { return *tables_.front(); }
     bool isEmpty() const { return tables_.empty() || columns_.empty() || rows_.empty(); }
@@ -80,6 +81,8 @@ class Overlay {
   private:
     std::vector<std::size_t> runs_;  // beside tables_: its index in the model
     std::vector<const Table*> tables_;
+    std::vector<std::map<std::vector<std::string>, const TableRow*>> rowOf_;  // likewise
+    std::set<std::string> printedColumns_;
     std::vector<report::TableColumn> columns_;
     std::vector<std::vector<std::string>> rows_;
 };
