@@ -1,6 +1,7 @@
 #include "runner/batch/plan.h"
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -52,10 +53,42 @@ Json toJson(const config::Measure& measure) {
             {"memory_limit_bytes", measure.memoryLimitBytes}};
 }
 
+void requireMap(const config::Node& node, const char* what) {
+    if (node.isMap()) return;
+    throw Error(node.location(), std::string(what) + " is no map but " + node.kindName());
+}
+
 const config::Node& required(const config::Node& map, const char* key) {
+    requireMap(map, ("what should hold '" + std::string(key) + "'").c_str());
     const config::Node* value = map.find(key);
     if (!value) throw Error(map.location(), "the entry '" + std::string(key) + "' is missing");
     return *value;
+}
+
+const config::Node& requiredMap(const config::Node& map, const char* key) {
+    const config::Node& value = required(map, key);
+    requireMap(value, key);
+    return value;
+}
+
+std::uint64_t requiredSeed(const config::Node& map) {
+    const config::Node& node = required(map, "seed");
+    const std::string& text = node.text();
+    std::uint64_t seed = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (problem != std::errc() || end != text.data() + text.size()) {
+        throw Error(node.location(), "the seed '" + text + "' is no number");
+    }
+    return seed;
+}
+
+/// Twelve hexadecimal digits: files have it in their names.
+std::string requiredId(const config::Node& map) {
+    const config::Node& node = required(map, "id");
+    const std::string& id = node.text();
+    const bool isId = id.size() == 12 && id.find_first_not_of("0123456789abcdef") == id.npos;
+    if (!isId) throw Error(node.location(), "'" + id + "' is no id of a case");
+    return id;
 }
 
 int requiredInt(const config::Node& map, const char* key) {
@@ -92,6 +125,7 @@ Json assumedJson(const config::Experiment& experiment) {
 }
 
 void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
+    requireMap(assumed, "assumed");
     for (config::Assumption& assumption : experiment.assumptions) {
         const config::Node* bound = assumed.find(assumption.name);
         if (!bound) continue;
@@ -110,9 +144,10 @@ Json paperToJson(const config::Experiment& experiment) {
 }
 
 void readPaper(const config::Node& node, config::Experiment& experiment) {
-    experiment.paperDocument = required(node, "document");
+    experiment.paperDocument = requiredMap(node, "document");
     for (const config::Node& item : required(node, "cases").items()) {
-        experiment.paperCases.push_back({required(item, "scene").text(), required(item, "params")});
+        experiment.paperCases.push_back(
+            {required(item, "scene").text(), requiredMap(item, "params")});
     }
 }
 
@@ -177,17 +212,17 @@ Case Case::fromJson(const config::Node& node) {
     const config::Node::Sequence& output = required(node, "output").items();
     if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
     Case item;
-    item.id = required(node, "id").text();
+    item.id = requiredId(node);
     item.experiment = required(node, "experiment").text();
     item.technique = required(node, "technique").text();
     item.scene = required(node, "scene");
-    item.given = required(node, "given");
-    item.params = required(node, "params");
-    item.axes = required(node, "axes");
+    item.given = requiredMap(node, "given");
+    item.params = requiredMap(node, "params");
+    item.axes = requiredMap(node, "axes");
     item.outputWidthPx = static_cast<int>(output[0].asInteger());
     item.outputHeightPx = static_cast<int>(output[1].asInteger());
     item.measure = measureFrom(required(node, "measure"));
-    item.seed = std::stoull(required(node, "seed").text());
+    item.seed = requiredSeed(node);
     if (const config::Node* offered = node.find("offered")) item.offered = *offered;
     if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
     if (const config::Node* sample = node.find(report::kSceneSample)) {
@@ -238,7 +273,7 @@ Json Plan::toJson() const {
 }
 
 Plan Plan::fromJsonFile(const fs::path& path) {
-    const config::Node node = config::parseYamlFile(path);
+    const config::Node node = config::parseJsonFile(path);
     if (required(node, "schema").asInteger() != kPlanSchema) {
         throw Error(path.string() + ": schema " + required(node, "schema").text() +
                     "; this program reads schema " + std::to_string(kPlanSchema));
@@ -248,7 +283,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     plan.buildId = required(node, "build").text();
     plan.profile = required(node, "profile").text();
     plan.deviceClass = required(node, "device_class").text();
-    plan.seed = std::stoull(required(node, "seed").text());
+    plan.seed = requiredSeed(node);
     const config::Node& request = required(node, "request");
     plan.request = {textsFrom(required(request, "configs")),
                     textsFrom(required(request, "sets")),
@@ -261,7 +296,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     }
     for (const config::Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
-            required(item, "document"), fs::path(required(item, "file").text())));
+            requiredMap(item, "document"), fs::path(required(item, "file").text())));
         if (const config::Node* assumed = item.find("assumed")) {
             takeAssumed(*assumed, plan.experiments.back());
         }
@@ -319,6 +354,35 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     }
     plan.hash = hashOf(plan);
     return plan;
+}
+
+std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
+                            const scene::Catalog& catalog) {
+    if (const std::string build = programBuildId(); plan.buildId != build) {
+        return "the program or a shader changed (build " + plan.buildId.substr(0, 12) + " then, " +
+               build.substr(0, 12) + " now)";
+    }
+    if (plan.deviceClass != deviceClass) {
+        return "the run began on a " + plan.deviceClass + " device, this one is a " + deviceClass +
+               " device";
+    }
+    for (const auto& [reference, key] : plan.sceneKeys) {
+        if (catalog.contentKey(config::Node::scalar(reference)) != key) {
+            return "the scene '" + reference + "' changed";
+        }
+    }
+    for (const Case& item : plan.cases) {
+        Case planned = item;
+        planned.id.clear();
+        const auto scene =
+            item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
+        const std::string key = scene == plan.sceneKeys.end() ? "" : scene->second;
+        if (contentId(planned, key, plan) != item.id) {
+            return "the case " + item.id + ", " + item.title() +
+                   ", is not the one that was planned: plan.json was changed";
+        }
+    }
+    return "";
 }
 
 std::string planDifference(const Plan& then, const Plan& now) {

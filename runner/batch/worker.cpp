@@ -76,7 +76,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
     send({{"ready", toJson(device.info())}});
     std::string line;
     while (std::getline(std::cin, line)) {
-        const config::Node request = config::parseYaml(line, "case");
+        const config::Node request = config::parseJson(line, "case");
         const Case item = Case::fromJson(*request.find("case"));
         const CaseResult result = resultOf(item, context);
         std::cout.flush();

@@ -96,6 +96,11 @@ class Node {
 Node parseYaml(std::string_view text, const std::string& fileName);
 Node parseYamlFile(const std::filesystem::path& path);
 
+/// Parses JSON that a program wrote; every node has the file as its place. Throws Error with
+/// file:line:column where it is none, and where it is nested deeper than 200.
+Node parseJson(std::string_view text, const std::string& fileName);
+Node parseJsonFile(const std::filesystem::path& path);
+
 /// `over` laid on `base`: maps merge key by key, everything else is replaced. An explicit null
 /// removes.
 Node merged(const Node& base, const Node& over);

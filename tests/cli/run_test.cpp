@@ -239,16 +239,63 @@ TEST(Run, InterruptedRunIsResumable) {
     EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
 }
 
-TEST(Run, ResumeRefusesAChangedConfig) {
+TEST(Run, ResumeGoesOnWithWhatWasPlanned) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {number: 1}\nsweep: {pause_ms: [0, 1]}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    const auto rows = report::readRecords(dir + "/records.csv");
+    const auto loseACase = [&] {
+        std::vector<report::Record> left = rows;
+        std::erase_if(left, [&](const auto& row) { return row.caseId == rows.back().caseId; });
+        fs::remove(dir + "/records.csv");
+        report::RecordWriter(dir + "/records.csv").append(left);
+    };
+    const std::string goesOn = "; the run goes on with its configs as they were when it began\n";
+    loseACase();
+    writeMockConfig(folder, "params: {number: 2}\nsweep: {pause_ms: [0, 1]}\n");
+    const ProcessResult changed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(changed.exitCode, 0) << changed.err;
+    EXPECT_NE(changed.err.find("warning: " + config + " changed" + goesOn), std::string::npos)
+        << changed.err;
+    for (const report::Record& row : rowsOf(dir, "number")) EXPECT_EQ(row.value, 1.0);
+    EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
+    loseACase();
+    fs::remove(config);
+    const ProcessResult removed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(removed.exitCode, 0) << removed.err;
+    EXPECT_NE(removed.err.find("No such file or directory" + goesOn), std::string::npos)
+        << removed.err;
+    EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
+}
+
+TEST(Run, ResumeRefusesAPlanThatWasChanged) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
-    writeMockConfig(folder, "params: {number: 2}\n");
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(resumed.exitCode, 2);
-    EXPECT_EQ(resumed.err, "gfxrepro: " + dir + ": cannot be resumed: the config " + config +
-                               " changed; start a new run instead\n");
+    const std::string plan = readFile(dir + "/plan.json");
+    const auto resumedWith = [&](const std::string& from, const std::string& to) {
+        std::string text = plan;
+        const std::size_t at = text.find(from, text.find("\"cases\": ["));
+        text.replace(at, from.size(), to);
+        writeFileAtomic(dir + "/plan.json", text);
+        return mockGfxrepro({"run", "--resume", dir});
+    };
+    const ProcessResult other = resumedWith("\"number\": 1", "\"number\": 77");
+    EXPECT_EQ(other.exitCode, 2);
+    EXPECT_NE(other.err.find("is not the one that was planned: plan.json was changed"),
+              std::string::npos)
+        << other.err;
+    for (const char* text : {"", "[]", "3", "{\"schema\": 1, \"request\": 7}", "{\"schema\": "}) {
+        writeFileAtomic(dir + "/plan.json", text);
+        for (const char* command : {"table", "claims", "report"}) {
+            const ProcessResult result = mockGfxrepro({command, dir});
+            EXPECT_EQ(result.exitCode, 2) << command << ' ' << text << result.err;
+            EXPECT_NE(result.err.find("plan.json"), std::string::npos) << result.err;
+        }
+    }
 }
 
 /// `reproduce` over a data folder with one paper whose claim asks for `minimum`.
