@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto kRecursive = fs::copy_options::recursive | fs::copy_options::overwrite_existing;
-
 std::uintmax_t sizeOf(const fs::path& path) {
     if (!fs::exists(path)) return 0;
     if (fs::is_regular_file(path)) return fs::file_size(path);
@@ -34,7 +32,7 @@ void copyResults(const fs::path& runDir, const fs::path& target) {
     for (const char* name :
          {"plan.json", "manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html",
           "log.jsonl", "tables", "plots", "images", "thumbnails", "artifacts"}) {
-        if (fs::exists(runDir / name)) fs::copy(runDir / name, target / name, kRecursive);
+        copyTree(runDir / name, target / name);
     }
 }
 
@@ -88,7 +86,8 @@ fs::path configPlace(const config::Experiment& experiment) {
 
 std::string scriptText(const Plan& plan, const config::Experiment& experiment) {
     std::string command = "reproduce " + shellQuoted(configPlace(experiment).string()) +
-                          " --profile " + plan.profile + " --device " + plan.request.device;
+                          " --profile " + shellQuoted(plan.profile) + " --device " +
+                          shellQuoted(plan.request.device);
     for (const std::string& set : plan.request.sets) command += " --set " + shellQuoted(set);
     for (const std::string& sweep : plan.request.sweeps)
         command += " --sweep " + shellQuoted(sweep);
@@ -99,18 +98,26 @@ std::string scriptText(const Plan& plan, const config::Experiment& experiment) {
         experiment.label(), experiment.title, command, experiment.slug());
 }
 
+/// The plan may be anybody's: what it names is taken for a config only when it is that config.
+void requireExperiment(const config::Experiment& experiment) {
+    const config::Node whole = config::parseYamlFile(experiment.file);
+    for (const char* key : {"table", "section", "figure", "sweep_of", "technique", "extends"}) {
+        if (whole.isMap() && whole.find(key)) return;
+    }
+    throw Error(experiment.file.string() + ": is no config");
+}
+
 void writeScripts(const Plan& plan, const fs::path& target) {
     const fs::path configs = dataFolder("configs");
     for (const char* folder : {"presets", "scenes"}) {
         if (fs::exists(configs / folder)) {
-            fs::create_directories(target / "configs");
-            fs::copy(configs / folder, target / "configs" / folder, kRecursive);
+            copyTree(configs / folder, target / "configs" / folder);
         }
     }
     for (const config::Experiment& experiment : plan.experiments) {
         const fs::path place = target / configPlace(experiment);
-        fs::create_directories(place.parent_path());
-        fs::copy(experiment.file, place, kRecursive);
+        requireExperiment(experiment);
+        copyTree(experiment.file, place);
         const fs::path script = target / "scripts" / (experiment.slug() + ".sh");
         writeFileAtomic(script, scriptText(plan, experiment));
         fs::permissions(script, fs::perms::owner_all | fs::perms::group_read |

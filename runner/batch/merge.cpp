@@ -140,9 +140,7 @@ void copyImages(const RunDirectory& directory, const std::vector<ShardRun>& shar
             imagesOf[image.caseId].push_back(std::move(image));
         }
         for (const char* folder : {"images", "artifacts"}) {
-            if (!fs::exists(shard.path / folder)) continue;
-            fs::copy(shard.path / folder, directory.path() / folder,
-                     fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+            copyTree(shard.path / folder, directory.path() / folder);
         }
     }
     // The copy of a shard's list goes: the new one has the images of all, in the plan's order.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include "runner/batch/case_filter.h"
 #include "runner/batch/submission.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::batch {
@@ -49,9 +49,8 @@ std::string eventText(const Json& event) {
 /// Of each case, what the log says; a torn or foreign line is passed over.
 std::map<std::string, std::vector<std::string>> caseLogs(const fs::path& runDir) {
     std::map<std::string, std::vector<std::string>> logs;
-    std::ifstream file(runDir / "log.jsonl");
-    std::string line;
-    while (std::getline(file, line)) {
+    if (!fs::exists(runDir / "log.jsonl")) return logs;
+    for (const std::string& line : split(readFile(runDir / "log.jsonl"), '\n')) {
         const Json event = Json::parse(line, nullptr, false);
         if (!event.is_object() || !event.contains("case")) continue;
         logs[event.value("case", "")].push_back(eventText(event));
@@ -74,7 +73,8 @@ std::string commandOf(const Case& item, const Plan& plan) {
     for (const config::Experiment& experiment : plan.experiments) {
         if (experiment.id == item.experiment) config = configName(experiment.file);
     }
-    std::string command = "gfxrepro run " + shellQuoted(config) + " --profile " + plan.profile;
+    std::string command =
+        "gfxrepro run " + shellQuoted(config) + " --profile " + shellQuoted(plan.profile);
     const auto add = [&](const char* option, const std::string& value) {
         command += fmt::format(" {} {}", option, shellQuoted(value));
     };

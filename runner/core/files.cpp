@@ -79,13 +79,17 @@ void writeFileAtomic(const fs::path& path, std::string_view content) {
 }
 
 MappedFile::MappedFile(const fs::path& path) {
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    // Not blocking: a pipe without a writer is refused, not waited for.
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (file.get() < 0) fail("read", path);
     struct stat status {};
     if (::fstat(file.get(), &status) != 0) fail("read", path);
     if (S_ISDIR(status.st_mode)) {
         errno = EISDIR;
         fail("read", path);
+    }
+    if (!S_ISREG(status.st_mode)) {
+        throw Error("cannot read " + path.string() + ": a pipe or a device, not a file");
     }
     const auto sizeBytes = static_cast<std::size_t>(status.st_size);
     if (sizeBytes == 0) return;
@@ -96,6 +100,28 @@ MappedFile::MappedFile(const fs::path& path) {
 
 MappedFile::~MappedFile() {
     if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+void copyTree(const fs::path& from, const fs::path& to) {
+    const fs::file_status status = fs::symlink_status(from);
+    if (fs::is_regular_file(status)) {
+        fs::create_directories(to.parent_path());
+        std::error_code failure;
+        fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
+        const bool isGone = failure && !fs::exists(from);
+        if (failure && !isGone) {
+            throw Error("cannot copy " + from.string() + " to " + to.string() + ": " +
+                        failure.message());
+        }
+    } else if (fs::is_directory(status)) {
+        fs::create_directories(to);
+        for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+            const std::string name = entry.path().filename();
+            if (name.find(".tmp") == std::string::npos) copyTree(entry.path(), to / name);
+        }
+    } else if (fs::exists(status)) {
+        throw Error(from.string() + ": a link, a pipe or a device, which a run has none of");
+    }
 }
 
 fs::path dataFolder(std::string_view name) {

@@ -3,10 +3,10 @@
 #include <openssl/evp.h>
 
 #include <array>
-#include <fstream>
 #include <memory>
 
 #include "runner/core/error.h"
+#include "runner/core/files.h"
 
 namespace gfxrepro {
 
@@ -49,14 +49,7 @@ std::string sha256(std::string_view text) {
 }
 
 std::string sha256OfFile(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error("cannot read " + path.string());
-    Sha256 hash;
-    std::array<char, 1 << 16> block{};
-    while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-        hash.update(block.data(), static_cast<std::size_t>(file.gcount()));
-    }
-    return hash.hexDigest();
+    return sha256(MappedFile(path).bytes());
 }
 
 }  // namespace gfxrepro

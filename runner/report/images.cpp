@@ -95,6 +95,22 @@ bool appendToWhole(const fs::path& index, std::string_view rows) {
     return true;
 }
 
+/// The list may be anybody's: it names files of the run, below images/.
+void requireInside(const SourceLocation& where, const fs::path& runDir, const std::string& file) {
+    if (file.empty()) return;
+    const fs::path plain = fs::path(file).lexically_normal();
+    const bool isBelow = plain.is_relative() && plain.begin() != plain.end() &&
+                         *plain.begin() == "images" && plain == fs::path(file);
+    const auto isLink = [&](fs::path path) {
+        for (; !path.empty(); path = path.parent_path()) {
+            if (fs::is_symlink(runDir / path)) return true;
+        }
+        return false;
+    };
+    if (isBelow && !isLink(plain)) return;
+    throw Error(where, "'" + file + "' is no file of the run, below images/ and without a link");
+}
+
 }  // namespace
 
 void appendImages(const fs::path& runDir, const std::vector<ImageEntry>& images) {
@@ -121,6 +137,9 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
     const std::size_t columns = columnCount(reader.location(), fields);
     while (reader.next(fields)) {
         ImageEntry entry = entryFromFields(reader.location(), columns, fields);
+        for (const std::string* file : {&entry.png, &entry.exr}) {
+            requireInside(reader.location(), runDir, *file);
+        }
         const auto [found, isNew] =
             indices.try_emplace({entry.caseId, entry.frame, entry.name}, images.size());
         if (isNew) {

@@ -1,0 +1,98 @@
+// A run folder that somebody else made: nothing is read or written outside of it, and no text of it
+// is a command.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Untrusted : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    }
+    void replaceInPlan(const std::string& from, const std::string& to) const {
+        std::string plan = readFile(dir + "/plan.json");
+        const std::size_t at = plan.find(from);
+        ASSERT_NE(at, std::string::npos);
+        plan.replace(at, from.size(), to);
+        writeFileAtomic(dir + "/plan.json", plan);
+    }
+    void expectRefused(const std::vector<std::string>& command, const std::string& why) const {
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 2) << command.front() << result.out;
+        EXPECT_THAT(result.err, HasSubstr(why));
+    }
+
+    TemporaryFolder folder;
+    std::string dir = folder.path() / "run";
+    std::string out = folder.path() / "out";
+};
+
+TEST_F(Untrusted, ImagesLieBelowImages) {
+    const auto listed = [&](const std::string& file) {
+        writeFileAtomic(dir + "/images/index.csv",
+                        "case,table,frame,name,png,exr,title,truth_of\n"
+                        "0123456789ab,sweep/mock,0,a," +
+                            file + ",,t,\n");
+        expectRefused({"report", dir}, "'" + file + "' is no file of the run");
+    };
+    listed("images/../../secret.png");
+    listed("/etc/secret.png");
+    listed("tables/a.png");
+    fs::create_directory_symlink("/etc", dir + "/images/etc");
+    listed("images/etc/a.png");
+}
+
+TEST_F(Untrusted, LinksAreNotFollowed) {
+    fs::create_directories(dir + "/images");
+    fs::create_directory_symlink("/etc", dir + "/images/etc");
+    expectRefused({"export", dir, "--out", out}, "/images/etc: a link, a pipe or a device");
+    EXPECT_FALSE(fs::exists(out + "/images/etc/passwd"));
+}
+
+TEST_F(Untrusted, PipesAreNotWaitedFor) {
+    for (const char* file : {"records.csv", "log.jsonl"}) {
+        const std::string path = dir + "/" + file;
+        const std::string content = readFile(path);
+        fs::remove(path);
+        ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+        expectRefused({"report", dir}, std::string(file) + ": a pipe or a device, not a file");
+        fs::remove(path);
+        writeFileAtomic(path, content);
+    }
+}
+
+TEST_F(Untrusted, APlanNamesConfigsAndCases) {
+    const std::string file = "\"file\": \"" + (folder.path() / "mock.yaml").string();
+    const std::string other = folder.write("secret.yaml", "password: 1\n");
+    if (readFile(dir + "/plan.json").find(file) == std::string::npos) {
+        GTEST_FAIL() << readFile(dir + "/plan.json");
+    }
+    replaceInPlan(file, "\"file\": \"" + other);
+    expectRefused({"export", dir, "--out", out}, other + ": is no config");
+    replaceInPlan("\"id\": \"", "\"id\": \"../../");
+    expectRefused({"table", dir}, "is no id of a case");
+}
+
+TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
+    replaceInPlan("\"profile\": \"", "\"profile\": \"$(touch x); #");
+    replaceInPlan("\"device\": \"", "\"device\": \"$(touch y)");
+    const ProcessResult result = mockGfxrepro({"export", dir, "--out", out});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    for (const fs::directory_entry& script : fs::directory_iterator(out + "/scripts")) {
+        EXPECT_THAT(readFile(script.path()), HasSubstr("--profile '$(touch x); #"));
+        EXPECT_THAT(readFile(script.path()), HasSubstr("--device '$(touch y)"));
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
