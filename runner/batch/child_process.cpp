@@ -8,8 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <thread>
 
 #include "runner/core/error.h"
 
@@ -94,25 +96,44 @@ bool ChildProcess::sendLine(std::string_view line) const {
     return true;
 }
 
-int ChildProcess::wait() {
-    while (!isReaped_) {
-        if (::waitpid(pid_, &waitStatus_, 0) >= 0 || errno != EINTR) isReaped_ = true;
+std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point limit = Clock::now() + patience;
+    for (auto pause = std::chrono::microseconds(100); !isReaped_; pause *= 2) {
+        const pid_t ended = ::waitpid(pid_, &waitStatus_, WNOHANG);
+        isReaped_ = ended == pid_ || (ended < 0 && errno != EINTR);
+        if (isReaped_) break;
+        if (Clock::now() >= limit) return std::nullopt;
+        pause = std::min(pause, std::chrono::microseconds(20'000));
+        std::this_thread::sleep_for(pause);
     }
     return waitStatus_;
 }
 
-int ChildProcess::kill() {
+std::optional<int> ChildProcess::kill() {
     if (!isReaped_) ::kill(-pid_, SIGKILL);
-    return wait();
+    return wait(kKillPatience);
 }
 
-ProgramEnd runToEnd(const std::vector<std::string>& arguments) {
+ProgramEnd runToEnd(const std::vector<std::string>& arguments, std::chrono::seconds limit) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point until = Clock::now() + limit;
     ChildProcess child(arguments);
     ProgramEnd end;
     pollfd readable{child.outputFd(), POLLIN, 0};
-    while (readAvailable(child.outputFd(), end.output)) ::poll(&readable, 1, -1);
-    const int status = child.wait();
-    end.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    std::optional<int> status;
+    while (!status) {
+        if (readAvailable(child.outputFd(), end.output)) {
+            ::poll(&readable, 1, 1000);
+        } else {
+            status = child.wait(std::chrono::seconds(1));
+        }
+        if (!status && Clock::now() >= until) {
+            throw Error(arguments.front() + ": did not end in " + std::to_string(limit.count()) +
+                        " s");
+        }
+    }
+    end.exitCode = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
     return end;
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <sys/types.h>
+
+#include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,10 +31,12 @@ class ChildProcess {
     /// Sends `line` and a newline; false when the child is gone.
     bool sendLine(std::string_view line) const;
 
-    /// Waits for the end and returns the status of waitpid; later calls return the same.
-    int wait();
-    /// SIGKILL to the process group, then wait().
-    int kill();
+    /// Waits for the end, at most `patience`. The status of waitpid; nothing while it runs.
+    std::optional<int> wait(std::chrono::milliseconds patience);
+    /// SIGKILL to the process group, then wait() for kKillPatience. Nothing for a process that does
+    /// not die (one that waits for a driver or a file system): it is left behind.
+    std::optional<int> kill();
+    static constexpr std::chrono::seconds kKillPatience{5};
 
   private:
     pid_t pid_ = -1;
@@ -47,8 +52,9 @@ struct ProgramEnd {
     int exitCode = 0;
     std::string output;
 };
-/// Runs a program to its end; `arguments[0]` is a path.
-ProgramEnd runToEnd(const std::vector<std::string>& arguments);
+/// Runs a program to its end; `arguments[0]` is a path. Throws Error when it takes longer than
+/// `limit`.
+ProgramEnd runToEnd(const std::vector<std::string>& arguments, std::chrono::seconds limit);
 
 /// Appends what can be read now to `text`; false at the end of the stream.
 bool readAvailable(int fd, std::string& text);

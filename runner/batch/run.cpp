@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using UnitKey = std::pair<std::string, int>;  // case id, process
-
 /// Every unit that has rows, and whether all have values.
 std::map<UnitKey, bool> recordedUnits(const std::vector<report::Record>& records) {
     std::map<UnitKey, bool> units;
@@ -37,6 +35,15 @@ void rewriteRecords(const RunDirectory& directory, const std::vector<report::Rec
     fs::remove(rewritten);
     report::RecordWriter(rewritten).append(rows);
     fs::rename(rewritten, directory.recordsFile());
+}
+
+std::vector<Json> logOf(const RunDirectory& directory) {
+    std::vector<Json> log;
+    for (const std::string& line : split(readFile(directory.path() / "log.jsonl"), '\n')) {
+        Json event = Json::parse(line, nullptr, false);  // the last line may be torn
+        if (event.is_object()) log.push_back(std::move(event));
+    }
+    return log;
 }
 
 }  // namespace
@@ -58,15 +65,29 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
     return units;
 }
 
+std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
+    std::map<UnitKey, int> begun;  // since its last end
+    for (const Json& event : logOf(directory)) {
+        const std::string name = event.value("event", "");
+        if (name == "interrupted") begun.clear();
+        if (!event.contains("case") || !event.contains("process")) continue;
+        const UnitKey unit = {event["case"].get<std::string>(), event["process"].get<int>()};
+        if (name == "start") ++begun[unit];
+        if (name == "case" || name == "retry") begun.erase(unit);
+    }
+    std::map<UnitKey, std::string> units;
+    for (const auto& [unit, count] : begun) {
+        if (count < 2) continue;
+        units[unit] = "the runner did not survive it, " + std::to_string(count) +
+                      " times; resume with --retry to try it again";
+    }
+    return units;
+}
+
 Rounds roundsOf(const Plan& plan, const RunDirectory& directory) {
     std::vector<report::Record> records;
     if (fs::exists(directory.recordsFile())) records = report::readRecords(directory.recordsFile());
-    std::vector<Json> log;
-    for (const std::string& line : split(readFile(directory.path() / "log.jsonl"), '\n')) {
-        Json event = Json::parse(line, nullptr, false);  // the last line may be torn
-        if (event.is_object()) log.push_back(std::move(event));
-    }
-    return {plan, records, log};
+    return {plan, records, logOf(directory)};
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,

@@ -93,4 +93,9 @@ void RunDirectory::log(const nlohmann::ordered_json& event) const {
     [[maybe_unused]] const ssize_t written = ::write(logFd_, text.data(), text.size());
 }
 
+void RunDirectory::logFlushed(const nlohmann::ordered_json& event) const {
+    log(event);
+    ::fdatasync(logFd_);
+}
+
 }  // namespace gfxrepro::batch

@@ -26,6 +26,8 @@ class RunDirectory {
 
     /// Appends one line to log.jsonl: "time" and the members of `event`.
     void log(const nlohmann::ordered_json& event) const;
+    /// … and waits until it is on the disk.
+    void logFlushed(const nlohmann::ordered_json& event) const;
 
   private:
     explicit RunDirectory(const std::filesystem::path& path);

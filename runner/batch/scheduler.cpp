@@ -20,6 +20,7 @@ namespace {
 using Lane = config::Measure::Lane;
 using Clock = PhaseClock::Clock;
 constexpr std::chrono::milliseconds kTickInterval{250};
+constexpr std::chrono::seconds kSuspended{1};  // nothing but a suspended runner oversleeps so long
 
 /// Ctrl-C and SIGTERM as a descriptor to poll, for as long as the object lives.
 class SignalWatch {
@@ -47,6 +48,13 @@ class SignalWatch {
     sigset_t before_;
     int fd_;
 };
+
+CaseResult crashOf(const std::string& message) {
+    CaseResult result;
+    result.status = report::Status::Crash;
+    result.message = message;
+    return result;
+}
 
 CaseResult skippedResult(const Expectation& skip) {
     CaseResult result;
@@ -98,6 +106,7 @@ class Scheduler {
             }
             collect();
             observer_.tick();
+            if (!outcome_.stopReason.empty()) break;
         }
         workers_.clear();
         outcome_.complaints = expectations_.complaints();
@@ -150,6 +159,13 @@ class Scheduler {
                 waiting_.pop_front();
                 continue;
             }
+            const auto givenUp =
+                options_.givenUp.find({waiting_.front().item->id, waiting_.front().process});
+            if (givenUp != options_.givenUp.end()) {
+                finish(waiting_.front(), crashOf(givenUp->second), "", "given_up");
+                waiting_.pop_front();
+                continue;
+            }
             const Lane lane = waiting_.front().item->measure.lane;
             const bool timingRuns = std::any_of(workers_.begin(), workers_.end(), [](auto& w) {
                 return w->isBusy() && w->lane() == Lane::Timing;
@@ -197,12 +213,16 @@ class Scheduler {
                 workerCommand(options_, lane, directory_.path()), lane, needsOwn, phases_));
             worker = std::prev(workers_.end());
         }
+        // On the disk before it runs: what takes the machine with it is known afterwards.
+        directory_.logFlushed(
+            {{"event", "start"}, {"case", unit.item->id}, {"process", unit.process}});
         (*worker)->assign(unit);
         observer_.unitBegan(unit);
     }
 
-    /// Sleeps until a worker says something or a limit is due; true on Ctrl-C.
-    bool waitForEvents() const {
+    /// Sleeps until a worker says something or a limit is due; true on Ctrl-C. Where it slept
+    /// longer (the run was suspended), limits move.
+    bool waitForEvents() {
         const Clock::time_point now = Clock::now();
         Clock::time_point until = now + kTickInterval;
         std::vector<pollfd> fds = {{signals_.fd(), POLLIN, 0}};
@@ -213,6 +233,10 @@ class Scheduler {
         }
         const auto timeoutMs = std::chrono::ceil<std::chrono::milliseconds>(until - now).count();
         ::poll(fds.data(), fds.size(), static_cast<int>(std::max<long long>(timeoutMs, 0)));
+        const Clock::duration late = Clock::now() - std::max(until, now);
+        if (late > kSuspended) {
+            for (const auto& worker : workers_) worker->postpone(late);
+        }
         return (fds.front().revents & POLLIN) != 0;
     }
 
@@ -259,17 +283,30 @@ class Scheduler {
         directory_.log(event);
     }
 
-    void finish(const Unit& unit, const CaseResult& result, const std::string& output) {
-        record(unit, result, output);
+    void finish(const Unit& unit, const CaseResult& result, const std::string& output,
+                const char* event = "case") {
+        record(unit, result, output, event);
         for (const Case* twin : unit.twins) {
-            record({twin, unit.process, {}, {}, unit.item}, result, "");
+            record({twin, unit.process, {}, {}, unit.item}, result, "", event);
         }
+        noteFailure(unit, result.status);
         outcome_.voided += result.voidReason.empty() ? 0 : 1;
         outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
     }
 
+    /// Stops the run where the machine cannot be trusted any more, or as often as was asked for.
+    void noteFailure(const Unit& unit, report::Status status) {
+        lostInARow_ = status == report::Status::DeviceLost ? lostInARow_ + 1 : 0;
+        if (lostInARow_ == 2 && !expectations_.isExpected(*unit.item, status)) {
+            outcome_.stopReason = "the device was lost in two cases in a row";
+        } else if (options_.failuresAtMost > 0 && outcome_.failed >= options_.failuresAtMost) {
+            outcome_.stopReason = std::to_string(outcome_.failed) + " failed";
+        }
+    }
+
     /// Images first: a unit whose rows are there is complete.
-    void record(const Unit& unit, const CaseResult& result, const std::string& output) {
+    void record(const Unit& unit, const CaseResult& result, const std::string& output,
+                const char* event) {
         const bool hasValues =
             result.status == report::Status::Ok || result.status == report::Status::Flaky;
         report::appendImages(
@@ -280,7 +317,7 @@ class Scheduler {
         const std::vector<report::Record> rows = recordsOf(unit, result);
         records_.append(rows);
         rounds_.add(rows);
-        logCase("case", unit, result, output);
+        logCase(event, unit, result, output);
         count(unit, result.status);
         observer_.unitEnded(unit, result.status, result.message);
     }
@@ -310,6 +347,7 @@ class Scheduler {
     Expectations expectations_;
     report::RecordWriter records_;
     Workers workers_;
+    int lostInARow_ = 0;  // units that ended device-lost
     RunOutcome outcome_;
 };
 
@@ -327,10 +365,17 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lan
 
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases) {
     WorkerHandle worker(workerCommand(options, Lane::Quality, "."), Lane::Quality, true, phases);
+    const Clock::time_point limit = Clock::now() + WorkerHandle::startLimit();
     while (!worker.device() && !worker.isGone()) {
         pollfd fds[] = {{worker.process().messageFd(), POLLIN, 0},
                         {worker.process().outputFd(), POLLIN, 0}};
-        ::poll(fds, 2, -1);
+        const auto leftMs =
+            std::chrono::ceil<std::chrono::milliseconds>(limit - Clock::now()).count();
+        if (leftMs <= 0) {
+            throw NoDeviceError("the driver did not open a device within " +
+                                std::to_string(WorkerHandle::startLimit().count()) + " s");
+        }
+        ::poll(fds, 2, static_cast<int>(leftMs));
         worker.receive();
     }
     if (worker.device()) return *worker.device();

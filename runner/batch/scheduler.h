@@ -1,6 +1,7 @@
 // Runs the units of a plan in worker processes: timing units alone, quality units side by side.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct SchedulerOptions {
     int jobs = 1;  // quality units at once
     Expectations expectations = {};
     std::string command = {};  // as typed: images say what measured them
+    /// Units that are not tried (again), and are recorded as crashes with this message.
+    std::map<UnitKey, std::string> givenUp = {};
+    int failuresAtMost = 0;  // with as many failed units the run stops; 0: never
 };
 
 struct RunOutcome {
@@ -47,6 +51,7 @@ struct RunOutcome {
     std::vector<std::string> complaints;  // about expectations
     std::vector<std::string> warnings;    // about times
     bool isInterrupted = false;           // by SIGINT or SIGTERM
+    std::string stopReason;               // of a stop before the end that nobody asked for then
     std::vector<SceneUse> scenes;
 };
 

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include "runner/batch/process_memory.h"
@@ -13,9 +14,12 @@ namespace gfxrepro::batch {
 
 namespace {
 
-constexpr std::chrono::seconds kStartLimit{60};
+constexpr std::chrono::seconds kEndLimit{10};  // for a worker that has closed its answers
 constexpr std::chrono::milliseconds kMemoryCheckInterval{20};
 constexpr std::size_t kOutputTailBytes = 65536;
+
+/// Of a process that waits for a driver or a file system.
+const std::string kStuck = "; its process could not be killed and was left behind";
 
 CaseResult failure(report::Status status, std::string message) {
     CaseResult result;
@@ -46,6 +50,17 @@ std::chrono::nanoseconds nanoseconds(double seconds) {
 
 }  // namespace
 
+std::chrono::seconds WorkerHandle::startLimit() {
+    const char* given = std::getenv("GFXREPRO_START_LIMIT_S");
+    if (!given) return std::chrono::seconds(60);
+    const auto seconds = parseInteger(given);
+    if (!seconds || *seconds < 1) {
+        throw UsageError("GFXREPRO_START_LIMIT_S: expected a number of seconds, found '" +
+                         std::string(given) + "'");
+    }
+    return std::chrono::seconds(*seconds);
+}
+
 WorkerHandle::WorkerHandle(const std::vector<std::string>& command, config::Measure::Lane lane,
                            bool isSingleUse, PhaseClock& phases)
     : phases_(phases),
@@ -53,7 +68,8 @@ WorkerHandle::WorkerHandle(const std::vector<std::string>& command, config::Meas
       lane_(lane),
       isSingleUse_(isSingleUse),
       oomKillsBefore_(systemOomKills()),
-      limit_(Clock::now() + kStartLimit) {}
+      startLimit_(startLimit()),
+      limit_(Clock::now() + startLimit_) {}
 
 WorkerHandle::~WorkerHandle() {
     endPhase();
@@ -79,14 +95,19 @@ std::optional<CaseResult> WorkerHandle::receive() {
     std::size_t lineBegin = 0;
     for (std::size_t end; (end = messages_.find('\n', lineBegin)) != std::string::npos;
          lineBegin = end + 1) {
-        const Json message = Json::parse(messages_.begin() + static_cast<std::ptrdiff_t>(lineBegin),
-                                         messages_.begin() + static_cast<std::ptrdiff_t>(end));
+        const Json message =
+            Json::parse(messages_.begin() + static_cast<std::ptrdiff_t>(lineBegin),
+                        messages_.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+        if (!message.is_object()) continue;  // a library's own words on descriptor 3
         if (std::optional<CaseResult> given = handle(message)) result = std::move(given);
     }
     messages_.erase(0, lineBegin);
     if (!isOpen && isAlive_) {
         isAlive_ = false;
-        waitStatus_ = process_.wait();
+        std::optional<int> status = process_.wait(kEndLimit);
+        if (!status) status = process_.kill();
+        isStuck_ = !status;
+        waitStatus_ = status.value_or(0);
         readAvailable(process_.outputFd(), output_);
         endPhase();
         if (unit_ && !result) result = resultOfDeath();
@@ -124,6 +145,7 @@ void WorkerHandle::endPhase() {
 
 CaseResult WorkerHandle::resultOfDeath() const {
     if (!unavailable_.empty()) return failure(report::Status::Unsupported, unavailable_);
+    if (isStuck_) return failure(report::Status::Crash, "the worker's answers ended" + kStuck);
     if (WIFSIGNALED(waitStatus_) && WTERMSIG(waitStatus_) == SIGKILL) {
         if (systemOomKills() > oomKillsBefore_) {
             return failure(report::Status::Oom, "SIGKILL: the system ran out of memory");
@@ -154,11 +176,11 @@ std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
     const config::Measure& measure = unit_->item->measure;
     std::optional<CaseResult> result;
     if (now >= limit_) {
-        result =
-            failure(report::Status::Timeout,
-                    device_ ? "not finished after " + secondsText(measure.timeLimitS) +
-                                  (phase_.empty() ? "" : " (in " + phase_ + ")")
-                            : "the worker was not ready after " + secondsText(kStartLimit.count()));
+        result = failure(report::Status::Timeout,
+                         device_ ? "not finished after " + secondsText(measure.timeLimitS) +
+                                       (phase_.empty() ? "" : " (in " + phase_ + ")")
+                                 : "the worker was not ready after " +
+                                       secondsText(static_cast<double>(startLimit_.count())));
     } else if (measure.memoryLimitBytes > 0) {
         const long long usedBytes = residentBytes(process_.pid());
         if (usedBytes > measure.memoryLimitBytes) {
@@ -169,10 +191,14 @@ std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
     }
     if (result) {
         isAlive_ = false;
-        process_.kill();
+        if (!process_.kill()) result->message += kStuck;
         endPhase();
     }
     return result;
+}
+
+void WorkerHandle::postpone(Clock::duration gap) {
+    limit_ += gap;
 }
 
 WorkerHandle::Clock::time_point WorkerHandle::nextCheck(Clock::time_point now) const {

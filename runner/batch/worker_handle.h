@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runner/batch/child_process.h"
@@ -12,6 +13,8 @@
 #include "runner/batch/protocol.h"
 
 namespace gfxrepro::batch {
+
+using UnitKey = std::pair<std::string, int>;  // case id, process
 
 /// One execution of a case: the unit of work. With `processes: n` a case has n of them.
 struct Unit {
@@ -40,6 +43,9 @@ class WorkerHandle {
     const ChildProcess& process() const { return process_; }
     config::Measure::Lane lane() const { return lane_; }
     bool isSingleUse() const { return isSingleUse_; }
+    /// For opening a device: 60 s, or the environment's GFXREPRO_START_LIMIT_S. Throws UsageError
+    /// when that is no number of seconds.
+    static std::chrono::seconds startLimit();
     /// The process has ended.
     bool isGone() const { return !isAlive_; }
     /// Why it ended before it was ready.
@@ -58,6 +64,8 @@ class WorkerHandle {
     std::optional<CaseResult> receive();
     /// Kills the worker when the unit broke its time or memory limit, and gives that result.
     std::optional<CaseResult> checkLimits(Clock::time_point now);
+    /// For a time in which the runner itself did not run: nor, most likely, did the worker.
+    void postpone(Clock::duration gap);
     /// When checkLimits() should be called again.
     Clock::time_point nextCheck(Clock::time_point now) const;
 
@@ -82,8 +90,10 @@ class WorkerHandle {
     bool isAlive_ = true;
     long long oomKillsBefore_;  // of the system, when the process began
     int waitStatus_ = 0;        // once it is not alive
-    Clock::time_point limit_;   // of the start, then of the unit
-    std::string phase_;         // empty between phases
+    bool isStuck_ = false;      // likewise: it could not be killed
+    std::chrono::seconds startLimit_;
+    Clock::time_point limit_;  // of the start, then of the unit
+    std::string phase_;        // empty between phases
     Clock::time_point phaseBegin_;
     std::string messages_;
     std::string output_;

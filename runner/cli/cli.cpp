@@ -3,12 +3,16 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <functional>
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/worker.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
+#include "runner/cli/console.h"
 #include "runner/cli/help.h"
 #include "runner/cli/image_commands.h"
 #include "runner/cli/man_page.h"
@@ -107,6 +111,11 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--jobs", options.jobs, "quality cases at once")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
+    app->add_option("--max-failures", options.failuresAtMost, "stop when as many cases failed")
+        ->check(CLI::Range(1, 1'000'000'000))
+        ->option_text("N");
+    app->add_flag("--retry", options.triesAgain,
+                  "with --resume: try again what the runner did not survive");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 
@@ -373,12 +382,15 @@ int runCommand(int argc, const char* const* argv,
 // (tests) has the same exit codes.
 int run(int argc, const char* const* argv, std::span<const technique::TechniqueInfo> techniques) {
     try {
-        return runCommand(argc, argv, techniques);
+        const int code = runCommand(argc, argv, techniques);
+        if (std::fflush(stdout) == 0) return code;
+        tell("gfxrepro: cannot write the standard output: {}\n", std::strerror(errno));
+        return kExitUsage;
     } catch (const NoDeviceError& error) {
-        fmt::print(stderr, "gfxrepro: {}\n", error.what());
+        tell("gfxrepro: {}\n", error.what());
         return kExitNoDevice;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "gfxrepro: {}\n", error.what());
+        tell("gfxrepro: {}\n", error.what());
         return kExitUsage;
     }
 }

@@ -43,6 +43,8 @@ struct RunOptions {
     std::string shard;              // "k/n"; empty: everything
     std::vector<std::string> from;  // runs or a file to predict times from
     int jobs = 0;                   // 0: one a core on up to two cores, else half of them
+    int failuresAtMost = 0;         // 0: any number
+    bool triesAgain = false;        // also what the runner did not survive
     bool isQuiet = false;
 };
 

@@ -104,6 +104,9 @@ and
 .IR shaders ,
 instead of the one beside the program.
 .TP
+.B GFXREPRO_START_LIMIT_S
+Seconds that a driver has to open a device; 60 when unset.
+.TP
 .B XDG_CACHE_HOME
 Where
 .I gfxrepro/assets

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/results.h"
 
 namespace gfxrepro::cli {
@@ -25,7 +26,7 @@ std::vector<batch::ShardRun> readShards(const std::vector<std::string>& folders)
         if (fs::exists(folder / "plan.json")) {
             shards.push_back({folder, batch::readRun(folder)});
         } else {
-            fmt::print(stderr, "{}: holds no run\n", folder.string());
+            tell("{}: holds no run\n", folder.string());
         }
     }
     if (shards.empty()) throw Error("merge: none of the folders holds a run");

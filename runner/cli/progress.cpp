@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "runner/batch/predictions.h"
+#include "runner/cli/console.h"
 
 namespace gfxrepro::cli {
 
@@ -68,8 +69,8 @@ void Progress::unitEnded(const batch::Unit& unit, report::Status status,
     const bool isOk = status == report::Status::Ok;
     if (isOk && (isQuiet_ || isTerminal_)) return;
     clear();
-    fmt::print(stderr, "[{}/{}] {} {}{}\n", ended_, unitCount_, report::statusName(status),
-               titleOf(unit), message.empty() ? "" : ": " + message);
+    tell("[{}/{}] {} {}{}\n", ended_, unitCount_, report::statusName(status), titleOf(unit),
+         message.empty() ? "" : ": " + message);
 }
 
 std::string Progress::etaText() const {
@@ -88,12 +89,12 @@ void Progress::tick() {
         fmt::format("[{}{}] {}/{}  ETA {}  {}", std::string(filled, '#'),
                     std::string(kBarWidth - filled, '.'), ended_, unitCount_, etaText(), title_);
     line.resize(std::min(line.size(), terminalWidth() - 1));
-    fmt::print(stderr, "\r\033[K{}", line);
+    tell("\r\033[K{}", line);
     std::fflush(stderr);
 }
 
 void Progress::clear() {
-    if (!isQuiet_ && isTerminal_) fmt::print(stderr, "\r\033[K");
+    if (!isQuiet_ && isTerminal_) tell("\r\033[K");
 }
 
 }  // namespace gfxrepro::cli

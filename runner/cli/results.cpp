@@ -173,7 +173,7 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs) {
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
     const int code = completenessCode(run);
-    return verdict == kExitOk ? code : verdict;
+    return code == kExitOk ? verdict : code;
 }
 
 int report(const std::vector<std::string>& runDirs, const std::string& out) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <thread>
 
@@ -10,6 +11,7 @@
 #include "runner/batch/shards.h"
 #include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/cli/progress.h"
@@ -62,8 +64,8 @@ batch::Request withinBudget(const batch::Plan& plan, const batch::Request& reque
             result.configs.push_back(request.configs[e]);
             continue;
         }
-        fmt::print(stderr, "left out: {} ({}, {} claims)\n", plan.experiments[e].id,
-                   durationText(items[e].timeS), items[e].claimCount);
+        tell("left out: {} ({}, {} claims)\n", plan.experiments[e].id, durationText(items[e].timeS),
+             items[e].claimCount);
     }
     return result;
 }
@@ -133,9 +135,27 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
         run.directory.log({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
-        fmt::print(stderr, "{}: begun on another machine; its times are measured again on {}\n",
-                   experiment, machine);
+        tell("{}: begun on another machine; its times are measured again on {}\n", experiment,
+             machine);
     }
+}
+
+/// What is measured is what was planned; that a config says something else by now is worth a word.
+void sayChangedConfigs(const batch::Plan& plan) {
+    std::vector<config::Experiment> now;
+    std::string problem;
+    try {
+        now = loadExperiments(plan.request, plan.profile);
+    } catch (const Error& error) {
+        problem = error.what();
+    }
+    for (std::size_t i = 0; i < plan.experiments.size() && problem.empty(); ++i) {
+        const config::Experiment& planned = plan.experiments[i];
+        if (i < now.size() && now[i].document.toJson() == planned.document.toJson()) continue;
+        problem = planned.file.string() + " changed";
+    }
+    if (problem.empty()) return;
+    tell("warning: {}; the run goes on with its configs as they were when it began\n", problem);
 }
 
 Prepared prepareResumed(const Context& context, const RunOptions& options,
@@ -149,12 +169,13 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                                             {},
                                             context.commandLine};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
-    const batch::Plan now = planFor(context, stored.plan.request, stored.plan.profile,
-                                    scheduler.assetsFolder, deviceClassOf(device));
-    if (const std::string reason = batch::planDifference(stored.plan, now); !reason.empty()) {
+    const std::string reason = batch::whyNotResumable(stored.plan, deviceClassOf(device),
+                                                      openCatalog(options.selection.assets));
+    if (!reason.empty()) {
         throw Error(options.resume + ": cannot be resumed: " + reason +
                     "; start a new run instead");
     }
+    sayChangedConfigs(stored.plan);
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
     settleMachine(context.commandLine, device, run);
@@ -184,13 +205,14 @@ std::map<const batch::Case*, double> forecast(const RunOptions& options, const P
         if (known) unitTimesS[&item] = firsts[i] == i ? known->timeS : 0.0;
     }
     const std::string text = forecastText(run.plan, history, run.scheduler.jobs);
-    if (!options.isQuiet && !text.empty()) fmt::print(stderr, "{}\n", text);
+    if (!options.isQuiet && !text.empty()) tell("{}\n", text);
     return unitTimesS;
 }
 
 /// Runs what is left; with `results`, makes tables, claims and report from it.
 int execute(const Context& context, const RunOptions& options, const batch::Request& request,
             bool results) {
+    std::signal(SIGPIPE, SIG_IGN);  // a reader of the progress that is gone ends no run
     batch::PhaseClock phases;
     const bool isNew =
         options.resume.empty() ||
@@ -199,6 +221,8 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
+    run.scheduler.failuresAtMost = options.failuresAtMost;
+    if (!options.triesAgain) run.scheduler.givenUp = batch::unitsNotSurvived(run.directory);
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
     batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
@@ -214,23 +238,28 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     saveManifest(context, run, phases);
     const std::string path = run.directory.path().string();
     if (outcome.isInterrupted) {
-        fmt::print(stderr, "interrupted; continue with: gfxrepro {} --resume {}\n",
-                   results ? "reproduce" : "run", path);
+        tell("interrupted; continue with: gfxrepro {} --resume {}\n", results ? "reproduce" : "run",
+             path);
         return kExitInterrupted;
     }
-    for (const std::string& line : outcome.complaints) fmt::print(stderr, "{}\n", line);
-    for (const std::string& line : outcome.warnings) fmt::print(stderr, "warning: {}\n", line);
+    if (!outcome.stopReason.empty()) {
+        tell("stopped: {}; continue with: gfxrepro {} --resume {}\n", outcome.stopReason,
+             results ? "reproduce" : "run", path);
+    }
+    for (const std::string& line : outcome.complaints) tell("{}\n", line);
+    for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
     fmt::print("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
                countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
                countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
-    if (!results) return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
+    const bool isComplete = outcome.failed + outcome.voided == 0 && outcome.stopReason.empty();
+    if (!results) return isComplete ? kExitOk : kExitIncomplete;
 
     const int verdict = conclude(path);
     saveManifest(context, run, phases);
-    if (verdict != kExitOk) return verdict;
-    return outcome.failed + outcome.voided > 0 ? kExitIncomplete : kExitOk;
+    // A case that is missing weighs more than a claim that fails.
+    return isComplete ? verdict : kExitIncomplete;
 }
 
 /// The configs that were named; none for no name, which a resumed run gives.

@@ -15,6 +15,7 @@
 #include "runner/batch/manifest.h"
 #include "runner/batch/run.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -25,6 +26,8 @@ namespace gfxrepro::cli {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::chrono::hours kRunLimit{24};  // its cases have limits of their own
 
 /// Of a table of times its other claims alone: in the quality lane a time is none.
 const std::vector<std::string> kOnceForQuality = {"measure.lane=quality", "measure.warmup=0",
@@ -81,7 +84,7 @@ batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
     sets.insert(sets.end(), study.sets.begin(), study.sets.end());
     sets.insert(sets.end(), variation.sets.begin(), variation.sets.end());
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
-    const batch::ProgramEnd end = batch::runToEnd(arguments);
+    const batch::ProgramEnd end = batch::runToEnd(arguments, kRunLimit);
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
         const std::string said(trimmed(end.output));
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
@@ -135,8 +138,8 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
     const bool isTimed = experiment.measure.lane == config::Measure::Lane::Timing;
     if (std::ranges::all_of(experiment.claims, isOfTime) &&
         (experiment.claims.empty() || !options.hasTimes)) {
-        fmt::print(stderr, "{}: left out, {}\n", experiment.id,
-                   experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
+        tell("{}: left out, {}\n", experiment.id,
+             experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
         return std::nullopt;
     }
     if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;
@@ -194,8 +197,8 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
             study->outcomes.emplace_back(outcomeOf(*study, options.selection));
         study->spentS += secondsSince(start);
         write(*study, options.keep);
-        fmt::print(stderr, "[{}/{}] {} {}{}\n", ++made, total, study->experiment().id,
-                   outcome.variation.title(), outcome.error.empty() ? "" : ": " + outcome.error);
+        tell("[{}/{}] {} {}{}\n", ++made, total, study->experiment().id, outcome.variation.title(),
+             outcome.error.empty() ? "" : ": " + outcome.error);
         // Without verdicts as configured there is nothing to compare with.
         if (outcome.variation.assumption.empty() && !outcome.error.empty()) {
             study->variations.runs.resize(1);

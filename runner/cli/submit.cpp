@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -13,6 +14,7 @@
 #include "runner/batch/shards.h"
 #include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/core/files.h"
@@ -26,6 +28,7 @@ using batch::Submission;
 
 namespace {
 
+constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
 constexpr double kShardS = 1800.0;  // predicted, of a shard, where no number of them is given
 constexpr int kUnknownShards = 8;   // where nothing is predicted either
 
@@ -128,12 +131,12 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
         cut.unitCounts[static_cast<std::size_t>(shardOf[i])] += measure.processes;
         cut.timesS[static_cast<std::size_t>(shardOf[i])] += timesS[i];
     }
-    fmt::print(stderr, "{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(),
-               s.shardCount, s.shardCount == 1 ? "" : "s",
-               *std::ranges::min_element(cut.unitCounts), *std::ranges::max_element(cut.unitCounts),
-               arePredicted ? fmt::format(", the longest of about {}",
-                                          durationText(*std::ranges::max_element(cut.timesS)))
-                            : "; no earlier run tells their time");
+    tell("{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(), s.shardCount,
+         s.shardCount == 1 ? "" : "s", *std::ranges::min_element(cut.unitCounts),
+         *std::ranges::max_element(cut.unitCounts),
+         arePredicted ? fmt::format(", the longest of about {}",
+                                    durationText(*std::ranges::max_element(cut.timesS)))
+                      : "; no earlier run tells their time");
     cut.predictor = std::move(history.predictor);
     return cut;
 }
@@ -153,7 +156,8 @@ batch::ShardProgress progressOf(const fs::path& folder, int unitCount) {
 std::optional<std::map<std::string, std::string>> askQueue(const Stored& stored) {
     const batch::ProgramEnd end =
         batch::runToEnd({"/usr/bin/env", "squeue", "-h", "-r", "-t", "all", "-j",
-                         stored.arrayJob + "," + stored.mergeJob, "-o", "%F_%K %T"});
+                         stored.arrayJob + "," + stored.mergeJob, "-o", "%F_%K %T"},
+                        kSlurmLimit);
     if (end.exitCode != 0) return std::nullopt;
     return batch::parseQueue(end.output);
 }
@@ -194,7 +198,7 @@ int printStatus(const fs::path& out) {
 /// The job's number, which --parsable prints last: "123" or "123;cluster".
 std::string sbatch(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
-    const batch::ProgramEnd end = batch::runToEnd(arguments);
+    const batch::ProgramEnd end = batch::runToEnd(arguments, kSlurmLimit);
     const std::string text(trimmed(end.output));
     const std::string last = text.substr(text.rfind('\n') + 1);
     const std::string job = last.substr(0, last.find(';'));
@@ -269,8 +273,8 @@ int writeCommands(const Cut& cut, bool isDryRun) {
     writeFileAtomic(s.out / "commands.txt", commands);
     writeFileAtomic(s.out / "merge.sh", "#!/bin/sh\n" + merge);
     writeStored(s.out, {s.runArguments, cut.unitCounts, "", ""});
-    fmt::print(stderr, "parallel --jobs 1 < {}; sh {}\n", (s.out / "commands.txt").string(),
-               (s.out / "merge.sh").string());
+    tell("parallel --jobs 1 < {}; sh {}\n", (s.out / "commands.txt").string(),
+         (s.out / "merge.sh").string());
     return kExitOk;
 }
 

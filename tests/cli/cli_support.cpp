@@ -1,5 +1,7 @@
 #include "tests/cli/cli_support.h"
 
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 namespace gfxrepro::test {
@@ -40,6 +42,21 @@ std::vector<std::string> statusLines(const std::filesystem::path& runDir) {
         lines.push_back(line);
     }
     return lines;
+}
+
+std::vector<pid_t> backgroundWorkers() {
+    const auto childrenOf = [](const std::string& task) {
+        std::ifstream file("/proc/" + task + "/children");
+        std::vector<pid_t> children;
+        for (pid_t pid; file >> pid;) children.push_back(pid);
+        return children;
+    };
+    std::vector<pid_t> workers;
+    for (const pid_t runner : childrenOf("thread-self")) {
+        const std::string pid = std::to_string(runner);
+        for (const pid_t worker : childrenOf(pid + "/task/" + pid)) workers.push_back(worker);
+    }
+    return workers;
 }
 
 }  // namespace gfxrepro::test

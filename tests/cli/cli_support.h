@@ -1,6 +1,8 @@
 // What the tests of the program share.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,5 +25,8 @@ std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const st
 
 /// "value=status message" of every case in order of the rows, by the parameter `behaviour`.
 std::vector<std::string> statusLines(const std::filesystem::path& runDir);
+
+/// The workers of the program that this thread runs in the background.
+std::vector<pid_t> backgroundWorkers();
 
 }  // namespace gfxrepro::test

@@ -21,23 +21,11 @@ constexpr int kFolders = 5;
 constexpr int kMomentsInFolder = 5;
 constexpr int kLatestMs = 700;  // a run that nobody kills takes a little more
 
-std::vector<pid_t> childrenOf(const std::string& task) {
-    std::ifstream file("/proc/" + task + "/children");
-    std::vector<pid_t> children;
-    for (pid_t pid; file >> pid;) children.push_back(pid);
-    return children;
-}
-
-std::vector<pid_t> workersOf(pid_t runner) {
-    const std::string pid = std::to_string(runner);
-    return childrenOf(pid + "/task/" + pid);
-}
-
 /// Starts or continues the run in `dir` and kills something `delayMs` later.
 void runAndKill(const std::string& config, const std::string& dir, int delayMs, bool isRunner) {
     std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "run"};
     if (fs::exists(dir + "/plan.json")) {
-        command.insert(command.end(), {"--resume", dir});
+        command.insert(command.end(), {"--resume", dir, "--retry"});
     } else {
         command.insert(command.end(), {config, "--device", "software", "--out", dir});
     }
@@ -46,9 +34,7 @@ void runAndKill(const std::string& config, const std::string& dir, int delayMs, 
     if (isRunner) {
         run.signal(SIGKILL);
     } else {
-        for (const pid_t runner : childrenOf("thread-self")) {
-            for (const pid_t worker : workersOf(runner)) ::kill(worker, SIGKILL);
-        }
+        for (const pid_t worker : backgroundWorkers()) ::kill(worker, SIGKILL);
     }
     run.wait();
 }
@@ -83,7 +69,7 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
         // A run that was killed before its plan was frozen is begun, not continued.
         const ProcessResult last =
             fs::exists(dir + "/plan.json")
-                ? mockGfxrepro({"run", "--resume", dir})
+                ? mockGfxrepro({"run", "--resume", dir, "--retry"})
                 : mockGfxrepro({"run", config, "--device", "software", "--out", dir});
         EXPECT_EQ(last.exitCode, 0) << last.err;
         EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);

@@ -1,4 +1,6 @@
 // The program with one technique that fails in every way that a technique can.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -9,6 +11,7 @@
 #include <fstream>
 #include <new>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -168,6 +171,11 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // A driver that does not answer.
+    if (argc > 1 && std::string_view(argv[1]) == "worker" &&
+        std::getenv("GFXREPRO_MOCK_DRIVER_HANGS")) {
+        ::pause();
+    }
     const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create}};
     return cli::run(argc, argv, techniques);
 }

@@ -47,7 +47,7 @@ TEST(Records, WriteTheDocumentedColumns) {
     RecordWriter(path).append({sample("abc", 0.1)});
     EXPECT_EQ(readFile(path),
               std::string(kHeader) +
-                  "1,abc,zju2005/2.1,voxelization,worksheet,models/duck,"
+                  "2,abc,zju2005/2.1,voxelization,worksheet,models/duck,"
                   "\"{\"\"resolution\"\":256,\"\"method\"\":\"\"worksheet\"\"}\",1,2,3,timing,"
                   "rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
 }

@@ -1,0 +1,154 @@
+// What a run that nobody watches meets: no reader of its progress, a driver that does not answer, a
+// case that takes the runner with it, a device that is gone, a suspended machine.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+ProcessResult shell(const std::string& line) {
+    return runProgram({"/bin/sh", "-c", line});
+}
+
+std::string mockRun(const std::string& config, const std::string& dir) {
+    return GFXREPRO_MOCK_PROGRAM " run " + config + " --device software --out " + dir;
+}
+
+std::string readShared(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Waits until as many units have begun in all.
+void waitForStarts(const std::string& dir, std::size_t count) {
+    const std::string start = "\"event\":\"start\"";
+    for (int i = 0; i < 400; ++i) {
+        const std::string log = readShared(dir + "/log.jsonl");
+        std::size_t found = 0;
+        for (std::size_t at = log.find(start); at != std::string::npos;
+             at = log.find(start, at + 1)) {
+            ++found;
+        }
+        if (found >= count) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    FAIL() << "no unit has begun";
+}
+
+TEST(Weekend, NobodyReadsTheProgress) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3]}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(shell(mockRun(config, dir + "1") + " 2>/dev/full").exitCode, 0);
+    EXPECT_EQ(shell(mockRun(config, dir + "2") + " 0<&- 2>&-").exitCode, 0);
+    EXPECT_EQ(shell("(" + mockRun(config, dir + "3") + " 2>&1; echo $? >" + dir +
+                    "-code) | head -c 1 >/dev/null; cat " + dir + "-code")
+                  .out,
+              "2\n")
+        << "its last words, on standard output, had no reader";
+    for (const char* run : {"1", "2", "3"}) EXPECT_EQ(rowsOf(dir + run, "number").size(), 3U);
+    EXPECT_EQ(shell(GFXREPRO_MOCK_PROGRAM " check nothere.yaml 2>/dev/full").exitCode, 2);
+    const ProcessResult full = shell(GFXREPRO_MOCK_PROGRAM " list scenes >/dev/full");
+    EXPECT_EQ(full.exitCode, 2);
+    EXPECT_THAT(full.err, HasSubstr("gfxrepro: cannot write the standard output: "));
+}
+
+TEST(Weekend, ADriverThatDoesNotAnswer) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const auto started = [&](const std::string& limit) {
+        return runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out",
+                           folder.path() / "run"},
+                          {"GFXREPRO_MOCK_DRIVER_HANGS=1", "GFXREPRO_START_LIMIT_S=" + limit});
+    };
+    const ProcessResult result = started("1");
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_EQ(result.err, "gfxrepro: the driver did not open a device within 1 s\n");
+    EXPECT_EQ(started("soon").err,
+              "gfxrepro: GFXREPRO_START_LIMIT_S: expected a number of seconds, found 'soon'\n");
+}
+
+TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "sweep: {behaviour: [hang, ok]}\nmeasure: {time_limit_s: 60}\n");
+    const std::string dir = folder.path() / "run";
+    const auto killedIn = [&](std::size_t start, std::vector<std::string> command) {
+        command.insert(command.end(), {"--jobs", "1"});
+        BackgroundProgram run(command);
+        waitForStarts(dir, start);
+        run.signal(SIGKILL);
+        run.wait();
+    };
+    killedIn(1, {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
+    killedIn(2, {GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir});
+    for (int i = 0; i < 2; ++i) {
+        const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+        EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
+        EXPECT_THAT(statusLines(dir),
+                    testing::Contains("hang: crash (the runner did not survive it, 2 times; "
+                                      "resume with --retry to try it again)"));
+        EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
+    }
+    BackgroundProgram again({GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir, "--retry"});
+    waitForStarts(dir, 4);  // the other case was the third
+    again.signal(SIGINT);
+    EXPECT_EQ(again.wait().exitCode, 130);
+}
+
+TEST(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "params: {behaviour: device_lost}\nsweep: {number: [1, 2, 3, 4]}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult lost =
+        mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
+    EXPECT_EQ(lost.exitCode, 4);
+    EXPECT_THAT(lost.err, HasSubstr("stopped: the device was lost in two cases in a row; continue "
+                                    "with: gfxrepro run --resume " +
+                                    dir));
+    EXPECT_THAT(lost.out, HasSubstr("0 of 2 finished, 2 failed"));
+    const std::string failing =
+        writeMockConfig(folder, "params: {behaviour: throw}\nsweep: {number: [1, 2, 3, 4, 5]}\n");
+    const ProcessResult stopped = mockGfxrepro({"run", failing, "--device", "software", "--jobs",
+                                                "1", "--max-failures", "3", "--out", dir + "2"});
+    EXPECT_EQ(stopped.exitCode, 4);
+    EXPECT_THAT(stopped.err, HasSubstr("stopped: 3 failed; "));
+    EXPECT_THAT(stopped.out, HasSubstr("0 of 3 finished, 3 failed"));
+}
+
+TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000}\nmeasure: {time_limit_s: 2}\n");
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram run(
+        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
+    waitForStarts(dir, 1);
+    const std::vector<pid_t> workers = backgroundWorkers();
+    EXPECT_EQ(workers.size(), 1U);
+    const auto signalAll = [&](int number) {
+        run.signal(number);
+        for (const pid_t worker : workers) ::kill(worker, number);
+    };
+    signalAll(SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    signalAll(SIGCONT);
+    EXPECT_EQ(run.wait().exitCode, 0);
+    EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
+    EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
