@@ -1,7 +1,12 @@
 // What is recorded of a frame: shares, memory, errors, pictures.
 
-#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <set>
+
+#include "runner/core/error.h"
 #include "runner/metrics/flip.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
@@ -56,25 +61,34 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 void ClusteredReflections::recordShares(technique::Recorder& recorder,
                                         const HostGBuffer& gbuffer) const {
     std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::vector<std::size_t> wholes(isPlanar.size());  // by reflector: the object it is a part of
     std::uint64_t diffuseTriangles = 0, reflectiveTriangles = 0;
     for (const reflections::Object& object : scene_->objects()) {
-        isPlanar[static_cast<std::size_t>(object.reflector)] = object.isPlanar ? 1 : 0;
+        const auto reflector = static_cast<std::size_t>(object.reflector);
+        isPlanar[reflector] = object.isPlanar ? 1 : 0;
+        wholes[reflector] = static_cast<std::size_t>(object.wholeReflector);
         (object.reflector == 0 ? diffuseTriangles : reflectiveTriangles) += object.triangleCount;
     }
     std::vector<std::size_t> samples(isPlanar.size());
     for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
         ++samples[static_cast<std::size_t>(gbuffer.reflector(i))];
     }
-    std::size_t reflective = 0, planar = 0, visible = 0;
+    std::size_t reflective = 0, planar = 0;
+    std::set<std::size_t> visible, visibleParts;
     for (std::size_t reflector = 1; reflector < samples.size(); ++reflector) {
         reflective += samples[reflector];
         planar += isPlanar[reflector] != 0 ? samples[reflector] : 0;
-        visible += samples[reflector] > 0 ? 1 : 0;
+        if (samples[reflector] == 0) continue;
+        visible.insert(wholes[reflector]);
+        visibleParts.insert(reflector);
     }
     recorder.metric("reflective_pct", percent(reflective, gbuffer.surface.size()), "%");
-    recorder.metric("planar_pct", percent(planar, reflective), "%");
-    recorder.metric("visible_reflectors", static_cast<double>(visible), "reflector");
-    recorder.metric("reflectors", scene_->reflectorCount(), "reflector");
+    if (reflective > 0) recorder.metric("planar_pct", percent(planar, reflective), "%");
+    // Objects, as the thesis counts them; parts are what the clusters are made of.
+    recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
+    recorder.metric("visible_parts", static_cast<double>(visibleParts.size()), "reflector");
+    recorder.metric("reflectors", scene_->wholeReflectorCount(), "reflector");
+    recorder.metric("parts", scene_->reflectorCount(), "reflector");
     recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");
     recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles), "triangle");
 }

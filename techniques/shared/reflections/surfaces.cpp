@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "runner/core/error.h"
 #include "runner/image/srgb.h"
+#include "techniques/shared/reflections/reflector_parts.h"
 #include "techniques/shared/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
@@ -133,9 +135,19 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 ? fmt::format(" (transmissive objects left out: {})", transmissiveCount_)
                 : std::string()));
     }
+    std::vector<int> wholes(scene_.instances.size());
+    std::iota(wholes.begin(), wholes.end(), 0);
+    if (rule.splitsParts) {
+        wholes = splitIntoParts(scene_, [&](const scene::Material& material) {
+            return material.roughness <= rule.maxRoughness;
+        });
+    }
     std::vector<int> layerOfTexture(scene_.textures.size(), -1);
-    for (const scene::Instance& instance : scene_.instances) {
-        addObject(instance, layerOfTexture);
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        addObject(scene_.instances[i], layerOfTexture);
+        if (objects_[i].reflector == 0) continue;
+        if (i == 0 || wholes[i] != wholes[i - 1]) ++wholeReflectorCount_;
+        objects_[i].wholeReflector = wholeReflectorCount_;
     }
     if (reflectorCount_ > kMostReflectors) {
         throw UnsupportedError(fmt::format("scene {}: {} reflectors, at most {} can be told apart",

@@ -162,8 +162,8 @@ TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
 
 TEST_F(ClusteredReflectionsTest, MoreBinsGiveMoreClustersAndSmallerOcclusionErrors) {
     const scene::Scene scene = roomWithMirrors();
-    const Metrics coarse = run("{theta_bins: 1, phi_bins: 1}", scene);
-    const Metrics fine = run("{bin_exponent: 0}", scene);
+    const Metrics coarse = run("{reflector_parts: false, theta_bins: 1, phi_bins: 1}", scene);
+    const Metrics fine = run("{reflector_parts: false, bin_exponent: 0}", scene);
     EXPECT_EQ(coarse.at("clusters"), 2.0);
     EXPECT_GT(fine.at("clusters"), 6.0);
     EXPECT_GT(coarse.at("occlusion_error_pct"), 0.0);
