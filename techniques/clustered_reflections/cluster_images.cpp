@@ -29,7 +29,7 @@ gl::Defines imageDefines() {
     define("kImageNearestUnit", kImageNearestUnit);
     define("kClusterOfSampleUnit", kClusterOfSampleUnit);
     define("kMaxClusters", kMaxClusters);
-    define("kConcaveCluster", kConcaveCluster);
+    define("kShowsOwn", kShowsOwn);
     define("MARCH_LEVELS", kPyramidLevels);
     return defines;
 }
@@ -141,7 +141,7 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
     const std::array<glm::vec4, 6> planes = {rows[3] + rows[0], rows[3] - rows[0],
                                              rows[3] + rows[1], rows[3] - rows[1],
                                              rows[3] + rows[2], rows[3] - rows[2]};
-    const bool seesSelf = (camera.flags & kConcaveCluster) != 0;
+    const bool seesSelf = (camera.flags & kShowsOwn) != 0;
     std::vector<std::uint32_t> seen;
     for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
         if (reflectorOfObject_[i] == camera.reflector && !seesSelf) continue;

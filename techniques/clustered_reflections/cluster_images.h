@@ -69,11 +69,6 @@ class ClusterImages {
 /// a texel. (0, 0): no image. shaders/place_images.comp.glsl has the same.
 glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings);
 
-/// Another bit of ClusterCamera::flags: the cluster is concave (ConcavityPass). Its images show its
-/// own reflector: [xie2017] Sec. 4.7.4, second way.
-constexpr std::uint32_t kConcaveCluster = 1U << 16;
-static_assert(((kPlanarCluster | kNoRoom | kEyeBehind | kRaysTurned) & kConcaveCluster) == 0);
-
 /// The thesis's way: a cluster's image at the texture's origin, objects culled on the CPU.
 class OneByOnePainter {
   public:

@@ -28,6 +28,14 @@ constexpr config::Choice<March> kMarches[] = {
     {March::Linear, "linear", "a texel a step (algorithm 7)"},
     {March::Hierarchical, "hierarchical", "over a pyramid of nearest depths"},
 };
+constexpr config::Choice<OwnReflector> kOwnReflectors[] = {
+    {OwnReflector::WholeScene, "whole_scene",
+     "the first way of Sec. 4.7.4: images are of the whole scene"},
+    {OwnReflector::ConcaveDiffuse, "concave_diffuse",
+     "the second way, which it recommends: concave clusters show their own reflector's diffuse "
+     "colour"},
+    {OwnReflector::LeftOut, "left_out", "a reflector is left out of its own images"},
+};
 
 float number(config::Params& params, const char* name, double fallback,
              const config::ParamSpec& spec) {
@@ -76,10 +84,9 @@ ClusteredSettings readClustered(config::Params& params) {
     settings.camera.depthImageScale =
         number(params, "depth_image_scale", 1.0,
                {"factor on the width and height of the depth images", "1", 0.01, 16.0});
-    settings.seesConcaveSelf = params.getBool(
-        "concave_self", false,
-        {"rays of a concave cluster that meet their own reflector show its diffuse colour; else a "
-         "reflector is left out of its own images"});
+    settings.ownReflector =
+        params.getEnum("own_reflector", OwnReflector::ConcaveDiffuse, kOwnReflectors,
+                       {"what rays of a cluster see of the reflector that they leave"});
     return settings;
 }
 

@@ -30,7 +30,7 @@ bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {
 bool isSeen(uint object, uint cluster) {
     if (places[cluster].z == 0) return false;
     bool isOwn = (objects[object].surface & 0xFFFFu) == cameras[cluster].reflector;
-    if (isOwn && (cameras[cluster].flags & kConcaveCluster) == 0u) return false;
+    if (isOwn && (cameras[cluster].flags & kShowsOwn) == 0u) return false;
     mat4 rows = transpose(cameras[cluster].clipFromWorld);
     vec3 centre = objects[object].boundsCentre.xyz;
     vec3 halfSize = objects[object].boundsHalfSize.xyz;

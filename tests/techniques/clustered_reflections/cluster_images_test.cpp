@@ -99,7 +99,7 @@ TEST_F(ClusterImagesTest, TheOwnReflectorIsSeenByConcaveClustersOnly) {
     EXPECT_TRUE(sees());
     camera.reflector = 1;
     EXPECT_FALSE(sees());
-    camera.flags = kConcaveCluster;
+    camera.flags = kShowsOwn;
     EXPECT_TRUE(sees());
 }
 
