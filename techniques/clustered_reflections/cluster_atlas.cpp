@@ -97,12 +97,12 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     draw_.use();
     draw_.set("atlasSizePx", glm::vec2(target.sizePx()));
     vertexArray_.bind();
-    for (int plane = 0; plane < 4; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
     glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
                                 sizeof(DrawCommand));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-    for (int plane = 0; plane < 4; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
     target.endDrawing(target.sizePx());
 }
 

@@ -70,9 +70,11 @@ void ClusterImages::beginDrawing(glm::ivec2 sizePx) const {
     glDepthFunc(GL_GREATER);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
+    glEnable(GL_CLIP_DISTANCE0);  // the far plane
 }
 
 void ClusterImages::endDrawing(glm::ivec2 sizePx) {
+    glDisable(GL_CLIP_DISTANCE0);
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);

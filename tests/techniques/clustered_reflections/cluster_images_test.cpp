@@ -211,5 +211,34 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
     }
 }
 
+TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
+    const ReflectiveScene scene(rooms::room());
+    const GpuObjects objects(scene);
+    ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.6F, 0.0F, -0.8F}, {40, 30});
+    ClusterImages images(shaders(), glm::ivec2(64), false);
+    OneByOnePainter painter(shaders(), scene);
+    const auto drawnTexels = [&] {
+        const gl::Buffer buffer = cameraBuffer({camera});
+        buffer.bindStorage(kCamerasBinding);
+        painter.draw(objects, 0, camera, camera.sizePx, images);
+        const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+        int drawn = 0;
+        for (int y = 0; y < 30; ++y) {
+            for (int x = 0; x < 40; ++x) {
+                const float depth = depths[static_cast<std::size_t>(y * 64 + x)];
+                drawn += depth > 0.0F ? 1 : 0;
+                if (depth > 0.0F) EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
+            }
+        }
+        return drawn;
+    };
+    EXPECT_EQ(drawnTexels(), 40 * 30);  // the room is closed
+    // The edge between the walls +x and −z is 3.0 away along the axis, the walls beside it nearer.
+    camera.planeNormal.w = 2.6F;
+    const int near = drawnTexels();
+    EXPECT_GT(near, 40);
+    EXPECT_LT(near, 40 * 30 - 40);
+}
+
 }  // namespace
 }  // namespace gfxrepro::clustered_reflections
