@@ -38,6 +38,7 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                            const reflections::ReflectiveScene& scene,
                            const reflections::GpuObjects& objects, const CameraSettings& settings)
     : settings_(settings),
+      families_(gl::Buffer::of(reflectorFamilies(scene))),
       places_(kMaxClusters * sizeof(glm::ivec4)),
       order_(sizeof(AtlasHeader) + kMaxClusters * sizeof(std::uint32_t)) {
     GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
@@ -78,6 +79,7 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     commands_.bindStorage(kCommandsBinding);
     pieces_.bindStorage(kPiecesBinding);
     instances_.bindStorage(kInstancesBinding);
+    families_.bindStorage(kFamiliesBinding);
     objects.bind();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 
@@ -113,7 +115,7 @@ AtlasPainter::State AtlasPainter::state() const {
 
 std::size_t AtlasPainter::sizeBytes() const {
     return places_.sizeBytes() + order_.sizeBytes() + commands_.sizeBytes() +
-           instances_.sizeBytes() + pieces_.sizeBytes();
+           instances_.sizeBytes() + pieces_.sizeBytes() + families_.sizeBytes();
 }
 
 }  // namespace gfxrepro::clustered_reflections

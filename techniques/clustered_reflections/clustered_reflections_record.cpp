@@ -219,9 +219,9 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
                 clusterOfSample[i] = 0;
         }
     }
-    const OcclusionErrors errors =
-        occlusionErrors({gbuffer, truthOf(gbuffer).samples, clusterOfSample,
-                         clusteredTracer_->cameras(), *scene_, truthTracer_->rays(), params_.lobe});
+    const OcclusionErrors errors = occlusionErrors(
+        {gbuffer, truthOf(gbuffer).samples, clusterOfSample, clusteredTracer_->cameras(), *scene_,
+         truthTracer_->rays(), params_.lobe, reflectorFamilies(*scene_)});
     const auto share = [&](const char* name, std::size_t samples) {
         recorder.metric(name, percent(samples, errors.reflective), "%");
     };

@@ -27,8 +27,10 @@ Sight sightOfFrustum(const ClusterCamera& camera, const glm::vec3& point, float 
     return std::abs(clip.x) > limit || std::abs(clip.y) > limit ? Sight::Beside : Sight::Seen;
 }
 
-bool leavesOutOwn(const ClusterCamera& camera) {
-    return (camera.flags & kShowsOwn) == 0;
+bool leavesOut(const ClusterCamera& camera, std::uint32_t reflector, const OcclusionInput& input) {
+    if (reflector == camera.reflector) return (camera.flags & kShowsOwn) == 0;
+    return !input.families.empty() &&
+           areBackToBack(input.families[reflector], input.families[camera.reflector]);
 }
 
 /// Whether a surface is seen from the side that its normals point to.
@@ -58,10 +60,12 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
     while (start < end) {
         const auto hit = input.rays.closestHit(eye, direction, start, end);
         if (!hit) return true;
-        const int reflector = input.scene.objects()[hit->instance].reflector;
-        if (reflector != static_cast<int>(camera.reflector)) return false;
-        if (!leavesOutOwn(camera) && isFacing(*hit, direction, input.scene)) return false;
-        // On behind what is not drawn of the own reflector; at least to the next number, so that
+        const auto reflector =
+            static_cast<std::uint32_t>(input.scene.objects()[hit->instance].reflector);
+        const bool isBack =
+            reflector == camera.reflector && !isFacing(*hit, direction, input.scene);
+        if (!leavesOut(camera, reflector, input) && !isBack) return false;
+        // On behind what is not drawn; at least to the next number, so that
         // this ends.
         start = std::max(hit->distance * (1.0F + 1e-6F), std::nextafter(hit->distance, end));
     }
@@ -72,7 +76,7 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
 
 Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld, std::uint32_t reflector,
               const OcclusionInput& input) {
-    if (leavesOutOwn(camera) && reflector == camera.reflector) return Sight::Self;
+    if (leavesOut(camera, reflector, input)) return Sight::Self;
     const float toleranceM = kOcclusionTolerance * input.scene.diagonalM();
     const Sight inFrustum = sightOfFrustum(camera, pointWorld, toleranceM);
     if (inFrustum != Sight::Seen) return inFrustum;

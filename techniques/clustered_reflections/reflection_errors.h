@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/shared/reflections/embree_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -13,7 +13,7 @@ namespace gfxrepro::clustered_reflections {
 /// Why a point of the scene is not in a depth image; by the first of these that is so.
 enum class Sight : std::uint8_t {
     Seen,
-    Self,        // on the cluster's own reflector, which its image leaves out
+    Self,        // on the cluster's own reflector, or back to back with it: its image leaves it out
     BeforeNear,  // before the near plane, which cuts it off
     Beside,      // at the sides of the image, or beyond the far plane
     Hidden,      // behind something that the image has
@@ -40,6 +40,7 @@ struct OcclusionInput {
     const reflections::ReflectiveScene& scene;
     const raycast::RayTracer& rays;  // over the posed scene
     const reflections::LobeSettings& lobe;
+    std::vector<std::uint32_t> families = {};  // reflectorFamilies(scene); empty: none are related
 };
 
 /// A hit Q of a sample's mirror ray counts as seen by its cluster's camera when the image has the

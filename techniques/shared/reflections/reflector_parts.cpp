@@ -50,26 +50,31 @@ class Joined {
     std::vector<std::uint32_t> parent_;
 };
 
-class Parts {
+class Division {
   public:
-    explicit Parts(const scene::Mesh& mesh) : mesh_(mesh), joined_(mesh.triangles.size()) {
+    explicit Division(const scene::Mesh& mesh) : mesh_(mesh), joined_(mesh.triangles.size()) {
         measureTriangles();
         findBorders();
-        const std::vector<std::int8_t> sides = bendingSides();
+        sides_ = bendingSides();
         for (const Border& border : borders_) {
-            if (!border.isCrease && sides[border.a] == sides[border.b])
+            if (!border.isCrease && sides_[border.a] == sides_[border.b])
                 joined_.join(border.a, border.b);
         }
         joinSmallOnes();
     }
-    std::vector<std::uint32_t> numbers() {
-        std::vector<std::uint32_t> numbers;
+    Parts parts() {
+        Parts parts;
         std::map<std::uint32_t, std::uint32_t> numberOf;
+        std::vector<double> bentArea;  // convex less concave, by part
         for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
             const auto next = static_cast<std::uint32_t>(numberOf.size());
-            numbers.push_back(numberOf.emplace(joined_.of(t), next).first->second);
+            const std::uint32_t part = numberOf.emplace(joined_.of(t), next).first->second;
+            if (part == bentArea.size()) bentArea.push_back(0.0);
+            bentArea[part] += sides_[t] * areas_[t];
+            parts.ofTriangle.push_back(part);
         }
-        return numbers;
+        for (const double area : bentArea) parts.isConcave.push_back(area < 0.0 ? 1 : 0);
+        return parts;
     }
 
   private:
@@ -86,10 +91,11 @@ class Parts {
     std::vector<dvec3> normals_;  // of triangles, turned as their vertices'; 0: degenerate
     std::vector<double> areas_;
     std::vector<Border> borders_;
+    std::vector<std::int8_t> sides_;  // −1: concave
     Joined joined_;
 };
 
-void Parts::measureTriangles() {
+void Division::measureTriangles() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
         dvec3 normal = glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
         const double twice = glm::length(normal);
@@ -104,7 +110,8 @@ void Parts::measureTriangles() {
     }
 }
 
-Border Parts::borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from, const dvec3& to) const {
+Border Division::borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from,
+                          const dvec3& to) const {
     Border border{a, b, glm::distance(from, to)};
     if (normals_[a] == dvec3(0.0) || normals_[b] == dvec3(0.0)) return border;
     const double cosine = std::clamp(glm::dot(normals_[a], normals_[b]), -1.0, 1.0);
@@ -121,7 +128,7 @@ Border Parts::borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from, cons
     return border;
 }
 
-void Parts::findBorders() {
+void Division::findBorders() {
     const double cell = std::max(kWeld * double{glm::length(mesh_.bounds().size())}, 1e-30);
     std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::uint32_t> vertexAt;
     std::vector<std::uint32_t> welded;
@@ -148,7 +155,7 @@ void Parts::findBorders() {
 }
 
 /// −1 where the surface is concave, else 1.
-std::vector<std::int8_t> Parts::bendingSides() const {
+std::vector<std::int8_t> Division::bendingSides() const {
     std::vector<double> bends(areas_.size(), 0.0);
     for (const Border& border : borders_) {
         if (border.isCrease) continue;
@@ -175,7 +182,7 @@ std::vector<std::int8_t> Parts::bendingSides() const {
 
 /// Smallest first, each with what it has the longest border with; those without any with each
 /// other.
-void Parts::joinSmallOnes() {
+void Division::joinSmallOnes() {
     double total = 0.0;
     for (const double area : areas_) total += area;
     for (bool hasJoined = true; hasJoined;) {
@@ -242,26 +249,28 @@ scene::Mesh partOf(const scene::Mesh& mesh, const std::vector<std::uint32_t>& pa
 
 }  // namespace
 
-std::vector<std::uint32_t> partsOf(const scene::Mesh& mesh) {
-    return Parts(mesh).numbers();
+Parts partsOf(const scene::Mesh& mesh) {
+    return Division(mesh).parts();
 }
 
-std::vector<int> splitIntoParts(scene::Scene& scene,
-                                const std::function<bool(const scene::Material&)>& splits) {
-    std::map<int, std::vector<int>> partsOfMesh;  // meshes that are split, as new meshes
-    const auto split = [&](int index) -> const std::vector<int>& {
-        const auto [at, isNew] = partsOfMesh.emplace(index, std::vector<int>{index});
+std::vector<PartOrigin> splitIntoParts(scene::Scene& scene,
+                                       const std::function<bool(const scene::Material&)>& splits) {
+    using NewMeshes = std::vector<std::pair<int, bool>>;  // and whether they are concave
+    std::map<int, NewMeshes> partsOfMesh;
+    const auto split = [&](int index) -> const NewMeshes& {
+        const auto [at, isNew] = partsOfMesh.emplace(index, NewMeshes{{index, false}});
         if (!isNew) return at->second;
         // A copy: it grows the list that it is in. Normals are the whole's, also where it has none.
         scene::Mesh mesh = scene.meshes[static_cast<std::size_t>(index)];
         if (mesh.normals.size() != mesh.positions.size()) mesh.normals = scene::vertexNormals(mesh);
-        const std::vector<std::uint32_t> parts = partsOf(mesh);
-        const std::uint32_t count = parts.empty() ? 0 : 1 + *std::ranges::max_element(parts);
+        const Parts parts = partsOf(mesh);
+        const auto count = static_cast<std::uint32_t>(parts.isConcave.size());
         if (count < 2) return at->second;
         at->second.clear();
         for (std::uint32_t part = 0; part < count; ++part) {
-            at->second.push_back(static_cast<int>(scene.meshes.size()));
-            scene.meshes.push_back(partOf(mesh, parts, part));
+            at->second.emplace_back(static_cast<int>(scene.meshes.size()),
+                                    parts.isConcave[part] != 0);
+            scene.meshes.push_back(partOf(mesh, parts.ofTriangle, part));
         }
         scene.meshes[static_cast<std::size_t>(index)] = {};  // all its instances are split
         return at->second;
@@ -269,22 +278,22 @@ std::vector<int> splitIntoParts(scene::Scene& scene,
     std::vector<int> materials;  // of meshes, before any of them is split
     for (const scene::Mesh& mesh : scene.meshes) materials.push_back(mesh.material);
     std::vector<scene::Instance> instances;
-    std::vector<int> origins;
+    std::vector<PartOrigin> origins;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const scene::Instance whole = scene.instances[i];
         const int material = materials[static_cast<std::size_t>(whole.mesh)];
         const bool isSplit = splits(
             material < 0 ? scene::Material{} : scene.materials[static_cast<std::size_t>(material)]);
-        const std::vector<int> meshes = isSplit ? split(whole.mesh) : std::vector<int>{whole.mesh};
-        for (const int mesh : meshes) {
+        const NewMeshes meshes = isSplit ? split(whole.mesh) : NewMeshes{{whole.mesh, false}};
+        for (const auto& [mesh, isConcave] : meshes) {
             instances.push_back({mesh, whole.worldFromMesh});
-            origins.push_back(static_cast<int>(i));
+            origins.push_back({static_cast<int>(i), isConcave});
         }
     }
     std::vector<scene::Motion> motions;
     for (const scene::Motion& motion : scene.motions) {
         for (std::size_t i = 0; i < origins.size(); ++i) {
-            if (origins[i] != motion.instance) continue;
+            if (origins[i].instance != motion.instance) continue;
             motions.push_back(motion);
             motions.back().instance = static_cast<int>(i);
         }

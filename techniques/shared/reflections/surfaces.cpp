@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "runner/core/error.h"
@@ -135,10 +134,12 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 ? fmt::format(" (transmissive objects left out: {})", transmissiveCount_)
                 : std::string()));
     }
-    std::vector<int> wholes(scene_.instances.size());
-    std::iota(wholes.begin(), wholes.end(), 0);
+    std::vector<PartOrigin> parts;
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        parts.push_back({static_cast<int>(i), false});
+    }
     if (rule.splitsParts) {
-        wholes = splitIntoParts(scene_, [&](const scene::Material& material) {
+        parts = splitIntoParts(scene_, [&](const scene::Material& material) {
             return material.roughness <= rule.maxRoughness;
         });
     }
@@ -146,8 +147,9 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         addObject(scene_.instances[i], layerOfTexture);
         if (objects_[i].reflector == 0) continue;
-        if (i == 0 || wholes[i] != wholes[i - 1]) ++wholeReflectorCount_;
+        if (i == 0 || parts[i].instance != parts[i - 1].instance) ++wholeReflectorCount_;
         objects_[i].wholeReflector = wholeReflectorCount_;
+        objects_[i].isConcave = parts[i].isConcave;
     }
     if (reflectorCount_ > kMostReflectors) {
         throw UnsupportedError(fmt::format("scene {}: {} reflectors, at most {} can be told apart",

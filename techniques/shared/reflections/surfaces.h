@@ -42,6 +42,7 @@ struct Object {
     int textureLayer = -1;      // into ReflectiveScene::textureLayers(); -1: none
     int reflector = 0;          // 1 … reflectorCount(); 0: diffuse
     int wholeReflector = 0;     // 1 … wholeReflectorCount(): the object that it is a part of
+    bool isConcave = false;     // a part that is, seen from where its normals point
     float reflectivity = 0.0F;  // s of [xie2017] Algorithm 6
     float glossiness = 0.0F;    // g of [xie2017] Algorithm 6
     bool isPlanar = false;      // reflectors: all normals the same, to 1e-3, and all vertices in

@@ -68,6 +68,20 @@ TEST_F(OcclusionTest, TheOwnReflectorIsSeenOnlyWhereTheImageShowsIt) {
     EXPECT_EQ(sight({-4.8F, -1, 5}), Sight::Seen);   // but for its back
 }
 
+TEST_F(OcclusionTest, WhatLiesBackToBackIsLeftOut) {
+    // Reflector 1 is convex, 2 the concave part of the same object, 3 that of another.
+    const std::vector<std::uint32_t> families{0, 1U << 2 | 1, 1U << 2 | 2, 2U << 2 | 2};
+    const auto seen = [&](std::uint32_t reflector) {
+        return sightOf(camera_, {0, 0, 5}, reflector,
+                       {gbuffer_, {}, {}, {}, scene_, rays_, {}, families});
+    };
+    EXPECT_EQ(seen(0), Sight::Seen);
+    EXPECT_EQ(seen(2), Sight::Self);
+    EXPECT_EQ(seen(3), Sight::Seen);
+    EXPECT_FALSE(areBackToBack(families[1], 1U << 2));  // a planar part
+    EXPECT_FALSE(areBackToBack(families[1], families[1]));
+}
+
 TEST_F(OcclusionTest, ToleratesEdgesThatAreMissedByLittle) {
     // Seen at x = 1 ± half of z = 2 … 5 there; the diagonal is √(100 + 100 + 25) = 15.
     const float toleranceM = kOcclusionTolerance * scene_.diagonalM();

@@ -58,8 +58,8 @@ std::vector<glm::vec2> bowlOutline() {
     return outline;
 }
 
-std::uint32_t countOf(const std::vector<std::uint32_t>& parts) {
-    return parts.empty() ? 0 : 1 + *std::ranges::max_element(parts);
+std::size_t countOf(const Parts& parts) {
+    return parts.isConcave.size();
 }
 
 scene::Mesh boxMesh() {
@@ -83,17 +83,18 @@ TEST(ReflectorParts, ABoxHasSixSides) {
 
 TEST(ReflectorParts, InsideAndOutsideOfABowlAreApart) {
     const scene::Mesh mesh = turned(bowlOutline());
-    const std::vector<std::uint32_t> parts = partsOf(mesh);
-    EXPECT_EQ(countOf(parts), 2U);
+    const Parts parts = partsOf(mesh);
+    ASSERT_EQ(countOf(parts), 2U);
+    EXPECT_EQ(parts.isConcave, (std::vector<std::uint8_t>{0, 1}));
     // The inside lies within 0.92 of the centre, the outside beyond 0.98; the rim is the outside's.
     int inside = 0, outside = 0;
-    for (std::size_t t = 0; t < parts.size(); ++t) {
+    for (std::size_t t = 0; t < parts.ofTriangle.size(); ++t) {
         glm::vec3 middle(0.0F);
         for (int k = 0; k < 3; ++k) middle += mesh.positions[mesh.triangles[t][k]] / 3.0F;
         if (middle.y > -0.15F) continue;
         const bool isInside = glm::length(middle) < 0.95F;
         (isInside ? inside : outside) += 1;
-        EXPECT_EQ(parts[t], isInside ? 1U : 0U) << glm::length(middle);
+        EXPECT_EQ(parts.ofTriangle[t], isInside ? 1U : 0U) << glm::length(middle);
     }
     EXPECT_GT(inside, 100);
     EXPECT_GT(outside, 100);
@@ -106,16 +107,16 @@ TEST(ReflectorParts, PartsThatDoNotTouchAreApartUnlessTheyAreSmall) {
     for (const float x : {8.0F, 9.0F, 10.0F}) {
         builder.addQuad({x, 0, 0.05F}, {x + 0.1F, 0, 0.05F}, {x + 0.1F, 0, 0}, {x, 0, 0});
     }
-    const std::vector<std::uint32_t> parts = partsOf(builder.take("quads", 0));
-    EXPECT_EQ(parts, (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2, 2, 2, 2, 2}));
+    const Parts parts = partsOf(builder.take("quads", 0));
+    EXPECT_EQ(parts.ofTriangle, (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2, 2, 2, 2, 2}));
 }
 
 TEST(ReflectorParts, NothingAndDegenerateTrianglesAreNoError) {
-    EXPECT_TRUE(partsOf({}).empty());
+    EXPECT_EQ(countOf(partsOf({})), 0U);
     scene::Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 3, 3}};
-    EXPECT_EQ(partsOf(mesh).size(), 3U);
+    EXPECT_EQ(partsOf(mesh).ofTriangle.size(), 3U);
 }
 
 TEST(ReflectorParts, BecomeObjectsThatMoveTogether) {
