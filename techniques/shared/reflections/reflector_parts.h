@@ -13,7 +13,7 @@ namespace gfxrepro::reflections {
 /// a tube of eight sides, below a box.
 constexpr float kCreaseCosine = 0.64F;
 /// Parts of a smaller share of their object's area are joined with what they border on most.
-constexpr float kLeastPartShare = 0.01F;
+constexpr float kLeastPartShare = 0.05F;
 
 /// The parts of a mesh, 0, 1, … in the order of first triangles. A part is connected by edges
 /// (vertices at the same place are one), has no crease inside, and bends to one side: inside of a
