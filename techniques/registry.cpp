@@ -4,7 +4,6 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
 #include "techniques/point_splatting/point_splatting.h"
-#include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
 #include "techniques/soft_shadows/soft_shadows.h"
@@ -21,7 +20,6 @@ std::span<const TechniqueInfo> registeredTechniques() {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
         point_splatting::kPointSplatting,
-        ray_tracing::kRayTracing,
         reflection_reuse::kReflectionReuse,
         shadow_mapping::kShadowMapping,
         soft_shadows::kSoftShadows,

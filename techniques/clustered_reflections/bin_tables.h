@@ -16,6 +16,9 @@ struct BinTables {
     /// Theta and phi bins of a curved reflector with `area` of `total` reflective samples, one of
     /// `visible` reflectors.
     glm::ivec2 binsOf(std::uint32_t area, std::uint32_t total, std::uint32_t visible) const;
+    /// No more bins than this have curved reflectors together, whatever their areas are; `parts`
+    /// has the number of them that each object consists of.
+    long long mostBins(std::vector<int> parts) const;
     /// (i, j) of a normal as the G-buffer stores it.
     glm::ivec2 binOf(const glm::vec2& normalOctahedral, const glm::ivec2& bins) const;
 

@@ -38,6 +38,7 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                            const reflections::ReflectiveScene& scene,
                            const reflections::GpuObjects& objects, const CameraSettings& settings)
     : settings_(settings),
+      families_(gl::Buffer::of(reflectorFamilies(scene))),
       places_(kMaxClusters * sizeof(glm::ivec4)),
       order_(sizeof(AtlasHeader) + kMaxClusters * sizeof(std::uint32_t)) {
     GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
@@ -78,6 +79,7 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     commands_.bindStorage(kCommandsBinding);
     pieces_.bindStorage(kPiecesBinding);
     instances_.bindStorage(kInstancesBinding);
+    families_.bindStorage(kFamiliesBinding);
     objects.bind();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 
@@ -97,12 +99,12 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     draw_.use();
     draw_.set("atlasSizePx", glm::vec2(target.sizePx()));
     vertexArray_.bind();
-    for (int plane = 0; plane < 4; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
     glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
                                 sizeof(DrawCommand));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-    for (int plane = 0; plane < 4; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
     target.endDrawing(target.sizePx());
 }
 
@@ -113,7 +115,7 @@ AtlasPainter::State AtlasPainter::state() const {
 
 std::size_t AtlasPainter::sizeBytes() const {
     return places_.sizeBytes() + order_.sizeBytes() + commands_.sizeBytes() +
-           instances_.sizeBytes() + pieces_.sizeBytes();
+           instances_.sizeBytes() + pieces_.sizeBytes() + families_.sizeBytes();
 }
 
 }  // namespace gfxrepro::clustered_reflections

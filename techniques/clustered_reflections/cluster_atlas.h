@@ -30,7 +30,7 @@ class AtlasPainter {
   private:
     CameraSettings settings_;
     gl::Program place_, cull_, draw_;
-    gl::Buffer places_, order_, commands_, instances_, pieces_;
+    gl::Buffer families_, places_, order_, commands_, instances_, pieces_;
     gl::VertexArray vertexArray_;
     int commandCount_ = 0;
 };

@@ -9,11 +9,12 @@
 
 namespace gfxrepro::clustered_reflections {
 
-/// Bits of ClusterCamera::flags; cluster_images.h has one more, kConcaveCluster.
+/// Bits of ClusterCamera::flags.
 constexpr std::uint32_t kPlanarCluster = 1;
 constexpr std::uint32_t kNoRoom = 2;       // between near and far (glossy): no image, no march
 constexpr std::uint32_t kEyeBehind = 4;    // the eye is not before the fitting plane (see below)
 constexpr std::uint32_t kRaysTurned = 16;  // some rays are beyond CameraSettings::maxSlope
+constexpr std::uint32_t kShowsOwn = 1U << 16;  // the image has the own reflector (ConcavityPass)
 
 /// A cluster's camera as shaders/cluster_camera.glsl has it (std430). It looks along the normal of
 /// the fitting plane, which is its near plane; an off-centre frustum. Geometry between samples that

@@ -2,8 +2,11 @@
 
 namespace gfxrepro::clustered_reflections {
 
-ConcavityPass::ConcavityPass(const gl::ShaderLibrary& shaders)
-    : program_(shaders, {"clustered_reflections/concavity.comp.glsl"}, imageDefines()) {}
+ConcavityPass::ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex) {
+    gl::Defines defines = imageDefines();
+    defines["MARKS_CONVEX"] = marksConvex ? 1 : 0;
+    program_ = gl::Program(shaders, {"clustered_reflections/concavity.comp.glsl"}, defines);
+}
 
 void ConcavityPass::mark(const reflections::GBuffer& gbuffer, const Clusters& clusters,
                          const gl::Buffer& cameras) const {

@@ -1,4 +1,4 @@
-// Which clusters are concave: [xie2017] Sec. 4.7.4, second way.
+// Which clusters' images show their own reflector: [xie2017] Sec. 4.7.4.
 #pragma once
 
 #include "techniques/clustered_reflections/cluster_images.h"
@@ -6,12 +6,13 @@
 
 namespace gfxrepro::clustered_reflections {
 
-/// The thesis looks whether samples lie before the near plane. Here the normals decide: the sum of
-/// (P_i − P_c) · n_i over a cluster's samples is negative where they point together.
+/// The second way: the concave ones. The thesis looks whether samples lie before the near plane.
+/// Here the normals decide: the sum of (P_i − P_c) · n_i over a cluster's samples is negative where
+/// they point together. The first way: all that are not planar.
 class ConcavityPass {
   public:
-    explicit ConcavityPass(const gl::ShaderLibrary& shaders);
-    /// Sets kConcaveCluster in the flags of cameras.
+    ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex);
+    /// Sets kShowsOwn in the flags of cameras.
     void mark(const reflections::GBuffer& gbuffer, const Clusters& clusters,
               const gl::Buffer& cameras) const;
 

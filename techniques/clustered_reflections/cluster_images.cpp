@@ -22,6 +22,7 @@ gl::Defines imageDefines() {
     define("kOrderBinding", kOrderBinding);
     define("kSamplesBinding", kSamplesBinding);
     define("kRangesBinding", kRangesBinding);
+    define("kFamiliesBinding", kFamiliesBinding);
     define("GBUFFER_UNIT", kGBufferUnit);
     define("ENVIRONMENT_UNIT", kEnvironmentUnit);
     define("kImageColourUnit", kImageColourUnit);
@@ -29,7 +30,7 @@ gl::Defines imageDefines() {
     define("kImageNearestUnit", kImageNearestUnit);
     define("kClusterOfSampleUnit", kClusterOfSampleUnit);
     define("kMaxClusters", kMaxClusters);
-    define("kConcaveCluster", kConcaveCluster);
+    define("kShowsOwn", kShowsOwn);
     define("MARCH_LEVELS", kPyramidLevels);
     return defines;
 }
@@ -70,9 +71,11 @@ void ClusterImages::beginDrawing(glm::ivec2 sizePx) const {
     glDepthFunc(GL_GREATER);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
+    glEnable(GL_CLIP_DISTANCE0);  // the far plane
 }
 
 void ClusterImages::endDrawing(glm::ivec2 sizePx) {
+    glDisable(GL_CLIP_DISTANCE0);
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
@@ -120,10 +123,22 @@ glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settin
     return glm::clamp(sizePx, glm::ivec2(1), glm::ivec2(settings.maxSizePx));
 }
 
+std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene) {
+    std::vector<std::uint32_t> families(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
+    for (const reflections::Object& object : scene.objects()) {
+        if (object.reflector == 0) continue;
+        const std::uint32_t bend = object.isPlanar ? 0U : object.isConcave ? 2U : 1U;
+        families[static_cast<std::size_t>(object.reflector)] =
+            static_cast<std::uint32_t>(object.wholeReflector) << 2 | bend;
+    }
+    return families;
+}
+
 // ---- OneByOnePainter ----
 
 OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
-                                 const reflections::ReflectiveScene& scene) {
+                                 const reflections::ReflectiveScene& scene)
+    : families_(reflectorFamilies(scene)) {
     for (const reflections::Object& object : scene.objects()) {
         reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
     }
@@ -141,10 +156,15 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
     const std::array<glm::vec4, 6> planes = {rows[3] + rows[0], rows[3] - rows[0],
                                              rows[3] + rows[1], rows[3] - rows[1],
                                              rows[3] + rows[2], rows[3] - rows[2]};
-    const bool seesSelf = (camera.flags & kConcaveCluster) != 0;
+    const bool seesSelf = (camera.flags & kShowsOwn) != 0;
+    // Cameras that are no cluster's have none.
+    const std::uint32_t own =
+        camera.reflector < families_.size() ? families_[camera.reflector] : 0U;
     std::vector<std::uint32_t> seen;
     for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
-        if (reflectorOfObject_[i] == camera.reflector && !seesSelf) continue;
+        const std::uint32_t reflector = reflectorOfObject_[i];
+        if (reflector == camera.reflector && !seesSelf) continue;
+        if (areBackToBack(families_[reflector], own)) continue;
         const scene::Box& box = objects.boundsWorld()[i];
         if (box.isEmpty()) continue;
         const bool isInside =

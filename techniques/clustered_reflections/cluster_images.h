@@ -21,7 +21,8 @@ enum ImageBinding : unsigned {
     kPiecesBinding,
     kOrderBinding,
     kSamplesBinding,
-    kRangesBinding
+    kRangesBinding,
+    kFamiliesBinding = kSamplesBinding,  // no pass reads both
 };
 enum ImageUnit : unsigned {
     kGBufferUnit = reflections::kFirstFreeUnit,  // four
@@ -69,10 +70,16 @@ class ClusterImages {
 /// a texel. (0, 0): no image. shaders/place_images.comp.glsl has the same.
 glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings);
 
-/// Another bit of ClusterCamera::flags: the cluster is concave (ConcavityPass). Its images show its
-/// own reflector: [xie2017] Sec. 4.7.4, second way.
-constexpr std::uint32_t kConcaveCluster = 1U << 16;
-static_assert(((kPlanarCluster | kNoRoom | kEyeBehind | kRaysTurned) & kConcaveCluster) == 0);
+/// By reflector id: the object that it is a part of << 2 | 0 planar, 1 convex, 2 concave.
+std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene);
+
+/// Whether two parts of one object bend to different sides, as in- and outside of a bowl do: they
+/// lie back to back, and what leaves the one does not meet the other. Images of the one leave out
+/// the other, which lies as near behind them as a wall is thin, and curved surfaces rise before a
+/// near plane. shaders/cull_objects.comp.glsl has the same.
+constexpr bool areBackToBack(std::uint32_t family, std::uint32_t other) {
+    return family >> 2 == other >> 2 && family != other && (family & 3U) + (other & 3U) == 3U;
+}
 
 /// The thesis's way: a cluster's image at the texture's origin, objects culled on the CPU.
 class OneByOnePainter {
@@ -81,12 +88,13 @@ class OneByOnePainter {
     /// The cameras are bound to kCamerasBinding; `camera` is the cluster's.
     void draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
               const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target);
-    /// Objects in the frustum, without the own reflector unless the cluster is marked concave.
+    /// Objects in the frustum, without the own reflector unless the camera shows it, and without
+    /// what lies back to back with it.
     std::vector<std::uint32_t> objectsSeen(const reflections::GpuObjects& objects,
                                            const ClusterCamera& camera) const;
 
   private:
-    std::vector<std::uint32_t> reflectorOfObject_;
+    std::vector<std::uint32_t> reflectorOfObject_, families_;
     gl::Program program_;
 };
 

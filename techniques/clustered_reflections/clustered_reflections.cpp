@@ -34,6 +34,10 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     if (!params_.measuresErrors) return;
     untimed_ = std::make_unique<gl::Profiler>(context.device.info().isSoftware);
     truthTracer_.emplace(*scene_, *map_, params_.lobe);
+    if (params_.convergedRays == 0) return;
+    reflections::LobeSettings lobe = params_.lobe;
+    lobe.rays = params_.convergedRays;
+    convergedTracer_.emplace(*scene_, *map_, lobe);
 }
 
 std::unique_ptr<reflections::ReflectionTracer> ClusteredReflections::makeTracer(

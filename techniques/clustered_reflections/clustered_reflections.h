@@ -30,11 +30,13 @@ class ClusteredReflections final : public technique::Technique {
         std::vector<glm::mat4> poses;
         std::vector<reflections::TracedSample> samples;
         image::ImageF picture;
+        image::ImageF converged;  // of ReflectionParams::convergedRays, if there are any
     };
 
     std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders);
     /// Traced once for frames that are the same.
     const Truth& truthOf(const reflections::HostGBuffer& gbuffer);
+    image::ImageF pictureOf(const std::vector<reflections::TracedSample>& samples);
 
     void recordShares(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer) const;
     void recordMemory(technique::Recorder& recorder) const;
@@ -43,8 +45,8 @@ class ClusteredReflections final : public technique::Technique {
     void recordClusters(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                         const image::ImageF& picture);
     void recordOcclusion(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                         const image::ImageF& picture,
-                         const std::vector<std::uint16_t>& clusterOfSample);
+                         const image::ImageF& picture, std::vector<std::uint16_t> clusterOfSample);
+    std::vector<std::uint8_t> reflectorsOf(const std::string& name) const;
 
     ReflectionParams params_;
     std::optional<reflections::ReflectiveScene> scene_;
@@ -60,7 +62,9 @@ class ClusteredReflections final : public technique::Technique {
 
     std::unique_ptr<gl::Profiler> untimed_;  // of the truth
     std::optional<reflections::EmbreeTracer> truthTracer_;
+    std::optional<reflections::EmbreeTracer> convergedTracer_;  // more rays for glossy samples
     std::optional<Truth> truth_;
+    bool hasReflections_ = false;  // in the view that record() is at
 };
 
 extern const technique::TechniqueInfo kClusteredReflections;

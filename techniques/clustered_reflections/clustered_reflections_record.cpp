@@ -1,7 +1,12 @@
 // What is recorded of a frame: shares, memory, errors, pictures.
 
-#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <set>
+
+#include "runner/core/error.h"
 #include "runner/metrics/flip.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
@@ -49,32 +54,44 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
         composite_->render(*gbuffer_, *target_, true);
         recorder.image("reflection", composite_->read(), seenFrom(gbuffer.view));
     }
-    if (params_.measuresErrors) recordErrors(recorder, gbuffer, picture);
+    // A view that reflects nothing has no errors: claims on them are left unmeasured.
+    const auto isReflective = [&](std::uint32_t surface) { return (surface & 0xFFFFU) != 0; };
+    hasReflections_ = std::ranges::any_of(gbuffer.surface, isReflective);
+    if (params_.measuresErrors && hasReflections_) recordErrors(recorder, gbuffer, picture);
     if (clusteredTracer_) recordClusters(recorder, gbuffer, picture);
 }
 
 void ClusteredReflections::recordShares(technique::Recorder& recorder,
                                         const HostGBuffer& gbuffer) const {
     std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::vector<std::size_t> wholes(isPlanar.size());  // by reflector: the object it is a part of
     std::uint64_t diffuseTriangles = 0, reflectiveTriangles = 0;
     for (const reflections::Object& object : scene_->objects()) {
-        isPlanar[static_cast<std::size_t>(object.reflector)] = object.isPlanar ? 1 : 0;
+        const auto reflector = static_cast<std::size_t>(object.reflector);
+        isPlanar[reflector] = object.isPlanar ? 1 : 0;
+        wholes[reflector] = static_cast<std::size_t>(object.wholeReflector);
         (object.reflector == 0 ? diffuseTriangles : reflectiveTriangles) += object.triangleCount;
     }
     std::vector<std::size_t> samples(isPlanar.size());
     for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
         ++samples[static_cast<std::size_t>(gbuffer.reflector(i))];
     }
-    std::size_t reflective = 0, planar = 0, visible = 0;
+    std::size_t reflective = 0, planar = 0;
+    std::set<std::size_t> visible, visibleParts;
     for (std::size_t reflector = 1; reflector < samples.size(); ++reflector) {
         reflective += samples[reflector];
         planar += isPlanar[reflector] != 0 ? samples[reflector] : 0;
-        visible += samples[reflector] > 0 ? 1 : 0;
+        if (samples[reflector] == 0) continue;
+        visible.insert(wholes[reflector]);
+        visibleParts.insert(reflector);
     }
     recorder.metric("reflective_pct", percent(reflective, gbuffer.surface.size()), "%");
-    recorder.metric("planar_pct", percent(planar, reflective), "%");
-    recorder.metric("visible_reflectors", static_cast<double>(visible), "reflector");
-    recorder.metric("reflectors", scene_->reflectorCount(), "reflector");
+    if (reflective > 0) recorder.metric("planar_pct", percent(planar, reflective), "%");
+    // Objects, as the thesis counts them; parts are what the clusters are made of.
+    recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
+    recorder.metric("visible_parts", static_cast<double>(visibleParts.size()), "reflector");
+    recorder.metric("reflectors", scene_->wholeReflectorCount(), "reflector");
+    recorder.metric("parts", scene_->reflectorCount(), "reflector");
     recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");
     recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles), "triangle");
 }
@@ -99,22 +116,32 @@ const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuff
     truth_->poses.assign(poses.begin(), poses.end());
     truthTracer_->update(*objects_, *untimed_);
     truth_->samples = truthTracer_->trace(gbuffer);
-    // The same composite makes a picture of it, so that nothing but the reflections differs.
+    truth_->picture = pictureOf(truth_->samples);
+    if (convergedTracer_) {
+        convergedTracer_->update(*objects_, *untimed_);
+        truth_->converged = pictureOf(convergedTracer_->trace(gbuffer));
+    }
+    return *truth_;
+}
+
+// The same composite makes it, so that nothing but the reflections differs.
+image::ImageF ClusteredReflections::pictureOf(
+    const std::vector<reflections::TracedSample>& samples) {
     std::vector<glm::vec4> radiance;
-    radiance.reserve(truth_->samples.size());
-    for (const reflections::TracedSample& sample : truth_->samples) {
+    radiance.reserve(samples.size());
+    for (const reflections::TracedSample& sample : samples) {
         radiance.emplace_back(sample.radiance, 1.0F);
     }
-    reflections::ReflectionTarget target(gbuffer.view.sizePx);
+    reflections::ReflectionTarget target(gbuffer_->view.sizePx);
     target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
     composite_->render(*gbuffer_, target);
-    truth_->picture = composite_->read();
-    return *truth_;
+    return composite_->read();
 }
 
 void ClusteredReflections::recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
                                         const image::ImageF& picture) {
-    const image::ImageF& truth = truthOf(gbuffer).picture;
+    const Truth& known = truthOf(gbuffer);
+    const image::ImageF& truth = known.picture;
     const std::vector<std::uint8_t> reflective =
         reflections::reflectivePixels(gbuffer, params_.supersampling);
     const glm::dvec3 errors = reflections::channelErrors(picture, truth, &reflective);
@@ -122,12 +149,19 @@ void ClusteredReflections::recordErrors(technique::Recorder& recorder, const Hos
     recorder.metric("channel_error_r", errors.r, "level");
     recorder.metric("channel_error_g", errors.g, "level");
     recorder.metric("channel_error_b", errors.b, "level");
+    if (convergedTracer_) {
+        recorder.metric("channel_error_converged",
+                        meanOf(reflections::channelErrors(picture, known.converged, &reflective)),
+                        "level");
+    }
     recorder.metric("channel_error_image",
                     meanOf(reflections::channelErrors(picture, truth, nullptr)), "level");
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
     recorder.image("truth", truth, seenFrom(gbuffer.view, "result"));
+    if (convergedTracer_)
+        recorder.image("converged", known.converged, seenFrom(gbuffer.view, "result"));
     recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(gbuffer.view));
     recorder.image("error_50", reflections::errorPicture(picture, truth, 50),
                    seenFrom(gbuffer.view));
@@ -143,7 +177,7 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
     const auto fallen = static_cast<std::size_t>(
         std::ranges::count_if(environment, [](std::uint8_t mark) { return mark != 0; }));
     recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
-    recorder.metric("environment_pct", percent(fallen, clustered), "%");
+    if (clustered > 0) recorder.metric("environment_pct", percent(fallen, clustered), "%");
     if (params_.showsPictures) {
         recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
                        seenFrom(gbuffer.view));
@@ -152,19 +186,55 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
             reflections::markedPicture(picture, environment, gbuffer, params_.supersampling),
             seenFrom(gbuffer.view));
     }
-    if (params_.measuresErrors) recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
+    if (params_.measuresErrors && hasReflections_)
+        recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
+}
+
+/// By reflector id, 1 where its mesh has this name. Throws Error where none has.
+std::vector<std::uint8_t> ClusteredReflections::reflectorsOf(const std::string& name) const {
+    std::vector<std::uint8_t> isNamed(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < scene_->objects().size(); ++i) {
+        const int reflector = scene_->objects()[i].reflector;
+        if (reflector == 0) continue;
+        const auto mesh = static_cast<std::size_t>(scene_->scene().instances[i].mesh);
+        const std::string& meshName = scene_->scene().meshes[mesh].name;
+        names.insert(meshName);
+        isNamed[static_cast<std::size_t>(reflector)] = meshName == name ? 1 : 0;
+    }
+    if (!names.contains(name)) {
+        throw Error(fmt::format("the scene has no reflector '{}' ('errors_of'); reflectors: {}",
+                                name, fmt::join(names, ", ")));
+    }
+    return isNamed;
 }
 
 void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
                                            const HostGBuffer& gbuffer, const image::ImageF& picture,
-                                           const std::vector<std::uint16_t>& clusterOfSample) {
-    const OcclusionErrors errors =
-        occlusionErrors({gbuffer, truthOf(gbuffer).samples, clusterOfSample,
-                         clusteredTracer_->cameras(), *scene_, truthTracer_->rays(), params_.lobe});
-    recorder.metric("occlusion_error_pct", percent(errors.missing, errors.reflective), "%");
-    recorder.metric("occlusion_hidden_pct", percent(errors.hidden, errors.reflective), "%");
-    recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
-                    "%");
+                                           std::vector<std::uint16_t> clusterOfSample) {
+    if (!params_.errorsOf.empty()) {
+        const std::vector<std::uint8_t> isNamed = reflectorsOf(params_.errorsOf);
+        for (std::size_t i = 0; i < clusterOfSample.size(); ++i) {
+            if (isNamed[static_cast<std::size_t>(gbuffer.reflector(i))] == 0)
+                clusterOfSample[i] = 0;
+        }
+    }
+    const OcclusionErrors errors = occlusionErrors(
+        {gbuffer, truthOf(gbuffer).samples, clusterOfSample, clusteredTracer_->cameras(), *scene_,
+         truthTracer_->rays(), params_.lobe, reflectorFamilies(*scene_)});
+    const auto share = [&](const char* name, std::size_t samples) {
+        recorder.metric(name, percent(samples, errors.reflective), "%");
+    };
+    if (errors.reflective == 0) return;
+    share("occlusion_error_pct", errors.missing());
+    share("occlusion_hidden_pct", errors.of(Sight::Hidden));
+    share("occlusion_near_pct", errors.of(Sight::BeforeNear));
+    share("occlusion_side_pct", errors.of(Sight::Beside));
+    share("occlusion_self_pct", errors.of(Sight::Self));
+    if (errors.planar > 0) {
+        recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
+                        "%");
+    }
     if (!params_.showsPictures) return;
     recorder.image(
         "occlusion",

@@ -28,14 +28,17 @@ struct ClusteredTracer::Impl {
           builder(shaders, scene, settings.clustering, settings.bins, sizePx),
           clusterCameras(shaders, settings.camera),
           images(shaders, kImagesSizePx, settings.march == March::Hierarchical),
-          intersection(shaders, settings.camera, settings.march, settings.seesConcaveSelf, sizePx) {
+          intersection(shaders, settings.camera, settings.march,
+                       settings.ownReflector != OwnReflector::LeftOut, sizePx) {
         if (settings.drawing == ImageDrawing::Atlas) {
             atlas.emplace(shaders, scene, gpuObjects, settings.camera);
         } else {
             oneByOne.emplace(shaders, scene);
             places = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
         }
-        if (settings.seesConcaveSelf) concavity.emplace(shaders);
+        if (settings.ownReflector != OwnReflector::LeftOut) {
+            concavity.emplace(shaders, settings.ownReflector == OwnReflector::WholeScene);
+        }
     }
 
     int clusterCount() const {

@@ -18,15 +18,22 @@ enum class ImageDrawing {
     Atlas,     // all at once side by side: one multi-draw indirect, culled on the device
 };
 
+/// What rays see of the reflector that they leave: [xie2017] Sec. 4.7.4. Planar ones have nothing
+/// of themselves before their near plane.
+enum class OwnReflector {
+    WholeScene,      // first way: rays meet an image of the whole scene, bent or not
+    ConcaveDiffuse,  // second way: concave clusters are detected, and show the diffuse colour where
+                     // their rays meet their own reflector; other images leave it out
+    LeftOut,         // every image leaves it out
+};
+
 struct ClusteredSettings {
     Clustering clustering = Clustering::NormalBins;
     BinSettings bins;
     CameraSettings camera;
     ImageDrawing drawing = ImageDrawing::OneByOne;
     March march = March::Linear;
-    /// Sec. 4.7.4: hits of a concave cluster on its own reflector show its diffuse colour; else the
-    /// reflector is left out of its own images.
-    bool seesConcaveSelf = false;
+    OwnReflector ownReflector = OwnReflector::ConcaveDiffuse;
 };
 
 /// The texture of the images: 34 MB, so that a frame of 1024² samples holds less than the 87 MB of

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <utility>
+
 #include "runner/core/error.h"
 #include "techniques/clustered_reflections/bin_tables.h"
 #include "techniques/clustered_reflections/kd_clustering.h"
@@ -107,10 +110,20 @@ std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& s
     return isPlanar;
 }
 
+std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& scene) {
+    std::vector<std::uint32_t> wholes(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
+    for (const reflections::Object& object : scene.objects()) {
+        wholes[static_cast<std::size_t>(object.reflector)] =
+            static_cast<std::uint32_t>(object.wholeReflector);
+    }
+    return wholes;
+}
+
 /// Programs and scratch of the clustering by normals.
 struct ClusterBuilder::NormalBinPasses {
     NormalBinPasses(const gl::ShaderLibrary& shaders, const BinTables& tables,
-                    const std::vector<std::uint8_t>& isPlanar, const Clusters& clusters);
+                    const std::vector<std::uint8_t>& isPlanar,
+                    const std::vector<std::uint32_t>& wholes, const Clusters& clusters);
     void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
                const Clusters& clusters);
     void findBins(const reflections::GBuffer& gbuffer, const Clusters& clusters);
@@ -130,6 +143,7 @@ struct ClusterBuilder::NormalBinPasses {
 ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shaders,
                                                  const BinTables& tables,
                                                  const std::vector<std::uint8_t>& isPlanar,
+                                                 const std::vector<std::uint32_t>& wholes,
                                                  const Clusters& clusters)
     : sizePx(clusters.clusterOfSample.size()),
       maxBins(tables.maxBins),
@@ -154,7 +168,9 @@ ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shader
       binTarget(framebufferOf(binOfSample)),
       clusterTarget(framebufferOf(clusters.clusterOfSample)) {
     std::vector<glm::uvec4> records;
-    for (const std::uint8_t planar : isPlanar) records.emplace_back(0, 0, 0, planar);
+    for (std::size_t r = 0; r < isPlanar.size(); ++r) {
+        records.emplace_back(0, 0, 0, isPlanar[r] | wholes[r] << 1);
+    }
     reflectors = gl::Buffer::of(records);
 }
 
@@ -238,12 +254,19 @@ std::size_t ClusterBuilder::NormalBinPasses::sizeBytes() const {
 ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
                                const reflections::ReflectiveScene& scene, Clustering clustering,
                                const BinSettings& bins, glm::ivec2 sizePx)
-    : clustering_(clustering), bins_(bins), isPlanar_(planarReflectors(scene)) {
+    : clustering_(clustering),
+      bins_(bins),
+      isPlanar_(planarReflectors(scene)),
+      wholes_(wholeReflectors(scene)) {
     GFXREPRO_ASSERT(sizePx.x > 0 && sizePx.y > 0 && sizePx.x < 1 << 16 && sizePx.y < 1 << 16);
-    long long curved = 0;
-    for (std::size_t r = 1; r < isPlanar_.size(); ++r) curved += isPlanar_[r] == 0 ? 1 : 0;
-    const long long planar = scene.reflectorCount() - curved;
-    const long long most = curved * bins.maxThetaBins * bins.maxPhiBins + planar;
+    std::vector<int> curvedParts(static_cast<std::size_t>(scene.wholeReflectorCount()) + 1, 0);
+    int curved = 0;
+    for (std::size_t r = 1; r < isPlanar_.size(); ++r) {
+        curvedParts[wholes_[r]] += isPlanar_[r] == 0 ? 1 : 0;
+        curved += isPlanar_[r] == 0 ? 1 : 0;
+    }
+    const int planar = scene.reflectorCount() - curved;
+    const long long most = BinTables(bins).mostBins(std::move(curvedParts)) + planar;
     if (most > kMaxClusters) {
         throw UnsupportedError(fmt::format(
             "{} curved reflectors of {} × {} bins and {} planar ones may make {} clusters; at most "
@@ -256,7 +279,8 @@ ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
     clusters_.ranges = gl::Buffer(kMaxClusters * sizeof(glm::uvec4));
     clusters_.counts = gl::Buffer(3 * sizeof(std::uint32_t));
     if (clustering == Clustering::NormalBins) {
-        passes_ = std::make_unique<NormalBinPasses>(shaders, BinTables(bins), isPlanar_, clusters_);
+        passes_ = std::make_unique<NormalBinPasses>(shaders, BinTables(bins), isPlanar_, wholes_,
+                                                    clusters_);
     }
 }
 
@@ -270,7 +294,7 @@ void ClusterBuilder::build(const reflections::GBuffer& gbuffer, const gl::Textur
     if (clustering_ == Clustering::NormalBins) {
         passes_->build(gbuffer, wanted, clusters_);
     } else {
-        buildKdClusters(gbuffer, wanted, isPlanar_, bins_, clusters_);
+        buildKdClusters(gbuffer, wanted, isPlanar_, wholes_, bins_, clusters_);
     }
 }
 
@@ -292,18 +316,21 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
     for (std::size_t i = 0; i < pixels; ++i) ++areas[reflectorAt(i)];
 
     HostClusters result;
+    const std::vector<std::uint32_t> wholes = wholeReflectors(scene);
+    std::set<std::uint32_t> visible;
     std::uint32_t total = 0;
     for (std::size_t r = 1; r < areas.size(); ++r) {
         total += areas[r];
-        result.visibleReflectors += areas[r] > 0 ? 1 : 0;
+        if (areas[r] > 0) visible.insert(wholes[r]);
     }
+    result.visibleReflectors = static_cast<int>(visible.size());
     std::vector<glm::ivec2> grids(areas.size(), glm::ivec2(1));
     std::vector<int> firstBins(areas.size(), 0), reflectorOfBin;
     for (std::size_t r = 1; r < areas.size(); ++r) {
         firstBins[r] = static_cast<int>(reflectorOfBin.size());
         if (areas[r] == 0) continue;
-        const auto visible = static_cast<std::uint32_t>(result.visibleReflectors);
-        if (isPlanar[r] == 0) grids[r] = tables.binsOf(areas[r], total, visible);
+        const auto visibleCount = static_cast<std::uint32_t>(visible.size());
+        if (isPlanar[r] == 0) grids[r] = tables.binsOf(areas[r], total, visibleCount);
         const auto count = static_cast<std::size_t>(grids[r].x * grids[r].y);
         reflectorOfBin.insert(reflectorOfBin.end(), count, static_cast<int>(r));
     }

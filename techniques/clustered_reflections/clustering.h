@@ -15,7 +15,7 @@ namespace gfxrepro::clustered_reflections {
 /// Bins of the normal's spherical coordinates, theta ∈ [0°, 360°) around +y, from +x towards +z,
 /// and phi ∈ [0°, 180°] from +y (normals are those turned to the eye, in the world). A reflector
 /// has at most maxThetaBins × maxPhiBins; its share a_R of the reflective samples and the number
-/// n_v of visible reflectors scale both down:
+/// n_v of visible objects that reflect, whatever their parts, scale both down:
 ///
 ///     bins = clamp(round(maxBins · (a_R / n_v · bin_gain)^exponent), 1, maxBins)
 ///
@@ -45,7 +45,7 @@ struct Clusters {
                          // row by row within each
     gl::Buffer ranges;   // uvec4 a cluster: first sample, sample count, reflector, flags
                          // (bit 0: planar); kMaxClusters entries, unused ones zero
-    gl::Buffer counts;   // uint: clusters, reflective samples, visible reflectors
+    gl::Buffer counts;   // uint: clusters, reflective samples, visible objects that reflect
     std::size_t sizeBytes() const;
 };
 
@@ -67,11 +67,14 @@ class ClusterBuilder {
     BinSettings bins_;
     Clusters clusters_;
     std::vector<std::uint8_t> isPlanar_;  // by reflector
+    std::vector<std::uint32_t> wholes_;   // by reflector
     std::unique_ptr<NormalBinPasses> passes_;
 };
 
 /// By reflector id (0 is none): 1 where its object is planar.
 std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& scene);
+/// By reflector id: the number of the object that it is a part of.
+std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& scene);
 
 /// The same on the host, to the bit: what the device must give (NormalBins). Reads
 /// HostGBuffer::normalOctahedral and surface.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "techniques/clustered_reflections/bin_tables.h"
 
@@ -102,18 +103,21 @@ std::vector<std::vector<Sample>> samplesOfReflectors(const reflections::HostGBuf
 }  // namespace
 
 void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
-                     const std::vector<std::uint8_t>& isPlanar, const BinSettings& bins,
+                     const std::vector<std::uint8_t>& isPlanar,
+                     const std::vector<std::uint32_t>& wholes, const BinSettings& bins,
                      Clusters& clusters) {
     const reflections::HostGBuffer host = readGBuffer(gbuffer);
     std::vector<std::uint8_t> mask;
     if (wanted != nullptr) mask = wanted->read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1);
     auto ofReflectors = samplesOfReflectors(host, mask, isPlanar.size());
 
-    std::uint32_t total = 0, visible = 0;
-    for (const auto& samples : ofReflectors) {
-        total += static_cast<std::uint32_t>(samples.size());
-        visible += samples.empty() ? 0U : 1U;
+    std::uint32_t total = 0;
+    std::set<std::uint32_t> visibleWholes;
+    for (std::size_t r = 1; r < ofReflectors.size(); ++r) {
+        total += static_cast<std::uint32_t>(ofReflectors[r].size());
+        if (!ofReflectors[r].empty()) visibleWholes.insert(wholes[r]);
     }
+    const auto visible = static_cast<std::uint32_t>(visibleWholes.size());
     const BinTables tables(bins);
     const auto width = static_cast<std::uint32_t>(host.view.sizePx.x);
     std::vector<std::uint16_t> clusterOfSample(host.surface.size(), 0);

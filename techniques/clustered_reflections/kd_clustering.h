@@ -17,7 +17,8 @@ namespace gfxrepro::clustered_reflections {
 /// On the host: the G-buffer is read back, the clusters are uploaded. The thesis judged
 /// clusterings from the top down too slow; this is here to measure what they would gain.
 void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
-                     const std::vector<std::uint8_t>& isPlanar, const BinSettings& bins,
+                     const std::vector<std::uint8_t>& isPlanar,
+                     const std::vector<std::uint32_t>& wholes, const BinSettings& bins,
                      Clusters& clusters);
 
 }  // namespace gfxrepro::clustered_reflections

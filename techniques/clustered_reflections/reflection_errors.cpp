@@ -17,13 +17,33 @@ namespace {
 /// outermost samples see lie on them; as much as single precision may throw them out.
 constexpr float kFrustumMargin = 1e-3F;
 
-bool isInFrustum(const ClusterCamera& camera, const glm::vec3& point, float toleranceM) {
+/// Seen, BeforeNear or Beside.
+Sight sightOfFrustum(const ClusterCamera& camera, const glm::vec3& point, float toleranceM) {
+    const float depth = glm::dot(point - glm::vec3(camera.eyeWorld), glm::vec3(camera.planeNormal));
+    if (depth < camera.eyeWorld.w - toleranceM) return Sight::BeforeNear;
+    if (depth > (1.0F + kFrustumMargin) * camera.planeNormal.w + toleranceM) return Sight::Beside;
     const glm::vec4 clip = camera.clipFromWorld * glm::vec4(point, 1.0F);
     const float limit = (1.0F + kFrustumMargin) * clip.w;
-    if (clip.w <= 0.0F || std::abs(clip.x) > limit || std::abs(clip.y) > limit) return false;
-    const float depth = glm::dot(point - glm::vec3(camera.eyeWorld), glm::vec3(camera.planeNormal));
-    return depth >= camera.eyeWorld.w - toleranceM &&
-           depth <= (1.0F + kFrustumMargin) * camera.planeNormal.w + toleranceM;
+    return std::abs(clip.x) > limit || std::abs(clip.y) > limit ? Sight::Beside : Sight::Seen;
+}
+
+bool leavesOut(const ClusterCamera& camera, std::uint32_t reflector, const OcclusionInput& input) {
+    if (reflector == camera.reflector) return (camera.flags & kShowsOwn) == 0;
+    return !input.families.empty() &&
+           areBackToBack(input.families[reflector], input.families[camera.reflector]);
+}
+
+/// Whether a surface is seen from the side that its normals point to.
+bool isFacing(const raycast::Hit& hit, const glm::vec3& direction,
+              const reflections::ReflectiveScene& scene) {
+    // By winding in the world, and by whether normals and winding agree in the mesh.
+    const reflections::ObjectGeometry& geometry = scene.geometry();
+    const glm::uvec3 corners = geometry.triangles[hit.flattenedTriangle];
+    const glm::vec3 a = geometry.positions[corners.x];
+    const glm::vec3 winding =
+        glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a);
+    const glm::vec3 normal = scene.normalMeshAt(hit.flattenedTriangle, hit.barycentric);
+    return glm::dot(winding, normal) * glm::dot(hit.geometricNormal, direction) <= 0.0F;
 }
 
 /// Whether nothing that the cluster's image has lies between its near plane and `target`.
@@ -40,9 +60,13 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
     while (start < end) {
         const auto hit = input.rays.closestHit(eye, direction, start, end);
         if (!hit) return true;
-        const int reflector = input.scene.objects()[hit->instance].reflector;
-        if (reflector != static_cast<int>(camera.reflector)) return false;
-        // On behind the own reflector; at least to the next number, so that this ends.
+        const auto reflector =
+            static_cast<std::uint32_t>(input.scene.objects()[hit->instance].reflector);
+        const bool isBack =
+            reflector == camera.reflector && !isFacing(*hit, direction, input.scene);
+        if (!leavesOut(camera, reflector, input) && !isBack) return false;
+        // On behind what is not drawn; at least to the next number, so that
+        // this ends.
         start = std::max(hit->distance * (1.0F + 1e-6F), std::nextafter(hit->distance, end));
     }
     return true;
@@ -50,10 +74,12 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
 
 }  // namespace
 
-Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld,
+Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld, std::uint32_t reflector,
               const OcclusionInput& input) {
+    if (leavesOut(camera, reflector, input)) return Sight::Self;
     const float toleranceM = kOcclusionTolerance * input.scene.diagonalM();
-    if (!isInFrustum(camera, pointWorld, toleranceM)) return Sight::OutOfFrustum;
+    const Sight inFrustum = sightOfFrustum(camera, pointWorld, toleranceM);
+    if (inFrustum != Sight::Seen) return inFrustum;
     if (isClear(camera, pointWorld, toleranceM, input)) return Sight::Seen;
     // Past the edge that hides it by less than the tolerance: four lines beside it.
     const glm::vec3 axis = glm::normalize(pointWorld - glm::vec3(camera.eyeWorld));
@@ -73,8 +99,7 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
     GFXREPRO_ASSERT_EQ(input.truth.size(), count);
     GFXREPRO_ASSERT_EQ(input.clusterOfSample.size(), count);
     OcclusionErrors errors;
-    errors.isMissing.assign(count, 0);
-    std::vector<std::uint8_t> isHidden(count, 0);
+    std::vector<Sight> sights(count, Sight::Seen);
     const float diagonalM = input.scene.diagonalM();
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         const float distanceM = input.truth[i].distanceM;
@@ -87,20 +112,22 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
         const glm::ivec2 pixel(static_cast<int>(i % width), static_cast<int>(i / width));
         const glm::vec3 hit =
             gbuffer.positionWorld(pixel) + distanceM * gbuffer.mirrorDirection(pixel);
+        const std::uint32_t object = input.truth[i].object;
+        const int reflector = object == 0 ? 0 : input.scene.objects()[object - 1U].reflector;
         const ClusterCamera& camera = input.cameras[input.clusterOfSample[i] - 1U];
-        const Sight sight = sightOf(camera, hit, input);
-        errors.isMissing[i] = sight == Sight::Seen ? 0 : 1;
-        isHidden[i] = sight == Sight::Hidden ? 1 : 0;
+        sights[i] = sightOf(camera, hit, static_cast<std::uint32_t>(reflector), input);
     });
+    errors.isMissing.assign(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
         if (input.clusterOfSample[i] == 0) continue;
         const bool isPlanar =
             (input.cameras[input.clusterOfSample[i] - 1U].flags & kPlanarCluster) != 0;
+        const bool isMissing = sights[i] != Sight::Seen;
+        errors.isMissing[i] = isMissing ? 1 : 0;
         ++errors.reflective;
-        errors.missing += errors.isMissing[i];
-        errors.hidden += isHidden[i];
+        ++errors.ofSight[static_cast<std::size_t>(sights[i])];
         errors.planar += isPlanar ? 1 : 0;
-        errors.planarMissing += isPlanar ? errors.isMissing[i] : 0;
+        errors.planarMissing += isPlanar && isMissing ? 1 : 0;
     }
     return errors;
 }

@@ -28,6 +28,14 @@ constexpr config::Choice<March> kMarches[] = {
     {March::Linear, "linear", "a texel a step (algorithm 7)"},
     {March::Hierarchical, "hierarchical", "over a pyramid of nearest depths"},
 };
+constexpr config::Choice<OwnReflector> kOwnReflectors[] = {
+    {OwnReflector::WholeScene, "whole_scene",
+     "the first way of Sec. 4.7.4: images are of the whole scene"},
+    {OwnReflector::ConcaveDiffuse, "concave_diffuse",
+     "the second way, which it recommends: concave clusters show their own reflector's diffuse "
+     "colour"},
+    {OwnReflector::LeftOut, "left_out", "a reflector is left out of its own images"},
+};
 
 float number(config::Params& params, const char* name, double fallback,
              const config::ParamSpec& spec) {
@@ -76,10 +84,9 @@ ClusteredSettings readClustered(config::Params& params) {
     settings.camera.depthImageScale =
         number(params, "depth_image_scale", 1.0,
                {"factor on the width and height of the depth images", "1", 0.01, 16.0});
-    settings.seesConcaveSelf = params.getBool(
-        "concave_self", false,
-        {"rays of a concave cluster that meet their own reflector show its diffuse colour; else a "
-         "reflector is left out of its own images"});
+    settings.ownReflector =
+        params.getEnum("own_reflector", OwnReflector::ConcaveDiffuse, kOwnReflectors,
+                       {"what rays of a cluster see of the reflector that they leave"});
     return settings;
 }
 
@@ -110,17 +117,29 @@ ReflectionParams::ReflectionParams(config::Params& params)
     }
     reflectors.maxRoughness = number(params, "reflector_roughness", 0.4,
                                      {"materials up to this roughness reflect", "1", 0.0, 1.0});
+    reflectors.splitsParts = params.getBool(
+        "reflector_parts", true,
+        {"smooth parts of an object are reflectors of their own: foot and shell, in- and outside"});
     thickness =
         number(params, "thickness", 0.02,
                {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});
     measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
+    errorsOf = params.getText("errors_of", "",
+                              {"a reflector, by its mesh's name: occlusion errors of it alone"});
+    convergedRays =
+        params.getInt("converged_rays", 0,
+                      {"rays of a second truth of glossy samples, which has as many whatever the "
+                       "picture has; 0: none",
+                       "rays", 0, 4096});
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
     params.finish();
     if (method != Method::Clustered) {
-        params.refuseGiven({"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain",
-                            "depth_images", "march", "depth_image_scale", "concave_self"},
-                           "'method: clustered'");
+        params.refuseGiven(
+            {"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain", "depth_images",
+             "march", "depth_image_scale", "own_reflector", "errors_of"},
+            "'method: clustered'");
     }
+    if (!measuresErrors) params.refuseGiven({"converged_rays", "errors_of"}, "'errors: true'");
     if (method != Method::ScreenSpace) {
         params.refuseGiven({"thickness"}, "'method: screen_space'");
     }

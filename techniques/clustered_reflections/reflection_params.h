@@ -28,6 +28,8 @@ struct ReflectionParams {
     ClusteredSettings clustered;  // camera.diagonalM and camera.lobe are set up with the scene
     float thickness = 0.02F;      // screen space: of what the eye sees, in diagonals of the box
     bool measuresErrors = true;   // against Embree
+    std::string errorsOf;         // name of the mesh whose samples' occlusion counts; empty: all
+    int convergedRays = 0;        // of a second truth of glossy samples; 0: there is none
     bool showsPictures = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.

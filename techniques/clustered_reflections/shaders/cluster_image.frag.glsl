@@ -1,6 +1,9 @@
 #version 450 core
 // Step 3.b of [xie2017] Algorithm 6, fragments: the diffuse colour, and whether it is the cluster's
 // own reflector. Depth is the hardware's.
+//
+// Departure [xie2017] Sec. 4.7.4: the own reflector's surface is drawn only where it faces the camera.
+// The camera stands behind it, and its back, which no ray meets, would hide what they do meet.
 #include "reflections/surface.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
@@ -13,7 +16,9 @@ flat in uint clusterOfPoint;
 layout(location = 0) out vec4 colour;
 
 void main() {
-    vec3 normalWorld = unitNormalTowards(cameras[clusterOfPoint].eyeWorld.xyz);
+    vec3 eyeWorld = cameras[clusterOfPoint].eyeWorld.xyz;
     bool isOwn = (objects[point.object].surface & 0xFFFFu) == cameras[clusterOfPoint].reflector;
+    if (isOwn && dot(point.normalWorld, eyeWorld - point.positionWorld) < 0.0) discard;
+    vec3 normalWorld = unitNormalTowards(eyeWorld);
     colour = vec4(diffuseOf(normalWorld), isOwn ? 1.0 : 0.0);
 }

@@ -29,13 +29,13 @@ layout(std430, binding = kPlacesBinding) readonly buffer Places {
     ivec4 places[];
 };
 uniform vec2 atlasSizePx;
-out gl_PerVertex {
-    vec4 gl_Position;
-    float gl_ClipDistance[4];
-};
 #else
 uniform uint cluster;
 #endif
+out gl_PerVertex {
+    vec4 gl_Position;
+    float gl_ClipDistance[ATLAS == 1 ? 5 : 1];
+};
 
 void main() {
 #if ATLAS
@@ -54,12 +54,14 @@ void main() {
 
     vec4 clip = cameras[cluster].clipFromWorld * positionWorld;
     clip.z = cameras[cluster].eyeWorld.w;  // window z: near distance / z
+    // Depth has no end: what lies beyond a glossy cluster's far plane is discarded here (Sec. 4.6).
+    gl_ClipDistance[0] = cameras[cluster].planeNormal.w - clip.w;
 #if ATLAS
     // Nothing may leave the image for its neighbours.
-    gl_ClipDistance[0] = clip.w + clip.x;
-    gl_ClipDistance[1] = clip.w - clip.x;
-    gl_ClipDistance[2] = clip.w + clip.y;
-    gl_ClipDistance[3] = clip.w - clip.y;
+    gl_ClipDistance[1] = clip.w + clip.x;
+    gl_ClipDistance[2] = clip.w - clip.x;
+    gl_ClipDistance[3] = clip.w + clip.y;
+    gl_ClipDistance[4] = clip.w - clip.y;
     vec4 place = vec4(places[cluster]);
     vec2 centre = (2.0 * place.xy + place.zw) / atlasSizePx - 1.0;
     clip.xy = clip.xy * (place.zw / atlasSizePx) + centre * clip.w;

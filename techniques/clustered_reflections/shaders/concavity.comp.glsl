@@ -1,6 +1,7 @@
 #version 450 core
-// Marks concave clusters, a workgroup each: those whose normals point together, by the sign of
-// Σ (P_i − P_c) · n_i over some of their samples, spread evenly.
+// Marks clusters whose images show their own reflector, a workgroup each: concave ones, whose normals
+// point together, by the sign of Σ (P_i − P_c) · n_i over some of their samples, spread evenly; or,
+// with MARKS_CONVEX, all but planar ones.
 #include "reflections/gbuffer.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
@@ -41,5 +42,6 @@ void main() {
         if (thread < step) sums[thread] += sums[thread + step];
     }
     bool isPlanar = (cameras[cluster].flags & kPlanarCluster) != 0u;
-    if (thread == 0u && sums[0] < 0.0 && !isPlanar) cameras[cluster].flags |= kConcaveCluster;
+    bool isMarked = MARKS_CONVEX == 1 || sums[0] < 0.0;
+    if (thread == 0u && isMarked && !isPlanar) cameras[cluster].flags |= kShowsOwn;
 }

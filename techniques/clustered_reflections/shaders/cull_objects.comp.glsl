@@ -20,6 +20,10 @@ layout(std430, binding = kInstancesBinding) writeonly buffer Instances {
     uint instances[];  // cluster << 20 | object
 };
 
+layout(std430, binding = kFamiliesBinding) readonly buffer Families {
+    uint families[];  // reflectorFamilies() of cluster_images.h
+};
+
 shared uint seenCount, firstInstance;
 
 // Whether the box reaches to the inner side of a plane. False where a camera is not finite.
@@ -27,10 +31,19 @@ bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {
     return dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), halfSize) >= 0.0;
 }
 
+// As cluster_images.h has it; reflectors beyond the list are none of the scene's.
+bool areBackToBack(uint a, uint b) {
+    if (a >= uint(families.length()) || b >= uint(families.length())) return false;
+    uint family = families[a], other = families[b];
+    return family >> 2 == other >> 2 && family != other && (family & 3u) + (other & 3u) == 3u;
+}
+
 bool isSeen(uint object, uint cluster) {
     if (places[cluster].z == 0) return false;
-    bool isOwn = (objects[object].surface & 0xFFFFu) == cameras[cluster].reflector;
-    if (isOwn && (cameras[cluster].flags & kConcaveCluster) == 0u) return false;
+    uint reflector = objects[object].surface & 0xFFFFu;
+    bool isOwn = reflector == cameras[cluster].reflector;
+    if (areBackToBack(reflector, cameras[cluster].reflector)) return false;
+    if (isOwn && (cameras[cluster].flags & kShowsOwn) == 0u) return false;
     mat4 rows = transpose(cameras[cluster].clipFromWorld);
     vec3 centre = objects[object].boundsCentre.xyz;
     vec3 halfSize = objects[object].boundsHalfSize.xyz;

@@ -39,7 +39,7 @@ void main() {
         uint begin = samplesBefore(b), count = samplesBefore(b + 1u) - begin;
         if (count == 0u) continue;
         uint reflector = bins[b];
-        ranges[cluster] = uvec4(begin, count, reflector, reflectors[reflector].w);
+        ranges[cluster] = uvec4(begin, count, reflector, reflectors[reflector].w & 1u);
         bins[b] = cluster++;
     }
     if (self == 0u) clusterCount = all;

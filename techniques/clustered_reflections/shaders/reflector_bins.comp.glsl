@@ -1,6 +1,6 @@
 #version 450 core
-// [xie2017] Sec. 4.3, steps 3 and 4: the number of visible reflectors and the bins of each, from
-// their areas. One workgroup; an invocation takes reflectors that follow each other.
+// [xie2017] Sec. 4.3, steps 3 and 4: the number of visible objects that reflect and the bins of each
+// of their parts, from their areas. One workgroup; an invocation takes reflectors that follow each other.
 #include "clustered_reflections/clustering.glsl"
 #include "clustered_reflections/workgroup_scan.glsl"
 
@@ -31,6 +31,16 @@ uint binsOf(uint area, float totalTimesVisible, int first, int maxBins) {
     return bins;
 }
 
+// Whether no part of the same object before it is visible.
+bool isFirstVisiblePart(int r) {
+    if (areas[r] == 0u) return false;
+    uint whole = reflectors[r].w >> 1;
+    for (int before = r - 1; before > 0 && reflectors[before].w >> 1 == whole; --before) {
+        if (areas[before] > 0u) return false;
+    }
+    return true;
+}
+
 void main() {
     int self = int(gl_LocalInvocationID.x);
     int share = (reflectorCount + GROUP_SIZE - 1) / GROUP_SIZE;
@@ -38,7 +48,7 @@ void main() {
 
     uint visible = 0u, area = 0u;
     for (int r = first; r < end; ++r) {
-        visible += areas[r] > 0u ? 1u : 0u;
+        visible += isFirstVisiblePart(r) ? 1u : 0u;
         area += areas[r];
     }
     uint allVisible, total;
@@ -49,7 +59,7 @@ void main() {
     uint bins = 0u;
     for (int r = first; r < end; ++r) {
         uvec2 grid = uvec2(areas[r] > 0u ? 1u : 0u);
-        if (areas[r] > 0u && reflectors[r].w == 0u) {
+        if (areas[r] > 0u && (reflectors[r].w & 1u) == 0u) {
             grid.x = binsOf(areas[r], totalTimesVisible, 0, maxThetaBins);
             grid.y = binsOf(areas[r], totalTimesVisible, maxThetaBins - 1, maxPhiBins);
         }

@@ -8,6 +8,7 @@
 
 #include "runner/core/error.h"
 #include "runner/image/srgb.h"
+#include "techniques/shared/reflections/reflector_parts.h"
 #include "techniques/shared/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
@@ -133,9 +134,22 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 ? fmt::format(" (transmissive objects left out: {})", transmissiveCount_)
                 : std::string()));
     }
+    std::vector<PartOrigin> parts;
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        parts.push_back({static_cast<int>(i), false});
+    }
+    if (rule.splitsParts) {
+        parts = splitIntoParts(scene_, [&](const scene::Material& material) {
+            return material.roughness <= rule.maxRoughness;
+        });
+    }
     std::vector<int> layerOfTexture(scene_.textures.size(), -1);
-    for (const scene::Instance& instance : scene_.instances) {
-        addObject(instance, layerOfTexture);
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        addObject(scene_.instances[i], layerOfTexture);
+        if (objects_[i].reflector == 0) continue;
+        if (i == 0 || parts[i].instance != parts[i - 1].instance) ++wholeReflectorCount_;
+        objects_[i].wholeReflector = wholeReflectorCount_;
+        objects_[i].isConcave = parts[i].isConcave;
     }
     if (reflectorCount_ > kMostReflectors) {
         throw UnsupportedError(fmt::format("scene {}: {} reflectors, at most {} can be told apart",

@@ -19,6 +19,9 @@ namespace gfxrepro::reflections {
 /// G-buffer keeps them, in 255ths; s of 0 does not reflect.
 struct ReflectorRule {
     float maxRoughness = 0.4F;
+    /// The smooth parts of an object are reflectors (and Objects) of their own; see
+    /// reflector_parts.h.
+    bool splitsParts = false;
 };
 
 /// At most so many lights of a scene are taken; where it has none, one hangs under the top of its
@@ -28,8 +31,8 @@ constexpr int kMaxLights = 4;
 /// What is seen where nothing is.
 constexpr glm::vec3 kBackground(0.18F, 0.20F, 0.24F);
 
-/// One instance of the scene. Its triangles are firstTriangle … + triangleCount − 1 of
-/// scene::flattened(scene).
+/// One instance of the scene, or a part of it. Its triangles are firstTriangle … + triangleCount −
+/// 1 of scene::flattened(scene).
 struct Object {
     std::uint32_t firstTriangle = 0;
     std::uint32_t triangleCount = 0;
@@ -38,6 +41,8 @@ struct Object {
     glm::vec3 emissive{0.0F};   // linear
     int textureLayer = -1;      // into ReflectiveScene::textureLayers(); -1: none
     int reflector = 0;          // 1 … reflectorCount(); 0: diffuse
+    int wholeReflector = 0;     // 1 … wholeReflectorCount(): the object that it is a part of
+    bool isConcave = false;     // a part that is, seen from where its normals point
     float reflectivity = 0.0F;  // s of [xie2017] Algorithm 6
     float glossiness = 0.0F;    // g of [xie2017] Algorithm 6
     bool isPlanar = false;      // reflectors: all normals the same, to 1e-3, and all vertices in
@@ -77,6 +82,7 @@ class ReflectiveScene {
     }  // RGBA, sRGB
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
+    int wholeReflectorCount() const { return wholeReflectorCount_; }  // objects, not their parts
     /// Throws Error where reflectorCount() is 0: for methods that measure reflectors only.
     void requireReflectors() const;
     int transmissiveCount() const { return transmissiveCount_; }  // objects left out
@@ -107,7 +113,8 @@ class ReflectiveScene {
     std::array<float, 256> srgbDecoding_;
     std::vector<scene::PointLight> lights_;
     scene::Box boundsWorld_;
-    int reflectorCount_ = 0, transmissiveCount_ = 0, repairedNormalCount_ = 0;
+    int reflectorCount_ = 0, wholeReflectorCount_ = 0, transmissiveCount_ = 0,
+        repairedNormalCount_ = 0;
 };
 
 /// Light that leaves a diffuse surface, without shadows, clamped to [0, 1]:

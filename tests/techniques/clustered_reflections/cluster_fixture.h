@@ -66,7 +66,9 @@ class MirrorScene {
         scene_.meshes.push_back(std::move(mesh));
         return *this;
     }
-    reflections::ReflectiveScene get() const { return reflections::ReflectiveScene(scene_); }
+    reflections::ReflectiveScene get(const reflections::ReflectorRule& rule = {}) const {
+        return reflections::ReflectiveScene(scene_, rule);
+    }
 
   private:
     scene::Scene scene_;

@@ -5,6 +5,7 @@
 #include "runner/core/random.h"
 #include "techniques/clustered_reflections/cluster_atlas.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"
+#include "tests/techniques/voxelization/shapes.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
@@ -99,8 +100,43 @@ TEST_F(ClusterImagesTest, TheOwnReflectorIsSeenByConcaveClustersOnly) {
     EXPECT_TRUE(sees());
     camera.reflector = 1;
     EXPECT_FALSE(sees());
-    camera.flags = kConcaveCluster;
+    camera.flags = kShowsOwn;
     EXPECT_TRUE(sees());
+}
+
+TEST_F(ClusterImagesTest, WhatLiesBackToBackIsLeftOut) {
+    // A hollow ball: the outside, and an inside that faces inwards.
+    scene::Mesh hollow = voxelization::shapes::sphere({0.0F, -0.4F, 0.0F}, 0.5F, 4);
+    scene::Mesh inside = voxelization::shapes::sphere({0.0F, -0.4F, 0.0F}, 0.45F, 4);
+    hollow.normals = scene::vertexNormals(hollow);
+    inside.normals = scene::vertexNormals(inside);
+    const auto count = static_cast<unsigned>(hollow.positions.size());
+    hollow.positions.insert(hollow.positions.end(), inside.positions.begin(),
+                            inside.positions.end());
+    for (const glm::vec3& normal : inside.normals) hollow.normals.push_back(-normal);
+    for (const glm::uvec3& t : inside.triangles) hollow.triangles.push_back(t + count);
+    scene::Scene room = rooms::room();
+    rooms::add(room, hollow, glm::vec3(1.0F), rooms::Surface::Mirror);
+    const ReflectiveScene scene(room, {.splitsParts = true});
+    ASSERT_EQ(scene.reflectorCount(), 2);
+    EXPECT_EQ(reflectorFamilies(scene), (std::vector<std::uint32_t>{0, 4 | 1, 4 | 2}));
+    const GpuObjects objects(scene);
+    const OneByOnePainter painter(shaders(), scene);
+    ClusterCamera camera = cameraLooking({0.0F, -0.5F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});
+    const auto seen = [&](std::uint32_t reflector, std::uint32_t flags) {
+        camera.reflector = reflector;
+        camera.flags = flags;
+        std::vector<std::uint32_t> parts;
+        for (const std::uint32_t i : painter.objectsSeen(objects, camera)) {
+            if (i >= 6) parts.push_back(i);
+        }
+        return parts;
+    };
+    EXPECT_EQ(seen(9999, 0), (std::vector<std::uint32_t>{6, 7}));
+    for (const std::uint32_t reflector : {1U, 2U}) {
+        EXPECT_TRUE(seen(reflector, 0).empty());
+        EXPECT_EQ(seen(reflector, kShowsOwn), (std::vector<std::uint32_t>{5 + reflector}));
+    }
 }
 
 TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
@@ -209,6 +245,35 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
                 << x << ' ' << y;
         }
     }
+}
+
+TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
+    const ReflectiveScene scene(rooms::room());
+    const GpuObjects objects(scene);
+    ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.6F, 0.0F, -0.8F}, {40, 30});
+    ClusterImages images(shaders(), glm::ivec2(64), false);
+    OneByOnePainter painter(shaders(), scene);
+    const auto drawnTexels = [&] {
+        const gl::Buffer buffer = cameraBuffer({camera});
+        buffer.bindStorage(kCamerasBinding);
+        painter.draw(objects, 0, camera, camera.sizePx, images);
+        const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+        int drawn = 0;
+        for (int y = 0; y < 30; ++y) {
+            for (int x = 0; x < 40; ++x) {
+                const float depth = depths[static_cast<std::size_t>(y * 64 + x)];
+                drawn += depth > 0.0F ? 1 : 0;
+                if (depth > 0.0F) EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
+            }
+        }
+        return drawn;
+    };
+    EXPECT_EQ(drawnTexels(), 40 * 30);  // the room is closed
+    // The edge between the walls +x and −z is 3.0 away along the axis, the walls beside it nearer.
+    camera.planeNormal.w = 2.6F;
+    const int near = drawnTexels();
+    EXPECT_GT(near, 40);
+    EXPECT_LT(near, 40 * 30 - 40);
 }
 
 }  // namespace

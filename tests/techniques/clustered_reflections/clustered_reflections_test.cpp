@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/clustered_reflections/room.h"
 #include "tests/techniques/technique_fixture.h"
 
@@ -50,6 +51,10 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     EXPECT_EQ(message("{method: clustered, thickness: 0.1}"),
               "case.yaml:1:32: 'thickness' needs 'method: screen_space'");
     EXPECT_EQ(message("{method: screen_space, thickness: 0.1}"), "no error");
+    EXPECT_EQ(message("{method: embree, own_reflector: left_out}"),
+              "case.yaml:1:33: 'own_reflector' needs 'method: clustered'");
+    EXPECT_EQ(message("{errors: false, converged_rays: 256}"),
+              "case.yaml:1:33: 'converged_rays' needs 'errors: true'");
     EXPECT_EQ(message("{supersampling: 0}"),
               "case.yaml:1:17: technique 'clustered_reflections': supersampling is 0; allowed: 1 … "
               "8 samples");
@@ -122,6 +127,7 @@ TEST_F(ClusteredReflectionsTest, PlanarMirrorsHaveNoOcclusionError) {
         EXPECT_EQ(metrics.at("clusters"), 1.0);
         EXPECT_EQ(metrics.at("occlusion_error_pct"), 0.0);
         EXPECT_EQ(metrics.at("occlusion_error_planar_pct"), 0.0);
+        EXPECT_EQ(metrics.at("occlusion_self_pct"), 0.0);
         // At most a few samples where walls stand on the mirror: no texel lies between.
         EXPECT_LT(metrics.at("environment_pct"), 0.2);
         // Resampling of stripes and edges alone.
@@ -162,8 +168,8 @@ TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
 
 TEST_F(ClusteredReflectionsTest, MoreBinsGiveMoreClustersAndSmallerOcclusionErrors) {
     const scene::Scene scene = roomWithMirrors();
-    const Metrics coarse = run("{theta_bins: 1, phi_bins: 1}", scene);
-    const Metrics fine = run("{bin_exponent: 0}", scene);
+    const Metrics coarse = run("{reflector_parts: false, theta_bins: 1, phi_bins: 1}", scene);
+    const Metrics fine = run("{reflector_parts: false, bin_exponent: 0}", scene);
     EXPECT_EQ(coarse.at("clusters"), 2.0);
     EXPECT_GT(fine.at("clusters"), 6.0);
     EXPECT_GT(coarse.at("occlusion_error_pct"), 0.0);
@@ -171,20 +177,49 @@ TEST_F(ClusteredReflectionsTest, MoreBinsGiveMoreClustersAndSmallerOcclusionErro
     EXPECT_EQ(coarse.at("occlusion_error_planar_pct"), 0.0);
 }
 
-TEST_F(ClusteredReflectionsTest, ViewsWithoutReflectorsRecordNothingReflected) {
+TEST_F(ClusteredReflectionsTest, ABowlsHitsOnItselfAreMissingWhereItIsLeftOut) {
+    scene::Scene scene = rooms::room();
+    rooms::add(scene, rooms::bowl({0.0F, -0.4F, 0.0F}, 0.8F), {1.0F, 0.0F, 1.0F},
+               rooms::Surface::Mirror);
+    scene.cameras = {rooms::cameraAt({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F})};
+    const Metrics out = run("{own_reflector: left_out}", scene);
+    EXPECT_GT(out.at("occlusion_self_pct"), 20.0);
+    for (const char* own : {"concave_diffuse", "whole_scene"}) {
+        SCOPED_TRACE(own);
+        const Metrics shown = run(fmt::format("{{own_reflector: {}}}", own), scene);
+        EXPECT_LT(shown.at("occlusion_self_pct"), 1.0);
+        EXPECT_LT(shown.at("channel_error"), 0.5 * out.at("channel_error"));
+        EXPECT_NEAR(shown.at("occlusion_error_pct"),
+                    shown.at("occlusion_hidden_pct") + shown.at("occlusion_near_pct") +
+                        shown.at("occlusion_side_pct") + shown.at("occlusion_self_pct"),
+                    1e-9);
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, OcclusionErrorsOfOneReflectorAlone) {
+    scene::Scene scene = roomWithMirrors();
+    scene.meshes.back().name = "column";
+    const Metrics all = run("{theta_bins: 1, phi_bins: 1}", scene);
+    const Metrics column = run("{theta_bins: 1, phi_bins: 1, errors_of: column}", scene);
+    EXPECT_GT(column.at("occlusion_error_pct"), 2.0 * all.at("occlusion_error_pct"));
+    EXPECT_EQ(column.at("clusters"), all.at("clusters"));
+    EXPECT_EQ(errorText([&] { run("{errors_of: vase}", scene); }),
+              "the scene has no reflector 'vase' ('errors_of'); reflectors: column, part");
+}
+
+TEST_F(ClusteredReflectionsTest, ViewsWithoutReflectorsHaveNoErrors) {
     const scene::Scene scene = roomWithMirrors();
     for (const char* method : kMethods) {
         SCOPED_TRACE(method);
         const Metrics metrics =
             run(fmt::format("{{method: {}, view: ceiling, pictures: true}}", method), scene);
         EXPECT_EQ(metrics.at("reflective_pct"), 0.0);
-        EXPECT_EQ(metrics.at("planar_pct"), 0.0);
         EXPECT_EQ(metrics.at("visible_reflectors"), 0.0);
-        EXPECT_EQ(metrics.at("channel_error"), 0.0);
-        EXPECT_EQ(metrics.at("channel_error_image"), 0.0);
-        if (std::string(method) != "clustered") continue;
-        EXPECT_EQ(metrics.at("clusters"), 0.0);
-        EXPECT_EQ(metrics.at("occlusion_error_pct"), 0.0);
+        for (const char* error : {"planar_pct", "channel_error", "channel_error_image", "flip_mean",
+                                  "psnr_db", "environment_pct", "occlusion_error_pct"}) {
+            EXPECT_FALSE(metrics.contains(error)) << error;
+        }
+        if (std::string(method) == "clustered") EXPECT_EQ(metrics.at("clusters"), 0.0);
     }
 }
 
@@ -204,6 +239,23 @@ TEST_F(ClusteredReflectionsTest, ObjectsMoveWhereAsked) {
         const double error = recorded(moving, &scene, 1, 4).metrics.at("channel_error");
         EXPECT_LT(error, 1.5 * recorded(still, &scene, 1, 4).metrics.at("channel_error") + 0.5);
     }
+}
+
+TEST_F(ClusteredReflectionsTest, AConvergedTruthTellsManyRaysFromFew) {
+    const scene::Scene scene = roomWithMirrors();
+    // Ray tracing errs against it by its number of rays alone.
+    const auto error = [&](int rays) {
+        return run(fmt::format("{{method: embree, glossiness: 0.3, far_exponent: 0.5, rays: {}, "
+                               "converged_rays: 256}}",
+                               rays),
+                   scene);
+    };
+    const Metrics few = error(2), many = error(49), all = error(256);
+    EXPECT_EQ(few.at("channel_error"), 0.0);
+    EXPECT_GT(few.at("channel_error_converged"), 2.0 * many.at("channel_error_converged"));
+    EXPECT_GT(many.at("channel_error_converged"), 0.0);
+    EXPECT_EQ(all.at("channel_error_converged"), 0.0);
+    EXPECT_FALSE(run("{method: embree}", scene).contains("channel_error_converged"));
 }
 
 TEST_F(ClusteredReflectionsTest, GlossinessOverridesMaterials) {

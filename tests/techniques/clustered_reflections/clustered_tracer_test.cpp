@@ -122,8 +122,9 @@ TEST_F(ClusteredTracerTest, ASphereShowsTheRoomThatItsRaysMeet) {
 TEST_F(ClusteredTracerTest, TheAtlasGivesTheReflectionsOfImagesOneByOne) {
     const ReflectiveScene scene(fullRoom());
     ClusteredSettings settings = settingsFor(scene);
-    for (const bool seesSelf : {false, true}) {
-        settings.seesConcaveSelf = seesSelf;
+    for (const OwnReflector own :
+         {OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene}) {
+        settings.ownReflector = own;
         settings.drawing = ImageDrawing::OneByOne;
         const Traced one = trace(scene, frontCamera(), settings, 256);
         settings.drawing = ImageDrawing::Atlas;
@@ -207,7 +208,7 @@ TEST_F(ClusteredTracerTest, DegenerateClustersAreFinite) {
                 ClusteredSettings settings = settingsFor(scene);
                 settings.drawing = drawing;
                 settings.march = march;
-                settings.seesConcaveSelf = true;
+                settings.ownReflector = OwnReflector::WholeScene;
                 EXPECT_TRUE(trace(scene, one.camera, settings, one.sizePx).isFinite()) << one.name;
             }
         }
@@ -223,10 +224,11 @@ TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
     const ReflectiveScene scene(bowlRoom);
     const scene::Camera camera = rooms::cameraAt({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F});
     for (const ImageDrawing drawing : kDrawings) {
-        for (const bool seesSelf : {false, true}) {
+        for (const OwnReflector ownReflector :
+             {OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene}) {
             ClusteredSettings settings = settingsFor(scene);
             settings.drawing = drawing;
-            settings.seesConcaveSelf = seesSelf;
+            settings.ownReflector = ownReflector;
             const Traced traced = trace(scene, camera, settings);
             std::size_t marched = 0, own = 0, seen = 0, wrong = 0;
             for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
@@ -246,7 +248,7 @@ TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
             }
             EXPECT_GT(own, marched / 5);
             EXPECT_LT(own, marched * 4 / 5);
-            if (seesSelf) {
+            if (ownReflector != OwnReflector::LeftOut) {
                 EXPECT_LT(wrong, marched / 10);
             } else {
                 EXPECT_EQ(seen, 0U);

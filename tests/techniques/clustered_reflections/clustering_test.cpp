@@ -200,6 +200,53 @@ TEST(BinTables, BinsAreThePrintedFormula) {
     EXPECT_EQ(BinTables({}).binsOf(77, 77, 1), glm::ivec2(13, 8));  // alone
 }
 
+TEST(BinTables, ManyReflectorsHaveFewerBinsThanEachAlone) {
+    const BinTables tables({});
+    const auto most = [&](std::size_t objects, int parts) {
+        return tables.mostBins(std::vector<int>(objects, parts));
+    };
+    EXPECT_EQ(most(0, 1), 0);
+    EXPECT_EQ(most(1, 1), 13 * 8);
+    EXPECT_LT(most(25, 1), 25 * 13 * 8);
+    EXPECT_LT(most(25, 1), most(25, 4));
+    EXPECT_LE(most(1000, 1), kMaxClusters);
+    // Never fewer than some areas give: one reflector has half of what is seen, the others the
+    // rest.
+    for (const std::uint32_t visible : {2U, 5U, 25U, 60U, 400U}) {
+        const std::uint32_t total = 2 * 1000 * (visible - 1);
+        const auto count = [&](std::uint32_t area) {
+            const glm::ivec2 bins = tables.binsOf(area, total, visible);
+            return static_cast<long long>(bins.x) * bins.y;
+        };
+        EXPECT_LE(count(total / 2) + (visible - 1) * count(1000), most(visible, 1));
+        EXPECT_LE(visible * count(total / visible), most(visible, 1));
+    }
+    // With so large a gain every reflector may have all bins; with exponent 0 each has them.
+    EXPECT_EQ(BinTables({.gain = 1e9F}).mostBins(std::vector<int>(60, 1)), 60 * 13 * 8);
+    EXPECT_EQ(BinTables({.exponent = 0.0F}).mostBins(std::vector<int>(60, 1)), 60 * 13 * 8);
+}
+
+TEST_F(ClusteringTest, PartsShareTheirObjectsCount) {
+    // Two balls, each of two parts that do not touch, and as many whole ones.
+    scene::Mesh pair = ball();
+    const auto count = static_cast<unsigned>(pair.positions.size());
+    const scene::Mesh one = ball();
+    for (const glm::vec3& p : one.positions) pair.positions.push_back(p + glm::vec3(3, 0, 0));
+    pair.normals.insert(pair.normals.end(), one.normals.begin(), one.normals.end());
+    for (const glm::uvec3& t : one.triangles) pair.triangles.push_back(t + count);
+    const reflections::ReflectiveScene split =
+        MirrorScene()
+            .add(pair, kIdentity)
+            .add(pair, glm::translate(glm::mat4(1.0F), {0, 2.5F, 0}))
+            .get({.splitsParts = true});
+    ASSERT_EQ(split.reflectorCount(), 4);
+    EXPECT_EQ(wholeReflectors(split), (std::vector<std::uint32_t>{0, 1, 1, 2, 2}));
+    const reflections::GBuffer gbuffer =
+        render(split, viewFrom({1.5F, 1, 12}, {1.5F, 1, 0}, {64, 64}));
+    expectAsOnHost(split, gbuffer, {});
+    EXPECT_EQ(clusterOnHost(readGBuffer(gbuffer), split, {}).visibleReflectors, 2);
+}
+
 TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
     const BinTables tables({.maxThetaBins = 16, .maxPhiBins = 16});
     const glm::ivec2 grid(8, 4);

@@ -25,18 +25,21 @@ class OcclusionTest : public testing::Test {
     static reflections::ReflectiveScene makeScene() {
         scene::Scene scene;
         scene::MeshBuilder builder;
-        // A mirror with a flap that stands out from it, before everything at x < −0.5.
+        // A mirror with a flap that stands out from it, before everything at x < −0.5; below y = 0
+        // it turns its back to the camera.
         builder.addQuad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
-        builder.addQuad({-3, -3, 0.5F}, {-1, -3, 0.5F}, {-1, 3, 0.5F}, {-3, 3, 0.5F});
+        builder.addQuad({-3, -3, 0.5F}, {-1, -3, 0.5F}, {-1, 0, 0.5F}, {-3, 0, 0.5F});
+        builder.addQuad({-3, 0, 0.5F}, {-3, 3, 0.5F}, {-1, 3, 0.5F}, {-1, 0, 0.5F});
         addPart(scene, builder, kMirror);
         builder.addQuad({-5, -5, 5}, {-5, 5, 5}, {5, 5, 5}, {5, -5, 5});  // wall
         builder.addQuad({1, -5, 2}, {1, 5, 2}, {5, 5, 2}, {5, -5, 2});    // screen at x > 1
         addPart(scene, builder, {});
         return reflections::ReflectiveScene(scene);
     }
-    bool isSeen(const glm::vec3& point) const {
-        return sightOf(camera_, point, {gbuffer_, {}, {}, {}, scene_, rays_, {}}) == Sight::Seen;
+    Sight sight(const glm::vec3& point, std::uint32_t reflector = 0) const {
+        return sightOf(camera_, point, reflector, {gbuffer_, {}, {}, {}, scene_, rays_, {}});
     }
+    bool isSeen(const glm::vec3& point) const { return sight(point) == Sight::Seen; }
 
     reflections::ReflectiveScene scene_;
     raycast::RayTracer rays_;
@@ -52,8 +55,31 @@ TEST_F(OcclusionTest, WhatLiesOpenIsSeen) {
 }
 
 TEST_F(OcclusionTest, WhatIsHiddenIsNotSeen) {
-    EXPECT_FALSE(isSeen({2.2F, 0, 5}));  // behind the screen: 1.1 at z = 2
-    EXPECT_FALSE(isSeen({5.9F, 0, 5}));  // there and nowhere
+    EXPECT_EQ(sight({2.2F, 0, 5}), Sight::Hidden);  // behind the screen: 1.1 at z = 2
+    EXPECT_EQ(sight({5.9F, 0, 5}), Sight::Hidden);  // there and nowhere
+}
+
+TEST_F(OcclusionTest, TheOwnReflectorIsSeenOnlyWhereTheImageShowsIt) {
+    EXPECT_EQ(sight({-1.2F, 0, 0.5F}, 1), Sight::Self);  // on the flap
+    EXPECT_EQ(sight({-1.2F, 0, 0.5F}, 2), Sight::Seen);  // the same place of another
+    camera_.flags = kShowsOwn;
+    EXPECT_EQ(sight({-1.2F, 0, 0.5F}, 1), Sight::Seen);
+    EXPECT_EQ(sight({-4.8F, 1, 5}), Sight::Hidden);  // through the flap, which is drawn now
+    EXPECT_EQ(sight({-4.8F, -1, 5}), Sight::Seen);   // but for its back
+}
+
+TEST_F(OcclusionTest, WhatLiesBackToBackIsLeftOut) {
+    // Reflector 1 is convex, 2 the concave part of the same object, 3 that of another.
+    const std::vector<std::uint32_t> families{0, 1U << 2 | 1, 1U << 2 | 2, 2U << 2 | 2};
+    const auto seen = [&](std::uint32_t reflector) {
+        return sightOf(camera_, {0, 0, 5}, reflector,
+                       {gbuffer_, {}, {}, {}, scene_, rays_, {}, families});
+    };
+    EXPECT_EQ(seen(0), Sight::Seen);
+    EXPECT_EQ(seen(2), Sight::Self);
+    EXPECT_EQ(seen(3), Sight::Seen);
+    EXPECT_FALSE(areBackToBack(families[1], 1U << 2));  // a planar part
+    EXPECT_FALSE(areBackToBack(families[1], families[1]));
 }
 
 TEST_F(OcclusionTest, ToleratesEdgesThatAreMissedByLittle) {
@@ -69,11 +95,11 @@ TEST_F(OcclusionTest, WhatLeavesTheFrustumIsNotSeen) {
     camera_.clipFromWorld = glm::frustum(-1.0F, 0.5F, -1.0F, 1.0F, 1.0F, 11.0F) *
                             glm::lookAt(glm::vec3(0, 0, -1), glm::vec3(0), glm::vec3(0, 1, 0));
     EXPECT_TRUE(isSeen({-2.9F, 0, 5}));
-    EXPECT_FALSE(isSeen({-3.1F, 0, 5}));
-    EXPECT_FALSE(isSeen({0, 0, -0.1F}));  // before the near plane
-    EXPECT_FALSE(isSeen({0, 0, -5}));     // behind the camera
+    EXPECT_EQ(sight({-3.1F, 0, 5}), Sight::Beside);
+    EXPECT_EQ(sight({0, 0, -0.1F}), Sight::BeforeNear);
+    EXPECT_EQ(sight({0, 0, -5}), Sight::BeforeNear);  // behind the camera
     camera_.planeNormal.w = 5.0F;
-    EXPECT_FALSE(isSeen({0, 0, 5}));  // behind the far plane
+    EXPECT_EQ(sight({0, 0, 5}), Sight::Beside);  // behind the far plane
 }
 
 TEST_F(OcclusionTest, CountsSamplesByTheirClusters) {
@@ -104,16 +130,22 @@ TEST_F(OcclusionTest, CountsSamplesByTheirClusters) {
     OcclusionErrors errors =
         occlusionErrors({gbuffer_, truth, clusters, cameras, scene_, rays_, {}});
     EXPECT_EQ(errors.reflective, 3U);
-    EXPECT_EQ(errors.missing, 1U);
-    EXPECT_EQ(errors.hidden, 1U);
+    EXPECT_EQ(errors.missing(), 1U);
+    EXPECT_EQ(errors.of(Sight::Hidden), 1U);
     EXPECT_EQ(errors.planar, 3U);
     EXPECT_EQ(errors.planarMissing, 1U);
     EXPECT_EQ(errors.isMissing[7], 1);
     EXPECT_EQ(errors.isMissing[6], 0);
+    // The same two hits on the mirror itself, the first object, and one that leaves the scene.
+    truth[7].object = truth[6].object = 1;
+    errors = occlusionErrors({gbuffer_, truth, clusters, cameras, scene_, rays_, {}});
+    EXPECT_EQ(errors.of(Sight::Self), 2U);
+    EXPECT_EQ(errors.of(Sight::Hidden), 0U);
+    EXPECT_EQ(errors.missing(), 2U);
     // Glossy samples' rays end before it: 15 · (1 − 0.5)⁴ is less than a metre.
     gbuffer_.surface.assign(8, 1U | 255U << 16 | 128U << 24);
     errors = occlusionErrors({gbuffer_, truth, clusters, cameras, scene_, rays_, {}});
-    EXPECT_EQ(errors.missing, 0U);
+    EXPECT_EQ(errors.missing(), 0U);
 }
 
 }  // namespace
