@@ -10,11 +10,8 @@ namespace {
 /// A larger object is drawn by several commands: llvmpipe keeps the vertices of a draw.
 constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
 
-/// Images begin at multiples of this, so that small tiles of the pyramid hold one image alone.
-constexpr int kPlaceStepPx = 8;
-
 /// Pairs of an object and a cluster that sees it; 8 MiB. All pairs of 512 objects and as many
-/// clusters as there may be; more of both is counted in State::leftOut.
+/// clusters as there may be; more of both is counted in AtlasState::leftOut.
 constexpr std::size_t kMostInstances = std::size_t{1} << 21;
 
 /// An instance is cluster << 20 | object.
@@ -26,26 +23,15 @@ struct DrawCommand {
     std::uint32_t count = 0, instanceCount = 0, firstIndex = 0, baseVertex = 0, baseInstance = 0;
 };
 
-/// Of shaders/atlas.glsl, in front of the order in which images are placed.
-struct AtlasHeader {
-    float scale = 1.0F;
-    std::uint32_t instances = 0, leftOut = 0, padding = 0;
-};
-
 }  // namespace
 
 AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                            const reflections::ReflectiveScene& scene,
                            const reflections::GpuObjects& objects, const CameraSettings& settings)
-    : settings_(settings),
-      families_(gl::Buffer::of(reflectorFamilies(scene))),
-      places_(kMaxClusters * sizeof(glm::ivec4)),
-      order_(sizeof(AtlasHeader) + kMaxClusters * sizeof(std::uint32_t)) {
+    : settings_(settings), families_(gl::Buffer::of(reflectorFamilies(scene))), places_(shaders) {
     GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
     gl::Defines defines = imageDefines();
     defines["ATLAS"] = 1;
-    defines["PLACE_STEP_PX"] = kPlaceStepPx;
-    place_ = gl::Program(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
     cull_ = gl::Program(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
     draw_ = gl::Program(shaders,
                         {"clustered_reflections/cluster_image.vert.glsl",
@@ -71,25 +57,13 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
 }
 
 void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-                        const gl::Buffer& counts, ClusterImages& target) {
-    cameras.bindStorage(kCamerasBinding);
-    counts.bindStorage(kImageCountsBinding);
-    places_.bindStorage(kPlacesBinding);
-    order_.bindStorage(kOrderBinding);
+                        const Clusters& clusters, ClusterImages& target) {
+    places_.place(cameras, clusters, settings_, target.sizePx());
     commands_.bindStorage(kCommandsBinding);
     pieces_.bindStorage(kPiecesBinding);
     instances_.bindStorage(kInstancesBinding);
     families_.bindStorage(kFamiliesBinding);
     objects.bind();
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-
-    place_.use();
-    place_.set("atlasSizePx", target.sizePx());
-    place_.set("depthImageScale", settings_.depthImageScale);
-    place_.set("maxSizePx", std::min(settings_.maxSizePx, target.sizePx().x));
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-
     cull_.use();
     glDispatchCompute(objects.objectCount(), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
@@ -108,14 +82,9 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     target.endDrawing(target.sizePx());
 }
 
-AtlasPainter::State AtlasPainter::state() const {
-    const AtlasHeader header = order_.read<AtlasHeader>(1).front();
-    return {header.scale, header.instances, header.leftOut};
-}
-
 std::size_t AtlasPainter::sizeBytes() const {
-    return places_.sizeBytes() + order_.sizeBytes() + commands_.sizeBytes() +
-           instances_.sizeBytes() + pieces_.sizeBytes() + families_.sizeBytes();
+    return places_.sizeBytes() + commands_.sizeBytes() + instances_.sizeBytes() +
+           pieces_.sizeBytes() + families_.sizeBytes();
 }
 
 }  // namespace gfxrepro::clustered_reflections

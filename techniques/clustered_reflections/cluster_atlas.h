@@ -1,7 +1,7 @@
 // All clusters' depth images in one draw: the outlook of [xie2017] Sec. 4.7.4.
 #pragma once
 
-#include "techniques/clustered_reflections/cluster_images.h"
+#include "techniques/clustered_reflections/image_places.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -12,25 +12,21 @@ class AtlasPainter {
   public:
     AtlasPainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                  const reflections::GpuObjects& objects, const CameraSettings& settings);
-    /// `counts` are Clusters::counts. Leaves cameras and places bound for the intersection.
+    /// Leaves cameras and places bound for the intersection.
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-              const gl::Buffer& counts, ClusterImages& target);
-    /// ivec4 a cluster: x, y, width, height; width 0: no image.
-    const gl::Buffer& places() const { return places_; }
+              const Clusters& clusters, ClusterImages& target);
+    const gl::Buffer& places() const { return places_.places(); }
     std::size_t sizeBytes() const;
 
     /// Of the last draw(); waits for the device.
-    struct State {
-        float scale = 1.0F;           // by which all images were scaled to fit
-        std::uint32_t instances = 0;  // object × cluster pairs drawn
-        std::uint32_t leftOut = 0;    // pairs beyond the instance list
-    };
-    State state() const;
+    AtlasState state() const { return places_.state(); }
 
   private:
     CameraSettings settings_;
-    gl::Program place_, cull_, draw_;
-    gl::Buffer families_, places_, order_, commands_, instances_, pieces_;
+    gl::Buffer families_;
+    ImagePlaces places_;
+    gl::Program cull_, draw_;
+    gl::Buffer commands_, instances_, pieces_;
     gl::VertexArray vertexArray_;
     int commandCount_ = 0;
 };

@@ -36,6 +36,9 @@ struct CameraSettings {
     reflections::LobeSettings lobe;
     float depthImageScale = 1.0F;  // of w and h (Table 17)
     int maxSizePx = 2048;          // a side; larger images are scaled down to it
+    /// Beyond the paper: images of more texels for each of their cluster's samples are scaled down
+    /// to as many. 0: as many as the paper's w × h are.
+    float texelsPerSample = 0.0F;
     /// The steepest ray, as the tangent of its angle to n_c, that the image is made wide enough
     /// for; 8: 83°. A steeper one, or one that points away from the far plane, leaves the image at
     /// its side and takes the environment map from there on. Images for the steepest 7° would be as

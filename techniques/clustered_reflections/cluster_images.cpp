@@ -23,6 +23,17 @@ gl::Defines imageDefines() {
     define("kSamplesBinding", kSamplesBinding);
     define("kRangesBinding", kRangesBinding);
     define("kFamiliesBinding", kFamiliesBinding);
+    define("kPartsBinding", kPartsBinding);
+    define("kLevelsBinding", kLevelsBinding);
+    define("kChunksBinding", kChunksBinding);
+    define("kChunkBoxesBinding", kChunkBoxesBinding);
+    define("kTrianglesBinding", kTrianglesBinding);
+    define("kCornersBinding", kCornersBinding);
+    define("kVisibleCornersBinding", kVisibleCornersBinding);
+    define("kPositionsBinding", kPositionsBinding);
+    define("NORMALS_BINDING", kNormalsBinding);
+    define("TEXCOORDS_BINDING", kTexcoordsBinding);
+    define("COLORS_BINDING", kColorsBinding);
     define("GBUFFER_UNIT", kGBufferUnit);
     define("ENVIRONMENT_UNIT", kEnvironmentUnit);
     define("kImageColourUnit", kImageColourUnit);
@@ -37,16 +48,19 @@ gl::Defines imageDefines() {
 
 // ---- ClusterImages ----
 
-ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid)
+ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid,
+                             TexelContent content)
     : hasPyramid_(hasPyramid),
-      colour_(gl::Texture::make2D(GL_RGB10_A2, sizePx)),
+      content_(content),
+      colour_(
+          gl::Texture::make2D(content == TexelContent::Colours ? GL_RGB10_A2 : GL_R32UI, sizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       nearest_(gl::Texture::make2D(GL_R32F, hasPyramid ? sizePx / 4 : glm::ivec2(1),
                                    hasPyramid ? kPyramidLevels : 1)),
       framebuffer_(std::array<const gl::Texture*, 1>{&colour_}, &depth_),
       nearestFramebuffer_(std::array<const gl::Texture*, 1>{&nearest_}) {
     GFXREPRO_ASSERT(!hasPyramid || sizePx % kLargestTilePx == glm::ivec2(0));
-    colour_.setFilter(GL_LINEAR, GL_LINEAR);
+    if (content == TexelContent::Colours) colour_.setFilter(GL_LINEAR, GL_LINEAR);
     nearest_.setFilter(GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST);
     if (hasPyramid) {
         pyramid_ = gl::Program(
@@ -62,7 +76,8 @@ void ClusterImages::beginDrawing(glm::ivec2 sizePx) const {
     glDepthMask(GL_TRUE);
     glEnable(GL_SCISSOR_TEST);
     glScissor(0, 0, sizePx.x, sizePx.y);
-    framebuffer_.clearColour(0, glm::vec4(0.0F));
+    // Depth 0 says that nothing is there, so that triangles need not be cleared.
+    if (content_ == TexelContent::Colours) framebuffer_.clearColour(0, glm::vec4(0.0F));
     framebuffer_.clearDepth(0.0F);
     glDisable(GL_SCISSOR_TEST);
     // Window z is near distance / z: 1 at the near plane, 0 at infinity.
@@ -113,12 +128,18 @@ std::size_t ClusterImages::sizeBytes() const {
     return colour_.sizeBytes() + depth_.sizeBytes() + nearest_.sizeBytes();
 }
 
-glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings) {
+glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings,
+                       std::uint32_t samples) {
     if ((camera.flags & kNoRoom) != 0 || camera.sizePx.x <= 0 || camera.sizePx.y <= 0)
         return {0, 0};
     const float largest = static_cast<float>(std::max(camera.sizePx.x, camera.sizePx.y));
-    const float scale =
+    float scale =
         std::min(settings.depthImageScale, static_cast<float>(settings.maxSizePx) / largest);
+    if (settings.texelsPerSample > 0.0F) {
+        const glm::vec2 size(camera.sizePx);
+        const float most = settings.texelsPerSample * static_cast<float>(samples);
+        scale = std::min(scale, std::sqrt(most / (size.x * size.y)));
+    }
     const glm::ivec2 sizePx(glm::ceil(glm::vec2(camera.sizePx) * scale));
     return glm::clamp(sizePx, glm::ivec2(1), glm::ivec2(settings.maxSizePx));
 }
@@ -141,6 +162,7 @@ OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
     : families_(reflectorFamilies(scene)) {
     for (const reflections::Object& object : scene.objects()) {
         reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
+        trianglesOfObject_.push_back(object.triangleCount);
     }
     gl::Defines defines = imageDefines();
     defines["ATLAS"] = 0;
@@ -179,8 +201,9 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
     return seen;
 }
 
-void OneByOnePainter::draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
-                           const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target) {
+std::uint64_t OneByOnePainter::draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
+                                    const ClusterCamera& camera, glm::ivec2 sizePx,
+                                    ClusterImages& target) {
     const std::vector<std::uint32_t> seen = objectsSeen(objects, camera);
     target.beginDrawing(sizePx);
     glViewport(0, 0, sizePx.x, sizePx.y);
@@ -189,6 +212,9 @@ void OneByOnePainter::draw(const reflections::GpuObjects& objects, std::uint32_t
     objects.bind();
     objects.draw(seen);
     target.endDrawing(sizePx);
+    std::uint64_t triangles = 0;
+    for (const std::uint32_t object : seen) triangles += trianglesOfObject_[object];
+    return triangles;
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -22,7 +22,19 @@ enum ImageBinding : unsigned {
     kOrderBinding,
     kSamplesBinding,
     kRangesBinding,
-    kFamiliesBinding = kSamplesBinding,  // no pass reads both
+    // Of images of triangles (VisiblePainter).
+    kPartsBinding,
+    kLevelsBinding,
+    kChunksBinding,
+    kChunkBoxesBinding,
+    kTrianglesBinding,
+    kCornersBinding,
+    kVisibleCornersBinding,
+    kPositionsBinding,
+    kNormalsBinding,
+    kTexcoordsBinding,
+    kColorsBinding,
+    kFamiliesBinding = kSamplesBinding  // no pass reads both
 };
 enum ImageUnit : unsigned {
     kGBufferUnit = reflections::kFirstFreeUnit,  // four
@@ -39,12 +51,19 @@ gl::Defines imageDefines();
 constexpr int kPyramidLevels = 4;
 constexpr int kLargestTilePx = 2 << kPyramidLevels;
 
+/// What a texel keeps beside its depth.
+enum class TexelContent {
+    Colours,    // RGB10_A2, the diffuse colour; a: own reflector
+    Triangles,  // R32UI, the triangle (VisiblePainter); bit 31: own reflector
+};
+
 /// The texture that holds one cluster's image, or those of all. 8 bytes a texel, 1/3 more with the
 /// pyramid. The depth buffer holds near distance / z: the hardware's own depth, reversed and with
 /// the far plane at infinity, so that no second target keeps what the march compares.
 class ClusterImages {
   public:
-    ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid);
+    ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid,
+                  TexelContent content = TexelContent::Colours);
 
     /// Clears texels [0, sizePx) and makes ready for drawing into them.
     void beginDrawing(glm::ivec2 sizePx) const;
@@ -54,21 +73,23 @@ class ClusterImages {
     void bind() const;
 
     glm::ivec2 sizePx() const { return glm::ivec2(colour_.size()); }
-    const gl::Texture& colour() const { return colour_; }  // RGB10_A2, a: own reflector
+    const gl::Texture& colour() const { return colour_; }  // TexelContent
     const gl::Texture& depth() const { return depth_; }    // near distance / z; 0: nothing there
     std::size_t sizeBytes() const;
 
   private:
     bool hasPyramid_;
+    TexelContent content_;
     gl::Texture colour_, depth_, nearest_;
     gl::Framebuffer framebuffer_, nearestFramebuffer_;
     gl::Program pyramid_;
     gl::VertexArray none_;
 };
 
-/// w × h of a cluster's image as it is drawn: scaled (Table 17), no larger than the limit, at least
-/// a texel. (0, 0): no image. shaders/place_images.comp.glsl has the same.
-glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings);
+/// w × h of the image of a cluster of `samples` as it is drawn: scaled (Table 17), no larger than
+/// the limits, at least a texel. (0, 0): no image. shaders/place_images.comp.glsl has the same.
+glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings,
+                       std::uint32_t samples);
 
 /// By reflector id: the object that it is a part of << 2 | 0 planar, 1 convex, 2 concave.
 std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene);
@@ -85,16 +106,17 @@ constexpr bool areBackToBack(std::uint32_t family, std::uint32_t other) {
 class OneByOnePainter {
   public:
     OneByOnePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene);
-    /// The cameras are bound to kCamerasBinding; `camera` is the cluster's.
-    void draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
-              const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target);
+    /// The cameras are bound to kCamerasBinding; `camera` is the cluster's. Returns how many
+    /// triangles were drawn.
+    std::uint64_t draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
+                       const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target);
     /// Objects in the frustum, without the own reflector unless the camera shows it, and without
     /// what lies back to back with it.
     std::vector<std::uint32_t> objectsSeen(const reflections::GpuObjects& objects,
                                            const ClusterCamera& camera) const;
 
   private:
-    std::vector<std::uint32_t> reflectorOfObject_, families_;
+    std::vector<std::uint32_t> reflectorOfObject_, trianglesOfObject_, families_;
     gl::Program program_;
 };
 

@@ -6,11 +6,12 @@ namespace gfxrepro::clustered_reflections {
 
 ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
                                          const CameraSettings& settings, March march,
-                                         bool mayShowOwn, glm::ivec2 sizePx)
+                                         bool mayShowOwn, TexelContent content, glm::ivec2 sizePx)
     : settings_(settings), environmentSamples_(gl::Texture::make2D(GL_R8UI, sizePx)) {
     gl::Defines defines = imageDefines();
     defines["MARCH"] = march == March::Hierarchical ? 1 : 0;
     defines["SEES_OWN"] = mayShowOwn ? 1 : 0;
+    defines["OF_TRIANGLES"] = content == TexelContent::Triangles ? 1 : 0;
     all_ = gl::Program(
         shaders, {"reflections/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
         defines);

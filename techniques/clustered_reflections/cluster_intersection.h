@@ -11,7 +11,7 @@ namespace gfxrepro::clustered_reflections {
 class ClusterIntersection {
   public:
     ClusterIntersection(const gl::ShaderLibrary& shaders, const CameraSettings& settings,
-                        March march, bool mayShowOwn, glm::ivec2 sizePx);
+                        March march, bool mayShowOwn, TexelContent content, glm::ivec2 sizePx);
 
     /// Of all samples in a pass over the G-buffer: images in an atlas.
     void intersectAll(const reflections::GBuffer& gbuffer, const Clusters& clusters,

@@ -178,6 +178,14 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
         std::ranges::count_if(environment, [](std::uint8_t mark) { return mark != 0; }));
     recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
     if (clustered > 0) recorder.metric("environment_pct", percent(fallen, clustered), "%");
+    const ClusteredTracer::Drawn drawn = clusteredTracer_->drawn();
+    recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles), "triangle");
+    recorder.metric("drawn_left_out", static_cast<double>(drawn.leftOut), "triangle");
+    if (clustered > 0) {
+        recorder.metric("texels_per_sample",
+                        static_cast<double>(drawn.texels) / static_cast<double>(clustered),
+                        "texel");
+    }
     if (params_.showsPictures) {
         recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
                        seenFrom(gbuffer.view));

@@ -6,6 +6,7 @@
 #include "techniques/clustered_reflections/cluster_atlas.h"
 #include "techniques/clustered_reflections/cluster_concavity.h"
 #include "techniques/clustered_reflections/cluster_intersection.h"
+#include "techniques/clustered_reflections/visible_triangles.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
@@ -14,6 +15,10 @@ namespace {
 ClusteredSettings limited(ClusteredSettings settings) {
     settings.camera.maxSizePx = std::min(settings.camera.maxSizePx, kImagesSizePx.x);
     return settings;
+}
+
+TexelContent contentOf(ImageDrawing drawing) {
+    return drawing == ImageDrawing::Visible ? TexelContent::Triangles : TexelContent::Colours;
 }
 
 }  // namespace
@@ -27,11 +32,15 @@ struct ClusteredTracer::Impl {
           map(environment),
           builder(shaders, scene, settings.clustering, settings.bins, sizePx),
           clusterCameras(shaders, settings.camera),
-          images(shaders, kImagesSizePx, settings.march == March::Hierarchical),
+          images(shaders, kImagesSizePx, settings.march == March::Hierarchical,
+                 contentOf(settings.drawing)),
           intersection(shaders, settings.camera, settings.march,
-                       settings.ownReflector != OwnReflector::LeftOut, sizePx) {
+                       settings.ownReflector != OwnReflector::LeftOut, contentOf(settings.drawing),
+                       sizePx) {
         if (settings.drawing == ImageDrawing::Atlas) {
             atlas.emplace(shaders, scene, gpuObjects, settings.camera);
+        } else if (settings.drawing == ImageDrawing::Visible) {
+            visible.emplace(shaders, scene, gpuObjects, settings.camera, settings.levelErrorPx);
         } else {
             oneByOne.emplace(shaders, scene);
             places = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
@@ -54,7 +63,9 @@ struct ClusteredTracer::Impl {
                    gl::Profiler& profiler) {
         {
             const gl::GpuScope scope(profiler, "depth_images");
-            atlas->draw(*objects, clusterCameras.cameras(), builder.clusters().counts, images);
+            const gl::Buffer& cameraTable = clusterCameras.cameras();
+            if (atlas) atlas->draw(*objects, cameraTable, builder.clusters(), images);
+            if (visible) visible->draw(*objects, cameraTable, builder.clusters(), images);
         }
         const gl::GpuScope scope(profiler, "intersection");
         intersection.intersectAll(gbuffer, builder.clusters(), images, map, target);
@@ -66,13 +77,14 @@ struct ClusteredTracer::Impl {
                       gl::Profiler& profiler) {
         std::vector<ClusterCamera> table;
         std::vector<glm::uvec4> ranges;
-        std::vector<glm::ivec4> sizes;
+        sizes.clear();
+        trianglesDrawn = 0;
         {
             const gl::GpuScope scope(profiler, "depth_images");
             table = cameras();
             ranges = builder.clusters().ranges.read<glm::uvec4>(table.size());
-            for (const ClusterCamera& camera : table) {
-                sizes.emplace_back(0, 0, imageSizePx(camera, settings.camera));
+            for (std::size_t i = 0; i < table.size(); ++i) {
+                sizes.emplace_back(0, 0, imageSizePx(table[i], settings.camera, ranges[i].y));
             }
             if (!sizes.empty()) places.write(std::span<const glm::ivec4>(sizes));
         }
@@ -82,7 +94,7 @@ struct ClusteredTracer::Impl {
             places.bindStorage(kPlacesBinding);
             if (sizePx.x > 0) {
                 const gl::GpuScope scope(profiler, "depth_images");
-                oneByOne->draw(*objects, cluster, table[cluster], sizePx, images);
+                trianglesDrawn += oneByOne->draw(*objects, cluster, table[cluster], sizePx, images);
             }
             const gl::GpuScope scope(profiler, "intersection");
             intersection.intersectCluster(gbuffer, builder.clusters(), cluster, ranges[cluster],
@@ -99,8 +111,12 @@ struct ClusteredTracer::Impl {
     ClusterImages images;
     ClusterIntersection intersection;
     std::optional<AtlasPainter> atlas;
+    std::optional<VisiblePainter> visible;
     std::optional<OneByOnePainter> oneByOne;
-    gl::Buffer places;  // one by one
+    // One by one:
+    gl::Buffer places;
+    std::vector<glm::ivec4> sizes;  // of the last frame's images: 0, 0, width, height
+    std::uint64_t trianglesDrawn = 0;
 };
 
 ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
@@ -131,10 +147,10 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
         }
     }
     impl_->intersection.clearEnvironmentSamples();
-    if (impl_->atlas) {
-        impl_->drawAtlas(gbuffer, target, profiler);
-    } else {
+    if (impl_->oneByOne) {
         impl_->drawOneByOne(gbuffer, target, profiler);
+    } else {
+        impl_->drawAtlas(gbuffer, target, profiler);
     }
 }
 
@@ -145,7 +161,8 @@ std::size_t ClusteredTracer::frameBufferBytes() const {
 std::size_t ClusteredTracer::sizeBytes() const {
     return impl_->builder.sizeBytes() + impl_->clusterCameras.sizeBytes() +
            impl_->images.sizeBytes() + impl_->intersection.sizeBytes() + impl_->places.sizeBytes() +
-           (impl_->atlas ? impl_->atlas->sizeBytes() : 0);
+           (impl_->atlas ? impl_->atlas->sizeBytes() : 0) +
+           (impl_->visible ? impl_->visible->sizeBytes() : 0);
 }
 
 int ClusteredTracer::clusterCount() const {
@@ -165,7 +182,25 @@ const ClusterImages& ClusteredTracer::images() const {
 }
 
 float ClusteredTracer::imageScale() const {
-    return impl_->atlas ? impl_->atlas->state().scale : 1.0F;
+    if (impl_->atlas) return impl_->atlas->state().scale;
+    return impl_->visible ? impl_->visible->state().scale : 1.0F;
+}
+
+ClusteredTracer::Drawn ClusteredTracer::drawn() const {
+    Drawn drawn;
+    std::vector<glm::ivec4> sizes = impl_->sizes;
+    drawn.triangles = impl_->trianglesDrawn;
+    if (!impl_->oneByOne) {
+        const AtlasState state = impl_->atlas ? impl_->atlas->state() : impl_->visible->state();
+        const gl::Buffer& places = impl_->atlas ? impl_->atlas->places() : impl_->visible->places();
+        sizes = places.read<glm::ivec4>(static_cast<std::size_t>(clusterCount()));
+        drawn.triangles = state.triangles;
+        drawn.leftOut = state.leftOut;
+    }
+    for (const glm::ivec4& size : sizes) {
+        drawn.texels += static_cast<std::uint64_t>(size.z) * static_cast<std::uint64_t>(size.w);
+    }
+    return drawn;
 }
 
 std::vector<std::uint8_t> ClusteredTracer::environmentSamples() const {

@@ -16,6 +16,7 @@ namespace gfxrepro::clustered_reflections {
 enum class ImageDrawing {
     OneByOne,  // the thesis: a cluster's image is drawn, used and overwritten by the next
     Atlas,     // all at once side by side: one multi-draw indirect, culled on the device
+    Visible,   // as that, of the triangles that may be seen; shaded where rays meet them
 };
 
 /// What rays see of the reflector that they leave: [xie2017] Sec. 4.7.4. Planar ones have nothing
@@ -32,6 +33,8 @@ struct ClusteredSettings {
     BinSettings bins;
     CameraSettings camera;
     ImageDrawing drawing = ImageDrawing::OneByOne;
+    /// Visible: how far, in texels, a simplified object may lie from itself; 0: none is simplified.
+    float levelErrorPx = 0.0F;
     March march = March::Linear;
     OwnReflector ownReflector = OwnReflector::ConcaveDiffuse;
 };
@@ -63,6 +66,12 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     const ClusterImages& images() const;
     /// By which the atlas scaled all images to fit them in; 1 one by one.
     float imageScale() const;
+    /// What the images of the last trace() were drawn with, all together.
+    struct Drawn {
+        std::uint64_t triangles = 0, texels = 0;
+        std::uint64_t leftOut = 0;  // objects or triangles for which there was no room
+    };
+    Drawn drawn() const;
     /// Samples whose mirror ray took the environment map ([xie2017] Fig. 28), a byte a sample, rows
     /// from the bottom. Glossy samples never do: what is missing shows their diffuse colour.
     std::vector<std::uint8_t> environmentSamples() const;

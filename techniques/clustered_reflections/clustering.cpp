@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -70,7 +71,8 @@ gl::Defines defines(int groupSize) {
             {"STRIP_LENGTH", kStripLength},
             {"MATRIX_ENTRIES", kMatrixEntries},
             {"PIECE_LENGTH", kPieceLength},
-            {"MAX_BLOCKS", kMaxBlocks}};
+            {"MAX_BLOCKS", kMaxBlocks},
+            {"MAX_CLUSTERS", kMaxClusters}};
 }
 
 gl::Program compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize) {
@@ -121,8 +123,8 @@ std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& s
 
 /// Programs and scratch of the clustering by normals.
 struct ClusterBuilder::NormalBinPasses {
-    NormalBinPasses(const gl::ShaderLibrary& shaders, const BinTables& tables,
-                    const std::vector<std::uint8_t>& isPlanar,
+    NormalBinPasses(const gl::ShaderLibrary& shaders, const BinSettings& settings,
+                    const BinTables& tables, const std::vector<std::uint8_t>& isPlanar,
                     const std::vector<std::uint32_t>& wholes, const Clusters& clusters);
     void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
                const Clusters& clusters);
@@ -132,6 +134,7 @@ struct ClusterBuilder::NormalBinPasses {
 
     glm::ivec2 sizePx, maxBins;
     int reflectorCount;
+    std::uint32_t leastSamples;
     gl::Program areas, bins, assign, count, scan, number, sort, label;
     gl::Buffer areaOfReflector, reflectors, layout, binRecords, matrix, pieces;
     gl::Buffer leastScale, thetaBorders, phiBorders;
@@ -141,6 +144,7 @@ struct ClusterBuilder::NormalBinPasses {
 };
 
 ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shaders,
+                                                 const BinSettings& settings,
                                                  const BinTables& tables,
                                                  const std::vector<std::uint8_t>& isPlanar,
                                                  const std::vector<std::uint32_t>& wholes,
@@ -148,6 +152,7 @@ ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shader
     : sizePx(clusters.clusterOfSample.size()),
       maxBins(tables.maxBins),
       reflectorCount(static_cast<int>(isPlanar.size()) - 1),
+      leastSamples(static_cast<std::uint32_t>(settings.leastSamples)),
       areas(compute(shaders, "reflector_areas", kGroupSize)),
       bins(compute(shaders, "reflector_bins", kScanGroupSize)),
       assign(wholeImage(shaders, "assign_bins")),
@@ -218,6 +223,7 @@ void ClusterBuilder::NormalBinPasses::sortSamples(const Clusters& clusters) {
     glDispatchCompute(groupsFor(kMatrixEntries, kPieceLength), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     number.use();
+    number.set("leastSamples", leastSamples);
     glDispatchCompute(1, 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     sort.use();
@@ -279,8 +285,8 @@ ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
     clusters_.ranges = gl::Buffer(kMaxClusters * sizeof(glm::uvec4));
     clusters_.counts = gl::Buffer(3 * sizeof(std::uint32_t));
     if (clustering == Clustering::NormalBins) {
-        passes_ = std::make_unique<NormalBinPasses>(shaders, BinTables(bins), isPlanar_, wholes_,
-                                                    clusters_);
+        passes_ = std::make_unique<NormalBinPasses>(shaders, bins, BinTables(bins), isPlanar_,
+                                                    wholes_, clusters_);
     }
 }
 
@@ -336,18 +342,28 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
     }
 
     std::vector<int> bin(pixels, -1);
-    std::vector<std::uint16_t> clusterOfBin(reflectorOfBin.size(), 0);
+    std::vector<int> samplesOfBin(reflectorOfBin.size(), 0);
     for (std::size_t i = 0; i < pixels; ++i) {
         const std::size_t r = reflectorAt(i);
         if (r == 0) continue;
         const glm::ivec2 ij = tables.binOf(gbuffer.normalOctahedral[i], grids[r]);
         bin[i] = firstBins[r] + ij.y * grids[r].x + ij.x;
-        clusterOfBin[static_cast<std::size_t>(bin[i])] = 1;
+        ++samplesOfBin[static_cast<std::size_t>(bin[i])];
     }
+    std::vector<std::uint16_t> clusterOfBin(reflectorOfBin.size(), 0);
+    int lastReflector = 0, lastSamples = 0;
     for (std::size_t b = 0; b < clusterOfBin.size(); ++b) {
-        if (clusterOfBin[b] == 0) continue;
-        clusterOfBin[b] = static_cast<std::uint16_t>(++result.clusterCount);
-        result.reflectorOfCluster.push_back(reflectorOfBin[b]);
+        if (samplesOfBin[b] == 0) continue;
+        const bool isJoined = reflectorOfBin[b] == lastReflector &&
+                              std::min(lastSamples, samplesOfBin[b]) < bins.leastSamples;
+        if (!isJoined) {
+            ++result.clusterCount;
+            result.reflectorOfCluster.push_back(reflectorOfBin[b]);
+            lastReflector = reflectorOfBin[b];
+            lastSamples = 0;
+        }
+        lastSamples += samplesOfBin[b];
+        clusterOfBin[b] = static_cast<std::uint16_t>(result.clusterCount);
     }
     result.clusterOfSample.assign(pixels, 0);
     for (std::size_t i = 0; i < pixels; ++i) {

@@ -26,6 +26,9 @@ struct BinSettings {
     int maxPhiBins = 8;
     float exponent = 0.25F;
     float gain = 16.0F;
+    /// Beyond the paper, which asks for it (Sec. 4.7.4): a cluster of fewer samples joins the one
+    /// before it of the same reflector, or else the one behind it. 1: none does.
+    int leastSamples = 1;
 };
 
 /// How samples are put into clusters.
@@ -42,7 +45,7 @@ constexpr int kMaxClusters = 4096;
 struct Clusters {
     gl::Texture clusterOfSample;  // R16UI, the G-buffer's size: 1 + cluster; 0: not reflective
     gl::Buffer samples;  // uint: x | y << 16 of the reflective samples, cluster by cluster,
-                         // row by row within each
+                         // bin by bin, row by row within each
     gl::Buffer ranges;   // uvec4 a cluster: first sample, sample count, reflector, flags
                          // (bit 0: planar); kMaxClusters entries, unused ones zero
     gl::Buffer counts;   // uint: clusters, reflective samples, visible objects that reflect

@@ -23,6 +23,8 @@ constexpr config::Choice<Clustering> kClusterings[] = {
 constexpr config::Choice<ImageDrawing> kDrawings[] = {
     {ImageDrawing::OneByOne, "one_by_one", "a cluster's image is overwritten by the next one's"},
     {ImageDrawing::Atlas, "atlas", "all images side by side, by one multi-draw"},
+    {ImageDrawing::Visible, "visible",
+     "all images side by side, of the triangles that may be seen, shaded where rays meet them"},
 };
 constexpr config::Choice<March> kMarches[] = {
     {March::Linear, "linear", "a texel a step (algorithm 7)"},
@@ -69,6 +71,9 @@ BinSettings readBins(config::Params& params) {
                             "1", 0.0, 8.0});
     bins.gain = number(params, "bin_gain", static_cast<double>(bins.gain),
                        {"more: finer clusters", "1", 1e-6, 1e6});
+    bins.leastSamples = params.getInt(
+        "least_samples", bins.leastSamples,
+        {"clusters of fewer join a neighbour of their reflector", "samples", 1, 1 << 20});
     return bins;
 }
 
@@ -84,6 +89,15 @@ ClusteredSettings readClustered(config::Params& params) {
     settings.camera.depthImageScale =
         number(params, "depth_image_scale", 1.0,
                {"factor on the width and height of the depth images", "1", 0.01, 16.0});
+    settings.camera.texelsPerSample =
+        number(params, "texels_per_sample", 0.0,
+               {"most texels of a depth image for each sample of its cluster; 0: as many as the "
+                "samples' distances ask for",
+                "texels", 0.0, 4096.0});
+    settings.levelErrorPx =
+        number(params, "level_error_px", 0.0,
+               {"how far an object may be simplified, in texels of the depth image; 0: not at all",
+                "texels", 0.0, 64.0});
     settings.ownReflector =
         params.getEnum("own_reflector", OwnReflector::ConcaveDiffuse, kOwnReflectors,
                        {"what rays of a cluster see of the reflector that they leave"});
@@ -134,12 +148,18 @@ ReflectionParams::ReflectionParams(config::Params& params)
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
     params.finish();
     if (method != Method::Clustered) {
-        params.refuseGiven(
-            {"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain", "depth_images",
-             "march", "depth_image_scale", "own_reflector", "errors_of"},
-            "'method: clustered'");
+        params.refuseGiven({"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain",
+                            "least_samples", "depth_images", "march", "depth_image_scale",
+                            "texels_per_sample", "level_error_px", "own_reflector", "errors_of"},
+                           "'method: clustered'");
     }
     if (!measuresErrors) params.refuseGiven({"converged_rays", "errors_of"}, "'errors: true'");
+    if (clustered.clustering != Clustering::NormalBins) {
+        params.refuseGiven({"least_samples"}, "'clustering: normal_bins'");
+    }
+    if (clustered.drawing != ImageDrawing::Visible) {
+        params.refuseGiven({"level_error_px"}, "'depth_images: visible'");
+    }
     if (method != Method::ScreenSpace) {
         params.refuseGiven({"thickness"}, "'method: screen_space'");
     }

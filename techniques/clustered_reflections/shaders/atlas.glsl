@@ -12,6 +12,7 @@ layout(std430, binding = kPlacesBinding) buffer Places {
 };
 layout(std430, binding = kOrderBinding) buffer Order {
     float atlasScale;  // by which all images were scaled to fit
-    uint instanceCount, instancesLeftOut, orderPadding;
+    uint instanceCount, instancesLeftOut, trianglesDrawn;
+    uint clusterGroups[3], orderPadding;
     uint order[];  // clusters, the highest image first
 };

@@ -76,6 +76,7 @@ void main() {
         for (uint i = 0u; i < pieces[object].y; ++i) {
             commands[pieces[object].x + i].instanceCount = seenCount;
             commands[pieces[object].x + i].baseInstance = firstInstance;
+            atomicAdd(trianglesDrawn, seenCount * (commands[pieces[object].x + i].count / 3u));
         }
     }
     barrier();

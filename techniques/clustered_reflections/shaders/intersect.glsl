@@ -48,11 +48,17 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
         float rayLength = lengthToFarPlane(eyeWorld, plane, begin, direction);
         MarchHit hit;
         if (march(image, begin, begin + direction * rayLength, hit)) {
+#if OF_TRIANGLES
+            HitSurface surface = surfaceAt(image, hit, begin, direction, rayLength);
+            float distance = surface.distanceM;
+            vec3 colour = surface.colour;
+#else
             float distance = hit.along * rayLength;
             // Departure [xie2017] Algorithm 7: the colour where the ray meets the surface, not at
             // the first sample behind it, which zigzags along edges by up to a texel.
-            result.radiance += mix(diffuse, colourAt(image, hit.metPx),
-                                   fadeOf(glossiness, distance));
+            vec3 colour = colourAt(image, hit.metPx);
+#endif
+            result.radiance += mix(diffuse, colour, fadeOf(glossiness, distance));
             if (i == 0) result.distance = distance;
         } else if (glossiness > 0.0) {
             result.radiance += diffuse;

@@ -1,6 +1,7 @@
 #version 450 core
 // Counting sort, third part: where each piece of the matrix begins; bins that hold samples become
-// clusters, numbered without gaps in the order of the bins. One workgroup.
+// clusters, numbered without gaps in the order of the bins; small ones join a neighbour. One
+// workgroup.
 #include "clustered_reflections/clustering.glsl"
 #include "clustered_reflections/workgroup_scan.glsl"
 
@@ -10,10 +11,31 @@ layout(std430, binding = MATRIX_BINDING) restrict readonly buffer Matrix { uint 
 layout(std430, binding = PIECES_BINDING) restrict coherent buffer Pieces { uint pieces[]; };
 // In: the reflector of each bin. Out: its cluster.
 layout(std430, binding = BINS_BINDING) restrict buffer Bins { uint bins[]; };
-layout(std430, binding = RANGES_BINDING) restrict writeonly buffer Ranges { uvec4 ranges[]; };
+layout(std430, binding = RANGES_BINDING) restrict coherent buffer Ranges { uvec4 ranges[]; };
 layout(std430, binding = COUNTS_BINDING) restrict buffer Counts {
     uint clusterCount, sampleCount, visibleCount;
 };
+
+uniform uint leastSamples;  // of a cluster; 1: none joins another
+
+shared uint joinedTo[MAX_CLUSTERS];  // the new number of each cluster
+
+// By one invocation: clusters are some hundreds. Returns how many are left.
+uint joinSmall(uint count) {
+    uint left = 0u;
+    for (uint c = 0u; c < count; ++c) {
+        uvec4 range = ranges[c];
+        uvec4 last = left > 0u ? ranges[left - 1u] : uvec4(0u);  // no reflector is 0
+        if (last.z == range.z && min(last.y, range.y) < leastSamples) {
+            ranges[left - 1u].y = last.y + range.y;
+        } else {
+            ranges[left++] = range;
+        }
+        joinedTo[c] = left - 1u;
+    }
+    for (uint c = left; c < count; ++c) ranges[c] = uvec4(0u);
+    return left;
+}
 
 uint samplesBefore(uint bin) {
     if (bin >= binCount) return sampleCount;
@@ -43,4 +65,12 @@ void main() {
         bins[b] = cluster++;
     }
     if (self == 0u) clusterCount = all;
+    if (leastSamples <= 1u) return;  // the whole workgroup
+    memoryBarrierBuffer();
+    barrier();
+    if (self == 0u) clusterCount = joinSmall(all);
+    barrier();
+    for (uint b = first; b < end; ++b) {
+        if (samplesBefore(b + 1u) > samplesBefore(b)) bins[b] = joinedTo[bins[b]];
+    }
 }

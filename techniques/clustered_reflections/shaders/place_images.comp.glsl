@@ -8,7 +8,12 @@
 const uint kThreads = 256u;
 layout(local_size_x = kThreads) in;
 
+layout(std430, binding = kRangesBinding) readonly buffer Ranges {
+    uvec4 ranges[];  // first sample, sample count, reflector, flags
+};
+
 uniform ivec2 atlasSizePx;
+uniform float texelsPerSample;  // at most; 0: as many as the cameras say
 uniform float depthImageScale;
 uniform int maxSizePx;
 
@@ -23,6 +28,10 @@ ivec2 wantedSize(uint cluster) {
     ivec2 size = cameras[cluster].sizePx;
     if ((cameras[cluster].flags & kNoRoom) != 0u || size.x <= 0 || size.y <= 0) return ivec2(0);
     float scale = min(depthImageScale, float(maxSizePx) / float(max(size.x, size.y)));
+    if (texelsPerSample > 0.0) {
+        float most = texelsPerSample * float(ranges[cluster].y);
+        scale = min(scale, sqrt(most / (float(size.x) * float(size.y))));
+    }
     return clamp(ivec2(ceil(vec2(size) * scale)), ivec2(1), ivec2(maxSizePx));
 }
 
@@ -81,5 +90,9 @@ void main() {
         atlasScale = scale;
         instanceCount = 0u;
         instancesLeftOut = 0u;
+        trianglesDrawn = 0u;
+        clusterGroups[0] = count;
+        clusterGroups[1] = 1u;
+        clusterGroups[2] = 1u;
     }
 }

@@ -1,7 +1,5 @@
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
 
-#include <span>
-
 #include "runner/core/error.h"
 #include "techniques/shared/reflections/embree_tracer.h"
 
@@ -34,7 +32,7 @@ constexpr unsigned kMaxGroups = 65535;
 
 /// What ray_list.comp.glsl counts and the indirect dispatch reads.
 struct Arguments {
-    std::uint32_t groups[3] = {0, 1, 1};
+    std::uint32_t groups[3] = {0, 0, 0};
     std::uint32_t samples = 0, rays = 0;
 };
 static_assert(sizeof(Arguments) == 20);
@@ -77,7 +75,7 @@ GpuRayTracer::GpuRayTracer(const gl::ShaderLibrary& shaders, const GpuObjects& o
       list_(shaders, {"reflections/ray_list.comp.glsl"}, passDefines()),
       trace_(shaders, {"reflections/trace_rays.comp.glsl"}, passDefines()),
       arguments_(sizeof(Arguments)) {
-    arguments_.write(std::span<const Arguments>({Arguments{}}));
+    arguments_.clear();
 }
 
 void GpuRayTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
@@ -100,7 +98,7 @@ void GpuRayTracer::listSamples(const GBuffer& gbuffer, const gl::Texture* wanted
     const std::size_t bytes =
         static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(std::uint32_t);
     if (samples_.sizeBytes() != bytes) samples_ = gl::Buffer(bytes);
-    arguments_.write(std::span<const Arguments>({Arguments{}}));
+    arguments_.clear();  // on the device: a write would wait for the last frame's trace
     samples_.bindStorage(kSamples);
     arguments_.bindStorage(kArguments);
     list_.use();

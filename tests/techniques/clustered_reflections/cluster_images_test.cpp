@@ -4,6 +4,7 @@
 
 #include "runner/core/random.h"
 #include "techniques/clustered_reflections/cluster_atlas.h"
+#include "techniques/clustered_reflections/visible_triangles.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"
 
@@ -31,8 +32,15 @@ class ClusterImagesTest : public TracerTest {
         cameras.resize(kMaxClusters);
         return gl::Buffer::of(cameras);
     }
-    static gl::Buffer countBuffer(std::size_t count) {
-        return gl::Buffer::of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(count), 0, 0});
+    static constexpr std::uint32_t kSamples = 50;  // of each cluster
+    /// As the painters read them: counts, and ranges of kSamples.
+    static Clusters clustersOf(std::size_t count) {
+        Clusters clusters;
+        clusters.counts =
+            gl::Buffer::of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(count), 0, 0});
+        clusters.ranges =
+            gl::Buffer::of(std::vector<glm::uvec4>(kMaxClusters, {0, kSamples, 0, 0}));
+        return clusters;
     }
     static std::vector<ClusterCamera> randomCameras(Random& random, int count, std::uint32_t most) {
         std::vector<ClusterCamera> cameras;
@@ -154,13 +162,13 @@ TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
     for (const auto& one : cases) {
         std::vector<ClusterCamera> cameras = randomCameras(random, one.count, one.mostPx);
         if (one.count > 10) cameras[3].flags = kNoRoom;
-        painter.draw(objects, cameraBuffer(cameras), countBuffer(cameras.size()), images);
-        const AtlasPainter::State state = painter.state();
+        painter.draw(objects, cameraBuffer(cameras), clustersOf(cameras.size()), images);
+        const AtlasState state = painter.state();
         EXPECT_EQ(state.scale == 1.0F, one.fits) << one.count;
         const auto places = painter.places().read<glm::ivec4>(cameras.size());
         std::vector<std::uint8_t> taken(512 * 512);
         for (std::size_t i = 0; i < places.size(); ++i) {
-            const glm::ivec2 wanted = imageSizePx(cameras[i], settings);
+            const glm::ivec2 wanted = imageSizePx(cameras[i], settings, kSamples);
             const glm::ivec4& place = places[i];
             ASSERT_TRUE(place.x >= 0 && place.x + place.z <= 512) << i;
             ASSERT_TRUE(place.y >= 0 && place.y + place.w <= 512) << i;
@@ -189,7 +197,7 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
     const gl::Buffer buffer = cameraBuffer(cameras);
     ClusterImages atlas(shaders(), glm::ivec2(512), true), alone(shaders(), glm::ivec2(512), true);
     AtlasPainter painter(shaders(), scene, objects, {});
-    painter.draw(objects, buffer, countBuffer(cameras.size()), atlas);
+    painter.draw(objects, buffer, clustersOf(cameras.size()), atlas);
     ASSERT_EQ(painter.state().scale, 1.0F);
     EXPECT_EQ(painter.state().leftOut, 0U);
     const auto places = painter.places().read<glm::ivec4>(cameras.size());
@@ -274,6 +282,114 @@ TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
     const int near = drawnTexels();
     EXPECT_GT(near, 40);
     EXPECT_LT(near, 40 * 30 - 40);
+}
+
+/// What a texel of images of triangles shows: its depth and its object.
+struct ShownTexels {
+    std::vector<float> depths;
+    std::vector<std::uint32_t> triangles;
+    AtlasState state;
+};
+
+ShownTexels drawVisible(VisiblePainter& painter, const GpuObjects& objects,
+                        const gl::Buffer& cameras, const Clusters& clusters,
+                        const gl::ShaderLibrary& shaders) {
+    ClusterImages images(shaders, glm::ivec2(512), false, TexelContent::Triangles);
+    painter.draw(objects, cameras, clusters, images);
+    return {images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1),
+            images.colour().read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1),
+            painter.state()};
+}
+
+TEST_F(ClusterImagesTest, TrianglesThatMayBeSeenShowWhatAllTrianglesShow) {
+    const ReflectiveScene scene = furnishedRoom();
+    const GpuObjects objects(scene);
+    Random random(4);
+    const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 60);
+    const gl::Buffer buffer = cameraBuffer(cameras);
+    const Clusters clusters = clustersOf(cameras.size());
+    ClusterImages whole(shaders(), glm::ivec2(512), false);
+    AtlasPainter atlas(shaders(), scene, objects, {});
+    atlas.draw(objects, buffer, clusters, whole);
+    ASSERT_EQ(atlas.state().scale, 1.0F);
+    const auto depths = whole.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+
+    VisiblePainter painter(shaders(), scene, objects, {}, 0.0F);
+    const ShownTexels shown = drawVisible(painter, objects, buffer, clusters, shaders());
+    EXPECT_EQ(shown.state.leftOut, 0U);
+    EXPECT_GT(shown.state.triangles, 0U);
+    EXPECT_LT(shown.state.triangles, atlas.state().triangles / 3);
+    const auto places = painter.places().read<glm::ivec4>(cameras.size());
+    EXPECT_EQ(places, atlas.places().read<glm::ivec4>(cameras.size()));
+    const auto triangles = scene.geometry().triangles.size();
+    std::size_t texels = 0, different = 0;
+    for (const glm::ivec4& place : places) {
+        for (int y = place.y; y < place.y + place.w; ++y) {
+            for (int x = place.x; x < place.x + place.z; ++x) {
+                const auto at = static_cast<std::size_t>(y * 512 + x);
+                ++texels;
+                different += std::abs(shown.depths[at] - depths[at]) > 2e-5F;
+                if (shown.depths[at] > 0.0F) ASSERT_LT(shown.triangles[at], triangles);
+            }
+        }
+    }
+    // Corners are rounded at another place: outlines through the middle of a texel.
+    EXPECT_GT(texels, 20'000U);
+    EXPECT_LT(different, texels / 500);
+
+    // The same again: no order of what runs at once is seen.
+    const ShownTexels again = drawVisible(painter, objects, buffer, clusters, shaders());
+    EXPECT_EQ(again.state.triangles, shown.state.triangles);
+    for (std::size_t i = 0; i < shown.depths.size(); ++i) {
+        ASSERT_EQ(again.depths[i], shown.depths[i]);
+        if (shown.depths[i] > 0.0F) ASSERT_EQ(again.triangles[i], shown.triangles[i]);
+    }
+}
+
+TEST_F(ClusterImagesTest, SimplifiedObjectsAreDrawnOfFewerTrianglesAboutWhereTheyAre) {
+    const ReflectiveScene scene = furnishedRoom();
+    const GpuObjects objects(scene);
+    Random random(5);
+    const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 40);
+    const gl::Buffer buffer = cameraBuffer(cameras);
+    const Clusters clusters = clustersOf(cameras.size());
+    VisiblePainter whole(shaders(), scene, objects, {}, 0.0F);
+    VisiblePainter simplified(shaders(), scene, objects, {}, 1.0F);
+    const ShownTexels expected = drawVisible(whole, objects, buffer, clusters, shaders());
+    const ShownTexels shown = drawVisible(simplified, objects, buffer, clusters, shaders());
+    EXPECT_LT(shown.state.triangles, expected.state.triangles);
+    std::size_t texels = 0, different = 0;
+    for (std::size_t i = 0; i < expected.depths.size(); ++i) {
+        if (expected.depths[i] == 0.0F) continue;
+        ++texels;
+        different += std::abs(shown.depths[i] / expected.depths[i] - 1.0F) > 0.05F;
+    }
+    EXPECT_GT(texels, 5'000U);
+    EXPECT_LT(different, texels / 25);  // outlines, a texel wide
+}
+
+TEST_F(ClusterImagesTest, ImagesHaveNoMoreTexelsThanTheirSamplesAskFor) {
+    const ReflectiveScene scene = furnishedRoom();
+    const GpuObjects objects(scene);
+    Random random(6);
+    const std::vector<ClusterCamera> cameras = randomCameras(random, 40, 60);
+    CameraSettings settings;
+    settings.texelsPerSample = 8.0F;
+    AtlasPainter painter(shaders(), scene, objects, settings);
+    ClusterImages images(shaders(), glm::ivec2(512), false);
+    painter.draw(objects, cameraBuffer(cameras), clustersOf(cameras.size()), images);
+    const auto places = painter.places().read<glm::ivec4>(cameras.size());
+    int smaller = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const glm::ivec2 size(places[i].z, places[i].w);
+        const glm::ivec2 whole = cameras[i].sizePx;
+        EXPECT_EQ(size, imageSizePx(cameras[i], settings, kSamples));
+        // Each side is rounded up.
+        EXPECT_LE((size.x - 1) * (size.y - 1), static_cast<int>(8 * kSamples));
+        if (whole.x * whole.y <= static_cast<int>(8 * kSamples)) EXPECT_EQ(size, whole);
+        smaller += size != whole;
+    }
+    EXPECT_GT(smaller, 10);
 }
 
 }  // namespace

@@ -48,6 +48,10 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:28: 'bin_gain' needs 'method: clustered'");
     EXPECT_EQ(message("{method: ray_traced, depth_images: atlas}"),
               "case.yaml:1:36: 'depth_images' needs 'method: clustered'");
+    EXPECT_EQ(message("{clustering: kd_tree, least_samples: 9}"),
+              "case.yaml:1:38: 'least_samples' needs 'clustering: normal_bins'");
+    EXPECT_EQ(message("{depth_images: atlas, level_error_px: 0.5}"),
+              "case.yaml:1:39: 'level_error_px' needs 'depth_images: visible'");
     EXPECT_EQ(message("{method: clustered, thickness: 0.1}"),
               "case.yaml:1:32: 'thickness' needs 'method: screen_space'");
     EXPECT_EQ(message("{method: screen_space, thickness: 0.1}"), "no error");

@@ -44,7 +44,8 @@ class ClusteredTracerTest : public TracerTest {
                    Surface::Mirror);
         return scene;
     }
-    static constexpr ImageDrawing kDrawings[] = {ImageDrawing::OneByOne, ImageDrawing::Atlas};
+    static constexpr ImageDrawing kDrawings[] = {ImageDrawing::OneByOne, ImageDrawing::Atlas,
+                                                 ImageDrawing::Visible};
 };
 
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {

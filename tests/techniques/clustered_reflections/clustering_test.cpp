@@ -47,7 +47,7 @@ class ClusteringTest : public ClusterTest {
 
         const Clusters& clusters = builder.clusters();
         EXPECT_EQ(readClusters(clusters), host.clusterOfSample);
-        const auto samples = samplesOf(clusters);
+        const auto samples = samplesOf(clusters, bins.leastSamples > 1);
         EXPECT_EQ(static_cast<int>(samples.size()), host.clusterCount);
         EXPECT_EQ(static_cast<int>(countsOf(clusters).z), host.visibleReflectors);
         const auto ranges = clusters.ranges.read<glm::uvec4>(samples.size());
@@ -99,6 +99,24 @@ TEST_F(ClusteringTest, RandomNormalsAreClusteredAsOnTheHost) {
         expectAsOnHost(scene, gbuffer, {.maxThetaBins = 64, .maxPhiBins = 16, .exponent = 0.01F});
         expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 30, .exponent = 1.0F});
     }
+}
+
+TEST_F(ClusteringTest, SmallClustersJoinTheirReflectorsOthers) {
+    const reflections::ReflectiveScene scene = fourReflectors();
+    const reflections::GBuffer gbuffer = randomGBuffer({97, 61}, 3);
+    BinSettings bins{.maxThetaBins = 16, .maxPhiBins = 12, .exponent = 0.0F};
+    const int apart = clusterOnHost(readGBuffer(gbuffer), scene, bins).clusterCount;
+    bins.leastSamples = 20;
+    expectAsOnHost(scene, gbuffer, bins);
+    ClusterBuilder builder(shaders, scene, Clustering::NormalBins, bins, {97, 61});
+    builder.build(gbuffer, nullptr);
+    const auto samples = samplesOf(builder.clusters(), true);
+    EXPECT_LT(static_cast<int>(samples.size()), apart * 2 / 3);
+    for (const auto& ofCluster : samples) EXPECT_GE(ofCluster.size(), 20U);
+    // Reflectors stay apart, whatever they have.
+    bins.leastSamples = 1 << 20;
+    expectAsOnHost(scene, gbuffer, bins);
+    EXPECT_EQ(clusterOnHost(readGBuffer(gbuffer), scene, bins).clusterCount, 4);
 }
 
 TEST_F(ClusteringTest, RenderedBallAndPlaneAreClusteredAsOnTheHost) {

@@ -5,16 +5,11 @@
 #include "reflections/environment.glsl"
 #include "reflections/gbuffer.glsl"
 #include "reflections/lobe.glsl"
-#include "reflections/shading.glsl"
+#include "reflections/surface_at.glsl"
 
 layout(local_size_x = TRACE_GROUP_SIZE) in;
 
 layout(std430, binding = INDICES_BINDING) restrict readonly buffer Indices { uint indices[]; };
-layout(std430, binding = NORMALS_BINDING) restrict readonly buffer Normals { float normals[]; };
-layout(std430, binding = TEXCOORDS_BINDING) restrict readonly buffer Texcoords {
-    float texcoords[];
-};
-layout(std430, binding = COLORS_BINDING) restrict readonly buffer Colors { float colors[]; };
 layout(std430, binding = OBJECT_OF_TRIANGLE_BINDING) restrict readonly buffer ObjectOfTriangle {
     uint objectOfTriangle[];
 };
@@ -31,24 +26,10 @@ uniform float rayStart;  // metres along the ray: less would meet the surface th
 
 // The diffuse colour at a hit (Sec. 4.7.4: second-order rays only).
 vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction) {
-    vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
-    vec3 normal = vec3(0.0), color = vec3(0.0);
-    vec2 texcoord = vec2(0.0);
-    for (uint i = 0u; i < 3u; ++i) {
-        uint vertex = indices[3u * hit.triangle + i];
-        uint at = 3u * vertex;
-        normal += weights[i] * vec3(normals[at], normals[at + 1u], normals[at + 2u]);
-        color += weights[i] * vec3(colors[at], colors[at + 1u], colors[at + 2u]);
-        texcoord += weights[i] * vec2(texcoords[2u * vertex], texcoords[2u * vertex + 1u]);
-    }
-    Object object = objects[objectOfTriangle[hit.triangle]];
-    normal = mat3(object.normalFromMesh) * normal;
-    // Where opposite normals cancel out in the middle of a triangle, as in surface.glsl.
-    if (dot(normal, normal) == 0.0) normal = -direction;
-    normal = normalize(normal);
-    if (dot(normal, direction) > 0.0) normal = -normal;
-    return shadeDiffuse(origin + hit.t * direction, normal, albedoOf(object, texcoord, color),
-                        object.emissive.rgb);
+    uint at = 3u * hit.triangle;
+    return diffuseAt(uvec3(indices[at], indices[at + 1u], indices[at + 2u]),
+                     objectOfTriangle[hit.triangle], hit.barycentric, origin + hit.t * direction,
+                     direction);
 }
 
 void traceSample(ivec2 pixel) {

@@ -1,0 +1,18 @@
+// Parts, levels and chunks of the scene's triangles, as detail_levels.h has them.
+
+struct DetailPart {
+    vec4 boundsCentre;    // in mesh space
+    vec4 boundsHalfSize;  // in mesh space
+    uint object, firstLevel, levelCount, padding;
+};
+struct DetailLevel {
+    float errorMesh;
+    uint firstChunk, chunkCount, padding;
+};
+struct DetailChunk {
+    uint firstTriangle, triangleCount, object, padding;
+};
+
+layout(std430, binding = kChunksBinding) readonly buffer Chunks {
+    DetailChunk chunks[];
+};

@@ -1,0 +1,139 @@
+#include "techniques/clustered_reflections/visible_triangles.h"
+
+#include <cstddef>
+
+namespace gfxrepro::clustered_reflections {
+namespace {
+
+/// Triangles drawn in a frame: 46 MB. Views of the generated rooms have a tenth to a half of them;
+/// more are counted in AtlasState::leftOut.
+constexpr std::uint32_t kMostVisible = 1U << 20;
+/// A software device keeps what a draw shows until it is done.
+constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
+constexpr std::uint32_t kDraws = kMostVisible / kTrianglesPerDraw;
+
+/// As glMultiDrawArraysIndirect reads it.
+struct DrawCommand {
+    std::uint32_t count = 0, instanceCount = 0, first = 0, baseInstance = 0;
+};
+
+gl::Defines visibleDefines() {
+    gl::Defines defines = imageDefines();
+    defines["GROUP_SIZE"] = static_cast<int>(kChunkTriangles);
+    defines["TRIANGLES_PER_DRAW"] = static_cast<int>(kTrianglesPerDraw);
+    defines["DRAWS"] = static_cast<int>(kDraws);
+    defines["MOST_VISIBLE"] = static_cast<int>(kMostVisible);
+    return defines;
+}
+
+}  // namespace
+
+VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
+                               const reflections::ReflectiveScene& scene,
+                               const reflections::GpuObjects& objects,
+                               const CameraSettings& settings, float levelErrorPx)
+    : settings_(settings),
+      levelErrorPx_(levelErrorPx),
+      levels_(detailLevels(scene, levelErrorPx > 0.0F)),
+      places_(shaders),
+      families_(gl::Buffer::of(reflectorFamilies(scene))),
+      parts_(gl::Buffer::of(levels_.parts)),
+      levelRecords_(gl::Buffer::of(levels_.levels)),
+      chunks_(gl::Buffer::of(levels_.chunks)),
+      chunkBoxes_(levels_.chunks.size() * 2 * sizeof(glm::vec4)),
+      triangles_(gl::Buffer::of(levels_.triangles)),
+      cornersWorld_(levels_.triangles.size() * 3 * sizeof(glm::vec3)),
+      commands_(kDraws * sizeof(DrawCommand)),
+      visible_(kMostVisible * sizeof(glm::uvec2)),
+      visibleCorners_(std::size_t{kMostVisible} * 3 * sizeof(glm::vec3)),
+      restPoses_(objects.poses().begin(), objects.poses().end()) {
+    const auto compute = [&](const char* name) {
+        return gl::Program(shaders, {name}, visibleDefines());
+    };
+    placeChunks_ = compute("clustered_reflections/place_chunks.comp.glsl");
+    list_ = compute("clustered_reflections/list_visible.comp.glsl");
+    split_ = compute("clustered_reflections/split_visible.comp.glsl");
+    draw_ = gl::Program(shaders,
+                        {"clustered_reflections/visible_triangle.vert.glsl",
+                         "clustered_reflections/visible_triangle.frag.glsl"},
+                        visibleDefines());
+    vertexArray_.setAttribute(0, visibleCorners_, 3);
+    place(objects);
+}
+
+/// Corners and boxes in the world; once all are there, of the objects that move. What a frame does
+/// must not depend on the one before, or times of its repeats would tell of different work.
+void VisiblePainter::place(const reflections::GpuObjects& objects) {
+    objects.bind();
+    bindSurfaces(objects);
+    chunks_.bindStorage(kChunksBinding);
+    chunkBoxes_.bindStorage(kChunkBoxesBinding);
+    placeChunks_.use();
+    objects.positions().bindStorage(kPositionsBinding);
+    const bool isFirst = hasMoved_.empty();
+    hasMoved_.resize(objects.objectCount(), 0);
+    for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
+        if (objects.poses()[i] != restPoses_[i]) hasMoved_[i] = 1;
+        if (!isFirst && hasMoved_[i] == 0) continue;
+        const std::uint32_t first = levels_.firstChunkOfObject[i];
+        const std::uint32_t count = levels_.firstChunkOfObject[i + 1] - first;
+        if (count == 0) continue;
+        placeChunks_.set("firstChunk", first);
+        glDispatchCompute(count, 1, 1);
+    }
+}
+
+void VisiblePainter::bindSurfaces(const reflections::GpuObjects& objects) const {
+    triangles_.bindStorage(kTrianglesBinding);
+    cornersWorld_.bindStorage(kCornersBinding);
+    objects.normals().bindStorage(kNormalsBinding);
+    objects.texcoords().bindStorage(kTexcoordsBinding);
+    objects.colors().bindStorage(kColorsBinding);
+}
+
+void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
+                          const Clusters& clusters, ClusterImages& target) {
+    place(objects);
+    places_.place(cameras, clusters, settings_, target.sizePx());
+
+    families_.bindStorage(kFamiliesBinding);
+    parts_.bindStorage(kPartsBinding);
+    levelRecords_.bindStorage(kLevelsBinding);
+    visible_.bindStorage(kInstancesBinding);
+    visibleCorners_.bindStorage(kVisibleCornersBinding);
+    list_.use();
+    list_.set("partCount", static_cast<std::uint32_t>(levels_.parts.size()));
+    list_.set("levelErrorPx", levelErrorPx_);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, places_.order().id());
+    glDispatchComputeIndirect(offsetof(AtlasHeader, groups));
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    commands_.bindStorage(kCommandsBinding);
+    split_.use();
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                    GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+
+    target.beginDrawing(target.sizePx());
+    draw_.use();
+    draw_.set("atlasSizePx", glm::vec2(target.sizePx()));
+    vertexArray_.bind();
+    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
+    glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, kDraws, sizeof(DrawCommand));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    target.endDrawing(target.sizePx());
+}
+
+std::size_t VisiblePainter::sizeBytes() const {
+    std::size_t sum = places_.sizeBytes();
+    for (const gl::Buffer* buffer :
+         {&families_, &parts_, &levelRecords_, &chunks_, &chunkBoxes_, &triangles_, &cornersWorld_,
+          &commands_, &visible_, &visibleCorners_}) {
+        sum += buffer->sizeBytes();
+    }
+    return sum;
+}
+
+}  // namespace gfxrepro::clustered_reflections
