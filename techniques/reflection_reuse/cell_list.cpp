@@ -1,5 +1,6 @@
 #include "techniques/reflection_reuse/cell_list.h"
 
+#include <algorithm>
 #include <array>
 
 #include "techniques/reflection_reuse/pixel_matcher.h"
@@ -8,22 +9,23 @@ namespace gfxrepro::reflection_reuse {
 
 namespace {
 
-/// llvmpipe keeps every triangle of a draw until it is flushed.
-constexpr std::uint32_t kPrimitivesPerDraw = 1U << 16;
+/// Of draws that are split: a multiple of the indices of a cell.
+constexpr std::uint32_t kIndicesPerDraw = 3U << 16;
 constexpr int kTileWidth = 8, kTileHeight = 4;  // of list_cells.comp.glsl
 constexpr int kGroupSize = 64;
 
-enum Storage : unsigned { kTriangles = 0, kPoints = 1, kCounts = 2, kCommands = 3 };
+enum Storage : unsigned { kTriangles = 0, kPoints = 1, kCommands = 2 };
 enum Unit : unsigned { kCellsUnit = 0, kSamplesUnit = 1, kGBufferUnit = 2 };
 
-/// As glDrawElementsIndirect has it.
+/// As glDrawElementsIndirect has it: of triangles, and of points.
 struct Command {
     std::uint32_t count, instanceCount, firstIndex;
     std::int32_t baseVertex;
     std::uint32_t baseInstance;
 };
 static_assert(sizeof(Command) == 20);
-static_assert(sizeof(CellList::Counts) == 8);
+enum DrawCommand : std::size_t { kTriangleDraw = 0, kPointDraw = 1 };
+constexpr std::uint32_t kIndicesPerCell = 6;
 
 gl::Defines passDefines() {
     return {{"CELLS_UNIT", static_cast<int>(kCellsUnit)},
@@ -31,19 +33,14 @@ gl::Defines passDefines() {
             {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
             {"TRIANGLES_BINDING", static_cast<int>(kTriangles)},
             {"POINTS_BINDING", static_cast<int>(kPoints)},
-            {"COUNTS_BINDING", static_cast<int>(kCounts)},
             {"COMMANDS_BINDING", static_cast<int>(kCommands)},
             {"GROUP_SIZE", kGroupSize},
-            {"PRIMITIVES_PER_DRAW", kPrimitivesPerDraw},
+            {"INDICES_PER_CELL", kIndicesPerCell},
             {"INVALID_OFFSET", kInvalidOffset}};
 }
 
 std::size_t product(glm::ivec2 size) {
     return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-}
-
-std::size_t drawsFor(std::size_t primitives) {
-    return (primitives + kPrimitivesPerDraw - 1) / kPrimitivesPerDraw;
 }
 
 int ceilDivided(int count, int size) {
@@ -52,24 +49,21 @@ int ceilDivided(int count, int size) {
 
 }  // namespace
 
-CellList::CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
+CellList::CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool splitsDraws)
     : sizePx_(sizePx),
-      triangleDraws_(drawsFor(2 * product(sizePx - 1))),
-      pointDraws_(drawsFor(product(sizePx))),
+      splitsDraws_(splitsDraws),
       classify_(shaders,
                 {"reflections/whole_image.vert.glsl", "reflection_reuse/classify_cells.frag.glsl"},
                 passDefines()),
       list_(shaders, {"reflection_reuse/list_cells.comp.glsl"}, passDefines()),
-      split_(shaders, {"reflection_reuse/split_draws.comp.glsl"}, passDefines()),
       cells_(gl::Texture::make2D(GL_R8UI, sizePx)),
       framebuffer_(std::array<const gl::Texture*, 1>{&cells_}),
-      triangles_(6 * product(sizePx - 1) * sizeof(std::uint32_t)),
+      triangles_(kIndicesPerCell * product(sizePx - 1) * sizeof(std::uint32_t)),
       points_(product(sizePx) * sizeof(std::uint32_t)),
-      counts_(sizeof(Counts)),
-      commands_((triangleDraws_ + pointDraws_) * sizeof(Command)) {
+      commands_(2 * sizeof(Command)) {
     triangleVertices_.setIndices(triangles_);
     pointVertices_.setIndices(points_);
-    counts_.clear();
+    commands_.clear();
 }
 
 void CellList::classify(const reflections::GBuffer& key, float silhouette) {
@@ -81,52 +75,55 @@ void CellList::classify(const reflections::GBuffer& key, float silhouette) {
 }
 
 void CellList::list(const gl::Texture& samples, Validity validity, bool onlyPoints) {
-    counts_.clear();
+    commands_.clear();
     cells_.bind(kCellsUnit);
     samples.bind(kSamplesUnit);
     triangles_.bindStorage(kTriangles);
     points_.bindStorage(kPoints);
-    counts_.bindStorage(kCounts);
     commands_.bindStorage(kCommands);
     list_.use();
     list_.set("holdsOffsets", validity == Validity::Offset ? 1 : 0);
     list_.set("onlyPoints", onlyPoints ? 1 : 0);
     const int tiles = ceilDivided(sizePx_.x, kTileWidth) * ceilDivided(sizePx_.y, kTileHeight);
     glDispatchCompute(static_cast<GLuint>(ceilDivided(tiles, kGroupSize)), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    split_.use();
-    split_.set("triangleDraws", static_cast<unsigned>(triangleDraws_));
-    glDispatchCompute(static_cast<GLuint>(triangleDraws_ + pointDraws_), 1, 1);
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (splitsDraws_) drawn_ = counts();
 }
 
 void CellList::drawTriangles() const {
-    draw(triangleVertices_, GL_TRIANGLES, 0, triangleDraws_);
+    draw(triangleVertices_, GL_TRIANGLES, kTriangleDraw, kIndicesPerCell * drawn_.cells);
 }
 
 void CellList::drawPoints() const {
-    draw(pointVertices_, GL_POINTS, triangleDraws_, pointDraws_);
+    draw(pointVertices_, GL_POINTS, kPointDraw, drawn_.points);
 }
 
-void CellList::draw(const gl::VertexArray& vertices, GLenum mode, std::size_t firstCommand,
-                    std::size_t commandCount) const {
+void CellList::draw(const gl::VertexArray& vertices, GLenum mode, std::size_t command,
+                    std::uint32_t count) const {
     vertices.bind();
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
-    for (std::size_t i = firstCommand; i < firstCommand + commandCount; ++i) {
+    if (!splitsDraws_) {
+        glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
         glDrawElementsIndirect(mode, GL_UNSIGNED_INT,
-                               reinterpret_cast<const void*>(i * sizeof(Command)));
+                               reinterpret_cast<const void*>(command * sizeof(Command)));
+        glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+        return;
+    }
+    for (std::uint32_t first = 0; first < count; first += kIndicesPerDraw) {
+        glDrawElements(mode, static_cast<GLsizei>(std::min(kIndicesPerDraw, count - first)),
+                       GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
         glFlush();
     }
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
 }
 
 CellList::Counts CellList::counts() const {
-    return counts_.read<Counts>(1).front();
+    const auto commands = commands_.read<Command>(2);
+    return {commands[kTriangleDraw].count / kIndicesPerCell, commands[kPointDraw].count};
 }
 
 std::size_t CellList::sizeBytes() const {
-    return cells_.sizeBytes() + triangles_.sizeBytes() + points_.sizeBytes() + counts_.sizeBytes() +
+    return cells_.sizeBytes() + triangles_.sizeBytes() + points_.sizeBytes() +
            commands_.sizeBytes();
 }
 

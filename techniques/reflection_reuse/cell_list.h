@@ -14,7 +14,9 @@ namespace gfxrepro::reflection_reuse {
 /// on an edge to one of two triangles leaves it to none where the other one is missing.
 class CellList {
   public:
-    CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx);
+    /// `splitsDraws`: of a software device, which keeps every triangle of a draw until it is
+    /// flushed. It reads how many there are; others draw what the device has counted.
+    CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool splitsDraws);
 
     /// Once a key frame: reflective samples, and the cells with four corners of one reflector whose
     /// eye depths differ by no more than `silhouette` of the nearest.
@@ -37,16 +39,17 @@ class CellList {
     std::size_t sizeBytes() const;
 
   private:
-    void draw(const gl::VertexArray& vertices, GLenum mode, std::size_t firstCommand,
-              std::size_t commandCount) const;
+    void draw(const gl::VertexArray& vertices, GLenum mode, std::size_t command,
+              std::uint32_t count) const;
 
     glm::ivec2 sizePx_;
-    std::size_t triangleDraws_, pointDraws_;
-    gl::Program classify_, list_, split_;
+    bool splitsDraws_;
+    gl::Program classify_, list_;
     gl::Texture cells_;  // R8UI: 1 a reflective sample, 2 the cell to its upper right
     gl::Framebuffer framebuffer_;
-    gl::Buffer triangles_, points_, counts_, commands_;
+    gl::Buffer triangles_, points_, commands_;
     gl::VertexArray triangleVertices_, pointVertices_;
+    Counts drawn_;  // with splitsDraws_
     reflections::WholeImage wholeImage_;
 };
 

@@ -32,8 +32,9 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
                                          reflections::GBuffer(view_),
                                          reflections::ReflectionTarget(samplesPx)});
     } else {
-        renderer_.emplace(shaders, *objects_, *tracer_, params_.reuse, samplesPx,
-                          scene_->diagonalM());
+        ReuseSettings settings = params_.reuse;
+        settings.reprojection.splitsDraws = context.device.info().isSoftware;
+        renderer_.emplace(shaders, *objects_, *tracer_, settings, samplesPx, scene_->diagonalM());
     }
     if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info().isSoftware);
     if (!params_.measuresErrors) return;

@@ -60,7 +60,7 @@ std::size_t ShiftedImage::sizeBytes() const {
 Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionSettings& settings,
                            glm::ivec2 sizePx)
     : settings_(settings),
-      cells_(shaders, sizePx),
+      cells_(shaders, sizePx, settings.splitsDraws),
       shift_(shaders, {"reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl"},
              passDefines()),
       warp_(shaders, {"reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl"},

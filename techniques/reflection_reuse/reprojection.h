@@ -20,6 +20,7 @@ struct ReprojectionSettings {
     float silhouette = 0.05F;  // as MatchingSettings has it
     /// A warped sample is valid where its depth and the new view's agree to this share of it.
     float depthTolerance = 0.01F;
+    bool splitsDraws = false;  // as CellList has it, by the device
 };
 
 /// The shifted image (the intermediate image of Fig. 36 C), in the key frame's view.

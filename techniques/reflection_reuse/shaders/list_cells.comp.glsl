@@ -1,5 +1,6 @@
 #version 450 core
-// Lists the cells with four valid corners as two triangles each, and the valid samples on the rim.
+// Lists the cells with four valid corners as two triangles each, and the valid samples on the rim,
+// and counts them in the commands that draw them (cleared before).
 // An invocation takes a tile of 8 × 4 samples and their upper right cells, so that neighbours in the
 // list share vertices.
 
@@ -14,9 +15,13 @@ layout(std430, binding = TRIANGLES_BINDING) restrict writeonly buffer Triangles 
     uint triangles[];
 };
 layout(std430, binding = POINTS_BINDING) restrict writeonly buffer Points { uint points[]; };
-layout(std430, binding = COUNTS_BINDING) restrict buffer Counts {
-    uint cellCount;
-    uint pointCount;
+struct Command {
+    uint count, instanceCount, firstIndex;
+    int baseVertex;
+    uint baseInstance;
+};
+layout(std430, binding = COMMANDS_BINDING) restrict buffer Commands {
+    Command triangleDraw, pointDraw;
 };
 
 bool isValid(ivec2 pixel) {
@@ -59,20 +64,27 @@ void main() {
         newCells += uint(bitCount(above & kOwn));
         newPoints += uint(bitCount(rim[y]));
     }
-    uint cellAt = newCells == 0u ? 0u : atomicAdd(cellCount, newCells);
-    uint pointAt = newPoints == 0u ? 0u : atomicAdd(pointCount, newPoints);
+    uint at = 0u, pointAt = 0u;
+    if (newCells > 0u) {
+        at = atomicAdd(triangleDraw.count, INDICES_PER_CELL * newCells);
+        triangleDraw.instanceCount = 1u;
+    }
+    if (newPoints > 0u) {
+        pointAt = atomicAdd(pointDraw.count, newPoints);
+        pointDraw.instanceCount = 1u;
+    }
     for (int y = 0; y < 4; ++y) {
         uint rowStart = uint((first.y + y) * size.x + first.x);
         for (uint found = drawn[y + 1] & kOwn; found != 0u; found &= found - 1u) {
             uint corner = rowStart + uint(findLSB(found)) - 1u;
             uint upper = corner + uint(size.x);
-            uint at = 6u * cellAt++;
             triangles[at] = corner;
             triangles[at + 1u] = corner + 1u;
             triangles[at + 2u] = upper;
             triangles[at + 3u] = corner + 1u;
             triangles[at + 4u] = upper + 1u;
             triangles[at + 5u] = upper;
+            at += INDICES_PER_CELL;
         }
         for (uint found = rim[y]; found != 0u; found &= found - 1u) {
             points[pointAt++] = rowStart + uint(findLSB(found)) - 1u;

@@ -340,5 +340,42 @@ TEST_F(ReprojectionTest, WarpingKeepsTheRuleOfGrowthToo) {
               0U);
 }
 
+TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
+    constexpr glm::ivec2 kLarge{300, 260};  // 461,000 indices: three draws
+    const std::size_t count = 300 * 260;
+    const depth_images::View view =
+        depth_images::viewOf(reflections::camera({0, 0, 0}, {0, 0, -1}), kLarge);
+    ReflectionDepthImage large(view, 10.0F);
+    const std::vector<std::uint32_t> surface(count, 1);
+    const std::vector<float> depthM(count, 2.0F);
+    std::vector<glm::vec4> radiance;
+    Random random(7);
+    for (std::size_t i = 0; i < count; ++i) {
+        radiance.emplace_back(reflections::randomIn(random, 0.1F, 1), 1);
+    }
+    large.gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
+    large.gbuffer.depth.upload(GL_RED, GL_FLOAT, depthM.data());
+    large.reflection.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
+    large.reflection.distance.upload(GL_RED, GL_FLOAT, depthM.data());
+    Offsets none(kLarge);
+    none.offset.clearToZero();
+    for (const Forward forward : {Forward::Grid, Forward::Splats}) {
+        for (const bool splitsDraws : {false, true}) {
+            Reprojection reprojection(shaders, {.forward = forward, .splitsDraws = splitsDraws},
+                                      kLarge);
+            ShiftedImage result(kLarge);
+            reprojection.setKeyFrame(large);
+            reprojection.shift(large, none, nullptr, result);
+            const bool isGrid = forward == Forward::Grid;
+            EXPECT_EQ(reprojection.cells().counts().cells, isGrid ? 299U * 259U : 0U);
+            EXPECT_EQ(reprojection.cells().counts().points, isGrid ? 2U * (300U + 258U) : count);
+            const auto shown = result.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
+            for (std::size_t i = 0; i < count; ++i) {
+                ASSERT_LE(glm::distance(shown[i], radiance[i]), 2 * kHalfRounding) << i;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace gfxrepro::reflection_reuse
