@@ -30,6 +30,12 @@ constexpr config::Choice<Forward> kForwards[] = {
     {Forward::Splats, "splats", "a point a pixel"},
 };
 
+constexpr config::Choice<Resampling> kResamplings[] = {
+    {Resampling::Twice, "twice",
+     "shifted in the key frame's view, then warped (Sec. 5.4.2, 5.4.3)"},
+    {Resampling::Once, "once", "moved to the new view at once"},
+};
+
 float number(config::Params& params, const char* name, float fallback,
              const config::ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
@@ -58,6 +64,9 @@ ReuseSettings readReuse(config::Params& params) {
     settings.reprojection.silhouette = static_cast<float>(silhouette);
     settings.reprojection.forward = params.getEnum("forward", settings.reprojection.forward,
                                                    kForwards, {"how images are drawn forward"});
+    settings.reprojection.resampling =
+        params.getEnum("resampling", settings.reprojection.resampling, kResamplings,
+                       {"how often reflections are resampled on their way"});
     settings.reprojection.maxGrowth =
         number(params, "max_growth", settings.reprojection.maxGrowth,
                {"of a grid triangle's area; beyond, it is invalid", "1", 1.0, 1e6});
@@ -112,8 +121,9 @@ ReuseParams::ReuseParams(config::Params& params)
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
-        params.refuseGiven({"matching", "max_steps", "widest_ring", "exhaustive_samples"},
-                           "'method: reuse'");
+        params.refuseGiven(
+            {"matching", "max_steps", "widest_ring", "resampling", "exhaustive_samples"},
+            "'method: reuse'");
     }
     if (firstFrame >= pathFrames) {
         throw Error(params.locationOf("first_frame"),

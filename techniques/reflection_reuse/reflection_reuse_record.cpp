@@ -138,17 +138,22 @@ void ReflectionReuse::recordRecomputeFit(technique::Recorder& recorder, const Re
 void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
     const HostReflectionDepthImage key = readReflectionDepthImage(renderer_->keyFrame());
     const std::vector<glm::vec2> offsets = readOffsets(renderer_->offsets());
-    const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted().radiance);
-    std::size_t reflective = 0, unmatched = 0, unshifted = 0;
+    std::size_t reflective = 0, unmatched = 0;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
         if (!key.gbuffer.isReflective(i)) continue;
         ++reflective;
         unmatched += isValid(offsets[i]) ? 0 : 1;
-        unshifted += shifted[i].a > 0.5F ? 0 : 1;
     }
     recorder.metric("matching_steps", renderer_->counts().matchingSteps, "step");
     recorder.metric("unmatched_pct", percent(unmatched, reflective), "%");
-    recorder.metric("unshifted_pct", percent(unshifted, reflective), "%");
+    if (renderer_->shifted()) {
+        const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
+        std::size_t unshifted = 0;
+        for (std::size_t i = 0; i < shifted.size(); ++i) {
+            unshifted += key.gbuffer.isReflective(i) && shifted[i].a <= 0.5F ? 1 : 0;
+        }
+        recorder.metric("unshifted_pct", percent(unshifted, reflective), "%");
+    }
     if (params_.exhaustiveSamples == 0) return;
     const MatchCheck check = checkMatches(key, offsets, view_.eyeWorld, params_.reuse.matching,
                                           params_.exhaustiveSamples);
@@ -222,10 +227,11 @@ void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGB
         "offsets",
         offsetsPicture(hostKey, readOffsets(renderer_->offsets()), params_.supersampling),
         seenFrom(hostKey.view));
-    recorder.image(
-        "shifted",
-        shiftedPicture(hostKey, readRadiance(renderer_->shifted().radiance), params_.supersampling),
-        seenFrom(hostKey.view));
+    if (!renderer_->shifted()) return;
+    recorder.image("shifted",
+                   shiftedPicture(hostKey, readRadiance(renderer_->shifted()->radiance),
+                                  params_.supersampling),
+                   seenFrom(hostKey.view));
 }
 
 }  // namespace gfxrepro::reflection_reuse

@@ -65,6 +65,9 @@ Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionS
              passDefines()),
       warp_(shaders, {"reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl"},
             passDefines()),
+      project_(shaders,
+               {"reflection_reuse/project.vert.glsl", "reflection_reuse/project.frag.glsl"},
+               passDefines()),
       wantAll_(shaders,
                {"reflections/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
                passDefines()),
@@ -87,6 +90,45 @@ void Reprojection::drawGrid(const gl::Program& program, float pointBias) {
     cells_.drawPoints();
 }
 
+/// Where vertices go in the key frame's image, and how long their paths are (grid_path.glsl).
+void Reprojection::bindPaths(const gl::Program& program, const ReflectionDepthImage& key,
+                             const Offsets& offsets, const gl::Texture* doubtful) const {
+    key.reflection.radiance.bind(kRadianceUnit);
+    key.reflection.distance.bind(kDistanceUnit);
+    offsets.offset.bind(kOffsetsUnit);
+    (doubtful != nullptr ? *doubtful : noDoubts_).bind(kDoubtfulUnit);
+    key.gbuffer.depth.bind(kKeyDepthUnit);
+    key.gbuffer.surface.bind(kKeySurfaceUnit);
+    program.set("hasDoubts", doubtful != nullptr ? 1 : 0);
+    program.set("missDistance", key.diagonalM);
+    // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
+    // at rest.
+    program.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
+    program.set("maxGrowth", settings_.maxGrowth);
+}
+
+void Reprojection::bindNewView(const gl::Program& program, const ReflectionDepthImage& key,
+                               const reflections::GBuffer& gbuffer) const {
+    key.gbuffer.depth.bind(kKeyDepthUnit);
+    key.gbuffer.surface.bind(kKeySurfaceUnit);
+    gbuffer.bind(program, kGBufferUnit);
+    program.set(
+        "clipFromKeyPixels",
+        glm::mat4(glm::dmat4(gbuffer.view.clipFromView) * glm::dmat4(gbuffer.view.viewFromWorld) *
+                  glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
+    program.set("maxGrowth", settings_.maxGrowth);
+    program.set("depthTolerance", settings_.depthTolerance);
+}
+
+gl::Framebuffer Reprojection::newView(const gl::Texture& radiance,
+                                      const gl::Texture& wanted) const {
+    gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&radiance, &wanted},
+                                &depthBuffer_);
+    framebuffer.clearDepth(1.0F);
+    framebuffer.bind();
+    return framebuffer;
+}
+
 void Reprojection::shift(const ReflectionDepthImage& key, const Offsets& offsets,
                          const gl::Texture* doubtful, ShiftedImage& result) {
     cells_.list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
@@ -94,18 +136,7 @@ void Reprojection::shift(const ReflectionDepthImage& key, const Offsets& offsets
     result.framebuffer.clearDepth(1.0F);
     result.framebuffer.bind();
     shift_.use();
-    key.reflection.radiance.bind(kRadianceUnit);
-    key.reflection.distance.bind(kDistanceUnit);
-    offsets.offset.bind(kOffsetsUnit);
-    (doubtful != nullptr ? *doubtful : noDoubts_).bind(kDoubtfulUnit);
-    key.gbuffer.depth.bind(kKeyDepthUnit);
-    key.gbuffer.surface.bind(kKeySurfaceUnit);
-    shift_.set("hasDoubts", doubtful != nullptr ? 1 : 0);
-    shift_.set("missDistance", key.diagonalM);
-    // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
-    // at rest.
-    shift_.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
-    shift_.set("maxGrowth", settings_.maxGrowth);
+    bindPaths(shift_, key, offsets, doubtful);
     drawGrid(shift_, kPointBias);
 }
 
@@ -115,24 +146,27 @@ void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radi
     cells_.list(radiance, CellList::Validity::Alpha, settings_.forward == Forward::Splats);
     wantAll(gbuffer, wanted);
     target.distance.clearToZero();
-    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted},
-                                      &depthBuffer_);
-    framebuffer.clearDepth(1.0F);
-    framebuffer.bind();
+    const gl::Framebuffer framebuffer = newView(target.radiance, wanted);
     warp_.use();
     radiance.bind(kRadianceUnit);
-    key.gbuffer.depth.bind(kKeyDepthUnit);
-    key.gbuffer.surface.bind(kKeySurfaceUnit);
-    gbuffer.bind(warp_, kGBufferUnit);
-    warp_.set(
-        "clipFromKeyPixels",
-        glm::mat4(glm::dmat4(gbuffer.view.clipFromView) * glm::dmat4(gbuffer.view.viewFromWorld) *
-                  glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
-    warp_.set("maxGrowth", settings_.maxGrowth);
-    warp_.set("depthTolerance", settings_.depthTolerance);
+    bindNewView(warp_, key, gbuffer);
     // z/w = a + b/w: what is kPointBias farther on the same ray has b / (1 + kPointBias).
     const float b = gbuffer.view.clipFromView[3].z;
     drawGrid(warp_, b / (1.0F + kPointBias) - b);
+}
+
+void Reprojection::project(const ReflectionDepthImage& key, const Offsets& offsets,
+                           const gl::Texture* doubtful, const reflections::GBuffer& gbuffer,
+                           reflections::ReflectionTarget& target, gl::Texture& wanted) {
+    cells_.list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
+    wantAll(gbuffer, wanted);
+    target.distance.clearToZero();
+    const gl::Framebuffer framebuffer = newView(target.radiance, wanted);
+    project_.use();
+    bindPaths(project_, key, offsets, doubtful);
+    bindNewView(project_, key, gbuffer);
+    project_.set("silhouette", settings_.silhouette);
+    drawGrid(project_, kPointBias);
 }
 
 void Reprojection::wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted) {

@@ -1,4 +1,5 @@
-// Shift and warp ([xie2017] Sec. 5.4.2–5.4.3): the key frame's reflections moved to a new view.
+// Shift and warp ([xie2017] Sec. 5.4.2–5.4.3): the key frame's reflections moved to a new view, in
+// two steps or in one.
 #pragma once
 
 #include "runner/gl/objects.h"
@@ -14,8 +15,15 @@ enum class Forward {
     Splats,  // a point a pixel, as Fig. 38 shows: holes that wrong surfaces fill
 };
 
+enum class Resampling {
+    Twice,  // the shift makes an image in the key frame's view (Fig. 36 C), which the warp
+            // resamples
+    Once,   // ours: a vertex goes at once to where its match lies in the new view
+};
+
 struct ReprojectionSettings {
     Forward forward = Forward::Grid;
+    Resampling resampling = Resampling::Twice;
     float maxGrowth = 16.0F;   // of a grid triangle's area; beyond, what it covers is invalid
     float silhouette = 0.05F;  // as MatchingSettings has it
     /// A warped sample is valid where its depth and the new view's agree to this share of it.
@@ -52,21 +60,34 @@ class Reprojection {
     void warp(const ReflectionDepthImage& key, const gl::Texture& radiance,
               const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
               gl::Texture& wanted);
+    /// shift() and warp() at once (Resampling::Once): the grid's vertices go where the surface of
+    /// their matches lies in the view of `gbuffer`, drawn with depth s.d + s.r. What the shift
+    /// makes invalid is wanted, the growth being that of both steps together, and so is what the
+    /// warp does not find.
+    void project(const ReflectionDepthImage& key, const Offsets& offsets,
+                 const gl::Texture* doubtful, const reflections::GBuffer& gbuffer,
+                 reflections::ReflectionTarget& target, gl::Texture& wanted);
     /// 1 at every reflective sample, else 0: what a key frame traces.
     void wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted);
 
-    /// Of the last warp() or wantAll(); waits for the device.
+    /// Of the last warp(), project() or wantAll(); waits for the device.
     std::uint32_t reflectiveSamples() const;
-    /// Of the last list made, of shift() or warp().
+    /// Of the last list made, of shift(), warp() or project().
     const CellList& cells() const { return cells_; }
     std::size_t sizeBytes() const;
 
   private:
     void drawGrid(const gl::Program& program, float pointBias);
+    void bindPaths(const gl::Program& program, const ReflectionDepthImage& key,
+                   const Offsets& offsets, const gl::Texture* doubtful) const;
+    void bindNewView(const gl::Program& program, const ReflectionDepthImage& key,
+                     const reflections::GBuffer& gbuffer) const;
+    /// Cleared and bound.
+    gl::Framebuffer newView(const gl::Texture& radiance, const gl::Texture& wanted) const;
 
     ReprojectionSettings settings_;
     CellList cells_;
-    gl::Program shift_, warp_, wantAll_;
+    gl::Program shift_, warp_, project_, wantAll_;
     gl::Texture depthBuffer_;  // of the warped image
     gl::Texture noDoubts_;     // one texel of 0
     gl::SampleQuery reflective_;

@@ -48,8 +48,8 @@ struct ReuseRenderer::Impl {
     reflections::GBuffer gbuffer;              // of frames that are not key frames
     reflections::ReflectionTarget reflection;  // the same
     reflections::ReflectionTarget traced;
-    std::array<Offsets, 2> offsets;  // of this and of the frame before
-    ShiftedImage shifted;
+    std::array<Offsets, 2> offsets;       // of this and of the frame before
+    std::optional<ShiftedImage> shifted;  // of two steps
     gl::Texture wanted;
     gl::SampleQuery recomputed;
     reflections::WholeImage wholeImage;
@@ -77,8 +77,10 @@ struct ReuseRenderer::Impl {
           reflection(sizePx),
           traced(sizePx),
           offsets{Offsets(sizePx), Offsets(sizePx)},
-          shifted(sizePx),
-          wanted(gl::Texture::make2D(GL_R8UI, sizePx)) {}
+          wanted(gl::Texture::make2D(GL_R8UI, sizePx)) {
+        if (!settings.isDirect && settings.reprojection.resampling == Resampling::Twice)
+            shifted.emplace(sizePx);
+    }
 
     std::uint32_t recomputedSamples() const {
         return isKeyFrame ? reprojection.reflectiveSamples()
@@ -119,11 +121,16 @@ struct ReuseRenderer::Impl {
             gbufferRenderer.render(objects, gbuffer);
         }
         const bool hasMoved = settings.recomputesMoved && movedObjects.find(objects);
-        if (!settings.isDirect) moveReflections(hasMoved, profiler);
+        if (!settings.isDirect) match(profiler);
+        const gl::Texture* doubtful =
+            hasMoved && !settings.isDirect ? &movedObjects.doubtful(key) : nullptr;
+        if (shifted) {
+            const gl::GpuScope scope(profiler, "reflection_shift");
+            reprojection.shift(key, offsets[0], doubtful, *shifted);
+        }
         {
             const gl::GpuScope scope(profiler, "reflection_warp");
-            reprojection.warp(key, settings.isDirect ? key.reflection.radiance : shifted.radiance,
-                              gbuffer, reflection, wanted);
+            warp(doubtful);
             if (hasMoved) movedObjects.want(objects, gbuffer, key.diagonalM, wanted);
         }
         const gl::GpuScope scope(profiler, "recompute");
@@ -133,17 +140,21 @@ struct ReuseRenderer::Impl {
         mendReflections();
     }
 
-    void moveReflections(bool hasMoved, gl::Profiler& profiler) {
-        {
-            const gl::GpuScope scope(profiler, "pixel_matching");
-            std::swap(offsets[0], offsets[1]);
-            matcher.match(key, gbuffer.view.eyeWorld, hasOffsets ? &offsets[1] : nullptr,
-                          offsets[0]);
-            hasOffsets = true;
+    void match(gl::Profiler& profiler) {
+        const gl::GpuScope scope(profiler, "pixel_matching");
+        std::swap(offsets[0], offsets[1]);
+        matcher.match(key, gbuffer.view.eyeWorld, hasOffsets ? &offsets[1] : nullptr, offsets[0]);
+        hasOffsets = true;
+    }
+
+    void warp(const gl::Texture* doubtful) {
+        if (shifted) {
+            reprojection.warp(key, shifted->radiance, gbuffer, reflection, wanted);
+        } else if (settings.isDirect) {
+            reprojection.warp(key, key.reflection.radiance, gbuffer, reflection, wanted);
+        } else {
+            reprojection.project(key, offsets[0], doubtful, gbuffer, reflection, wanted);
         }
-        const gl::GpuScope scope(profiler, "reflection_shift");
-        const gl::Texture* doubtful = hasMoved ? &movedObjects.doubtful(key) : nullptr;
-        reprojection.shift(key, offsets[0], doubtful, shifted);
     }
 
     void mendReflections() {
@@ -225,8 +236,8 @@ const Offsets& ReuseRenderer::offsets() const {
     return impl_->offsets[0];
 }
 
-const ShiftedImage& ReuseRenderer::shifted() const {
-    return impl_->shifted;
+const ShiftedImage* ReuseRenderer::shifted() const {
+    return impl_->shifted ? &*impl_->shifted : nullptr;
 }
 
 const ReflectionDepthImage& ReuseRenderer::keyFrame() const {
@@ -236,8 +247,9 @@ const ReflectionDepthImage& ReuseRenderer::keyFrame() const {
 std::size_t ReuseRenderer::sizeBytes() const {
     return impl_->key.sizeBytes() + impl_->gbuffer.sizeBytes() + impl_->reflection.sizeBytes() +
            impl_->traced.sizeBytes() + impl_->offsets[0].sizeBytes() +
-           impl_->offsets[1].sizeBytes() + impl_->shifted.sizeBytes() + impl_->wanted.sizeBytes() +
-           impl_->reprojection.sizeBytes() + impl_->movedObjects.sizeBytes();
+           impl_->offsets[1].sizeBytes() + (impl_->shifted ? impl_->shifted->sizeBytes() : 0) +
+           impl_->wanted.sizeBytes() + impl_->reprojection.sizeBytes() +
+           impl_->movedObjects.sizeBytes();
 }
 
 void ReuseRenderer::forgetKeyFrame() {

@@ -36,7 +36,8 @@ struct ReuseCounts {
 };
 
 /// Passes, named as Table 23: `diffuse`, `pixel_matching`, `reflection_shift`, `reflection_warp`,
-/// `recompute` (around the tracer's own); `composite` is the caller's.
+/// `recompute` (around the tracer's own); `composite` is the caller's. Shift and warp at once count
+/// as the warp, the preparation of a key frame for them as the shift.
 class ReuseRenderer {
   public:
     /// `objects` and `tracer` outlive this.
@@ -60,7 +61,8 @@ class ReuseRenderer {
     const gl::Texture& recomputed() const;
     /// Of the last frame that was not a key frame.
     const Offsets& offsets() const;
-    const ShiftedImage& shifted() const;
+    /// Of the last frame that was not a key frame; null: there is none (Resampling::Once, direct).
+    const ShiftedImage* shifted() const;
     const ReflectionDepthImage& keyFrame() const;
     std::size_t sizeBytes() const;
     void forgetKeyFrame();

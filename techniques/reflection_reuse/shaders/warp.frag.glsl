@@ -2,20 +2,14 @@
 // Warp, fragments ([xie2017] Sec. 5.4.3): valid where the new view sees the same surface, so that
 // what was hidden from the key frame stays wanted.
 #include "reflection_reuse/grid_fragment.glsl"
-#include "reflections/gbuffer.glsl"
-
-uniform float depthTolerance;  // share of the new view's depth
+#include "reflection_reuse/new_view.glsl"
 
 layout(location = kRadianceTarget) out vec4 warped;
 layout(location = kWantedTarget) out uint wanted;
 
 void main() {
     bool isUsable = !hasGrown();
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (reflectorOf(texelFetch(gbufferSurface, pixel, 0).r) != point.reflector) discard;
-    float depth = texelFetch(gbufferDepth, pixel, 0).r;
-    if (abs(1.0 / gl_FragCoord.w - depth) > depthTolerance * depth) discard;
-    if (!isUsable) discard;
+    if (!isSeen(point.reflector) || !isUsable) discard;
     warped = vec4(point.radiance, 1.0);
     wanted = 0u;
 }

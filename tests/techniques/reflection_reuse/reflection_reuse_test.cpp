@@ -106,6 +106,12 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:28: 'matching' needs 'method: reuse'");
     EXPECT_EQ(message("{method: direct, widest_ring: 2}"),
               "case.yaml:1:31: 'widest_ring' needs 'method: reuse'");
+    EXPECT_EQ(message("{method: direct, resampling: once}"),
+              "case.yaml:1:30: 'resampling' needs 'method: reuse'");
+    EXPECT_EQ(
+        message("{resampling: thrice}"),
+        "case.yaml:1:14: technique 'reflection_reuse': resampling is 'thrice'; allowed: twice "
+        "| once");
     EXPECT_EQ(message("{method: direct, exhaustive_samples: 9}"),
               "case.yaml:1:38: 'exhaustive_samples' needs 'method: reuse'");
     EXPECT_EQ(message("{path_frames: 50, first_frame: 50}"),
@@ -174,6 +180,29 @@ TEST_F(ReflectionReuseTest, EveryMethodAndTracerRecordsSharesMemoryAndErrors) {
     }
 }
 
+TEST_F(ReflectionReuseTest, ResamplingOnceTakesNoShiftLessMemoryAndErrsLess) {
+    const char* const kTwice = "{tracer: embree, path_frames: 20, matching: second_order}";
+    const char* const kOnce =
+        "{tracer: embree, path_frames: 20, matching: second_order, resampling: once}";
+    const auto twice = recorded(kTwice, &room_, 4);
+    EXPECT_EQ(std::ranges::count(passes_, "reflection_shift"), 1);
+    const auto once = recorded(kOnce, &room_, 4);
+    EXPECT_EQ(std::ranges::count(passes_, "reflection_shift"), 0);
+    EXPECT_EQ(std::ranges::count(passes_, "reflection_warp"), 1);
+    EXPECT_EQ(kindsOf(twice), "Krrr");
+    EXPECT_EQ(kindsOf(once), "Krrr");
+    for (std::size_t i = 1; i < 4; ++i) {
+        const auto& a = once[i].metrics;
+        const auto& b = twice[i].metrics;
+        EXPECT_LT(a.at("channel_error"), b.at("channel_error")) << i;
+        EXPECT_NEAR(a.at("recomputed_pct"), b.at("recomputed_pct"), 1.5) << i;
+        EXPECT_EQ(a.at("matching_steps"), b.at("matching_steps")) << i;
+        EXPECT_FALSE(a.contains("unshifted_pct")) << i;
+        // The shifted image: RGBA16F and a depth buffer.
+        EXPECT_EQ(b.at("memory_bytes") - a.at("memory_bytes"), 64 * 48 * 12) << i;
+    }
+}
+
 TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
     EXPECT_EQ(meanOf(recorded("{method: ray_traced, tracer: embree}", &room_, 2), "channel_error"),
               0.0);
@@ -184,7 +213,7 @@ TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
 TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
     // A path of one key; one of no length; a camera.
     for (const char* view : {"rest", "still", "front"}) {
-        for (const char* method : {"reuse", "direct"}) {
+        for (const char* method : {"reuse", "direct", "reuse, resampling: once"}) {
             SCOPED_TRACE(fmt::format("{} {}", view, method));
             const auto frames = recorded(
                 fmt::format("{{view: {}, method: {}, tracer: embree}}", view, method), &room_, 3);

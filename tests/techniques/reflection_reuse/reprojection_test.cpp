@@ -96,6 +96,25 @@ class ReprojectionTest : public reflections::ReflectionsTest {
                 reprojection.reflectiveSamples()};
     }
 
+    /// The key frame's own colours by the offsets, to `to` at once.
+    Warped projected(const Samples& samples, const depth_images::View& to,
+                     const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
+                     const ReprojectionSettings& settings = {},
+                     const gl::Texture* doubtful = nullptr) {
+        upload(samples);
+        reflections::GBuffer gbuffer(to);
+        gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
+        gbuffer.depth.upload(GL_RED, GL_FLOAT, depthM.data());
+        Reprojection reprojection(shaders, settings, kSize);
+        reflections::ReflectionTarget target(kSize);
+        gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSize);
+        reprojection.setKeyFrame(*key);
+        reprojection.project(*key, *offsets, doubtful, gbuffer, target, wanted);
+        return {target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+                wanted.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1),
+                reprojection.reflectiveSamples()};
+    }
+
     static void expectColour(const glm::vec4& found, const glm::vec4& expected, int x, int y) {
         for (int c = 0; c < 4; ++c) {
             ASSERT_NEAR(found[c], expected[c], kHalfRounding) << x << " " << y << " " << c;
@@ -375,6 +394,113 @@ TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
             }
         }
     }
+}
+
+/// The eye one whole pixel of a wall at 2 m to the right, `pixels` times.
+glm::vec3 stepOf(const depth_images::View& view, float pixels) {
+    return glm::vec3(depth_images::worldFromPixels(view) * glm::vec4(pixels * 2.0F, 0, 0, 0));
+}
+
+TEST_F(ReprojectionTest, AtOnceOffsetsAndTheEyesMotionAddUp) {
+    Samples samples;
+    for (glm::vec2& offset : samples.offset) offset = {3, -2};
+    const Warped result =
+        projected(samples, view(stepOf(view(), 4.0F)), samples.surface, samples.depthM);
+    forEachPixel([&](int x, int y) {
+        const int fromX = x - 3 + 4, fromY = y + 2;
+        const bool isReused = isInside(fromX, fromY);
+        ASSERT_EQ(result.wanted[at(x, y)], isReused ? 0 : 1) << x << " " << y;
+        if (isReused) {
+            expectColour(result.radiance[at(x, y)], samples.radiance[at(fromX, fromY)], x, y);
+        }
+    });
+    EXPECT_EQ(result.reflectiveSamples, samples.surface.size());
+}
+
+TEST_F(ReprojectionTest, AtOnceFractionsOfAPixelAreResampledOnce) {
+    // Half a pixel there by the offsets and half a pixel back by the eye: nothing moves. In two
+    // steps either half mixes neighbours.
+    Samples samples;
+    for (glm::vec2& offset : samples.offset) offset = {0.5F, 0.0F};
+    const depth_images::View to = view(stepOf(view(), 0.5F));
+    const Warped result = projected(samples, to, samples.surface, samples.depthM);
+    for (int y = 1; y + 1 < kSize.y; ++y) {
+        for (int x = 1; x + 1 < kSize.x; ++x) {
+            ASSERT_EQ(result.wanted[at(x, y)], 0) << x << " " << y;
+            // The eye's step is rounded: a thousandth of a pixel times what neighbours differ by.
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(result.radiance[at(x, y)][c], samples.radiance[at(x, y)][c], 4e-3F);
+            }
+        }
+    }
+}
+
+TEST_F(ReprojectionTest, AtOnceASlopesDepthLiesBetweenItsSamples) {
+    // A plane that leans back, 1/d linear: matches between its samples lie on it, so that the same
+    // view finds them there to far less than a sample's step in depth, 2 %.
+    Samples samples;
+    forEachPixel([&](int x, int y) {
+        samples.depthM[at(x, y)] = 1.0F / (0.9F - 0.02F * static_cast<float>(x));
+        samples.offset[at(x, y)] = {2.5F, 1.5F};
+    });
+    const Warped result = projected(samples, view(), samples.surface, samples.depthM,
+                                    {.silhouette = 0.1F, .depthTolerance = 0.0005F});
+    for (int y = 3; y + 1 < kSize.y; ++y) {
+        for (int x = 4; x + 1 < kSize.x; ++x) {
+            ASSERT_EQ(result.wanted[at(x, y)], 0) << x << " " << y;
+        }
+    }
+}
+
+TEST_F(ReprojectionTest, AtOnceTheNearestReflectionWins) {
+    for (const bool isMovedOneNearer : {true, false}) {
+        Samples samples;
+        forEachPixel([&](int x, int y) {
+            if (x < 12) samples.offset[at(x, y)] = {8, 0};
+            samples.distanceM[at(x, y)] = (x < 12) == isMovedOneNearer ? 0.5F : 6.0F;
+        });
+        const Warped result = projected(samples, view(), samples.surface, samples.depthM);
+        for (int y = 0; y < kSize.y; ++y) {
+            for (int x = 13; x < 19; ++x) {
+                const int from = isMovedOneNearer ? x - 8 : x;
+                expectColour(result.radiance[at(x, y)], samples.radiance[at(from, y)], x, y);
+            }
+        }
+    }
+}
+
+TEST_F(ReprojectionTest, AtOnceGrownTrianglesAreWantedAndHideWhatIsFarther) {
+    Samples samples;
+    drawApart(samples, 4.1F);
+    forEachPixel([&](int x, int y) {
+        if (x >= 11 && x < 17 && y >= 9 && y < 15) return;
+        samples.offset[at(x, y)] = {0, 0};
+        samples.distanceM[at(x, y)] = 5.0F;
+    });
+    EXPECT_EQ(projected(samples, view(), samples.surface, samples.depthM).wanted[at(9, 12)], 1);
+    EXPECT_EQ(projected(samples, view(), samples.surface, samples.depthM, {.maxGrowth = 17.0F})
+                  .wanted[at(9, 12)],
+              0);
+}
+
+TEST_F(ReprojectionTest, AtOnceWhatIsDoubtfulUnmatchedHiddenOrAnothersIsWanted) {
+    Samples samples;
+    std::vector<std::uint8_t> doubts(at(0, kSize.y), 0);
+    doubts[at(4, 4)] = 1;
+    samples.offset[at(9, 7)] = glm::vec2(kInvalidOffset);
+    gl::Texture doubtful = gl::Texture::make2D(GL_R8UI, kSize);
+    doubtful.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, doubts.data());
+    std::vector<std::uint32_t> surface = samples.surface;
+    std::vector<float> depthM = samples.depthM;
+    surface[at(20, 3)] = 2;
+    surface[at(21, 3)] = 0;  // nothing to want
+    depthM[at(15, 12)] = 1.5F;
+    const Warped result = projected(samples, view(), surface, depthM, {}, &doubtful);
+    EXPECT_EQ(result.wantedCount(), 4U);
+    EXPECT_EQ(result.wanted[at(4, 4)], 1);
+    EXPECT_EQ(result.wanted[at(9, 7)], 1);
+    EXPECT_EQ(result.wanted[at(20, 3)], 1);
+    EXPECT_EQ(result.wanted[at(15, 12)], 1);
 }
 
 }  // namespace
