@@ -18,6 +18,7 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
     const gl::ShaderLibrary& shaders = context.shaders;
     scene_.emplace(*context.scene, params_.reflectors);
     scene_->requireReflectors();
+    if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
     outputSizePx_ = context.outputSizePx;
     const glm::ivec2 samplesPx = params_.supersampling * outputSizePx_;
 
@@ -39,12 +40,12 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
     if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info().isSoftware);
     if (!params_.measuresErrors) return;
     untimed_ = std::make_unique<gl::Profiler>(context.device.info().isSoftware);
-    truthTracer_.emplace(*scene_, *map_, reflections::LobeSettings{});
+    truthTracer_.emplace(*scene_, *map_, params_.lobe);
 }
 
 std::unique_ptr<reflections::ReflectionTracer> ReflectionReuse::makeTracer(
     const gl::ShaderLibrary& shaders) {
-    const reflections::LobeSettings lobe;
+    const reflections::LobeSettings& lobe = params_.lobe;
     const float diagonalM = scene_->diagonalM();
     switch (params_.tracer) {
         case Tracer::Compute:

@@ -41,6 +41,21 @@ float number(config::Params& params, const char* name, float fallback,
     return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
 }
 
+std::optional<float> readGlossiness(config::Params& params) {
+    const float given = number(params, "glossiness", -1.0F,
+                               {"of all reflectors, 0 a mirror, 1 the widest lobe; -1: as their "
+                                "materials say",
+                                "1", -1.0, 1.0});
+    if (given == -1.0F) return std::nullopt;
+    if (given < 0.0F) {
+        throw Error(params.locationOf("glossiness"),
+                    fmt::format("technique 'reflection_reuse': glossiness is {}; allowed: -1, "
+                                "0 … 1",
+                                given));
+    }
+    return given;
+}
+
 ReuseSettings readReuse(config::Params& params) {
     ReuseSettings settings;
     settings.keyFrameThreshold = static_cast<float>(params.getDouble(
@@ -103,6 +118,9 @@ ReuseParams::ReuseParams(config::Params& params)
       reuse(readReuse(params)) {
     reflectors.maxRoughness = static_cast<float>(params.getDouble(
         "reflector_roughness", 0.4, {"materials up to this roughness reflect", "1", 0.0, 1.0}));
+    glossiness = readGlossiness(params);
+    lobe.rays = params.getInt(
+        "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});
     measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
     showsPictures = params.getBool(
         "pictures", false, {"result, truth, errors, recomputed samples, key frame, offsets"});

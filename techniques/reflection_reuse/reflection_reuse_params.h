@@ -1,6 +1,7 @@
 // Parameters of reflection_reuse.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runner/config/params.h"
@@ -32,6 +33,8 @@ struct ReuseParams {
     int supersampling = 1;
     reflections::Blend blend = reflections::Blend::Fresnel;
     reflections::ReflectorRule reflectors;
+    std::optional<float> glossiness;  // of all reflectors, instead of their materials'
+    reflections::LobeSettings lobe;
     ReuseSettings reuse;  // isDirect is set, too
     bool measuresErrors = true;
     bool showsPictures = false;

@@ -112,6 +112,9 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
         message("{resampling: thrice}"),
         "case.yaml:1:14: technique 'reflection_reuse': resampling is 'thrice'; allowed: twice "
         "| once");
+    EXPECT_EQ(message("{glossiness: -0.5}"),
+              "case.yaml:1:14: technique 'reflection_reuse': glossiness is -0.5; allowed: -1, 0 … "
+              "1");
     EXPECT_EQ(message("{method: direct, exhaustive_samples: 9}"),
               "case.yaml:1:38: 'exhaustive_samples' needs 'method: reuse'");
     EXPECT_EQ(message("{path_frames: 50, first_frame: 50}"),
@@ -201,6 +204,40 @@ TEST_F(ReflectionReuseTest, ResamplingOnceTakesNoShiftLessMemoryAndErrsLess) {
         // The shifted image: RGBA16F and a depth buffer.
         EXPECT_EQ(b.at("memory_bytes") - a.at("memory_bytes"), 64 * 48 * 12) << i;
     }
+}
+
+TEST_F(ReflectionReuseTest, CountsDoNotDependOnTheTracer) {
+    const auto countsOf = [&](const char* tracer) {
+        return recorded(fmt::format("{{view: walk, tracer: {}, path_frames: 12, threshold: 0.1, "
+                                    "errors: false}}",
+                                    tracer),
+                        &room_, 8);
+    };
+    const auto embree = countsOf("embree"), compute = countsOf("compute");
+    EXPECT_EQ(kindsOf(embree), kindsOf(compute));
+    EXPECT_GE(std::ranges::count(kindsOf(embree), 'K'), 2);
+    for (std::size_t i = 0; i < embree.size(); ++i) {
+        const auto& a = embree[i].metrics;
+        const auto& b = compute[i].metrics;
+        EXPECT_EQ(a.at("reflective_pct"), b.at("reflective_pct")) << i;
+        // Rays along edges may go either way, and with them the lengths that samples move by.
+        EXPECT_NEAR(a.at("saved_pct"), b.at("saved_pct"), 0.5) << i;
+    }
+}
+
+TEST_F(ReflectionReuseTest, GlossyReflectionsAreTracedByTheirRaysAndReused) {
+    const auto errorOf = [&](const char* more) {
+        return meanOf(recorded(fmt::format("{{glossiness: 0.3, rays: 8, path_frames: 20{}}}", more),
+                               &room_, 2),
+                      "channel_error");
+    };
+    EXPECT_LT(errorOf(", method: ray_traced"), 0.5);  // as mirrors: the truth takes the same rays
+    EXPECT_LT(errorOf(""), 4.0);
+    // What moves is the mirror ray's reflection, whatever the lobe.
+    const auto reused = recorded("{glossiness: 0.3, rays: 8, path_frames: 20}", &room_, 2);
+    const auto mirrors = recorded("{glossiness: 0, path_frames: 20}", &room_, 2);
+    EXPECT_EQ(reused[1].metrics.at("matching_steps"), mirrors[1].metrics.at("matching_steps"));
+    EXPECT_NE(reused[1].metrics.at("channel_error"), mirrors[1].metrics.at("channel_error"));
 }
 
 TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
