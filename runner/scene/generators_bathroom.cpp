@@ -268,6 +268,11 @@ void addCameras(Scene& scene) {
                             lookingAt({1.35F, 1.42F, 2.05F}, {0.75F, 0.35F, 1.1F}, kFov),
                             lookingAt({1.5F, 1.55F, 2.05F}, {1.3F, 0.28F, 0.85F}, kFov),
                             lookingAt({1.7F, 1.4F, 2.2F}, {2.95F, 0.6F, 1.15F}, kFov)}});
+    // From about the overview 0.3 m to its left and back: frames that show the whole room.
+    scene.paths.push_back({"aside",
+                           {lookingAt({3.02F, 1.62F, 3.7F}, {1.42F, 0.8F, 1.2F}, 1.12F),
+                            lookingAt({2.72F, 1.62F, 3.7F}, {1.12F, 0.8F, 1.2F}, 1.12F),
+                            lookingAt({3.02F, 1.62F, 3.7F}, {1.42F, 0.8F, 1.2F}, 1.12F)}});
 }
 
 }  // namespace

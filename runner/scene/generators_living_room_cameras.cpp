@@ -71,6 +71,12 @@ void addCameras(Scene& scene) {
                                           {{-1.72F, 1.44F, -2.15F}, {-0.95F, 0.60F, -1.18F}},
                                           {{-1.45F, 1.42F, -2.34F}, {-0.70F, 0.72F, -1.25F}},
                                           {{-1.15F, 1.44F, -2.48F}, {-0.99F, 0.76F, -1.16F}}}));
+    // From the overview 0.3 m to its left and back: frames that show the whole room.
+    scene.paths.push_back(
+        {"aside",
+         {camera("aside", {2.05F, 1.60F, 1.5F}, {-0.70F, 0.72F, -0.80F}, 1.0F),
+          camera("aside", {1.8575F, 1.60F, 1.73F}, {-0.8925F, 0.72F, -0.57F}, 1.0F),
+          camera("aside", {2.05F, 1.60F, 1.5F}, {-0.70F, 0.72F, -0.80F}, 1.0F)}});
 }
 
 }  // namespace gfxrepro::scene::living_room

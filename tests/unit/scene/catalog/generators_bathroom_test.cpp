@@ -166,7 +166,7 @@ TEST(Bathroom, MotionsMoveWhatStandsFree) {
 TEST(Bathroom, PathsStayClearOfGeometry) {
     const Scene& scene = bathroomScene();
     const raycast::RayTracer tracer(scene);
-    ASSERT_EQ(scene.paths.size(), 2U);
+    ASSERT_EQ(scene.paths.size(), 3U);
     ASSERT_EQ(scene.cameras.size(), 1U);
     EXPECT_EQ(scene.cameras[0].name, "overview");
     constexpr int kFrames = 300, kDirections = 200;
