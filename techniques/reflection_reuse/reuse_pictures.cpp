@@ -31,16 +31,21 @@ glm::vec3 colorOf(const glm::vec2& direction, float strength) {
 
 image::ImageF offsetsPicture(const HostGBuffer& key, const std::vector<glm::vec2>& offsets,
                              int supersampling) {
-    float longestPx = 1.0F;  // shorter ones stay pale
+    std::vector<float> lengthsPx;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
         if (!key.isReflective(i) || !isValid(offsets[i])) continue;
-        longestPx = std::max(longestPx, glm::length(offsets[i]));
+        lengthsPx.push_back(glm::length(offsets[i]));
     }
+    const auto middle = lengthsPx.begin() + static_cast<std::ptrdiff_t>(lengthsPx.size() / 2);
+    std::nth_element(lengthsPx.begin(), middle, lengthsPx.end());
+    const float medianPx = middle == lengthsPx.end() ? 1.0F : std::max(*middle, 1.0F);
     return reflections::averagedPicture(key, supersampling, [&](std::size_t i) {
         if (!key.isReflective(i)) return dimmed(key, i);
         if (!isValid(offsets[i])) return glm::vec3(0.0F);
-        // The root: few samples go far, and most would be white.
-        return colorOf(offsets[i], std::sqrt(glm::length(offsets[i]) / longestPx));
+        // Half of the hue at the median: few samples go far, and neither do they clip nor do they
+        // leave the others white.
+        const float lengthPx = glm::length(offsets[i]);
+        return colorOf(offsets[i], lengthPx / (lengthPx + medianPx));
     });
 }
 
