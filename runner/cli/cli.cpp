@@ -89,7 +89,7 @@ void addOnly(CLI::App* app, std::vector<std::string>& only) {
 }
 
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
-    app->add_option("--from", from, "run to predict times from (default: the newest in runs/)")
+    app->add_option("--from", from, "predicts times from it (default: newest in runs/)")
         ->allow_extra_args(false)
         ->option_text("RUN");
 }
@@ -99,11 +99,9 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     addOnly(app, options.selection.only);
     app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)")
         ->option_text("DIR");
-    app->add_option("--resume", options.resume,
-                    "continue this run; begin it where configs are given too")
+    app->add_option("--resume", options.resume, "go on with this run; with configs, begin it")
         ->option_text("RUN");
-    app->add_option("--shard", options.shard,
-                    "measure the Kth of N parts; each with the same --from")
+    app->add_option("--shard", options.shard, "the Kth of N parts; --from the same for each")
         ->option_text("K/N");
     addFrom(app, options.from);
     app->add_option("--budget", options.budget, "the tables that decide most claims in it")
@@ -114,8 +112,7 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--max-failures", options.failuresAtMost, "stop when as many cases failed")
         ->check(CLI::Range(1, 1'000'000'000))
         ->option_text("N");
-    app->add_flag("--retry", options.triesAgain,
-                  "with --resume: try again what the runner did not survive");
+    app->add_flag("--retry", options.triesAgain, "resume with what was not survived, too");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 

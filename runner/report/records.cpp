@@ -153,8 +153,8 @@ void checkKeys(const fs::path& path, const std::vector<Row>& rows) {
         if (row.record.status == Status::Ok) order.push_back(&row);
     }
     std::ranges::stable_sort(order, {}, [](const Row* row) { return keyOf(row->record); });
-    const auto twice = std::ranges::adjacent_find(
-        order, {}, [](const Row* row) { return keyOf(row->record); });
+    const auto twice =
+        std::ranges::adjacent_find(order, {}, [](const Row* row) { return keyOf(row->record); });
     if (twice == order.end()) return;
     const Record& record = (*twice)->record;
     throw Error({path.string(), (*(twice + 1))->line, 0},
@@ -177,10 +177,10 @@ void requireWholeUnits(const fs::path& path, std::vector<Row>& rows) {
         const int count = counts.at(unitOf(row.record));
         if (count == row.unitRows) continue;
         if (unitOf(row.record) != *last || count > row.unitRows) {
-            throw Error({path.string(), row.line, 0},
-                        "case " + row.record.caseId + ", process " +
-                            std::to_string(row.record.process) + " has " + std::to_string(count) +
-                            " of " + std::to_string(row.unitRows) + " rows");
+            throw Error({path.string(), row.line, 0}, "case " + row.record.caseId + ", process " +
+                                                          std::to_string(row.record.process) +
+                                                          " has " + std::to_string(count) + " of " +
+                                                          std::to_string(row.unitRows) + " rows");
         }
         whole = i;
     }

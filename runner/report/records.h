@@ -29,8 +29,8 @@ Status statusFromName(std::string_view name);
 /// metric and pass that frames have values of, too, these are no part.
 inline constexpr int kSetup = -1;
 
-/// A row of records.csv. Columns in this order, schema version first; the last one, `rows`, says how
-/// many rows the row's unit (its case in its process) has.
+/// A row of records.csv. Columns in this order, schema version first; the last one, `rows`, says
+/// how many rows the row's unit (its case in its process) has.
 struct Record {
     static constexpr int kSchema = 2;
 

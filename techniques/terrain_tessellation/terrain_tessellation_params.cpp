@@ -115,8 +115,9 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
                           "into view, in the place of those longest out of it",
                           "MiB", 0.001, 65536.0}) *
         (1 << 20));
-    view = params.getText("view", "valley",
-                          {"a camera or path of the scene, or overview, valley, steep or round_flight"});
+    view = params.getText(
+        "view", "valley",
+        {"a camera or path of the scene, or overview, valley, steep or round_flight"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});
     measuresErrors = params.getBool("errors", false, {"compares with the full resolution"});
     checksSeams = params.getBool("seams", false,

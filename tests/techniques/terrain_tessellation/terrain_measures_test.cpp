@@ -138,9 +138,9 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     camera.position = {1.0F, 2.0F, 3.0F};
     scene.cameras.push_back(camera);
     EXPECT_EQ(TerrainView(scene, "valley").camera(0, 1, 1.0F).position, camera.position);
-    EXPECT_EQ(
-        test::errorText([&] { TerrainView(scene, "moon"); }),
-        "the scene has no path or camera 'moon', and it is none of overview, valley, steep, round_flight");
+    EXPECT_EQ(test::errorText([&] { TerrainView(scene, "moon"); }),
+              "the scene has no path or camera 'moon', and it is none of overview, valley, steep, "
+              "round_flight");
 }
 
 }  // namespace

@@ -77,8 +77,8 @@ image::Image8 picture(std::uint8_t differing) {
 TEST(Report, IsOneSafeFile) {
     const test::TemporaryFolder folder;
     ReportRun run = runIn(folder.path());
-    image::writePng(folder.path() / "a.png", picture(128));
-    report::appendImages(folder.path(), {{"case", "zju2005/9.9", 0, "surface", "a.png", "",
+    image::writePng(folder.path() / "images/a.png", picture(128));
+    report::appendImages(folder.path(), {{"case", "zju2005/9.9", 0, "surface", "images/a.png", "",
                                           "zju2005/9.9 scene=<img onerror=x>"}});
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");

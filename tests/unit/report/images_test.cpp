@@ -27,19 +27,20 @@ TEST(Images, AppendedAndRead) {
 
 TEST(Images, TornLineIsPassedOver) {
     const test::TemporaryFolder folder;
-    const ImageEntry entry{"abc", "t", 0, "n", "p", "e", "title"};
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
     appendImages(folder.path(), {entry});
     std::ofstream(folder.path() / "images/index.csv", std::ios::app) << "def,t,0,\"to";
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
-    appendImages(folder.path(), {{"def", "t", 0, "n", "p", "e", "title"}});
+    appendImages(folder.path(), {{"def", "t", 0, "n", "images/p", "images/e", "title"}});
     EXPECT_EQ(readImages(folder.path()).size(), 2u);
 }
 
 TEST(Images, OlderListsNameNoTruths) {
     const test::TemporaryFolder folder;
-    folder.write("images/index.csv", "case,table,frame,name,png,exr,title\na,b,2,n,p,e,t\n");
-    EXPECT_THAT(readImages(folder.path()),
-                testing::ElementsAre(ImageEntry{"a", "b", 2, "n", "p", "e", "t", ""}));
+    folder.write("images/index.csv",
+                 "case,table,frame,name,png,exr,title\na,b,2,n,images/p,images/e,t\n");
+    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(ImageEntry{
+                                               "a", "b", 2, "n", "images/p", "images/e", "t", ""}));
     folder.write("images/index.csv", "case,table\na,b\n");
     EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
               "DIR/images/index.csv:1: expected the columns "

@@ -1,0 +1,257 @@
+// plan.json: written by the program, and read by it alone.
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "runner/batch/plan.h"
+#include "runner/report/case_records.h"
+
+namespace gfxrepro::batch {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr int kPlanSchema = 1;
+
+Json toJson(const config::Measure& measure) {
+    return {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
+            {"warmup", measure.warmup},
+            {"repeats", measure.repeats},
+            {"processes", measure.processes},
+            {"relative_error", measure.relativeError},
+            {"processes_at_most", measure.processesAtMost},
+            {"time_budget_s", measure.timeBudgetS},
+            {"frames", measure.frames},
+            {"time_limit_s", measure.timeLimitS},
+            {"memory_limit_bytes", measure.memoryLimitBytes}};
+}
+
+void requireMap(const config::Node& node, const char* what) {
+    if (node.isMap()) return;
+    throw Error(node.location(), std::string(what) + " is no map but " + node.kindName());
+}
+
+const config::Node& required(const config::Node& map, const char* key) {
+    requireMap(map, ("what should hold '" + std::string(key) + "'").c_str());
+    const config::Node* value = map.find(key);
+    if (!value) throw Error(map.location(), "the entry '" + std::string(key) + "' is missing");
+    return *value;
+}
+
+const config::Node& requiredMap(const config::Node& map, const char* key) {
+    const config::Node& value = required(map, key);
+    requireMap(value, key);
+    return value;
+}
+
+std::uint64_t requiredSeed(const config::Node& map) {
+    const config::Node& node = required(map, "seed");
+    const std::string& text = node.text();
+    std::uint64_t seed = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (problem != std::errc() || end != text.data() + text.size()) {
+        throw Error(node.location(), "the seed '" + text + "' is no number");
+    }
+    return seed;
+}
+
+/// Twelve hexadecimal digits: files have it in their names.
+std::string requiredId(const config::Node& map) {
+    const config::Node& node = required(map, "id");
+    const std::string& id = node.text();
+    const bool isId = id.size() == 12 && id.find_first_not_of("0123456789abcdef") == id.npos;
+    if (!isId) throw Error(node.location(), "'" + id + "' is no id of a case");
+    return id;
+}
+
+int requiredInt(const config::Node& map, const char* key) {
+    return static_cast<int>(required(map, key).asInteger());
+}
+
+config::Measure measureFrom(const config::Node& node) {
+    config::Measure measure;
+    measure.lane = required(node, "lane").text() == "timing" ? config::Measure::Lane::Timing
+                                                             : config::Measure::Lane::Quality;
+    measure.warmup = requiredInt(node, "warmup");
+    measure.repeats = requiredInt(node, "repeats");
+    measure.processes = requiredInt(node, "processes");
+    // Plans of older versions know of no further rounds.
+    if (node.find("relative_error")) {
+        measure.relativeError = required(node, "relative_error").asDouble();
+        measure.processesAtMost = requiredInt(node, "processes_at_most");
+        measure.timeBudgetS = required(node, "time_budget_s").asDouble();
+    }
+    measure.frames = requiredInt(node, "frames");
+    measure.timeLimitS = required(node, "time_limit_s").asDouble();
+    measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
+    return measure;
+}
+
+/// Value and unit of the assumptions that are bound to the cases.
+Json assumedJson(const config::Experiment& experiment) {
+    Json json = Json::object();
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        if (!assumption.isBound) continue;
+        json[assumption.name] = {{"value", assumption.value.text()}, {"unit", assumption.unit}};
+    }
+    return json;
+}
+
+void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
+    requireMap(assumed, "assumed");
+    for (config::Assumption& assumption : experiment.assumptions) {
+        const config::Node* bound = assumed.find(assumption.name);
+        if (!bound) continue;
+        assumption.isBound = true;
+        assumption.value = required(*bound, "value");
+        assumption.unit = required(*bound, "unit").text();
+    }
+}
+
+Json paperToJson(const config::Experiment& experiment) {
+    Json cases = Json::array();
+    for (const config::PaperCase& item : experiment.paperCases) {
+        cases.push_back({{"scene", item.scene}, {"params", item.params.toJson()}});
+    }
+    return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
+}
+
+void readPaper(const config::Node& node, config::Experiment& experiment) {
+    experiment.paperDocument = requiredMap(node, "document");
+    for (const config::Node& item : required(node, "cases").items()) {
+        experiment.paperCases.push_back(
+            {required(item, "scene").text(), requiredMap(item, "params")});
+    }
+}
+
+std::vector<std::string> textsFrom(const config::Node& list) {
+    std::vector<std::string> texts;
+    for (const config::Node& item : list.items()) texts.push_back(item.text());
+    return texts;
+}
+
+}  // namespace
+
+void Case::addSceneTo(Json& json) const {
+    if (!standsFor.isNull()) json[report::kStandsFor] = standsFor.toJson();
+    if (sceneSample) json[report::kSceneSample] = *sceneSample;
+}
+
+Json Case::toJson() const {
+    Json json = {{"id", id},
+                 {"experiment", experiment},
+                 {"technique", technique},
+                 {"scene", scene.toJson()},
+                 {"given", given.toJson()},
+                 {"params", params.toJson()},
+                 {"axes", axes.toJson()},
+                 {"output", {outputWidthPx, outputHeightPx}},
+                 {"measure", batch::toJson(measure)},
+                 {"seed", std::to_string(seed)}};
+    if (!offered.isNull()) json["offered"] = offered.toJson();
+    addSceneTo(json);
+    return json;
+}
+
+Case Case::fromJson(const config::Node& node) {
+    const config::Node::Sequence& output = required(node, "output").items();
+    if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
+    Case item;
+    item.id = requiredId(node);
+    item.experiment = required(node, "experiment").text();
+    item.technique = required(node, "technique").text();
+    item.scene = required(node, "scene");
+    item.given = requiredMap(node, "given");
+    item.params = requiredMap(node, "params");
+    item.axes = requiredMap(node, "axes");
+    item.outputWidthPx = static_cast<int>(output[0].asInteger());
+    item.outputHeightPx = static_cast<int>(output[1].asInteger());
+    item.measure = measureFrom(required(node, "measure"));
+    item.seed = requiredSeed(node);
+    if (const config::Node* offered = node.find("offered")) item.offered = *offered;
+    if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
+    if (const config::Node* sample = node.find(report::kSceneSample)) {
+        item.sceneSample = static_cast<int>(sample->asInteger());
+    }
+    return item;
+}
+
+Json Plan::toJson() const {
+    Json json = {{"schema", kPlanSchema},
+                 {"hash", hash},
+                 {"build", buildId},
+                 {"profile", profile},
+                 {"device_class", deviceClass},
+                 {"seed", std::to_string(seed)},
+                 {"request",
+                  {{"configs", request.configs},
+                   {"sets", request.sets},
+                   {"sweeps", request.sweeps},
+                   {"only", request.only},
+                   {"device", request.device}}},
+                 {"scenes", Json::object()},
+                 {"experiments", Json::array()},
+                 {"cases", Json::array()}};
+    for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
+    for (const config::Experiment& experiment : experiments) {
+        json["experiments"].push_back({{"file", experiment.file.string()},
+                                       {"document", experiment.document.toJson()},
+                                       {"assumed", assumedJson(experiment)}});
+        if (!experiment.paperCases.empty()) {
+            json["experiments"].back()["paper"] = paperToJson(experiment);
+        }
+    }
+    for (const Case& item : cases) json["cases"].push_back(item.toJson());
+    if (shard) {
+        json["shard"] = {
+            {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
+    }
+    return json;
+}
+
+Plan Plan::fromJsonFile(const fs::path& path) {
+    const config::Node node = config::parseJsonFile(path);
+    if (required(node, "schema").asInteger() != kPlanSchema) {
+        throw Error(path.string() + ": schema " + required(node, "schema").text() +
+                    "; this program reads schema " + std::to_string(kPlanSchema));
+    }
+    Plan plan;
+    plan.hash = required(node, "hash").text();
+    plan.buildId = required(node, "build").text();
+    plan.profile = required(node, "profile").text();
+    plan.deviceClass = required(node, "device_class").text();
+    plan.seed = requiredSeed(node);
+    const config::Node& request = required(node, "request");
+    plan.request = {textsFrom(required(request, "configs")),
+                    textsFrom(required(request, "sets")),
+                    textsFrom(required(request, "sweeps")),
+                    {},
+                    required(request, "device").text()};
+    if (const config::Node* only = request.find("only")) plan.request.only = textsFrom(*only);
+    for (const auto& [reference, key] : required(node, "scenes").entries()) {
+        plan.sceneKeys[reference] = key.text();
+    }
+    for (const config::Node& item : required(node, "experiments").items()) {
+        plan.experiments.push_back(config::experimentFromDocument(
+            requiredMap(item, "document"), fs::path(required(item, "file").text())));
+        if (const config::Node* assumed = item.find("assumed")) {
+            takeAssumed(*assumed, plan.experiments.back());
+        }
+        if (const config::Node* paper = item.find("paper")) {  // older plans have none
+            readPaper(*paper, plan.experiments.back());
+        }
+    }
+    for (const config::Node& item : required(node, "cases").items()) {
+        plan.cases.push_back(Case::fromJson(item));
+    }
+    if (const config::Node* shard = node.find("shard")) {
+        plan.shard = Shard{requiredInt(*shard, "index"), requiredInt(*shard, "count")};
+        for (const std::string& id : textsFrom(required(*shard, "cases"))) {
+            plan.shard->caseIds.insert(id);
+        }
+    }
+    return plan;
+}
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,46 @@
+// What a unit measured, as rows.
+#include <limits>
+
+#include "runner/batch/scheduler.h"
+
+namespace gfxrepro::batch {
+
+std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result) {
+    const Case& item = *unit.item;
+    report::Record row;
+    row.caseId = item.id;
+    row.table = item.experiment;
+    row.technique = item.technique;
+    row.method = item.method();
+    // As the config spells it, unless another takes its place: a user's own file is an absolute
+    // path in item.scene.
+    const config::Node* sceneAxis = item.axes.find("scene");
+    const config::Node& scene = sceneAxis && item.standsFor.isNull() ? *sceneAxis : item.scene;
+    if (!scene.isNull()) row.scene = scene.text();
+    row.params = item.recordedParams().dump();
+    row.process = unit.process;
+    row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";
+    row.status = result.status;
+    row.message = result.message;
+    if (result.status != report::Status::Ok && result.status != report::Status::Flaky) {
+        row.value = std::numeric_limits<double>::quiet_NaN();
+        return {row};
+    }
+    std::vector<report::Record> rows;
+    for (const Sample& sample : result.samples) {
+        row.frame = sample.frame;
+        row.repeat = sample.repeat;
+        row.pass = sample.pass;
+        row.metric = sample.metric;
+        row.unit = sample.unit;
+        row.value = sample.value;
+        rows.push_back(row);
+        if (sample.isVoid) {
+            rows.back().status = report::Status::Ambiguous;
+            rows.back().message = result.voidReason;
+        }
+    }
+    return rows;
+}
+
+}  // namespace gfxrepro::batch
