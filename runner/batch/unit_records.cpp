@@ -19,7 +19,7 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
     if (!scene.isNull()) row.scene = scene.text();
     row.params = item.recordedParams().dump();
     row.process = unit.process;
-    row.lane = item.measure.lane == Lane::Timing ? "timing" : "quality";
+    row.lane = item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
     row.status = result.status;
     row.message = result.message;
     if (result.status != report::Status::Ok && result.status != report::Status::Flaky) {
