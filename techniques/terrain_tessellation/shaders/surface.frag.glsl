@@ -24,7 +24,7 @@ void main() {
 #if SHADING == 2
     vec3 ground = texture(colourMap, surfaceSample / lastSample).rgb;
 #elif SHADING == 4
-    vec3 ground = (surfacePatch.x == 0 ? vec3(0.80, 0.78, 0.70) : vec3(0.42, 0.30, 0.62)) *
+    vec3 ground = (surfacePatch.x == 0 ? vec3(0.12, 0.42, 0.16) : vec3(0.55, 0.22, 0.60)) *
                   exp2(-0.3 * float(surfacePatch.y));
 #else
     // A flat terrain has no altitudes: 1e-6 m keeps the division finite.
