@@ -61,13 +61,15 @@ struct Results {
     bool tables = true;
     bool claims = true;
     bool report = true;
+    std::filesystem::path out = {};  // where they go; empty: the run's folder
 };
 /// What a run came to.
 struct Conclusion {
     std::vector<report::ClaimResult> claims;  // empty unless asked for
     report::PrintedCells printedCells;
 };
-/// Makes tables/, claims.csv with junit.xml, report.html again from the records.
+/// Makes tables/, claims.csv with junit.xml, report.html again from the records. With `out` nothing
+/// is written into the run's folder.
 Conclusion writeResults(const std::filesystem::path& runDir, const StoredRun& run,
                         const Results& which);
 

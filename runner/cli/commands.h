@@ -113,9 +113,11 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
          bool asJson);
 int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);
-int table(const std::string& runDir);
+/// Into the run's folder, or into `out`: then the run stays as it is. Of claims(), too.
+int table(const std::string& runDir, const std::string& out);
 /// By the configs that the run was measured with; or by `configs`, written apart.
-int claims(const std::string& runDir, const std::vector<std::string>& configs);
+int claims(const std::string& runDir, const std::vector<std::string>& configs,
+           const std::string& out);
 /// Of several folders side by side: to `out`, or report.html where one is.
 int report(const std::vector<std::string>& runDirs, const std::string& out);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);

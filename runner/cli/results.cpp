@@ -89,8 +89,9 @@ int sayClaims(const std::vector<report::ClaimResult>& claims) {
 }
 
 /// Judges the records by configs that are not those that the run froze before it measured. What
-/// comes of it stands apart and says so.
-int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs) {
+/// comes of it stands apart, below `out`, and says so.
+int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs,
+                    const fs::path& out) {
     const batch::StoredRun run = batch::readRun(runDir);
     batch::Request request = run.plan.request;
     request.configs = findPaperConfigs(configs);
@@ -114,7 +115,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     for (report::ClaimResult& claim : claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    const fs::path folder = runDir / "judged-afterwards";
+    const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, tables);
     report::writeClaims(folder, claims, context);
@@ -152,23 +153,25 @@ int conclude(const fs::path& runDir) {
     return failing > 0 ? kExitClaimFailed : kExitOk;
 }
 
-int table(const std::string& runDir) {
+int table(const std::string& runDir, const std::string& out) {
     const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion =
-        batch::writeResults(runDir, run, {.tables = true, .claims = false, .report = false});
+    const batch::Conclusion conclusion = batch::writeResults(
+        runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
+    const std::string folder = (fs::path(out) / "tables").string();
     for (const config::Experiment& experiment : run.plan.experiments) {
-        fmt::print("{}: tables/{}.csv .md .tex\n", experiment.id, experiment.slug());
+        fmt::print("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
     }
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
     return completenessCode(run);
 }
 
-int claims(const std::string& runDir, const std::vector<std::string>& configs) {
-    if (!configs.empty()) return judgeAfterwards(runDir, configs);
+int claims(const std::string& runDir, const std::vector<std::string>& configs,
+           const std::string& out) {
+    if (!configs.empty()) return judgeAfterwards(runDir, configs, out.empty() ? runDir : out);
     const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion =
-        batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false});
+    const batch::Conclusion conclusion = batch::writeResults(
+        runDir, run, {.tables = false, .claims = true, .report = false, .out = out});
     const int verdict = sayClaims(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
