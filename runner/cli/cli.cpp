@@ -162,6 +162,8 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs: records.csv");
     addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
+    runApp->add_option("--plan", o.run.plan, "what was submitted, instead of configs")
+        ->option_text("FILE");
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =

@@ -40,6 +40,7 @@ struct RunOptions {
     std::string budget;  // "20m": only the tables that decide most claims in this time
     std::string out;
     std::string resume;
+    std::string plan;               // of a submission, in place of configs
     std::string shard;              // "k/n"; empty: everything
     std::vector<std::string> from;  // runs or a file to predict times from
     int jobs = 0;                   // 0: one a core on up to two cores, else half of them

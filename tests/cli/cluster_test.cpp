@@ -273,6 +273,46 @@ TEST(Submit, CommandsMeasureAndMerge) {
               "gfxrepro: OUT: holds another submission; give another folder\n");
 }
 
+TEST(Submit, WhatWasSubmittedIsMeasured) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const std::string out = folder.path() / "out";
+    const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
+                                              out,      "--engine", "commands", "--shards", "2"};
+    const ProcessResult submitted = mockGfxrepro(command);
+    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    const std::vector<std::string> lines = split(submitted.out, '\n');
+    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    writeNumbers(folder, 3, "params: {pause_ms: 1}\n");
+    const std::string warning = "warning: " + config + " changed; what was submitted is measured\n";
+    const ProcessResult second = runProgram({"/bin/sh", "-c", lines[1]});
+    EXPECT_EQ(second.exitCode, 0) << second.err;
+    EXPECT_THAT(second.err, HasSubstr(warning));
+    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
+    EXPECT_EQ(merged.exitCode, 0) << merged.err;
+    EXPECT_THAT(merged.out, HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
+    // Submitted once more it is the same submission.
+    const ProcessResult again = mockGfxrepro(command);
+    EXPECT_EQ(again.exitCode, 0);
+    EXPECT_THAT(again.err, HasSubstr(warning));
+    EXPECT_EQ(again.out, submitted.out);
+
+    const std::string file = out + "/submitted-plan.json";
+    const std::string plan = readFile(file);
+    std::string changed = plan;
+    changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
+    writeFileAtomic(file, changed);
+    fs::remove_all(out + "/shards");
+    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]});
+    EXPECT_EQ(other.exitCode, 2);
+    EXPECT_THAT(other.err, HasSubstr(file + ": cannot be measured: the program or a shader changed "
+                                            "(build 000000000000 then, "));
+    EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
+    EXPECT_FALSE(fs::exists(out + "/shards/1"));
+    EXPECT_EQ(mockGfxrepro({"run", config, "--plan", file}).err,
+              "gfxrepro: run: --plan has configs and options of its own; give none\n");
+}
+
 TEST(Submit, DryRunWritesNothing) {
     const TemporaryFolder folder;
     const std::string config = writeNumbers(folder, 6, "measure: {lane: timing}\n");
