@@ -127,6 +127,7 @@ StoredRun readRun(const fs::path& runDir) {
     run.manifest = Json::parse(readFile(manifestFile), nullptr, false);
     if (!run.manifest.is_object()) throw Error(manifestFile.string() + ": is no JSON object");
     noteChanges(run.manifest, runDir);
+    noteMachines(run.manifest);
     if (fs::exists(runDir / "records.csv")) {
         run.records = report::readRecords(runDir / "records.csv");
     }

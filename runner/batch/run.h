@@ -42,7 +42,7 @@ struct StoredRun {
     std::vector<report::Record> records;
 };
 /// Throws Error when the folder is no run. The manifest notes what was changed since its end
-/// (noteChanges).
+/// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
 
 /// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.

@@ -10,6 +10,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
+#include "runner/core/text.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::cli {
@@ -131,6 +132,18 @@ void sayPrintedCells(const report::PrintedCells& count) {
     if (!line.empty()) fmt::print("{}\n", line);
 }
 
+/// What differs between runs of several machines may differ by them: a note of the first run.
+void noteOtherMachines(std::vector<html::ReportRun>& runs) {
+    std::vector<std::string> machines;
+    for (const html::ReportRun& run : runs) {
+        const std::string machine = batch::machineName(run.manifest);
+        if (std::ranges::find(machines, machine) == machines.end()) machines.push_back(machine);
+    }
+    if (machines.size() < 2) return;
+    runs.front().manifest["notes"].push_back("the runs are of several machines: " +
+                                             joined(machines, "; "));
+}
+
 void sayReport(const fs::path& runDir) {
     fmt::print("report: {}\n", (runDir / "report.html").string());
 }
@@ -189,10 +202,9 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
         return completenessCode(run);
     }
     std::vector<html::ReportRun> runs;
-    for (const std::string& dir : runDirs) {
-        runs.push_back(batch::reportRun(dir));
-        sayNotes(runs.back().manifest);
-    }
+    for (const std::string& dir : runDirs) runs.push_back(batch::reportRun(dir));
+    noteOtherMachines(runs);
+    for (const html::ReportRun& run : runs) sayNotes(run.manifest);
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
     html::writeReport(file, runs);
     fmt::print("report: {}\n", file.string());

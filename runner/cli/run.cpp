@@ -133,9 +133,18 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     const std::string machine = batch::machineName(batch::newManifest(run.plan, device));
     const std::vector<std::string> again =
         batch::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
+    const std::vector<std::string> machines = batch::machinesOf(run.manifest);
     batch::beginInvocation(run.manifest, commandLine);
     batch::breakSeal(run.manifest);
-    run.manifest["invocations"].back()["machine"] = machine;
+    // One that measures nothing mixes nothing.
+    if (!batch::remainingUnits(run.plan, run.directory).empty()) {
+        run.manifest["invocations"].back()["machine"] = machine;
+        if (std::ranges::find(machines, machine) == machines.end()) {
+            tell("warning: begun on {}, goes on on {}: tables will say so\n", machines.front(),
+                 machine);
+        }
+    }
+    batch::noteMachines(run.manifest);
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
         run.directory.log({{"event", "machine"}, {"table", experiment}, {"machine", machine}});

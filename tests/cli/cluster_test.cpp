@@ -212,6 +212,44 @@ TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     EXPECT_EQ(report::readRecords(dir + "/records-replaced.csv").size(), two.size());
 }
 
+TEST(Shards, ValuesOfSeveralMachinesAreMarked) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const std::string dir = folder.path() / "run", other = folder.path() / "other";
+    ASSERT_EQ(measure(config, dir, {"--shard", "1/2"}).exitCode, 0);
+    ASSERT_EQ(measure(config, other, {"--shard", "2/2"}).exitCode, 0);
+    // As if the first shard had begun elsewhere and had lost its case.
+    const std::string manifest = readFile(dir + "/manifest.json");
+    std::string moved = manifest;
+    moved.insert(manifest.find("\"cpu\": \"") + 8, "Another ");
+    writeFileAtomic(dir + "/manifest.json", moved);
+    const auto hasNote = [](const std::string& run) {
+        EXPECT_EQ(mockGfxrepro({"report", run}).exitCode, 0);
+        for (const char* file : {"/tables/sweep-mock.md", "/report.html"}) {
+            EXPECT_THAT(readFile(run + file),
+                        HasSubstr("measured on several machines, the times of each table on one of "
+                                  "them: Another "));
+        }
+    };
+    const std::string merged = folder.path() / "merged";
+    ASSERT_EQ(mockGfxrepro({"merge", merged, dir, other}).exitCode, 0);
+    hasNote(merged);
+    const ProcessResult beside =
+        mockGfxrepro({"report", dir, other, "--out", folder.path() / "both.html"});
+    EXPECT_THAT(beside.out, HasSubstr("warning: the runs are of several machines: Another "));
+    EXPECT_THAT(readFile(folder.path() / "both.html"),
+                HasSubstr("the runs are of several machines: Another "));
+
+    fs::remove(dir + "/records.csv");
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("warning: begun on Another "));
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out, HasSubstr("warning: measured on several"));
+    hasNote(dir);
+    const ProcessResult again = mockGfxrepro({"run", "--resume", dir});  // measures nothing
+    EXPECT_THAT(again.err, Not(HasSubstr("begun on")));
+}
+
 TEST(Resume, WithConfigsBeginsOrGoesOn) {
     const TemporaryFolder folder;
     const std::string config = writeNumbers(folder, 4);
