@@ -28,10 +28,10 @@ std::uintmax_t sizeOf(const fs::path& path) {
     return bytes;
 }
 
-void copyResults(const fs::path& runDir, const fs::path& target) {
+/// What was measured; what is made of it is made again there.
+void copyMeasured(const fs::path& runDir, const fs::path& target) {
     for (const char* name :
-         {"plan.json", "manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html",
-          "log.jsonl", "tables", "plots", "images", "thumbnails", "artifacts"}) {
+         {"plan.json", "manifest.json", "records.csv", "log.jsonl", "images", "artifacts"}) {
         copyTree(runDir / name, target / name);
     }
 }
@@ -136,8 +136,9 @@ std::map<std::string, double> minutesOf(const fs::path& runDir) {
     return minutes;
 }
 
-std::string readmeText(const fs::path& runDir, const StoredRun& run) {
-    std::map<std::string, double> minutes = minutesOf(runDir);
+/// Of the artifact, when all else is in it.
+std::string readmeText(const fs::path& artifact, const StoredRun& run) {
+    std::map<std::string, double> minutes = minutesOf(artifact);
     const report::ReportContext context = reportContext(run.manifest);
     std::string text = fmt::format(
         "# Measured by gfxrepro {}\nProfile {}, on {}.\n\n"
@@ -156,7 +157,7 @@ std::string readmeText(const fs::path& runDir, const StoredRun& run) {
              {fs::path("images") / slug, fs::path("thumbnails") / slug,
               fs::path("artifacts") / slug, fs::path("tables") / (slug + ".csv"),
               fs::path("tables") / (slug + ".md"), fs::path("tables") / (slug + ".tex")}) {
-            bytes += sizeOf(runDir / part);
+            bytes += sizeOf(artifact / part);
         }
         text += fmt::format("| {}: {} | scripts/{}.sh | {:.1f} | {:.1f} |\n", experiment.label(),
                             report::escapeMarkdown(experiment.title), slug, minutes[experiment.id],
@@ -184,13 +185,13 @@ void writeArtifact(const fs::path& runDir, const StoredRun& run, const scene::Ca
                    const fs::path& target) {
     if (fs::exists(target))
         throw Error(target.string() + ": is there already; give another folder");
-    writeResults(runDir, run, {});
     writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
-    copyResults(runDir, target);
+    copyMeasured(runDir, target);
+    writeResults(target, run, {});
     writeFileAtomic(target / "manifest.json", run.manifest.dump(2) + '\n');  // with its notes
     writeFileAtomic(target / "ASSETS.md", assetsText(run.manifest, catalog));
     writeScripts(run.plan, target);
-    writeFileAtomic(target / "README.md", readmeText(runDir, run));
+    writeFileAtomic(target / "README.md", readmeText(target, run));
     writeFileAtomic(target / "SHA256SUMS", checksums(target));
 }
 

@@ -9,10 +9,10 @@
 namespace gfxrepro::batch {
 
 /// Writes the folder `target`, which must not exist: plan, manifest, records, tables, claims,
-/// report and log (made again where they are missing), environment.txt, ASSETS.md with checksums
-/// and licences, configs/ (the experiments with all that they extend laid in), scripts/<table>.sh
-/// without parameters, README.md with the measured minutes and disk space of each table,
-/// SHA256SUMS. What the stamp for replicability in graphics and ACM's badges ask for.
+/// report (made again there: the run's folder is left as it is) and log, environment.txt, ASSETS.md
+/// with checksums and licences, configs/ (the experiments with all that they extend laid in),
+/// scripts/<table>.sh without parameters, README.md with the measured minutes and disk space of
+/// each table, SHA256SUMS. What the stamp for replicability in graphics and ACM's badges ask for.
 void writeArtifact(const std::filesystem::path& runDir, const StoredRun& run,
                    const scene::Catalog& catalog, const std::filesystem::path& target);
 

@@ -39,6 +39,11 @@ void makeChannel(int (&ends)[2]) {
     const int safeInput = ::fcntl(input, F_DUPFD_CLOEXEC, 10);
     const int safeMessages = ::fcntl(messages, F_DUPFD_CLOEXEC, 10);
     const int safeOutput = ::fcntl(output, F_DUPFD_CLOEXEC, 10);
+    if (safeInput < 0 || safeMessages < 0 || safeOutput < 0) {
+        constexpr std::string_view kReason = "cannot start: too few file descriptors (ulimit -n)\n";
+        [[maybe_unused]] const ssize_t said = ::write(output, kReason.data(), kReason.size());
+        ::_exit(127);
+    }
     ::dup2(safeInput, STDIN_FILENO);
     ::dup2(safeOutput, STDOUT_FILENO);
     ::dup2(safeOutput, STDERR_FILENO);

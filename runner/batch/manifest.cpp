@@ -108,6 +108,39 @@ void noteChanges(Json& manifest, const std::filesystem::path& runDir) {
     }
 }
 
+std::vector<std::string> machinesOf(const Json& manifest) {
+    std::vector<std::string> machines;
+    const auto add = [&](const Json& run, const std::string& first) {
+        std::vector<std::string> names = {first};
+        for (const Json& invocation : run.at("invocations")) {
+            names.push_back(invocation.value("machine", first));
+        }
+        for (std::string& name : names) {
+            const bool isNew = std::ranges::find(machines, name) == machines.end();
+            if (isNew) machines.push_back(std::move(name));
+        }
+    };
+    const auto merged = manifest.find("merged");
+    if (merged == manifest.end()) {
+        add(manifest, machineName(manifest));
+        return machines;
+    }
+    for (const Json& run : *merged) add(run, run.at("machine").get<std::string>());
+    add(manifest, machines.empty() ? machineName(manifest) : machines.front());
+    return machines;
+}
+
+void noteMachines(Json& manifest) {
+    constexpr std::string_view kBegin = "measured on several machines, ";
+    const std::vector<std::string> machines = machinesOf(manifest);
+    if (machines.size() < 2) return;
+    std::vector<std::string> notes = notesOf(manifest);
+    std::erase_if(notes, [&](const std::string& note) { return note.starts_with(kBegin); });
+    notes.push_back(fmt::format("{}the times of each table on one of them: {}", kBegin,
+                                joined(machines, "; ")));
+    manifest["notes"] = notes;
+}
+
 std::vector<std::string> notesOf(const Json& manifest) {
     return manifest.value("notes", std::vector<std::string>{});
 }

@@ -30,6 +30,12 @@ void breakSeal(Json& manifest);
 /// Adds to the manifest's `notes` which of the sealed files are others than at the end of the run.
 /// Nothing for a run that is under way, was killed, or comes from a program that sealed none.
 void noteChanges(Json& manifest, const std::filesystem::path& runDir);
+/// Every machine that measured something of the run, or of the runs that were merged into it, the
+/// first first.
+std::vector<std::string> machinesOf(const Json& manifest);
+/// Adds to the manifest's `notes` that there are several. Values of other metrics than times may be
+/// of any of them; the times of a table are of one.
+void noteMachines(Json& manifest);
 /// The manifest's notes, for people.
 std::vector<std::string> notesOf(const Json& manifest);
 

@@ -24,6 +24,14 @@ std::string contentId(const Case& item, const std::string& sceneKey, const Plan&
     return sha256(content.dump()).substr(0, 12);
 }
 
+/// The same of a case of the plan, which has an id.
+std::string idOf(Case item, const Plan& plan) {
+    item.id.clear();
+    const auto scene =
+        item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
+    return contentId(item, scene == plan.sceneKeys.end() ? "" : scene->second, plan);
+}
+
 std::string hashOf(const Plan& plan) {
     Json content = {{"profile", plan.profile},
                     {"device_class", plan.deviceClass},
@@ -114,6 +122,12 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     return plan;
 }
 
+void rebind(Plan& plan, const std::string& deviceClass) {
+    plan.deviceClass = deviceClass;
+    for (Case& item : plan.cases) item.id = idOf(item, plan);
+    plan.hash = hashOf(plan);
+}
+
 std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
                             const scene::Catalog& catalog) {
     if (const std::string build = programBuildId(); plan.buildId != build) {
@@ -130,12 +144,7 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
         }
     }
     for (const Case& item : plan.cases) {
-        Case planned = item;
-        planned.id.clear();
-        const auto scene =
-            item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
-        const std::string key = scene == plan.sceneKeys.end() ? "" : scene->second;
-        if (contentId(planned, key, plan) != item.id) {
+        if (idOf(item, plan) != item.id) {
             return "the case " + item.id + ", " + item.title() +
                    ", is not the one that was planned: plan.json was changed";
         }

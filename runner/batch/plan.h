@@ -109,6 +109,9 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
               std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
               const std::string& deviceClass, std::uint64_t seed);
 
+/// Makes it a plan for another class of device: the same cases, under the ids that they have there.
+void rebind(Plan& plan, const std::string& deviceClass);
+
 /// Why a run of this plan may not go on with this program, this class of device and these scenes;
 /// empty when it may. What became of its configs does not matter: the plan has them as they were.
 std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,

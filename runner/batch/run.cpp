@@ -127,6 +127,7 @@ StoredRun readRun(const fs::path& runDir) {
     run.manifest = Json::parse(readFile(manifestFile), nullptr, false);
     if (!run.manifest.is_object()) throw Error(manifestFile.string() + ": is no JSON object");
     noteChanges(run.manifest, runDir);
+    noteMachines(run.manifest);
     if (fs::exists(runDir / "records.csv")) {
         run.records = report::readRecords(runDir / "records.csv");
     }
@@ -157,6 +158,7 @@ report::ReportContext reportContext(const StoredRun& run) {
 }
 
 Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Results& which) {
+    const fs::path out = which.out.empty() ? runDir : which.out;
     const report::ReportContext context = reportContext(run);
     std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
     report::addCalibrations(context.calibrations, tables);
@@ -167,16 +169,16 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     Conclusion conclusion;
     conclusion.printedCells = report::countPrintedCells(run.plan.experiments, tables);
     if (which.tables) {
-        report::writeTables(runDir, tables);
-        report::writeFits(runDir, run.plan.experiments, tables);
+        report::writeTables(out, tables);
+        report::writeFits(out, run.plan.experiments, tables);
     }
     if (which.claims) {
         conclusion.claims = report::evaluateClaims(run.plan.experiments, tables, context);
-        report::writeClaims(runDir, conclusion.claims, context);
+        report::writeClaims(out, conclusion.claims, context);
     }
     if (which.report) {
         const html::ReportRun shown = reportRun(runDir, run);
-        html::writeReport(runDir / "report.html", {&shown, 1});
+        html::writeReport(out / "report.html", {&shown, 1});
     }
     return conclusion;
 }

@@ -42,7 +42,7 @@ struct StoredRun {
     std::vector<report::Record> records;
 };
 /// Throws Error when the folder is no run. The manifest notes what was changed since its end
-/// (noteChanges).
+/// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
 
 /// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
@@ -61,13 +61,15 @@ struct Results {
     bool tables = true;
     bool claims = true;
     bool report = true;
+    std::filesystem::path out = {};  // where they go; empty: the run's folder
 };
 /// What a run came to.
 struct Conclusion {
     std::vector<report::ClaimResult> claims;  // empty unless asked for
     report::PrintedCells printedCells;
 };
-/// Makes tables/, claims.csv with junit.xml, report.html again from the records.
+/// Makes tables/, claims.csv with junit.xml, report.html again from the records. With `out` nothing
+/// is written into the run's folder.
 Conclusion writeResults(const std::filesystem::path& runDir, const StoredRun& run,
                         const Results& which);
 

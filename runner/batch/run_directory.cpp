@@ -9,6 +9,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "runner/core/error.h"
 
@@ -25,6 +26,34 @@ std::string utcTime(const char* format) {
     char text[32];
     std::strftime(text, sizeof(text), format, &parts);
     return text;
+}
+
+/// Whether it is a file that was being written: "a.exr.tmp123", "records.csv.tmp".
+bool isTemporary(const fs::path& file) {
+    const std::string name = file.filename();
+    const std::size_t at = name.rfind(".tmp");
+    return at != name.npos && name.find_first_not_of("0123456789", at + 4) == name.npos;
+}
+
+/// What killed processes left of files that they were writing; the folder is locked.
+void removeTemporaryFiles(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file() && isTemporary(entry.path())) files.push_back(entry.path());
+    }
+    for (const fs::path& file : files) fs::remove(file);
+}
+
+/// A folder in which no run ever began keeps what it has: the name of the first file that a run
+/// would write over; empty when there is none.
+std::string foreignFile(const fs::path& folder) {
+    if (fs::exists(folder / "lock") || fs::exists(folder / "plan.json")) return "";
+    for (const char* name :
+         {"manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html", "log.jsonl",
+          "images", "tables", "plots", "thumbnails", "artifacts"}) {
+        if (fs::exists(folder / name)) return name;
+    }
+    return "";
 }
 
 int openFile(const fs::path& path, int flags) {
@@ -69,6 +98,10 @@ RunDirectory RunDirectory::create(const fs::path& path) {
     std::error_code problem;
     fs::create_directories(path, problem);
     if (problem) throw Error("cannot make the folder " + path.string() + ": " + problem.message());
+    if (const std::string file = foreignFile(path); !file.empty()) {
+        throw Error(path.string() + ": has a " + file +
+                    " that is of no run and would be written over; give another folder");
+    }
     RunDirectory directory(path);
     if (fs::exists(directory.planFile())) {
         throw Error(path.string() + ": holds a run already; continue it with --resume " +
@@ -81,7 +114,9 @@ RunDirectory RunDirectory::open(const fs::path& path) {
     if (!fs::exists(path / "plan.json")) {
         throw Error(path.string() + ": is no run directory (it has no plan.json)");
     }
-    return RunDirectory(path);
+    RunDirectory directory(path);
+    removeTemporaryFiles(path);
+    return directory;
 }
 
 void RunDirectory::log(const nlohmann::ordered_json& event) const {

@@ -11,9 +11,11 @@ namespace gfxrepro::batch {
 /// folder, locked for writing as long as the object lives.
 class RunDirectory {
   public:
-    /// Makes the folder. Throws Error when it holds a run already or when another run writes to it.
+    /// Makes the folder. Throws Error when it holds a run already, when another run writes to it,
+    /// and when it is no run's but has a file that a run writes.
     static RunDirectory create(const std::filesystem::path& path);
-    /// A run that was begun. Throws Error when there is none or when another run writes to it.
+    /// A run that was begun; removes the temporary files of processes that were killed. Throws
+    /// Error when there is none or when another run writes to it.
     static RunDirectory open(const std::filesystem::path& path);
     RunDirectory(RunDirectory&& other) noexcept;
     RunDirectory& operator=(RunDirectory&&) = delete;

@@ -37,7 +37,7 @@ struct Options {
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
     std::vector<std::string> configs;  // that claims judges by
-    std::string out;                   // of export
+    std::string out;                   // of table, claims, report, export
     std::string lane = "quality";
     bool asJson = false;
     std::function<int()> command;
@@ -162,6 +162,8 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs: records.csv");
     addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
+    runApp->add_option("--plan", o.run.plan, "what was submitted, instead of configs")
+        ->option_text("FILE");
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =
@@ -171,21 +173,22 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     addRunOptions(reproduceApp, o.run);
     reproduceApp->callback([&] { o.command = [&] { return reproduce(context, o.run); }; });
 
-    const auto addResult = [&](const char* name, const char* doc,
-                               int (*function)(const std::string&)) {
-        CLI::App* result = app.add_subcommand(name, doc);
-        addRunDirectory(result, o.name);
-        result->callback(
-            [&o, function] { o.command = [&o, function] { return function(o.name); }; });
+    const auto addOut = [&](CLI::App* result) {
+        result->add_option("--out", o.out, "folder (default RUN); the run is left as it is")
+            ->option_text("DIR");
     };
-    addResult("table", "make a run's tables again from its records", table);
+    CLI::App* tableApp = app.add_subcommand("table", "make a run's tables again from its records");
+    addRunDirectory(tableApp, o.name);
+    addOut(tableApp);
+    tableApp->callback([&o] { o.command = [&o] { return table(o.name, o.out); }; });
     CLI::App* claimsApp = app.add_subcommand("claims", "judge a run's claims again");
     addRunDirectory(claimsApp, o.name);
+    addOut(claimsApp);
     claimsApp
         ->add_option("--config", o.configs,
                      "by these instead of those that it was measured with; into judged-afterwards/")
         ->option_text("CONFIG");
-    claimsApp->callback([&o] { o.command = [&o] { return claims(o.name, o.configs); }; });
+    claimsApp->callback([&o] { o.command = [&o] { return claims(o.name, o.configs, o.out); }; });
     CLI::App* reportApp =
         app.add_subcommand("report", "make a run's report.html again, or one of several runs");
     reportApp->add_option("runs", o.shards, "run directories, or kept results")

@@ -40,6 +40,7 @@ struct RunOptions {
     std::string budget;  // "20m": only the tables that decide most claims in this time
     std::string out;
     std::string resume;
+    std::string plan;               // of a submission, in place of configs
     std::string shard;              // "k/n"; empty: everything
     std::vector<std::string> from;  // runs or a file to predict times from
     int jobs = 0;                   // 0: one a core on up to two cores, else half of them
@@ -113,9 +114,11 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
          bool asJson);
 int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);
-int table(const std::string& runDir);
+/// Into the run's folder, or into `out`: then the run stays as it is. Of claims(), too.
+int table(const std::string& runDir, const std::string& out);
 /// By the configs that the run was measured with; or by `configs`, written apart.
-int claims(const std::string& runDir, const std::vector<std::string>& configs);
+int claims(const std::string& runDir, const std::vector<std::string>& configs,
+           const std::string& out);
 /// Of several folders side by side: to `out`, or report.html where one is.
 int report(const std::vector<std::string>& runDirs, const std::string& out);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);

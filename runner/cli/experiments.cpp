@@ -6,6 +6,7 @@
 
 #include "runner/batch/case_filter.h"
 #include "runner/batch/scheduler.h"
+#include "runner/cli/console.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 
@@ -149,6 +150,32 @@ batch::Plan planFor(const Context& context, const batch::Request& request,
                                        context.techniques, profile, deviceClass, kSeed);
     plan.request = request;
     batch::keepOnly(plan, request.only);
+    return plan;
+}
+
+void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequence) {
+    std::vector<config::Experiment> now;
+    std::string problem;
+    try {
+        now = loadExperiments(plan.request, plan.profile);
+    } catch (const Error& error) {
+        problem = error.what();
+    }
+    for (std::size_t i = 0; i < plan.experiments.size() && problem.empty(); ++i) {
+        const config::Experiment& planned = plan.experiments[i];
+        if (i < now.size() && now[i].document.toJson() == planned.document.toJson()) continue;
+        problem = planned.file.string() + " changed";
+    }
+    if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
+}
+
+batch::Plan submittedPlan(const std::string& file, const std::string& assets) {
+    batch::Plan plan = batch::Plan::fromJsonFile(file);
+    const std::string reason = batch::whyNotResumable(plan, plan.deviceClass, openCatalog(assets));
+    if (!reason.empty()) {
+        throw Error(file + ": cannot be measured: " + reason + "; submit again, to another folder");
+    }
+    warnOfChangedConfigs(plan, "what was submitted is measured");
     return plan;
 }
 

@@ -36,6 +36,14 @@ batch::Plan planFor(const Context& context, const batch::Request& request,
                     const std::string& profile, const std::string& assets,
                     const std::string& deviceClass);
 
+/// What is measured is what was planned; that a config says something else by now is worth a word,
+/// with what comes of it.
+void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequence);
+
+/// A plan as it was frozen when it was submitted; warns of changed configs. Throws Error where the
+/// program or a scene is another by now, or the plan itself was changed.
+batch::Plan submittedPlan(const std::string& file, const std::string& assets);
+
 /// "zju2005-2.1" for one experiment, "zju2005" for several of a paper.
 std::string runSlug(const batch::Plan& plan);
 

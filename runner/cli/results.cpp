@@ -10,6 +10,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
+#include "runner/core/text.h"
 #include "runner/report/report.h"
 
 namespace gfxrepro::cli {
@@ -89,8 +90,9 @@ int sayClaims(const std::vector<report::ClaimResult>& claims) {
 }
 
 /// Judges the records by configs that are not those that the run froze before it measured. What
-/// comes of it stands apart and says so.
-int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs) {
+/// comes of it stands apart, below `out`, and says so.
+int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs,
+                    const fs::path& out) {
     const batch::StoredRun run = batch::readRun(runDir);
     batch::Request request = run.plan.request;
     request.configs = findPaperConfigs(configs);
@@ -114,7 +116,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     for (report::ClaimResult& claim : claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    const fs::path folder = runDir / "judged-afterwards";
+    const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, tables);
     report::writeClaims(folder, claims, context);
@@ -128,6 +130,18 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
 void sayPrintedCells(const report::PrintedCells& count) {
     const std::string line = report::printedCellsLine(count);
     if (!line.empty()) fmt::print("{}\n", line);
+}
+
+/// What differs between runs of several machines may differ by them: a note of the first run.
+void noteOtherMachines(std::vector<html::ReportRun>& runs) {
+    std::vector<std::string> machines;
+    for (const html::ReportRun& run : runs) {
+        const std::string machine = batch::machineName(run.manifest);
+        if (std::ranges::find(machines, machine) == machines.end()) machines.push_back(machine);
+    }
+    if (machines.size() < 2) return;
+    runs.front().manifest["notes"].push_back("the runs are of several machines: " +
+                                             joined(machines, "; "));
 }
 
 void sayReport(const fs::path& runDir) {
@@ -152,23 +166,25 @@ int conclude(const fs::path& runDir) {
     return failing > 0 ? kExitClaimFailed : kExitOk;
 }
 
-int table(const std::string& runDir) {
+int table(const std::string& runDir, const std::string& out) {
     const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion =
-        batch::writeResults(runDir, run, {.tables = true, .claims = false, .report = false});
+    const batch::Conclusion conclusion = batch::writeResults(
+        runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
+    const std::string folder = (fs::path(out) / "tables").string();
     for (const config::Experiment& experiment : run.plan.experiments) {
-        fmt::print("{}: tables/{}.csv .md .tex\n", experiment.id, experiment.slug());
+        fmt::print("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
     }
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
     return completenessCode(run);
 }
 
-int claims(const std::string& runDir, const std::vector<std::string>& configs) {
-    if (!configs.empty()) return judgeAfterwards(runDir, configs);
+int claims(const std::string& runDir, const std::vector<std::string>& configs,
+           const std::string& out) {
+    if (!configs.empty()) return judgeAfterwards(runDir, configs, out.empty() ? runDir : out);
     const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion =
-        batch::writeResults(runDir, run, {.tables = false, .claims = true, .report = false});
+    const batch::Conclusion conclusion = batch::writeResults(
+        runDir, run, {.tables = false, .claims = true, .report = false, .out = out});
     const int verdict = sayClaims(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
@@ -186,10 +202,9 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
         return completenessCode(run);
     }
     std::vector<html::ReportRun> runs;
-    for (const std::string& dir : runDirs) {
-        runs.push_back(batch::reportRun(dir));
-        sayNotes(runs.back().manifest);
-    }
+    for (const std::string& dir : runDirs) runs.push_back(batch::reportRun(dir));
+    noteOtherMachines(runs);
+    for (const html::ReportRun& run : runs) sayNotes(run.manifest);
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
     html::writeReport(file, runs);
     fmt::print("report: {}\n", file.string());

@@ -70,8 +70,10 @@ batch::Request withinBudget(const batch::Plan& plan, const batch::Request& reque
     return result;
 }
 
+/// `submitted`: the plan that was frozen then; else one is made of what is asked for.
 Prepared prepareNew(const Context& context, const RunOptions& options,
-                    const batch::Request& request, batch::PhaseClock& phases) {
+                    const batch::Request& request, std::optional<batch::Plan> submitted,
+                    batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
     const batch::SchedulerOptions scheduler{request.device,
                                             fs::absolute(assetsFolder(selection.assets)),
@@ -79,10 +81,12 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
                                             {},
                                             context.commandLine};
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
-    loadExperiments(request, selection.profile);
+    if (!submitted) loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
-    batch::Plan plan =
-        planFor(context, request, selection.profile, scheduler.assetsFolder, deviceClassOf(device));
+    batch::Plan plan = submitted ? std::move(*submitted)
+                                 : planFor(context, request, selection.profile,
+                                           scheduler.assetsFolder, deviceClassOf(device));
+    if (plan.deviceClass != deviceClassOf(device)) batch::rebind(plan, deviceClassOf(device));
     if (!options.budget.empty()) {
         const batch::Request affordable =
             withinBudget(plan, request, options.from, batch::parseBudgetS(options.budget));
@@ -129,33 +133,24 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     const std::string machine = batch::machineName(batch::newManifest(run.plan, device));
     const std::vector<std::string> again =
         batch::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
+    const std::vector<std::string> machines = batch::machinesOf(run.manifest);
     batch::beginInvocation(run.manifest, commandLine);
     batch::breakSeal(run.manifest);
-    run.manifest["invocations"].back()["machine"] = machine;
+    // One that measures nothing mixes nothing.
+    if (!batch::remainingUnits(run.plan, run.directory).empty()) {
+        run.manifest["invocations"].back()["machine"] = machine;
+        if (std::ranges::find(machines, machine) == machines.end()) {
+            tell("warning: begun on {}, goes on on {}: tables will say so\n", machines.front(),
+                 machine);
+        }
+    }
+    batch::noteMachines(run.manifest);
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
         run.directory.log({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
         tell("{}: begun on another machine; its times are measured again on {}\n", experiment,
              machine);
     }
-}
-
-/// What is measured is what was planned; that a config says something else by now is worth a word.
-void sayChangedConfigs(const batch::Plan& plan) {
-    std::vector<config::Experiment> now;
-    std::string problem;
-    try {
-        now = loadExperiments(plan.request, plan.profile);
-    } catch (const Error& error) {
-        problem = error.what();
-    }
-    for (std::size_t i = 0; i < plan.experiments.size() && problem.empty(); ++i) {
-        const config::Experiment& planned = plan.experiments[i];
-        if (i < now.size() && now[i].document.toJson() == planned.document.toJson()) continue;
-        problem = planned.file.string() + " changed";
-    }
-    if (problem.empty()) return;
-    tell("warning: {}; the run goes on with its configs as they were when it began\n", problem);
 }
 
 Prepared prepareResumed(const Context& context, const RunOptions& options,
@@ -175,7 +170,8 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
         throw Error(options.resume + ": cannot be resumed: " + reason +
                     "; start a new run instead");
     }
-    sayChangedConfigs(stored.plan);
+    warnOfChangedConfigs(stored.plan,
+                         "the run goes on with its configs as they were when it began");
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
     settleMachine(context.commandLine, device, run);
@@ -211,13 +207,13 @@ std::map<const batch::Case*, double> forecast(const RunOptions& options, const P
 
 /// Runs what is left; with `results`, makes tables, claims and report from it.
 int execute(const Context& context, const RunOptions& options, const batch::Request& request,
-            bool results) {
+            bool results, std::optional<batch::Plan> submitted = {}) {
     std::signal(SIGPIPE, SIG_IGN);  // a reader of the progress that is gone ends no run
     batch::PhaseClock phases;
     const bool isNew =
         options.resume.empty() ||
         (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
-    Prepared run = isNew ? prepareNew(context, options, request, phases)
+    Prepared run = isNew ? prepareNew(context, options, request, std::move(submitted), phases)
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
@@ -275,10 +271,27 @@ void requireUsable(const RunOptions& options) {
     if (!options.budget.empty()) batch::parseBudgetS(options.budget);
 }
 
+/// What the tasks of a submission run.
+int runSubmitted(const Context& context, RunOptions options) {
+    Selection& selection = options.selection;
+    if (!selection.names.empty() || !selection.sets.empty() || !selection.sweeps.empty() ||
+        !selection.only.empty() || !options.budget.empty()) {
+        throw UsageError("run: --plan has configs and options of its own; give none");
+    }
+    batch::Plan plan = submittedPlan(options.plan, selection.assets);
+    selection.profile = plan.profile;
+    const batch::Request request = plan.request;
+    return execute(context, options, request, false, std::move(plan));
+}
+
 }  // namespace
 
 int run(const Context& context, const RunOptions& options) {
     const std::vector<std::string>& files = options.selection.names;
+    if (!options.plan.empty()) {
+        requireUsable(options);
+        return runSubmitted(context, options);
+    }
     if (options.resume.empty() && files.empty()) {
         throw UsageError("run: give config files, or --resume DIR");
     }

@@ -34,7 +34,7 @@ constexpr int kUnknownShards = 8;   // where nothing is predicted either
 
 /// What of a submission is kept in submission.json.
 struct Stored {
-    std::vector<std::string> runArguments;
+    std::vector<std::string> asked;
     std::vector<int> unitCounts;  // a shard each
     std::string arrayJob;         // empty: not by Slurm
     std::string mergeJob;
@@ -52,16 +52,21 @@ std::optional<Stored> readStored(const fs::path& out) {
                   json.at("merge_job")};
 }
 
+/// What its tasks measure, whatever becomes of the configs.
+fs::path frozenPlan(const fs::path& out) {
+    return out / "submitted-plan.json";
+}
+
 void writeStored(const fs::path& out, const Stored& stored) {
-    const Json json = {{"run_arguments", stored.runArguments},
+    const Json json = {{"run_arguments", stored.asked},
                        {"units", stored.unitCounts},
                        {"array_job", stored.arrayJob},
                        {"merge_job", stored.mergeJob}};
     writeFileAtomic(storedFile(out), json.dump(1) + '\n');
 }
 
-std::vector<std::string> runArgumentsOf(const SubmitOptions& options,
-                                        const batch::Request& request) {
+/// All that was asked for: a submission that is continued must ask for the same.
+std::vector<std::string> askedFor(const SubmitOptions& options, const batch::Request& request) {
     std::vector<std::string> arguments = request.configs;
     const auto add = [&](const char* option, const std::string& value) {
         arguments.insert(arguments.end(), {option, value});
@@ -90,6 +95,7 @@ int shardCountOf(const SubmitOptions& options, const batch::Plan& plan,
 /// A submission with its cut: which shard has how many units.
 struct Cut {
     Submission submission;
+    std::vector<std::string> asked;
     std::vector<int> unitCounts;
     std::vector<double> timesS;  // predicted, a shard each
     batch::Predictor predictor;
@@ -99,12 +105,17 @@ struct Cut {
 Cut cutPlan(const Context& context, const SubmitOptions& options) {
     const batch::Request request =
         requestOf(options.selection, findPaperConfigs(options.selection.names));
-    Cut cut;
-    cut.plan = planFor(context, request, options.selection.profile, options.selection.assets,
-                       deviceClassFor(options.selection));
     const fs::path out = fs::absolute(options.out).lexically_normal();
-    // A submission that is continued is cut as it was.
-    const bool isBegun = fs::exists(storedFile(out));
+    const std::string& assets = options.selection.assets;
+    Cut cut;
+    cut.asked = askedFor(options, request);
+    // A submission that is continued is cut as it was, from the plan as it was.
+    const std::optional<Stored> before = readStored(out);
+    const bool isBegun = before.has_value();
+    const bool isFrozen = isBegun && before->asked == cut.asked && fs::exists(frozenPlan(out));
+    cut.plan = isFrozen ? submittedPlan(frozenPlan(out), assets)
+                        : planFor(context, request, options.selection.profile, assets,
+                                  deviceClassFor(options.selection));
     History history = isBegun ? openHistory({out / "predictions.csv"}, "")
                               : openHistory(options.from, cut.plan.deviceClass);
     const bool arePredicted = !forecastText(cut.plan, history, 1).empty();
@@ -113,7 +124,9 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     Submission& s = cut.submission;
     s.name = runSlug(cut.plan);
     s.program = fs::read_symlink("/proc/self/exe");
-    s.runArguments = runArgumentsOf(options, request);
+    s.runArguments = {"--plan", frozenPlan(out), "--assets", fs::absolute(assetsFolder(assets))};
+    if (options.jobs > 0)
+        s.runArguments.insert(s.runArguments.end(), {"--jobs", std::to_string(options.jobs)});
     s.out = out;
     s.shardCount = shardCountOf(options, cut.plan, timesS, arePredicted);
     if (!options.partition.empty()) s.sbatchFlags.push_back("--partition=" + options.partition);
@@ -252,7 +265,7 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before, bool isDr
     }
     writeFileAtomic(s.out / "task.sh", batch::taskScript(s));
     writeFileAtomic(s.out / "merge.sh", batch::mergeScript(s));
-    Stored stored{s.runArguments, cut.unitCounts, "", ""};
+    Stored stored{cut.asked, cut.unitCounts, "", ""};
     if (!pending.empty()) stored.arrayJob = sbatch(arrayArguments(s, indices));
     writeStored(s.out, stored);  // known even if the merge is refused
     stored.mergeJob = sbatch(mergeArguments(s, stored.arrayJob));
@@ -272,7 +285,7 @@ int writeCommands(const Cut& cut, bool isDryRun) {
     if (isDryRun) return kExitOk;
     writeFileAtomic(s.out / "commands.txt", commands);
     writeFileAtomic(s.out / "merge.sh", "#!/bin/sh\n" + merge);
-    writeStored(s.out, {s.runArguments, cut.unitCounts, "", ""});
+    writeStored(s.out, {cut.asked, cut.unitCounts, "", ""});
     tell("parallel --jobs 1 < {}; sh {}\n", (s.out / "commands.txt").string(),
          (s.out / "merge.sh").string());
     return kExitOk;
@@ -291,13 +304,14 @@ int submit(const Context& context, const SubmitOptions& options) {
     const Cut cut = cutPlan(context, options);
     const Submission& s = cut.submission;
     const std::optional<Stored> before = readStored(s.out);
-    const Stored now{s.runArguments, cut.unitCounts, "", ""};
-    if (before &&
-        (before->runArguments != now.runArguments || before->unitCounts != now.unitCounts)) {
+    if (before && (before->asked != cut.asked || before->unitCounts != cut.unitCounts)) {
         throw Error(s.out.string() + ": holds another submission; give another folder");
     }
     if (!options.isDryRun && !before) {
         batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
+    }
+    if (!options.isDryRun && !fs::exists(frozenPlan(s.out))) {
+        writeFileAtomic(frozenPlan(s.out), cut.plan.toJson().dump(1) + '\n');
     }
     if (options.engine == "commands") return writeCommands(cut, options.isDryRun);
     return submitToSlurm(cut, before, options.isDryRun);

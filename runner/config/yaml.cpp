@@ -17,6 +17,8 @@ namespace gfxrepro::config {
 namespace {
 
 constexpr std::size_t kMaxDepth = 64;
+/// Keys are looked for one after another; beyond this, reading a map would take minutes.
+constexpr std::size_t kMaxKeys = 20'000;
 constexpr std::size_t kMaxAliasedNodes = 100'000;
 
 std::size_t countNodes(const Node& node) {
@@ -167,6 +169,9 @@ class Builder : public YAML::EventHandler {
         if (parent.node.find(key)) {
             throw Error(where, "duplicate key '" + key + "'; the first stands in line " +
                                    std::to_string(parent.node.keyLocation(key).line));
+        }
+        if (parent.node.entries().size() == kMaxKeys) {
+            throw Error(where, "more than " + std::to_string(kMaxKeys) + " keys in a map");
         }
         parent.key = key;
         parent.keyLocation = where;

@@ -68,29 +68,16 @@ fs::path besides(const std::string& png, const fs::path& folder, const std::stri
     return folder / place.parent_path() / (place.stem().string() + suffix + ".png");
 }
 
-/// Where the thumbnail of an image lies, made if it is not there; the image itself if that is
-/// small.
-std::string thumbnailOf(const fs::path& runDir, const std::string& png,
-                        const image::Image8& image) {
-    const int longerPx = std::max(image.width(), image.height());
-    if (longerPx <= kThumbnailPx) return png;
-    const fs::path place = besides(png, "thumbnails", "");
-    if (!isCurrent(runDir / place, runDir / png)) {
-        fs::create_directories((runDir / place).parent_path());
-        image::writePng(
-            runDir / place,
-            image::resizedTo(image, std::max(1, kThumbnailPx * image.width() / longerPx)));
-    }
-    return place.generic_string();
-}
-
 using ImageKey = std::tuple<std::string, int, std::string>;  // case, frame, name
 
 /// One run's images on their way into a page.
 class Gallery {
   public:
-    Gallery(const fs::path& runDir, const fs::path& file, bool embeds)
-        : runDir_(runDir), pageFolder_(fs::absolute(file).parent_path()), embeds_(embeds) {
+    Gallery(const fs::path& runDir, const fs::path& madeDir, const fs::path& file, bool embeds)
+        : runDir_(runDir),
+          madeDir_(madeDir),
+          pageFolder_(fs::absolute(file).parent_path()),
+          embeds_(embeds) {
         for (report::ImageEntry& entry : report::readImages(runDir)) {
             std::error_code isAbsent;
             if (entry.png.empty() || !fs::is_regular_file(runDir / entry.png, isAbsent)) continue;
@@ -105,7 +92,8 @@ class Gallery {
     const std::vector<report::ImageEntry>& entries() const { return entries_; }
 
     Shot shotOf(const report::ImageEntry& entry) const {
-        const image::Image8 picture = image::readPng8(runDir_ / entry.png);
+        const fs::path file = runDir_ / entry.png;
+        const image::Image8 picture = image::readPng8(file);
         Shot shot;
         shot.table = entry.table;
         shot.caseId = entry.caseId;
@@ -113,16 +101,30 @@ class Gallery {
         shot.name = nameOf(entry);
         shot.width = picture.width();
         shot.height = picture.height();
-        const std::string thumbnail =
-            embeds_ ? entry.png : thumbnailOf(runDir_, entry.png, picture);
+        const fs::path thumbnail = embeds_ ? file : thumbnailOf(entry.png, picture);
         shot.thumbnail = addressOf(thumbnail);
-        if (thumbnail != entry.png) shot.full = addressOf(entry.png);
+        if (thumbnail != file) shot.full = addressOf(file);
         const auto truth = truths_.find({entry.caseId, entry.frame, entry.name});
         if (truth != truths_.end()) compare(entry, picture, truth->second, shot);
         return shot;
     }
 
   private:
+    /// Where the thumbnail of an image lies, made if it is not there; the image itself if that is
+    /// small.
+    fs::path thumbnailOf(const std::string& png, const image::Image8& image) const {
+        const int longerPx = std::max(image.width(), image.height());
+        if (longerPx <= kThumbnailPx) return runDir_ / png;
+        const fs::path place = madeDir_ / besides(png, "thumbnails", "");
+        if (!isCurrent(place, runDir_ / png)) {
+            fs::create_directories(place.parent_path());
+            image::writePng(
+                place,
+                image::resizedTo(image, std::max(1, kThumbnailPx * image.width() / longerPx)));
+        }
+        return place;
+    }
+
     /// A frame is named only where a case has several.
     std::string nameOf(const report::ImageEntry& entry) const {
         if (frames_.at(entry.caseId).size() == 1) return entry.name;
@@ -138,20 +140,22 @@ class Gallery {
         const auto values = map.values();
         shot.flipMean =
             std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-        const fs::path place = besides(entry.png, "images", "-flip");
-        if (!isCurrent(runDir_ / place, runDir_ / entry.png)) {
-            image::writePng(runDir_ / place, metrics::flipPicture(map));
+        const fs::path place = madeDir_ / besides(entry.png, "images", "-flip");
+        if (!isCurrent(place, runDir_ / entry.png)) {
+            fs::create_directories(place.parent_path());
+            image::writePng(place, metrics::flipPicture(map));
         }
-        shot.flip = addressOf(place.generic_string());
+        shot.flip = addressOf(place);
     }
 
-    /// What an <img> of the page takes for a file of the run.
-    std::string addressOf(const std::string& place) const {
-        if (embeds_) return "data:image/png;base64," + report::base64(readFile(runDir_ / place));
-        return encodedAddress(fs::relative(fs::absolute(runDir_ / place), pageFolder_));
+    /// What an <img> of the page takes for a file.
+    std::string addressOf(const fs::path& file) const {
+        if (embeds_) return "data:image/png;base64," + report::base64(readFile(file));
+        return encodedAddress(fs::relative(fs::absolute(file), pageFolder_));
     }
 
     fs::path runDir_;
+    fs::path madeDir_;
     fs::path pageFolder_;
     bool embeds_;
     std::vector<report::ImageEntry> entries_;
@@ -161,8 +165,9 @@ class Gallery {
 
 }  // namespace
 
-std::vector<Shot> gatherShots(const fs::path& runDir, const fs::path& file, bool embeds) {
-    const Gallery gallery(runDir, file, embeds);
+std::vector<Shot> gatherShots(const fs::path& runDir, const fs::path& madeDir, const fs::path& file,
+                              bool embeds) {
+    const Gallery gallery(runDir, madeDir, file, embeds);
     std::vector<Shot> shots(gallery.entries().size());
     tbb::parallel_for(std::size_t{0}, shots.size(),
                       [&](std::size_t i) { shots[i] = gallery.shotOf(gallery.entries()[i]); });

@@ -24,10 +24,11 @@ struct Shot {
     int height = 0;
 };
 
-/// The images of a run, for a page at `file`. Makes what is not there yet: FLIP maps of those that
-/// have a truth of their size (images/…-flip.png, judged as displayed), thumbnails where images are
-/// not embedded. Throws Error for an image that is no PNG.
+/// The images of a run, for a page at `file`. Makes below `madeDir` what is not there yet: FLIP
+/// maps of those that have a truth of their size (images/…-flip.png, judged as displayed),
+/// thumbnails where images are not embedded. Throws Error for an image that is no PNG.
 std::vector<Shot> gatherShots(const std::filesystem::path& runDir,
+                              const std::filesystem::path& madeDir,
                               const std::filesystem::path& file, bool embeds);
 
 }  // namespace gfxrepro::html

@@ -65,13 +65,29 @@ Page& pageOf(const std::string& id, Model& model) {
     return model.pages.emplace_back(std::move(page));
 }
 
+/// Where plots, FLIP maps and thumbnails of a run go: its folder, where the page lies there too;
+/// else beside the page, which leaves the run as it is: "all.html" → all-files/A.
+fs::path madeFolder(const fs::path& runDir, std::size_t index, const fs::path& file) {
+    const auto folderOf = [](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(path));
+    };
+    const fs::path beside = folderOf(file).parent_path();
+    if (beside == folderOf(runDir / "plan.json").parent_path()) return runDir;
+    return file.parent_path() / (file.stem().string() + "-files") / Model::letter(index);
+}
+
+/// A file as the page at `page` names it.
+std::string shownFrom(const fs::path& page, const fs::path& file) {
+    return fs::relative(fs::absolute(file), fs::absolute(page).parent_path()).generic_string();
+}
+
 void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) {
     const ReportRun& run = model.runs[index];
     std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
     report::addCalibrations(run.context.calibrations, tables);
-    const std::vector<report::PlotFile> plots =
-        report::writePlots(run.folder, tables, run.experiments);
-    const std::vector<Shot> shots = gatherShots(run.folder, file, embeds);
+    const fs::path made = madeFolder(run.folder, index, file);
+    const std::vector<report::PlotFile> plots = report::writePlots(made, tables, run.experiments);
+    const std::vector<Shot> shots = gatherShots(run.folder, made, file, embeds);
     for (std::size_t i = 0; i < run.experiments.size(); ++i) {
         const config::Experiment& experiment = run.experiments[i];
         Page& page = pageOf(experiment.id, model);
@@ -86,9 +102,9 @@ void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) 
                              [&](const Shot& shot) { return shot.table == experiment.id; });
         for (const report::PlotFile& plot : plots) {
             if (plot.table != experiment.id) continue;
-            part.curves.push_back({plot.title,
-                                   plot.svg.empty() ? "" : readFile(run.folder / plot.svg),
-                                   plot.problem, plot.script});
+            part.curves.push_back({plot.title, plot.svg.empty() ? "" : readFile(made / plot.svg),
+                                   plot.problem,
+                                   plot.script.empty() ? "" : shownFrom(file, made / plot.script)});
         }
         for (const ReportCase& item : run.cases) {
             if (item.table == experiment.id) part.cases.push_back(&item);
@@ -107,8 +123,8 @@ const RunPart* Page::shown() const {
 }
 
 std::string Model::letter(std::size_t run) {
-    GFXREPRO_ASSERT(run < 26);
-    return std::string(1, static_cast<char>('A' + run));
+    std::string before = run < 26 ? "" : letter(run / 26 - 1);
+    return before += static_cast<char>('A' + run % 26);
 }
 
 Model buildModel(std::span<const ReportRun> runs, const fs::path& file) {

@@ -57,7 +57,7 @@ struct Model {
     std::vector<Page> pages;
 
     bool isComparison() const { return runs.size() > 1; }
-    /// "A", "B", …
+    /// "A", "B", … "Z", "AA", …
     static std::string letter(std::size_t run);
 };
 

@@ -36,9 +36,11 @@ struct ReportRun {
 };
 
 /// One file that asks no network and no other file but images: an overview of all claims, then a
-/// page a table. Images lie inside up to 20 MB; beyond, the page shows thumbnails that are made
-/// beside the images, and links both, relative to `file`. Several runs are lettered A, B, … and
-/// stand side by side. Throws Error when a file cannot be written.
+/// page a table. Images lie inside up to 20 MB; beyond, the page shows thumbnails, and links
+/// both, relative to `file`. What is made for it (plots, FLIP maps, thumbnails) goes into the run's
+/// folder where `file` lies there; else beside `file`, into <stem>-files/, and the run stays as it
+/// is. Several runs are lettered A, B, … and stand side by side. Throws Error when a file cannot be
+/// written.
 void writeReport(const std::filesystem::path& file, std::span<const ReportRun> runs);
 
 }  // namespace gfxrepro::html

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <unordered_set>
 
 #include "runner/core/error.h"
 
@@ -109,7 +110,7 @@ class HeaderParser {
         if (error != std::errc() || stop != end) {
             fail(fmt::format("'{}' is not a count of elements", line[2]));
         }
-        if (header_.find(element.name) != nullptr) {
+        if (!names_.insert(line[1]).second) {
             fail(fmt::format("element '{}' is declared twice", element.name));
         }
         header_.elements.push_back(std::move(element));
@@ -146,6 +147,7 @@ class HeaderParser {
     const std::string& file_;
     std::size_t at_ = 0;
     int line_ = 0;
+    std::unordered_set<std::string_view> names_;  // of elements
     Header header_;
 };
 

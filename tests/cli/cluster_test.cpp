@@ -212,6 +212,44 @@ TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     EXPECT_EQ(report::readRecords(dir + "/records-replaced.csv").size(), two.size());
 }
 
+TEST(Shards, ValuesOfSeveralMachinesAreMarked) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const std::string dir = folder.path() / "run", other = folder.path() / "other";
+    ASSERT_EQ(measure(config, dir, {"--shard", "1/2"}).exitCode, 0);
+    ASSERT_EQ(measure(config, other, {"--shard", "2/2"}).exitCode, 0);
+    // As if the first shard had begun elsewhere and had lost its case.
+    const std::string manifest = readFile(dir + "/manifest.json");
+    std::string moved = manifest;
+    moved.insert(manifest.find("\"cpu\": \"") + 8, "Another ");
+    writeFileAtomic(dir + "/manifest.json", moved);
+    const auto hasNote = [](const std::string& run) {
+        EXPECT_EQ(mockGfxrepro({"report", run}).exitCode, 0);
+        for (const char* file : {"/tables/sweep-mock.md", "/report.html"}) {
+            EXPECT_THAT(readFile(run + file),
+                        HasSubstr("measured on several machines, the times of each table on one of "
+                                  "them: Another "));
+        }
+    };
+    const std::string merged = folder.path() / "merged";
+    ASSERT_EQ(mockGfxrepro({"merge", merged, dir, other}).exitCode, 0);
+    hasNote(merged);
+    const ProcessResult beside =
+        mockGfxrepro({"report", dir, other, "--out", folder.path() / "both.html"});
+    EXPECT_THAT(beside.out, HasSubstr("warning: the runs are of several machines: Another "));
+    EXPECT_THAT(readFile(folder.path() / "both.html"),
+                HasSubstr("the runs are of several machines: Another "));
+
+    fs::remove(dir + "/records.csv");
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("warning: begun on Another "));
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out, HasSubstr("warning: measured on several"));
+    hasNote(dir);
+    const ProcessResult again = mockGfxrepro({"run", "--resume", dir});  // measures nothing
+    EXPECT_THAT(again.err, Not(HasSubstr("begun on")));
+}
+
 TEST(Resume, WithConfigsBeginsOrGoesOn) {
     const TemporaryFolder folder;
     const std::string config = writeNumbers(folder, 4);
@@ -271,6 +309,46 @@ TEST(Submit, CommandsMeasureAndMerge) {
     EXPECT_EQ(replaced(mockGfxrepro(other).err, out, "OUT"),
               "5 cases in 2 shards of 2 to 3 units; no earlier run tells their time\n"
               "gfxrepro: OUT: holds another submission; give another folder\n");
+}
+
+TEST(Submit, WhatWasSubmittedIsMeasured) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const std::string out = folder.path() / "out";
+    const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
+                                              out,      "--engine", "commands", "--shards", "2"};
+    const ProcessResult submitted = mockGfxrepro(command);
+    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    const std::vector<std::string> lines = split(submitted.out, '\n');
+    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    writeNumbers(folder, 3, "params: {pause_ms: 1}\n");
+    const std::string warning = "warning: " + config + " changed; what was submitted is measured\n";
+    const ProcessResult second = runProgram({"/bin/sh", "-c", lines[1]});
+    EXPECT_EQ(second.exitCode, 0) << second.err;
+    EXPECT_THAT(second.err, HasSubstr(warning));
+    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
+    EXPECT_EQ(merged.exitCode, 0) << merged.err;
+    EXPECT_THAT(merged.out, HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
+    // Submitted once more it is the same submission.
+    const ProcessResult again = mockGfxrepro(command);
+    EXPECT_EQ(again.exitCode, 0);
+    EXPECT_THAT(again.err, HasSubstr(warning));
+    EXPECT_EQ(again.out, submitted.out);
+
+    const std::string file = out + "/submitted-plan.json";
+    const std::string plan = readFile(file);
+    std::string changed = plan;
+    changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
+    writeFileAtomic(file, changed);
+    fs::remove_all(out + "/shards");
+    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]});
+    EXPECT_EQ(other.exitCode, 2);
+    EXPECT_THAT(other.err, HasSubstr(file + ": cannot be measured: the program or a shader changed "
+                                            "(build 000000000000 then, "));
+    EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
+    EXPECT_FALSE(fs::exists(out + "/shards/1"));
+    EXPECT_EQ(mockGfxrepro({"run", config, "--plan", file}).err,
+              "gfxrepro: run: --plan has configs and options of its own; give none\n");
 }
 
 TEST(Submit, DryRunWritesNothing) {

@@ -1,10 +1,12 @@
-// The runner or one of its workers is killed at 25 random moments: nothing measured is lost, and
-// the tables end as those of a run that nobody touched.
+// The runner, its workers or both are killed at 25 random moments (GFXREPRO_TEST_KILLS: at as
+// many): nothing measured is lost, nothing is left, and the tables end as those of a run that
+// nobody touched.
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -17,12 +19,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFolders = 5;
+constexpr int kMoments = 25;
 constexpr int kMomentsInFolder = 5;
 constexpr int kLatestMs = 700;  // a run that nobody kills takes a little more
 
+enum class Victim { Runner, Workers, Both };
+
+int folderCount() {
+    const char* moments = std::getenv("GFXREPRO_TEST_KILLS");
+    return (moments ? std::atoi(moments) : kMoments) / kMomentsInFolder;
+}
+
 /// Starts or continues the run in `dir` and kills something `delayMs` later.
-void runAndKill(const std::string& config, const std::string& dir, int delayMs, bool isRunner) {
+void runAndKill(const std::string& config, const std::string& dir, int delayMs, Victim victim) {
     std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "run"};
     if (fs::exists(dir + "/plan.json")) {
         command.insert(command.end(), {"--resume", dir, "--retry"});
@@ -31,12 +40,21 @@ void runAndKill(const std::string& config, const std::string& dir, int delayMs, 
     }
     BackgroundProgram run(command);
     std::this_thread::sleep_for(std::chrono::milliseconds(delayMs));
-    if (isRunner) {
-        run.signal(SIGKILL);
-    } else {
+    if (victim != Victim::Runner) {
         for (const pid_t worker : backgroundWorkers()) ::kill(worker, SIGKILL);
     }
+    if (victim != Victim::Workers) run.signal(SIGKILL);
     run.wait();
+}
+
+/// Files that were being written.
+std::vector<fs::path> temporaryFiles(const fs::path& dir) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(dir)) {
+        const bool isTemporary = entry.path().string().find(".tmp") != std::string::npos;
+        if (isTemporary) files.push_back(entry.path());
+    }
+    return files;
 }
 
 std::size_t measuredCount(const std::string& dir) {
@@ -54,13 +72,12 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
     std::mt19937 random(20261121);
     std::size_t unfinished = 0;
-    for (int i = 0; i < kFolders; ++i) {
+    for (int i = 0; i < folderCount(); ++i) {
         const std::string dir = folder.path() / ("killed" + std::to_string(i));
         std::size_t measured = 0;
         for (int moment = 0; moment < kMomentsInFolder; ++moment) {
             const int delayMs = static_cast<int>(random() % kLatestMs);
-            const bool isRunner = random() % 2 == 0;
-            runAndKill(config, dir, delayMs, isRunner);
+            runAndKill(config, dir, delayMs, static_cast<Victim>(random() % 3));
             const std::size_t now = measuredCount(dir);
             EXPECT_GE(now, measured) << dir << ", " << delayMs << " ms";
             measured = now;
@@ -72,6 +89,8 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
                 ? mockGfxrepro({"run", "--resume", dir, "--retry"})
                 : mockGfxrepro({"run", config, "--device", "software", "--out", dir});
         EXPECT_EQ(last.exitCode, 0) << last.err;
+        EXPECT_TRUE(temporaryFiles(dir).empty()) << dir;
+        EXPECT_EQ(rowsOf(dir, "number").size(), 12U) << dir;
         EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
         for (const char* file : {"csv", "md", "tex"}) {
             const std::string name = std::string("/tables/sweep-mock.") + file;

@@ -23,10 +23,11 @@ class Nightly : public ::testing::Test {
         fs::permissions(program, fs::perms::owner_all);
         return program.parent_path();
     }
-    ProcessResult night(int extraMs, bool isFix = false) const {
+    ProcessResult night(int extraMs, bool isFix = false, const std::string& reason = "") const {
         std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         if (isFix) arguments.emplace_back("--fix");
+        if (!reason.empty()) arguments.insert(arguments.end(), {"--accept", reason});
         const fs::path config = writeMockConfig(folder,
                                                 "params: {busy_ms: 80}\n"
                                                 "measure: {lane: timing, warmup: 0, repeats: 2}\n");
@@ -35,6 +36,14 @@ class Nightly : public ::testing::Test {
     }
     /// The program that later nights are compared with.
     std::string landed() const { return readFile(state + "/landed/gfxrepro"); }
+    /// Runs below all nights.
+    std::size_t keptRuns() const {
+        std::size_t count = 0;
+        for (const auto& entry : fs::recursive_directory_iterator(state)) {
+            count += entry.path().filename() == "plan.json" ? 1 : 0;
+        }
+        return count;
+    }
     void letAWeekPass() const {
         fs::last_write_time(state + "/fixed-compared",
                             fs::file_time_type::clock::now() - std::chrono::hours(24 * 8));
@@ -62,11 +71,34 @@ TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
     EXPECT_NE(slow.out.find("alarm; measuring again\n"), std::string::npos) << slow.out;
     EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "a slower build does not land";
+    EXPECT_GE(keptRuns(), 28U) << "those of the alarm: two looks at both builds";
     // As it is meant to be slower:
-    const ProcessResult fixed = night(60, true);
-    EXPECT_EQ(fixed.exitCode, 0) << fixed.err;
+    const ProcessResult accepted = night(60, false, "it is \"right\" now");
+    EXPECT_EQ(accepted.exitCode, 0) << accepted.err;
     EXPECT_NE(landed().find("EXTRA_MS=60 "), std::string::npos);
     EXPECT_FALSE(fs::exists(state + "/history.csv")) << "begins anew";
+    const std::string reasons = readFile(state + "/accepted.csv");
+    EXPECT_NE(reasons.find(",1,\"it is \"\"right\"\" now\"\n"), std::string::npos) << reasons;
+    const ProcessResult fixed = night(0, true);
+    EXPECT_EQ(fixed.exitCode, 0) << fixed.err;
+    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+}
+
+TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    fs::rename(state + "/landed", state + "/landed.old");  // as if it was killed while it landed
+    fs::create_directories(state + "/landed.new");
+    BackgroundProgram other({"/usr/bin/flock", "-F", state + "/lock", "/bin/sleep", "60"});
+    while (runProgram({"/usr/bin/flock", "-n", state + "/lock", "/bin/true"}).exitCode == 0) {
+    }
+    const ProcessResult second = night(1);
+    EXPECT_EQ(second.exitCode, 2);
+    EXPECT_EQ(second.err, "nightly: another night is under way in " + state + "\n");
+    other.signal(SIGKILL);
+    other.wait();
+    EXPECT_EQ(night(1).exitCode, 0);
+    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos);
+    EXPECT_FALSE(fs::exists(state + "/landed.old") || fs::exists(state + "/landed.new"));
 }
 
 TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {

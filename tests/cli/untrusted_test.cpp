@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <map>
+
 #include "runner/core/files.h"
 #include "tests/cli/cli_support.h"
 
@@ -92,6 +94,44 @@ TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
         EXPECT_THAT(readFile(script.path()), HasSubstr("--profile '$(touch x); #"));
         EXPECT_THAT(readFile(script.path()), HasSubstr("--device '$(touch y)"));
     }
+}
+
+/// Every file below with what is in it.
+std::map<std::string, std::string> contents(const fs::path& dir) {
+    std::map<std::string, std::string> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir)) {
+        files[entry.path()] = entry.is_regular_file() ? readFile(entry.path()) : "";
+    }
+    return files;
+}
+
+TEST_F(Untrusted, WhatIsWrittenElsewhereLeavesTheRunAsItIs) {
+    const std::map<std::string, std::string> before = contents(dir);
+    const auto written = [&](std::vector<std::string> command, const std::string& file) {
+        command.insert(command.end(),
+                       {"--out", out + (command.front() == "report" ? ".html" : "")});
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 0) << command.front() << result.err;
+        EXPECT_TRUE(fs::exists(file)) << command.front() << ": " << file;
+        EXPECT_EQ(contents(dir), before) << command.front();
+        fs::remove_all(out);
+    };
+    written({"table", dir}, out + "/tables/sweep-mock.csv");
+    written({"claims", dir}, out + "/claims.csv");
+    const std::string config = folder.path() / "mock.yaml";
+    written({"claims", dir, "--config", config}, out + "/judged-afterwards/claims.csv");
+    written({"export", dir}, out + "/report.html");
+    const std::string flip = "/images/sweep-mock/" + rowsOf(dir, "number")[0].caseId + "-flat-flip";
+    written({"report", dir}, out + "-files/A" + flip + ".png");
+    written({"report", dir, dir}, out + "-files/B" + flip + ".png");
+}
+
+TEST_F(Untrusted, AReportOfManyRuns) {
+    std::vector<std::string> command(28, dir);
+    command.front() = "report";
+    command.insert(command.end(), {"--out", out + ".html"});
+    EXPECT_EQ(mockGfxrepro(command).exitCode, 0);
+    EXPECT_THAT(readFile(out + ".html"), HasSubstr("<th>AA</th>"));
 }
 
 }  // namespace

@@ -150,5 +150,41 @@ TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
 }
 
+TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(shell(mockRun(config, dir)).exitCode, 0);
+    const std::vector<std::string> left = {"run/images/sweep-mock/a.exr.tmp4711",
+                                           "run/manifest.json.tmp12", "run/records.csv.tmp"};
+    for (const std::string& file : left) folder.write(file, "torn");
+    folder.write("run/images/notes.tmpl", "kept");
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+    for (const std::string& file : left) EXPECT_FALSE(fs::exists(folder.path() / file)) << file;
+    EXPECT_TRUE(fs::exists(dir + "/images/notes.tmpl"));
+}
+
+TEST(Weekend, FilesOfOthersAreNotWrittenOver) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const std::string dir = folder.path() / "work";
+    folder.write("work/claims.csv", "my own\n");
+    const ProcessResult result = shell(mockRun(config, dir));
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.err, "gfxrepro: " + dir +
+                              ": has a claims.csv that is of no run and would be written over; "
+                              "give another folder\n");
+    EXPECT_EQ(readFile(dir + "/claims.csv"), "my own\n");
+    EXPECT_FALSE(fs::exists(dir + "/lock"));
+}
+
+TEST(Weekend, TooFewDescriptorsAreSaid) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const ProcessResult result =
+        shell("ulimit -n 12; exec " + mockRun(config, folder.path() / "run"));
+    EXPECT_THAT(result.err, HasSubstr("cannot start: too few file descriptors (ulimit -n)"));
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

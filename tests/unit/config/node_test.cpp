@@ -217,5 +217,11 @@ TEST(Node, MergingKeepsPlacesAndOrder) {
     EXPECT_EQ(merged(Node(), over).toFlowText(), "{b: [9], a: {y: 5, z: {}}, d: 4}");
 }
 
+TEST(Node, AMapHasALimit) {
+    std::string text;
+    for (int i = 0; i < 200'000; ++i) text += "k" + std::to_string(i) + ": 1\n";
+    EXPECT_EQ(parseError(text), "a.yaml:20001:1: more than 20000 keys in a map");
+}
+
 }  // namespace
 }  // namespace gfxrepro::config

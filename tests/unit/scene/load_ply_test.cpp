@@ -195,5 +195,14 @@ TEST_F(LoadPly, GivesTheByteOfBinaryErrors) {
               "DIR/a.ply:3: 1 rows of element 'vertex' do not fit into the file");
 }
 
+/// Looked up by name, these took minutes.
+TEST_F(LoadPly, AHeaderOfManyElementsIsReadAtOnce) {
+    std::string header = "ply\nformat ascii 1.0\n";
+    constexpr int kCount = 300'000;
+    for (int i = 0; i < kCount; ++i) header += "element e" + std::to_string(i) + " 0\n";
+    EXPECT_EQ(error(header + "element e7 0\nend_header\n"),
+              "DIR/a.ply:" + std::to_string(kCount + 3) + ": element 'e7' is declared twice");
+}
+
 }  // namespace
 }  // namespace gfxrepro::scene
