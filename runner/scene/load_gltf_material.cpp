@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "runner/scene/load_texture.h"
 
@@ -29,7 +31,9 @@ glm::vec2 vec2(const Value* value, const glm::vec2& fallback) {
     return {number(&value->Get(0), fallback.x), number(&value->Get(1), fallback.y)};
 }
 
-TextureUse textureUse(const tinygltf::TextureInfo& info) {
+/// Of tinygltf's TextureInfo, or NormalTextureInfo, which is a type of its own.
+template <class Info>
+TextureUse textureUse(const Info& info) {
     constexpr const char* kExtension = "KHR_texture_transform";
     TextureUse use;
     use.texcoordSet = info.texCoord;
@@ -107,6 +111,7 @@ Material materialOf(const tinygltf::Material& from) {
             static_cast<float>(from.emissiveFactor[c] * strength);
     }
     if (from.alphaMode == "MASK") material.alphaCutoff = static_cast<float>(from.alphaCutoff);
+    material.normalScale = static_cast<float>(from.normalTexture.scale);
     material.isDoubleSided = from.doubleSided;
     material.isUnlit = from.extensions.count("KHR_materials_unlit") != 0;
     material.transmission = static_cast<float>(
@@ -116,16 +121,50 @@ Material materialOf(const tinygltf::Material& from) {
     return material;
 }
 
+/// One of a material's textures.
+struct Slot {
+    const char* name;
+    int texture;  // into Scene::textures; −1: none
+    TextureUse use;
+    int* to;  // of the material
+};
+
+/// Sets the material's textures; returns how it reads them.
+TextureUse addTextures(const tinygltf::Material& from, TextureTable& textures, Material& material,
+                       std::vector<std::string>& warnings) {
+    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+    const auto slot = [&](const char* name, const auto& info, int& to) {
+        return Slot{name, textures.find(info.index), textureUse(info), &to};
+    };
+    const std::array<Slot, 4> slots{
+        slot("base colour", pbr.baseColorTexture, material.baseColorTexture),
+        slot("metallic-roughness", pbr.metallicRoughnessTexture, material.metallicRoughnessTexture),
+        slot("normal", from.normalTexture, material.normalTexture),
+        slot("emissive", from.emissiveTexture, material.emissiveTexture)};
+    std::optional<TextureUse> shared;
+    for (const Slot& s : slots) {
+        if (s.texture < 0) continue;
+        if (!shared) shared = s.use;
+        if (s.use == *shared) {
+            *s.to = s.texture;
+        } else {
+            warnings.push_back(
+                fmt::format("material '{}': its {} texture is left out, as it reads other texture "
+                            "coordinates than those before it",
+                            from.name, s.name));
+        }
+    }
+    return shared.value_or(slots[0].use);
+}
+
 }  // namespace
 
 std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene) {
     TextureTable textures(file, accessors, scene);
     std::vector<TextureUse> uses;
     for (const tinygltf::Material& from : file.model.materials) {
-        const tinygltf::TextureInfo& info = from.pbrMetallicRoughness.baseColorTexture;
         scene.materials.push_back(materialOf(from));
-        scene.materials.back().baseColorTexture = textures.find(info.index);
-        uses.push_back(textureUse(info));
+        uses.push_back(addTextures(from, textures, scene.materials.back(), scene.warnings));
     }
     return uses;
 }

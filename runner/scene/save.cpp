@@ -224,6 +224,10 @@ class GlbBuilder {
         pbr.metallicFactor = from.metallic;
         pbr.roughnessFactor = from.roughness;
         pbr.baseColorTexture.index = from.baseColorTexture;
+        pbr.metallicRoughnessTexture.index = from.metallicRoughnessTexture;
+        to.normalTexture.index = from.normalTexture;
+        to.normalTexture.scale = from.normalScale;
+        to.emissiveTexture.index = from.emissiveTexture;
         to.doubleSided = from.isDoubleSided;
         to.alphaMode = from.baseColor.a < 1.0F ? "BLEND" : "OPAQUE";
         if (from.alphaCutoff > 0.0F) {

@@ -55,8 +55,13 @@ struct Material {
     float metallic = 0.0F;
     float roughness = 1.0F;
     glm::vec3 emissive{0.0F};
-    int baseColorTexture = -1;  // into Scene::textures, sRGB
-    float alphaCutoff = 0.0F;   // 0: opaque
+    // Into Scene::textures; −1: none. All read the mesh's one set of coordinates.
+    int baseColorTexture = -1;          // sRGB, a factor of baseColor
+    int metallicRoughnessTexture = -1;  // linear: G is a factor of roughness, B of metallic
+    int normalTexture = -1;             // linear, tangent space: x along u, y against v
+    float normalScale = 1.0F;           // of its x and y
+    int emissiveTexture = -1;           // sRGB, a factor of emissive
+    float alphaCutoff = 0.0F;           // 0: opaque
     bool isDoubleSided = false;
     bool isUnlit = false;
     float transmission = 0.0F;
@@ -128,14 +133,15 @@ struct Scene {
     Origin origin;
     std::vector<Mesh> meshes;
     std::vector<Material> materials;
-    std::vector<image::Image8> textures;  // 3 or 4 channels, sRGB
+    std::vector<image::Image8> textures;  // 3 or 4 channels; materials say how they are read
     std::vector<Instance> instances;
     PointCloud points;
     std::optional<HeightMap> heights;  // terrain, beside which there may be meshes
     std::vector<Camera> cameras;
     std::vector<CameraPath> paths;
     std::vector<PointLight> lights;
-    std::vector<Motion> motions;  // at most one an instance
+    std::vector<Motion> motions;        // at most one an instance
+    std::vector<std::string> warnings;  // what the loader left out; for the log
 
     /// Of everything that is instanced, in world space, of the points and of the terrain.
     Box bounds() const;

@@ -15,6 +15,7 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'clustered_reflections' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
     scene_.emplace(*context.scene, params_.reflectors);
+    scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
     outputSizePx_ = context.outputSizePx;

@@ -17,6 +17,7 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'reflection_reuse' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
     scene_.emplace(*context.scene, params_.reflectors);
+    scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
     outputSizePx_ = context.outputSizePx;

@@ -62,10 +62,10 @@ HitSurface surfaceAt(MarchImage image, MarchHit hit, vec3 origin, vec3 direction
     barycentric = max(barycentric, vec2(0.0));
     barycentric /= max(barycentric.x + barycentric.y, 1.0);
     vec3 a = cornerOf(triangle, 0u);
-    vec3 met = a + barycentric.x * (cornerOf(triangle, 1u) - a) +
-               barycentric.y * (cornerOf(triangle, 2u) - a);
+    vec3 ab = cornerOf(triangle, 1u) - a, ac = cornerOf(triangle, 2u) - a;
+    vec3 met = a + barycentric.x * ab + barycentric.y * ac;
     if (best.outside == 0.0) surface.distanceM = dot(met - origin, direction);
     uvec4 record = triangles[triangle];
-    surface.colour = diffuseAt(record.xyz, record.w, barycentric, met, direction);
+    surface.colour = diffuseAt(record.xyz, record.w, barycentric, met, direction, ab, ac);
     return surface;
 }

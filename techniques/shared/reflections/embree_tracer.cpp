@@ -150,10 +150,17 @@ glm::vec3 EmbreeTracer::radianceAt(const raycast::Hit& hit, const glm::vec3& dir
         normalFromMesh_[hit.instance] * scene_.normalMeshAt(triangle, hit.barycentric);
     if (glm::dot(normal, normal) == 0.0F) normal = -direction;
     normal = glm::normalize(normal);
-    if (glm::dot(normal, direction) > 0.0F) normal = -normal;
+    if (scene_.objects()[hit.instance].normalLayer >= 0) {
+        // normalFromMesh_ turns the outside of mirrored instances in.
+        const glm::mat4& pose = posed_.instances[hit.instance].worldFromMesh;
+        if (glm::determinant(glm::mat3(pose)) < 0.0F) normal = -normal;
+        normal = scene_.texturedNormalAt(triangle, hit.barycentric, pose, normal, -direction);
+    } else if (glm::dot(normal, direction) > 0.0F) {
+        normal = -normal;
+    }
     return shadeDiffuse(scene_.lights(), hit.position, normal,
                         scene_.albedoAt(triangle, hit.barycentric),
-                        scene_.objects()[hit.instance].emissive);
+                        scene_.emissiveAt(triangle, hit.barycentric));
 }
 
 }  // namespace gfxrepro::reflections

@@ -27,6 +27,8 @@ struct ObjectRecord {
     std::uint32_t triangleCount;
     std::int32_t textureLayer;
     std::uint32_t surface;
+    glm::ivec4 layers;
+    glm::vec4 reflection;
 };
 static_assert(offsetof(ObjectRecord, normalFromMesh) == 64);
 static_assert(offsetof(ObjectRecord, baseColor) == 128);
@@ -37,7 +39,9 @@ static_assert(offsetof(ObjectRecord, firstTriangle) == 192);
 static_assert(offsetof(ObjectRecord, triangleCount) == 196);
 static_assert(offsetof(ObjectRecord, textureLayer) == 200);
 static_assert(offsetof(ObjectRecord, surface) == 204);
-static_assert(sizeof(ObjectRecord) == 208);
+static_assert(offsetof(ObjectRecord, layers) == 208);
+static_assert(offsetof(ObjectRecord, reflection) == 224);
+static_assert(sizeof(ObjectRecord) == 240);
 
 /// Lights of shaders/shading.glsl, std140.
 struct LightRecord {
@@ -89,7 +93,7 @@ ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::
     record.worldFromMesh = pose;
     record.normalFromMesh = normalMatrix(pose);
     record.baseColor = glm::vec4(object.baseColor, object.isPlanar ? 1.0F : 0.0F);
-    record.emissive = glm::vec4(object.emissive, 0.0F);
+    record.emissive = glm::vec4(object.emissive, object.normalScale);
     if (!bounds.isEmpty()) {
         record.boundsCentre = glm::vec4(bounds.centre(), 1.0F);
         record.boundsHalfSize = glm::vec4(0.5F * bounds.size(), 0.0F);
@@ -97,6 +101,10 @@ ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::
     record.firstTriangle = object.firstTriangle;
     record.triangleCount = object.triangleCount;
     record.textureLayer = object.textureLayer;
+    record.layers = {object.metallicRoughnessLayer, object.normalLayer, object.emissiveLayer,
+                     object.hasOneGlossiness ? 1 : 0};
+    record.reflection = {object.metallic, object.roughness, object.headOnReflectivity,
+                         object.maxRoughness};
     if (object.reflector != 0) {
         record.surface = static_cast<std::uint32_t>(object.reflector) |
                          in255ths(object.reflectivity) << 16 | in255ths(object.glossiness) << 24;
@@ -115,11 +123,11 @@ gl::Buffer lightsBuffer(std::span<const scene::PointLight> lights) {
     return gl::Buffer::of(std::span<const LightsRecord>(&record, 1));
 }
 
-gl::Texture layersTexture(const std::vector<image::Image8>& layers) {
+gl::Texture layersTexture(const std::vector<image::Image8>& layers, GLenum format) {
     // A sampler needs a texture, also where no object asks for one.
     const bool isEmpty = layers.empty();
-    const int sizePx = isEmpty ? 1 : ReflectiveScene::kLayerSizePx;
-    gl::Texture texture = gl::Texture::make2DArray(GL_SRGB8_ALPHA8, glm::ivec2(sizePx),
+    const int sizePx = isEmpty ? 1 : layers.front().width();
+    gl::Texture texture = gl::Texture::make2DArray(format, glm::ivec2(sizePx),
                                                    isEmpty ? 1 : static_cast<int>(layers.size()));
     std::vector<std::uint8_t> texels;
     for (const image::Image8& layer : layers) {
@@ -140,6 +148,7 @@ gl::Defines objectDefines() {
     defines["MAX_LIGHTS"] = kMaxLights;
     defines["OBJECTS_BINDING"] = static_cast<int>(kObjectsBinding);
     defines["TEXTURE_LAYERS_UNIT"] = static_cast<int>(kTextureLayersUnit);
+    defines["VALUE_LAYERS_UNIT"] = static_cast<int>(kValueLayersUnit);
     defines["kObjectIndex"] = static_cast<int>(kObjectIndexAttribute);
     return defines;
 }
@@ -154,7 +163,8 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene)
       objectOfTriangle_(gl::Buffer::of(scene.geometry().objectOfTriangle)),
       records_(scene.objects().size() * sizeof(ObjectRecord)),
       lights_(lightsBuffer(scene.lights())),
-      textureLayers_(layersTexture(scene.textureLayers())),
+      textureLayers_(layersTexture(scene.textureLayers(), GL_SRGB8_ALPHA8)),
+      valueLayers_(layersTexture(scene.valueLayers(), GL_RGBA8)),
       objectCount_(static_cast<std::uint32_t>(scene.objects().size())),
       triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())) {
     std::vector<std::uint32_t> indices(objectCount_);
@@ -196,6 +206,7 @@ void GpuObjects::bind() const {
     records_.bindStorage(kObjectsBinding);
     lights_.bindUniform(kLightsBinding);
     textureLayers_.bind(kTextureLayersUnit);
+    valueLayers_.bind(kValueLayersUnit);
 }
 
 void GpuObjects::draw(std::span<const std::uint32_t> objects) const {
@@ -229,7 +240,8 @@ std::size_t GpuObjects::sizeBytes() const {
     return positions_.sizeBytes() + normals_.sizeBytes() + texcoords_.sizeBytes() +
            colors_.sizeBytes() + indices_.sizeBytes() + objectOfTriangle_.sizeBytes() +
            records_.sizeBytes() + lights_.sizeBytes() + objectIndices_.sizeBytes() +
-           textureLayers_.sizeBytes();
+           textureLayers_.sizeBytes() +
+           (scene_->valueLayers().empty() ? 0 : valueLayers_.sizeBytes());
 }
 
 }  // namespace gfxrepro::reflections

@@ -13,13 +13,14 @@ namespace gfxrepro::reflections {
 
 /// Where shaders find the scene; the names are injected as defines by objectDefines().
 enum Binding : unsigned {
-    kObjectsBinding = 0,    // storage: Object objects[] of shaders/objects.glsl
-    kLightsBinding = 0,     // uniform block of shaders/shading.glsl
-    kTextureLayersUnit = 0  // sampler2DArray of base colours, sRGB
+    kObjectsBinding = 0,     // storage: Object objects[] of shaders/objects.glsl
+    kLightsBinding = 0,      // uniform block of shaders/shading.glsl
+    kTextureLayersUnit = 0,  // sampler2DArray of base colours and emission, sRGB
+    kValueLayersUnit = 1     // sampler2DArray of roughness and metalness, and of normals, linear
 };
 /// Storage bindings and texture units below these belong to the scene and to traversal.
 constexpr unsigned kFirstFreeStorage = 8;
-constexpr unsigned kFirstFreeUnit = 1;
+constexpr unsigned kFirstFreeUnit = 2;
 
 /// Attribute location of the object's index: an instanced unsigned integer, so that one draw names
 /// its object by base instance, and a multi-draw gives each its own.
@@ -65,7 +66,7 @@ class GpuObjects {
     const ReflectiveScene* scene_;  // outlives this
     gl::Buffer positions_, normals_, texcoords_, colors_, indices_, objectOfTriangle_;
     gl::Buffer records_, lights_, objectIndices_;
-    gl::Texture textureLayers_;
+    gl::Texture textureLayers_, valueLayers_;
     gl::VertexArray vertexArray_;
     std::vector<glm::mat4> poses_;
     std::vector<scene::Box> boundsWorld_;

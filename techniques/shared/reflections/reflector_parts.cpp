@@ -254,7 +254,7 @@ Parts partsOf(const scene::Mesh& mesh) {
 }
 
 std::vector<PartOrigin> splitIntoParts(scene::Scene& scene,
-                                       const std::function<bool(const scene::Material&)>& splits) {
+                                       const std::function<bool(const scene::Mesh&)>& splits) {
     using NewMeshes = std::vector<std::pair<int, bool>>;  // and whether they are concave
     std::map<int, NewMeshes> partsOfMesh;
     const auto split = [&](int index) -> const NewMeshes& {
@@ -275,16 +275,15 @@ std::vector<PartOrigin> splitIntoParts(scene::Scene& scene,
         scene.meshes[static_cast<std::size_t>(index)] = {};  // all its instances are split
         return at->second;
     };
-    std::vector<int> materials;  // of meshes, before any of them is split
-    for (const scene::Mesh& mesh : scene.meshes) materials.push_back(mesh.material);
+    std::vector<bool> isSplit;  // by mesh, before any of them is
+    for (const scene::Mesh& mesh : scene.meshes) isSplit.push_back(splits(mesh));
     std::vector<scene::Instance> instances;
     std::vector<PartOrigin> origins;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const scene::Instance whole = scene.instances[i];
-        const int material = materials[static_cast<std::size_t>(whole.mesh)];
-        const bool isSplit = splits(
-            material < 0 ? scene::Material{} : scene.materials[static_cast<std::size_t>(material)]);
-        const NewMeshes meshes = isSplit ? split(whole.mesh) : NewMeshes{{whole.mesh, false}};
+        const NewMeshes meshes = isSplit[static_cast<std::size_t>(whole.mesh)]
+                                     ? split(whole.mesh)
+                                     : NewMeshes{{whole.mesh, false}};
         for (const auto& [mesh, isConcave] : meshes) {
             instances.push_back({mesh, whole.worldFromMesh});
             origins.push_back({static_cast<int>(i), isConcave});

@@ -32,9 +32,9 @@ struct PartOrigin {
     bool isConcave = false;
 };
 
-/// Makes an instance of each part of the instances whose material `splits` accepts; motions go with
+/// Makes an instance of each part of the instances whose mesh `splits` accepts; motions go with
 /// them.
 std::vector<PartOrigin> splitIntoParts(scene::Scene& scene,
-                                       const std::function<bool(const scene::Material&)>& splits);
+                                       const std::function<bool(const scene::Mesh&)>& splits);
 
 }  // namespace gfxrepro::reflections

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "runner/core/error.h"
-#include "runner/image/srgb.h"
 #include "techniques/shared/reflections/reflector_parts.h"
-#include "techniques/shared/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
 
@@ -60,6 +61,61 @@ float headOnReflectivity(float indexOfRefraction) {
 
 float in255ths(float value) {
     return std::round(255.0F * std::clamp(value, 0.0F, 1.0F)) / 255.0F;
+}
+
+bool isTextured(const scene::Mesh& mesh, int texture) {
+    return texture >= 0 && !mesh.texcoords.empty();
+}
+
+/// A channel of the texel at `texcoord`, 0 to 1; repeats.
+float texelAt(const image::Image8& image, const glm::vec2& texcoord, int channel) {
+    const glm::vec2 place =
+        (texcoord - glm::floor(texcoord)) * glm::vec2(image.width(), image.height());
+    const int x = std::clamp(static_cast<int>(place.x), 0, image.width() - 1);
+    const int y = std::clamp(static_cast<int>(place.y), 0, image.height() - 1);
+    return static_cast<float>(image.at(x, y, channel)) / 255.0F;
+}
+
+float reflectivityOf(const scene::Material& material, float metallic) {
+    return in255ths(std::max(metallic, headOnReflectivity(material.indexOfRefraction)));
+}
+
+/// Whether some place of the mesh is as smooth as `maxRoughness`, and reflects, by the material's
+/// texture. Looked at are the middles of a grid over each triangle.
+bool reflectsByTexture(const scene::Mesh& mesh, const scene::Material& material,
+                       const image::Image8& texture, float maxRoughness) {
+    constexpr double kPlaces = 4096.0;
+    const auto side = static_cast<int>(std::ceil(
+        std::sqrt(kPlaces / static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1)))));
+    const auto reflectsAt = [&](const glm::vec2& texcoord) {
+        const float roughness = material.roughness * texelAt(texture, texcoord, 1);
+        return roughness <= maxRoughness &&
+               reflectivityOf(material, material.metallic * texelAt(texture, texcoord, 2)) > 0.0F;
+    };
+    for (const glm::uvec3& corners : mesh.triangles) {
+        // side² small triangles: the upright ones, and those between them.
+        for (int i = 0; i < side; ++i) {
+            for (int j = 0; j < 2 * (side - i) - 1; ++j) {
+                const float third = j % 2 == 0 ? 1.0F / 3.0F : 2.0F / 3.0F;
+                const glm::vec2 b = (glm::vec2(i, j / 2) + third) / static_cast<float>(side);
+                if (reflectsAt((1.0F - b.x - b.y) * mesh.texcoords[corners.x] +
+                               b.x * mesh.texcoords[corners.y] + b.y * mesh.texcoords[corners.z])) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+/// Whether the mesh is smooth enough to reflect, some place of it at least.
+bool isSmooth(const scene::Scene& scene, const scene::Mesh& mesh, float maxRoughness) {
+    const scene::Material material = materialOf(scene, mesh);
+    if (!isTextured(mesh, material.metallicRoughnessTexture)) {
+        return material.roughness <= maxRoughness;
+    }
+    const auto texture = static_cast<std::size_t>(material.metallicRoughnessTexture);
+    return reflectsByTexture(mesh, material, scene.textures[texture], maxRoughness);
 }
 
 bool isUsable(const glm::vec3& normal) {
@@ -125,7 +181,8 @@ scene::PointLight madeUpLight(const scene::Box& box) {
 }  // namespace
 
 ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule)
-    : scene_(scene), rule_(rule), srgbDecoding_(image::srgbDecoding()) {
+    : scene_(scene), rule_(rule) {
+    for (const std::string& line : scene_.warnings) warn(line);
     transmissiveCount_ = dropTransmissive(scene_);
     if (scene_.triangleCount() == 0) {
         throw Error(fmt::format(
@@ -139,13 +196,12 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
         parts.push_back({static_cast<int>(i), false});
     }
     if (rule.splitsParts) {
-        parts = splitIntoParts(scene_, [&](const scene::Material& material) {
-            return material.roughness <= rule.maxRoughness;
+        parts = splitIntoParts(scene_, [&](const scene::Mesh& mesh) {
+            return isSmooth(scene_, mesh, rule.maxRoughness);
         });
     }
-    std::vector<int> layerOfTexture(scene_.textures.size(), -1);
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
-        addObject(scene_.instances[i], layerOfTexture);
+        addObject(scene_.instances[i]);
         if (objects_[i].reflector == 0) continue;
         if (i == 0 || parts[i].instance != parts[i - 1].instance) ++wholeReflectorCount_;
         objects_[i].wholeReflector = wholeReflectorCount_;
@@ -162,9 +218,64 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 glm::vec3(scene_.instances[i].worldFromMesh * glm::vec4(position, 1.0F)));
         }
     }
+    addLights();
+    fillLayers(textureLayers_);
+    fillLayers(valueLayers_);
+}
+
+void ReflectiveScene::addLights() {
     lights_ = scene_.lights;
-    if (lights_.size() > kMaxLights) lights_.resize(kMaxLights);
+    if (lights_.size() > kMaxLights) {
+        warn(fmt::format("{} lights; the first {} are taken", lights_.size(), kMaxLights));
+        lights_.resize(kMaxLights);
+    }
     if (lights_.empty()) lights_.push_back(madeUpLight(boundsWorld_));
+}
+
+void ReflectiveScene::warn(const std::string& what) {
+    warnings_.push_back(fmt::format("scene '{}': {}", scene_.name, what));
+}
+
+void ReflectiveScene::printWarnings() const {
+    for (const std::string& line : warnings_) fmt::print(stderr, "warning: {}\n", line);
+}
+
+int ReflectiveScene::layerOf(Layers& layers, int texture) {
+    const auto found = std::find(layers.textures.begin(), layers.textures.end(), texture);
+    const auto layer = static_cast<int>(found - layers.textures.begin());
+    if (found == layers.textures.end()) layers.textures.push_back(texture);
+    return layer;
+}
+
+void ReflectiveScene::fillLayers(Layers& layers) {
+    const auto imageOf = [&](int texture) -> const image::Image8& {
+        return scene_.textures[static_cast<std::size_t>(texture)];
+    };
+    int largest = kLeastLayerSizePx;
+    for (const int texture : layers.textures) {
+        largest = std::max({largest, imageOf(texture).width(), imageOf(texture).height()});
+    }
+    const auto bytesOf = [&](int sizePx) {
+        return 4 * layers.textures.size() * static_cast<std::size_t>(sizePx) *
+               static_cast<std::size_t>(sizePx);
+    };
+    int sizePx = largest >= kMostLayerSizePx
+                     ? kMostLayerSizePx
+                     : static_cast<int>(std::bit_ceil(static_cast<unsigned>(largest)));
+    while (sizePx > kLeastLayerSizePx && bytesOf(sizePx) > kMostLayersBytes) sizePx /= 2;
+    const auto reduced =
+        std::count_if(layers.textures.begin(), layers.textures.end(), [&](int texture) {
+            return std::max(imageOf(texture).width(), imageOf(texture).height()) > sizePx;
+        });
+    if (reduced > 0) {
+        warn(fmt::format("{} of {} {} textures are reduced to {} texels a side; the largest has {}",
+                         reduced, layers.textures.size(),
+                         layers.kind == TexelKind::Colours ? "colour" : "material", sizePx,
+                         largest));
+    }
+    for (const int texture : layers.textures) {
+        layers.layers.push_back(textureLayer(imageOf(texture), sizePx, layers.kind));
+    }
 }
 
 void ReflectiveScene::requireReflectors() const {
@@ -175,28 +286,43 @@ void ReflectiveScene::requireReflectors() const {
                     scene_.name, rule_.maxRoughness));
 }
 
-void ReflectiveScene::addObject(const scene::Instance& instance, std::vector<int>& layerOfTexture) {
+void ReflectiveScene::addObject(const scene::Instance& instance) {
     const scene::Mesh& mesh = meshOf(scene_, instance);
     const scene::Material material = materialOf(scene_, mesh);
     Object object;
     object.baseColor = glm::vec3(material.baseColor);
     object.emissive = material.emissive;
-    if (material.baseColorTexture >= 0 && !mesh.texcoords.empty()) {
-        const auto texture = static_cast<std::size_t>(material.baseColorTexture);
-        if (layerOfTexture[texture] < 0) {
-            layerOfTexture[texture] = static_cast<int>(textureLayers_.size());
-            textureLayers_.push_back(textureLayer(scene_.textures[texture], kLayerSizePx));
-        }
-        object.textureLayer = layerOfTexture[texture];
+    if (isTextured(mesh, material.baseColorTexture)) {
+        object.textureLayer = layerOf(textureLayers_, material.baseColorTexture);
     }
-    if (material.roughness <= rule_.maxRoughness) {
-        object.reflectivity =
-            in255ths(std::max(material.metallic, headOnReflectivity(material.indexOfRefraction)));
-        object.glossiness = in255ths(material.roughness);
-        if (object.reflectivity > 0.0F) object.reflector = ++reflectorCount_;
+    if (isTextured(mesh, material.emissiveTexture)) {
+        object.emissiveLayer = layerOf(textureLayers_, material.emissiveTexture);
     }
+    if (isTextured(mesh, material.normalTexture)) {
+        object.normalLayer = layerOf(valueLayers_, material.normalTexture);
+        object.normalScale = material.normalScale;
+    }
+    addReflection(mesh, material, object);
     addGeometry(mesh, object);
     objects_.push_back(object);
+}
+
+void ReflectiveScene::addReflection(const scene::Mesh& mesh, const scene::Material& material,
+                                    Object& object) {
+    if (!isSmooth(scene_, mesh, rule_.maxRoughness)) return;
+    object.reflectivity = reflectivityOf(material, material.metallic);
+    object.glossiness = in255ths(material.roughness);
+    if (isTextured(mesh, material.metallicRoughnessTexture)) {
+        object.metallicRoughnessLayer = layerOf(valueLayers_, material.metallicRoughnessTexture);
+        object.metallic = material.metallic;
+        object.roughness = material.roughness;
+        object.headOnReflectivity = headOnReflectivity(material.indexOfRefraction);
+        object.maxRoughness = rule_.maxRoughness;
+        object.hasOneGlossiness = false;
+        object.reflector = ++reflectorCount_;
+    } else if (object.reflectivity > 0.0F) {
+        object.reflector = ++reflectorCount_;
+    }
 }
 
 void ReflectiveScene::addGeometry(const scene::Mesh& mesh, Object& object) {
@@ -209,7 +335,8 @@ void ReflectiveScene::addGeometry(const scene::Mesh& mesh, Object& object) {
     const std::vector<glm::vec3> normals = repairedNormals(mesh, repairedCount);
     if (object.reflector != 0) {
         repairedNormalCount_ += repairedCount;
-        object.isPlanar = isPlanar(mesh.positions, normals, glm::length(object.boundsMesh.size()));
+        object.isPlanar = object.normalLayer < 0 &&
+                          isPlanar(mesh.positions, normals, glm::length(object.boundsMesh.size()));
     }
     const std::size_t vertexCount = geometry_.positions.size() + mesh.positions.size();
     const auto append = [](auto& to, const auto& from) {
@@ -235,66 +362,10 @@ float ReflectiveScene::diagonalM() const {
 void ReflectiveScene::setGlossiness(float glossiness) {
     GFXREPRO_ASSERT(glossiness >= 0.0F && glossiness <= 1.0F);
     for (Object& object : objects_) {
-        if (object.reflector != 0) object.glossiness = in255ths(glossiness);
+        if (object.reflector == 0) continue;
+        object.glossiness = in255ths(glossiness);
+        object.hasOneGlossiness = true;
     }
-}
-
-namespace {
-
-template <class T>
-T interpolated(const std::vector<T>& values, const glm::uvec3& triangle,
-               const glm::vec2& barycentric) {
-    return (1.0F - barycentric.x - barycentric.y) * values[triangle.x] +
-           barycentric.x * values[triangle.y] + barycentric.y * values[triangle.z];
-}
-
-}  // namespace
-
-glm::vec3 ReflectiveScene::texelsAt(int layer, const glm::vec2& texcoord) const {
-    const image::Image8& texels = textureLayers_[static_cast<std::size_t>(layer)];
-    const glm::vec2 place = (texcoord - glm::floor(texcoord)) * float{kLayerSizePx} - 0.5F;
-    const glm::vec2 low = glm::floor(place);
-    const glm::vec2 fraction = place - low;
-    const auto texel = [&](int dx, int dy) {
-        // place is in [−½, size − ½]: one texel out of the layer at most.
-        const int x = (static_cast<int>(low.x) + dx + kLayerSizePx) % kLayerSizePx;
-        const int y = (static_cast<int>(low.y) + dy + kLayerSizePx) % kLayerSizePx;
-        return glm::vec3(srgbDecoding_[texels.at(x, y, 0)], srgbDecoding_[texels.at(x, y, 1)],
-                         srgbDecoding_[texels.at(x, y, 2)]);
-    };
-    return glm::mix(glm::mix(texel(0, 0), texel(1, 0), fraction.x),
-                    glm::mix(texel(0, 1), texel(1, 1), fraction.x), fraction.y);
-}
-
-glm::vec3 ReflectiveScene::albedoAt(std::uint32_t triangle, const glm::vec2& barycentric) const {
-    const glm::uvec3 corners = geometry_.triangles[triangle];
-    const Object& object = objects_[geometry_.objectOfTriangle[triangle]];
-    const glm::vec3 albedo =
-        object.baseColor * interpolated(geometry_.colors, corners, barycentric);
-    if (object.textureLayer < 0) return albedo;
-    return albedo *
-           texelsAt(object.textureLayer, interpolated(geometry_.texcoords, corners, barycentric));
-}
-
-glm::vec3 ReflectiveScene::normalMeshAt(std::uint32_t triangle,
-                                        const glm::vec2& barycentric) const {
-    return interpolated(geometry_.normals, geometry_.triangles[triangle], barycentric);
-}
-
-glm::vec3 shadeDiffuse(std::span<const scene::PointLight> lights, const glm::vec3& positionWorld,
-                       const glm::vec3& normalWorld, const glm::vec3& albedo,
-                       const glm::vec3& emissive) {
-    glm::vec3 irradiance(0.30F + 0.10F * normalWorld.y);
-    for (const scene::PointLight& light : lights) {
-        const glm::vec3 toLight = light.position - positionWorld;
-        const float distance = glm::length(toLight);
-        // A point at the light itself has no direction to it: no 0 / 0.
-        const float cosine =
-            std::max(glm::dot(normalWorld, toLight) / std::max(distance, 1e-6F), 0.0F);
-        const float ratio = distance / light.radiusM;
-        irradiance += light.intensity * (cosine / (1.0F + ratio * ratio));
-    }
-    return glm::clamp(albedo * irradiance + emissive, 0.0F, 1.0F);
 }
 
 }  // namespace gfxrepro::reflections

@@ -2,14 +2,15 @@
 // method, on the device (shaders/shading.glsl) and here.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "runner/image/image.h"
 #include "runner/scene/scene.h"
+#include "techniques/shared/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
 
@@ -17,6 +18,9 @@ namespace gfxrepro::reflections {
 /// `maxRoughness`; its reflectivity s is then its metalness, but at least what its index of
 /// refraction reflects head-on; its glossiness g is its roughness, 0 a mirror. Both count as the
 /// G-buffer keeps them, in 255ths; s of 0 does not reflect.
+///
+/// Where a texture holds roughness and metalness, each sample is judged by its own texel, and the
+/// object is a reflector where some place of its triangles is (looked at are at least 4096 places).
 struct ReflectorRule {
     float maxRoughness = 0.4F;
     /// The smooth parts of an object are reflectors (and Objects) of their own; see
@@ -24,9 +28,9 @@ struct ReflectorRule {
     bool splitsParts = false;
 };
 
-/// At most so many lights of a scene are taken; where it has none, one hangs under the top of its
-/// box.
-constexpr int kMaxLights = 4;
+/// At most so many lights of a scene are taken, the first, and a warning tells of the others; where
+/// it has none, one hangs under the top of its box.
+constexpr int kMaxLights = 64;
 
 /// What is seen where nothing is.
 constexpr glm::vec3 kBackground(0.18F, 0.20F, 0.24F);
@@ -36,17 +40,26 @@ constexpr glm::vec3 kBackground(0.18F, 0.20F, 0.24F);
 struct Object {
     std::uint32_t firstTriangle = 0;
     std::uint32_t triangleCount = 0;
-    scene::Box boundsMesh;      // of its vertices, in mesh space
-    glm::vec3 baseColor{0.8F};  // linear, times texture and vertex colour
-    glm::vec3 emissive{0.0F};   // linear
-    int textureLayer = -1;      // into ReflectiveScene::textureLayers(); -1: none
-    int reflector = 0;          // 1 … reflectorCount(); 0: diffuse
-    int wholeReflector = 0;     // 1 … wholeReflectorCount(): the object that it is a part of
-    bool isConcave = false;     // a part that is, seen from where its normals point
+    scene::Box boundsMesh;            // of its vertices, in mesh space
+    glm::vec3 baseColor{0.8F};        // linear, times texture and vertex colour
+    glm::vec3 emissive{0.0F};         // linear
+    int textureLayer = -1;            // into ReflectiveScene::textureLayers(); -1: none
+    int emissiveLayer = -1;           // the same
+    int metallicRoughnessLayer = -1;  // into ReflectiveScene::valueLayers(); -1: none
+    int normalLayer = -1;             // the same
+    float normalScale = 1.0F;
+    // Factors of metallicRoughnessLayer, the least s, and the largest roughness that reflects.
+    float metallic = 0.0F, roughness = 1.0F, headOnReflectivity = 0.0F, maxRoughness = 0.0F;
+    bool hasOneGlossiness = true;  // false: each texel of metallicRoughnessLayer has its own
+    int reflector = 0;             // 1 … reflectorCount(); 0: diffuse
+    int wholeReflector = 0;        // 1 … wholeReflectorCount(): the object that it is a part of
+    bool isConcave = false;        // a part that is, seen from where its normals point
+    // Without metallicRoughnessLayer, which says it a texel:
     float reflectivity = 0.0F;  // s of [xie2017] Algorithm 6
     float glossiness = 0.0F;    // g of [xie2017] Algorithm 6
     bool isPlanar = false;      // reflectors: all normals the same, to 1e-3, and all vertices in
-                                // one plane, to 1e-3 of the diagonal of boundsMesh
+                                // one plane, to 1e-3 of the diagonal of boundsMesh; no normal
+                                // texture
 };
 
 /// Vertices and triangles of all objects, in mesh space, in the order of scene::flattened(). Every
@@ -66,8 +79,11 @@ struct ObjectGeometry {
 /// one half) are left out, and counted: nothing here refracts.
 class ReflectiveScene {
   public:
-    /// Texture layers are squares of this size; images are resampled to it (box filter).
-    static constexpr int kLayerSizePx = 512;
+    /// Texture layers are squares, all of an array of one size, a power of two that holds the
+    /// largest image; images are resampled to it (box filter). At most kMostLayerSizePx, and less
+    /// where an array would take more than kMostLayersBytes: a warning tells of larger images.
+    static constexpr int kLeastLayerSizePx = 512, kMostLayerSizePx = 2048;
+    static constexpr std::size_t kMostLayersBytes = std::size_t{1} << 29;
 
     /// Throws Error for a scene without triangles, UnsupportedError for more reflectors than the
     /// G-buffer numbers (65535).
@@ -78,8 +94,11 @@ class ReflectiveScene {
     std::span<const Object> objects() const { return objects_; }
     const ObjectGeometry& geometry() const { return geometry_; }
     const std::vector<image::Image8>& textureLayers() const {
-        return textureLayers_;
-    }  // RGBA, sRGB
+        return textureLayers_.layers;
+    }  // RGBA, sRGB: base colours and emission
+    const std::vector<image::Image8>& valueLayers() const {
+        return valueLayers_.layers;
+    }  // RGBA, linear: metallic-roughness and normals
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
     int wholeReflectorCount() const { return wholeReflectorCount_; }  // objects, not their parts
@@ -91,26 +110,51 @@ class ReflectiveScene {
     const scene::Box& boundsWorld() const { return boundsWorld_; }  // rest pose
     float diagonalM() const;
 
+    /// What of the scene is not shown as it is: a line each, of the scene by name.
+    const std::vector<std::string>& warnings() const { return warnings_; }
+    /// To standard error, which the run's log keeps.
+    void printWarnings() const;
+
     /// Overrides every reflector's glossiness, 0 to 1; before GpuObjects are made of the scene.
     void setGlossiness(float glossiness);
 
     /// Albedo at a point of a triangle: base colour · texture (bilinear, level 0) · vertex colour.
     /// `barycentric` weighs vertices 1 and 2.
     glm::vec3 albedoAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
+    /// Emission at a point of a triangle, as albedoAt() has it.
+    glm::vec3 emissiveAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
     /// The interpolated normal in mesh space, not of unit length.
     glm::vec3 normalMeshAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
+    /// The normal that the object's normal texture gives, as texturedNormal() of
+    /// shaders/shading.glsl: unit, in the world, turned to the viewer. `normalWorld` is the
+    /// interpolated one, unit, on the mesh's outside.
+    glm::vec3 texturedNormalAt(std::uint32_t triangle, const glm::vec2& barycentric,
+                               const glm::mat4& worldFromMesh, const glm::vec3& normalWorld,
+                               const glm::vec3& toViewer) const;
 
   private:
-    void addObject(const scene::Instance& instance, std::vector<int>& layerOfTexture);
+    /// Textures in the order of their layers.
+    struct Layers {
+        TexelKind kind;
+        std::vector<int> textures = {};  // of the scene
+        std::vector<image::Image8> layers = {};
+    };
+
+    void addObject(const scene::Instance& instance);
+    void addReflection(const scene::Mesh& mesh, const scene::Material& material, Object& object);
     void addGeometry(const scene::Mesh& mesh, Object& object);
-    glm::vec3 texelsAt(int layer, const glm::vec2& texcoord) const;
+    void addLights();
+    void fillLayers(Layers& layers);
+    void warn(const std::string& what);
+    static int layerOf(Layers& layers, int texture);
+    static glm::vec3 texelsAt(const Layers& layers, int layer, const glm::vec2& texcoord);
 
     scene::Scene scene_;
     ReflectorRule rule_;
     std::vector<Object> objects_;
     ObjectGeometry geometry_;
-    std::vector<image::Image8> textureLayers_;
-    std::array<float, 256> srgbDecoding_;
+    Layers textureLayers_{TexelKind::Colours}, valueLayers_{TexelKind::Values};
+    std::vector<std::string> warnings_;
     std::vector<scene::PointLight> lights_;
     scene::Box boundsWorld_;
     int reflectorCount_ = 0, wholeReflectorCount_ = 0, transmissiveCount_ = 0,

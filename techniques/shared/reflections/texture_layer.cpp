@@ -35,11 +35,29 @@ std::vector<Cover> coversOf(int fromSize, int toSize) {
     return covers;
 }
 
+image::Image8 toBytes(const image::ImageF& values) {
+    image::Image8 bytes(values.width(), values.height(), values.channels());
+    std::transform(
+        values.values().begin(), values.values().end(), bytes.values().begin(), [](float value) {
+            return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+        });
+    return bytes;
+}
+
 }  // namespace
 
-image::Image8 textureLayer(const image::Image8& image, int sizePx) {
+std::array<float, 256> decodingOf(TexelKind kind) {
+    if (kind == TexelKind::Colours) return image::srgbDecoding();
+    std::array<float, 256> decoding{};
+    for (std::size_t i = 0; i < decoding.size(); ++i) {
+        decoding[i] = static_cast<float>(i) / 255.0F;
+    }
+    return decoding;
+}
+
+image::Image8 textureLayer(const image::Image8& image, int sizePx, TexelKind kind) {
     GFXREPRO_ASSERT(image.channels() >= 3 && !image.empty());
-    const std::array<float, 256> decoding = image::srgbDecoding();
+    const std::array<float, 256> decoding = decodingOf(kind);
     const auto value = [&](int x, int y, int channel) {
         if (channel < 3) return decoding[image.at(x, y, channel)];
         return image.channels() > 3 ? static_cast<float>(image.at(x, y, 3)) / 255.0F : 1.0F;
@@ -69,7 +87,7 @@ image::Image8 textureLayer(const image::Image8& image, int sizePx) {
                            [&](float add, float sum) { return sum + weight * add; });
         }
     }
-    return image::toSrgb8(layer);
+    return kind == TexelKind::Colours ? image::toSrgb8(layer) : toBytes(layer);
 }
 
 }  // namespace gfxrepro::reflections

@@ -190,6 +190,83 @@ void main() {
     }
 }
 
+/// A square that fills the middle of the view, with a texture whose halves have one colour each.
+scene::Scene halvedSquare(scene::Material material, const glm::u8vec3& left,
+                          const glm::u8vec3& right) {
+    scene::Scene scene;
+    addPart(scene, squareMesh(), material);
+    image::Image8 image(512, 512, 3);
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            for (int c = 0; c < 3; ++c) image.at(x, y, c) = (x < 256 ? left : right)[c];
+        }
+    }
+    scene.textures = {std::move(image)};
+    return scene;
+}
+
+/// Seen from the front, or from behind: the middles of the left and of the right half.
+struct Halves {
+    HostGBuffer host;
+    std::size_t left, right;
+
+    Halves(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene, float side = 1.0F) {
+        scene::Camera camera;
+        camera.position = {0, 0, 5.0F * side};
+        camera.target = {0, 0, 0};
+        GBuffer gbuffer(depth_images::viewOf(camera, kSize));
+        GBufferRenderer(shaders).render(GpuObjects(scene), gbuffer);
+        host = readGBuffer(gbuffer);
+        left = host.indexOf({kSize.x / 2 - static_cast<int>(9 * side), kSize.y / 2});
+        right = host.indexOf({kSize.x / 2 + static_cast<int>(9 * side), kSize.y / 2});
+    }
+};
+
+TEST_F(GBufferTest, TakesRoughnessAndMetalnessOfTexels) {
+    // Left rougher than 0.4; right 0.8 · 102 / 255 = 81.6 / 255, and 0.5 · 200 / 255.
+    ReflectiveScene scene(
+        halvedSquare({.metallic = 0.5F, .roughness = 0.8F, .metallicRoughnessTexture = 0},
+                     {0, 200, 255}, {0, 102, 200}));
+    const Halves halves(shaders, scene);
+    EXPECT_FALSE(halves.host.isReflective(halves.left));
+    EXPECT_EQ(halves.host.surface[halves.left], 0U);
+    EXPECT_EQ(halves.host.reflector(halves.right), 1);
+    EXPECT_EQ(halves.host.reflectivity(halves.right), 100.0F / 255.0F);
+    EXPECT_EQ(halves.host.glossiness(halves.right), 82.0F / 255.0F);
+    scene.setGlossiness(0.2F);
+    const Halves one(shaders, scene);
+    EXPECT_FALSE(one.host.isReflective(one.left));
+    EXPECT_EQ(one.host.glossiness(one.right), 51.0F / 255.0F);
+}
+
+TEST_F(GBufferTest, BendsNormalsByTheirTexture) {
+    // To the right along u, and upwards against v.
+    const ReflectiveScene scene(
+        halvedSquare({.roughness = 0.0F, .normalTexture = 0}, {255, 128, 255}, {128, 255, 255}));
+    for (const float side : {1.0F, -1.0F}) {
+        const Halves halves(shaders, scene, side);
+        // From behind the frame is turned round; 128 is 1/255.
+        EXPECT_LT(glm::distance(halves.host.normalWorld[halves.left],
+                                side * glm::normalize(glm::vec3(1, 0, 1))),
+                  0.01F);
+        EXPECT_LT(glm::distance(halves.host.normalWorld[halves.right],
+                                side * glm::normalize(glm::vec3(0, 1, 1))),
+                  0.01F);
+    }
+}
+
+TEST_F(GBufferTest, TintsEmissionByItsTexture) {
+    const ReflectiveScene scene(halvedSquare(
+        {.baseColor = {0, 0, 0, 1}, .emissive = {0.5F, 0.5F, 0.5F}, .emissiveTexture = 0},
+        {255, 0, 0}, {0, 0, 188}));  // 188: 0.503 in linear light
+    const Halves halves(shaders, scene);
+    const auto expectNear = [](const glm::vec3& actual, const glm::vec3& expected) {
+        EXPECT_LT(glm::distance(actual, expected), 0.003F) << actual.x << " " << actual.z;
+    };
+    expectNear(halves.host.diffuse[halves.left], {0.5F, 0, 0});
+    expectNear(halves.host.diffuse[halves.right], {0, 0, 0.2515F});
+}
+
 TEST_F(GBufferTest, ClearsWhatWasThere) {
     std::vector<glm::mat4> away = posesOf(scene);
     for (glm::mat4& pose : away) pose = glm::translate(glm::mat4(1.0F), {0, 0, 50}) * pose;

@@ -147,6 +147,57 @@ TEST_F(GpuRayTracerTest, ShadesLobesAsEmbreeDoes) {
     EXPECT_EQ(five.counts.rays, 5 * five.samples);
 }
 
+/// Floor and boxes with textures for everything; a mirrored instance among them.
+scene::Scene texturedMirrors() {
+    scene::Scene scene = mirrors();
+    const auto image = [](const auto& texel) {
+        image::Image8 result(512, 512, 3);
+        for (int y = 0; y < 512; ++y) {
+            for (int x = 0; x < 512; ++x) {
+                const glm::vec3 value =
+                    texel(6.2831853F * glm::vec2(x, y) / 128.0F);  // smooth: samplers round weights
+                for (int c = 0; c < 3; ++c) {
+                    result.at(x, y, c) = static_cast<std::uint8_t>(127.5F + 127.0F * value[c]);
+                }
+            }
+        }
+        return result;
+    };
+    scene.textures = {
+        image([](glm::vec2 p) {
+            return glm::vec3(0.6F * std::sin(p.x), 0.6F * std::sin(p.y), 0.8F);
+        }),
+        image([](glm::vec2 p) { return glm::vec3(0.0F, std::sin(p.x), std::sin(p.y)); }),
+        image([](glm::vec2 p) { return glm::vec3(std::sin(p.x), std::sin(p.y), 0.0F); })};
+    for (scene::Material& material : scene.materials) {
+        material.normalTexture = 0;
+        material.emissiveTexture = 2;
+        material.emissive = glm::vec3(0.3F);
+    }
+    scene.materials[1].metallicRoughnessTexture = 1;
+    scene.materials[1].roughness = 1.0F;
+    for (scene::Mesh& mesh : scene.meshes) {
+        for (const glm::vec3& p : mesh.positions) {
+            mesh.texcoords.emplace_back(0.9F * p.x + 0.4F * p.y, p.z - 0.7F * p.y);
+        }
+    }
+    scene.instances[0].worldFromMesh = glm::scale(glm::mat4(1.0F), {-1.0F, 1.0F, 1.2F});
+    return scene;
+}
+
+TEST_F(GpuRayTracerTest, ShadesTexturedMaterialsAsEmbreeDoes) {
+    for (const float glossiness : {-1.0F, 0.0F}) {
+        SCOPED_TRACE(glossiness);
+        const Comparison result = compared(texturedMirrors(), {}, glossiness);
+        // The floor reflects where its texels are smooth: less than half of what it is.
+        EXPECT_GT(result.samples, 1000U);
+        EXPECT_LT(result.samples, compared(mirrors(), {}, 0.0F).samples);
+        EXPECT_LE(result.mismatches, result.samples / 1000);
+        // Samplers weigh texels in 256ths.
+        EXPECT_LT(result.radianceError, 2e-3);
+    }
+}
+
 TEST_F(GpuRayTracerTest, FollowsMovedObjects) {
     expectEmbrees(compared(mirrors(), {}, 0.0F, 0.7));
 }

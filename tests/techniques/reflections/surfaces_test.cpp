@@ -71,6 +71,7 @@ TEST(ReflectiveSceneTest, OverridesGlossinessOfReflectors) {
     scene::Scene scene = sceneOf(squareMesh(), {.roughness = 0.0F});
     addPart(scene, squareMesh(), {});
     ReflectiveScene prepared(scene);
+    EXPECT_TRUE(prepared.objects()[0].hasOneGlossiness);
     prepared.setGlossiness(0.2F);
     EXPECT_EQ(prepared.objects()[0].glossiness, 51.0F / 255.0F);
     EXPECT_EQ(prepared.objects()[1].glossiness, 0.0F);
@@ -196,17 +197,156 @@ TEST(ReflectiveSceneTest, HangsALightWhereThereIsNone) {
     ASSERT_EQ(without.lights().size(), 1U);
     EXPECT_EQ(without.lights()[0].position, glm::vec3(0.0F, 0.9F, 0.0F));
     EXPECT_FLOAT_EQ(without.lights()[0].radiusM, std::sqrt(2.0F));
-    for (int i = 0; i < 6; ++i) scene.lights.push_back({.radiusM = 1.0F + static_cast<float>(i)});
+    for (int i = 0; i < kMaxLights; ++i) {
+        scene.lights.push_back({.radiusM = 1.0F + static_cast<float>(i)});
+    }
     const ReflectiveScene with(scene);
-    ASSERT_EQ(with.lights().size(), 4U);
-    EXPECT_EQ(with.lights()[3].radiusM, 4.0F);
+    ASSERT_EQ(with.lights().size(), 64U);
+    EXPECT_EQ(with.lights()[5].radiusM, 6.0F);
+    EXPECT_TRUE(with.warnings().empty());
+    scene.lights.push_back({});
+    const ReflectiveScene tooMany(scene);
+    EXPECT_EQ(tooMany.lights().size(), 64U);
+    EXPECT_EQ(tooMany.warnings(),
+              std::vector<std::string>{"scene 'test': 65 lights; the first 64 are taken"});
+}
+
+scene::Scene texturedScene(const image::Image8& texture) {
+    scene::Scene scene = sceneOf(squareMesh(), {.baseColorTexture = 0});
+    scene.textures = {texture};
+    return scene;
+}
+
+TEST(ReflectiveSceneTest, KeepsTheSizeOfTexturesUpToALimit) {
+    const auto sizeOf = [](int width, int height) {
+        return ReflectiveScene(texturedScene({width, height, 3})).textureLayers().at(0).width();
+    };
+    EXPECT_EQ(sizeOf(8, 8), 512);
+    EXPECT_EQ(sizeOf(512, 512), 512);
+    EXPECT_EQ(sizeOf(513, 4), 1024);
+    EXPECT_EQ(sizeOf(4, 1024), 1024);
+    EXPECT_EQ(sizeOf(2048, 4), 2048);
+    const image::Image8 image = randomImage(1024, 1024, 3);
+    const ReflectiveScene kept(texturedScene(image));
+    EXPECT_EQ(kept.textureLayers().at(0), image);
+    EXPECT_TRUE(kept.warnings().empty());
+
+    const ReflectiveScene reduced(texturedScene({2049, 4, 3}));
+    EXPECT_EQ(reduced.textureLayers().at(0).width(), 2048);
+    EXPECT_EQ(reduced.warnings(),
+              std::vector<std::string>{"scene 'test': 1 of 1 colour textures are reduced to 2048 "
+                                       "texels a side; the largest has 2049"});
+}
+
+TEST(ReflectiveSceneTest, PassesOnWhatTheLoaderLeftOut) {
+    scene::Scene scene = sceneOf(squareMesh(), {});
+    scene.warnings = {"something is left out"};
+    EXPECT_EQ(ReflectiveScene(scene).warnings(),
+              std::vector<std::string>{"scene 'test': something is left out"});
+}
+
+/// A texture whose left half has one roughness and metalness, and whose right half another.
+image::Image8 halves(const glm::u8vec2& left, const glm::u8vec2& right) {
+    image::Image8 image(512, 512, 3);
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            image.at(x, y, 1) = (x < 256 ? left : right).x;
+            image.at(x, y, 2) = (x < 256 ? left : right).y;
+        }
+    }
+    return image;
+}
+
+TEST(ReflectorRuleTest, LooksAtTheTexelsOfTextures) {
+    struct Case {
+        glm::u8vec2 left, right;  // roughness, metalness
+        float roughness;
+        float indexOfRefraction;
+        bool isReflector;
+    };
+    for (const Case& c :
+         {Case{{255, 0}, {255, 255}, 1.0F, 1.5F, false}, Case{{255, 0}, {50, 0}, 1.0F, 1.5F, true},
+          Case{{255, 0}, {50, 0}, 1.0F, 1.0F, false},  // s of 0
+          Case{{255, 0}, {255, 0}, 0.3F, 1.5F, true},  // the factor
+          Case{{150, 0}, {110, 0}, 1.0F, 1.5F, false}}) {
+        scene::Scene scene = sceneOf(squareMesh(), {.metallic = 1.0F,
+                                                    .roughness = c.roughness,
+                                                    .metallicRoughnessTexture = 0,
+                                                    .indexOfRefraction = c.indexOfRefraction});
+        scene.textures = {halves(c.left, c.right)};
+        const ReflectiveScene prepared(scene);
+        EXPECT_EQ(prepared.reflectorCount(), c.isReflector ? 1 : 0) << int{c.right.x};
+        EXPECT_EQ(prepared.objects()[0].metallicRoughnessLayer, c.isReflector ? 0 : -1);
+    }
+}
+
+// The background of an atlas, often 0, is no part of the object.
+TEST(ReflectorRuleTest, LooksAtTexelsOfTrianglesOnly) {
+    scene::Scene scene = sceneOf(squareMesh(), {.metallic = 1.0F, .metallicRoughnessTexture = 0});
+    scene.textures = {halves({255, 255}, {0, 0})};
+    EXPECT_EQ(ReflectiveScene(scene).reflectorCount(), 1);
+    EXPECT_EQ(ReflectiveScene(scene, {.splitsParts = true}).reflectorCount(), 1);
+    for (glm::vec2& texcoord : scene.meshes[0].texcoords) texcoord.x *= 0.49F;
+    EXPECT_EQ(ReflectiveScene(scene).reflectorCount(), 0);
+    EXPECT_EQ(ReflectiveScene(scene, {.splitsParts = true}).reflectorCount(), 0);
+    scene.meshes[0].texcoords.clear();  // nothing to read the texture by
+    EXPECT_EQ(ReflectiveScene(scene).reflectorCount(), 0);
+}
+
+/// The square with a normal texture of one value.
+scene::Scene bentSquare(const glm::u8vec3& normal, float scale = 1.0F) {
+    scene::Scene scene =
+        sceneOf(squareMesh(), {.roughness = 0.0F, .normalTexture = 0, .normalScale = scale});
+    image::Image8 image(512, 512, 3);
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            for (int c = 0; c < 3; ++c) image.at(x, y, c) = normal[c];
+        }
+    }
+    scene.textures = {std::move(image)};
+    return scene;
+}
+
+TEST(TexturedNormalTest, LeansAlongUAndAgainstV) {
+    // 255 is 1, 128 is 1/255; the square's u grows with x, its v against y.
+    const glm::vec3 toViewer(0, 0, 1);
+    const auto normal = [&](const scene::Scene& scene, const glm::mat4& pose,
+                            const glm::vec3& outside, const glm::vec3& viewer) {
+        return ReflectiveScene(scene).texturedNormalAt(0, {0.3F, 0.3F}, pose, outside, viewer);
+    };
+    const auto expectNear = [](const glm::vec3& actual, const glm::vec3& expected) {
+        EXPECT_LT(glm::distance(actual, glm::normalize(expected)), 0.01F)
+            << actual.x << " " << actual.y << " " << actual.z;
+    };
+    const glm::mat4 rest(1.0F);
+    expectNear(normal(bentSquare({255, 128, 255}), rest, toViewer, toViewer), {1, 0, 1});
+    expectNear(normal(bentSquare({128, 255, 255}), rest, toViewer, toViewer), {0, 1, 1});
+    expectNear(normal(bentSquare({255, 128, 255}, 0.5F), rest, toViewer, toViewer), {0.5F, 0, 1});
+    // From behind all of the frame is turned round.
+    expectNear(normal(bentSquare({255, 128, 255}), rest, toViewer, -toViewer), {-1, 0, -1});
+    // A mirrored instance: u grows against x, and the outside stays.
+    expectNear(
+        normal(bentSquare({255, 128, 255}), glm::scale(rest, {-1, 1, 1}), toViewer, toViewer),
+        {-1, 0, 1});
+    // Edge-on at most.
+    expectNear(
+        normal(bentSquare({255, 128, 128}), rest, toViewer, glm::normalize(glm::vec3(-1, 0, 0.5F))),
+        glm::vec3(0.5F, 0, 1));
+    // Texture coordinates that are all the same give no frame.
+    scene::Scene flat = bentSquare({255, 128, 255});
+    for (glm::vec2& texcoord : flat.meshes[0].texcoords) texcoord = glm::vec2(0.5F);
+    EXPECT_EQ(normal(flat, rest, toViewer, toViewer), toViewer);
+}
+
+TEST(TexturedNormalTest, KeepsAMirrorFromBeingPlanar) {
+    EXPECT_FALSE(ReflectiveScene(bentSquare({128, 128, 255})).objects()[0].isPlanar);
 }
 
 TEST(ReflectiveSceneTest, FiltersTexturesInLinearLight) {
     scene::Scene scene =
         sceneOf(squareMesh(), {.baseColor = {0.5F, 1.0F, 1.0F, 1.0F}, .baseColorTexture = 1});
     scene.textures = {randomImage(4, 4, 1),  // nobody's
-                      randomImage(ReflectiveScene::kLayerSizePx, ReflectiveScene::kLayerSizePx, 2)};
+                      randomImage(512, 512, 2)};
     scene.meshes[0].colors.assign(4, {1.0F, 0.25F, 1.0F});
     const ReflectiveScene prepared(scene);
     ASSERT_EQ(prepared.textureLayers().size(), 1U);

@@ -59,6 +59,15 @@ TEST(TextureLayerTest, KeepsTheMeanOfSizesThatDoNotDivide) {
     }
 }
 
+TEST(TextureLayerTest, AveragesValuesAsTheyAre) {
+    image::Image8 image(3, 1, 3);
+    for (int channel = 0; channel < 3; ++channel) image.at(1, 0, channel) = 255;
+    const image::Image8 layer = textureLayer(image, 2, TexelKind::Values);
+    for (int x = 0; x < 2; ++x) EXPECT_EQ(layer.at(x, 1, 0), 85) << x;
+    const image::Image8 same = pattern(16, 16, 4);
+    EXPECT_EQ(textureLayer(same, 16, TexelKind::Values), same);
+}
+
 TEST(TextureLayerTest, EnlargesToBlocks) {
     const image::Image8 image = pattern(2, 2, 3);
     const image::Image8 layer = textureLayer(image, 8);

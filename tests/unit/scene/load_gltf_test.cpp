@@ -212,6 +212,53 @@ TEST_F(LoadGltf, ReadsMaterialsAndCameras) {
     EXPECT_EQ(camera.farM, 50.0F);
 }
 
+constexpr const char* kWhitePixel =
+    R"([{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="}])";
+
+TEST_F(LoadGltf, ReadsTexturesOfMaterials) {
+    Document document = square();
+    document["materials"] = R"([{"name":"metal","normalTexture":{"index":1,"scale":0.5},
+        "emissiveTexture":{"index":0},"occlusionTexture":{"index":7},
+        "pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}}},
+        {"name":"two sets","pbrMetallicRoughness":{"baseColorTexture":{"index":0},
+            "metallicRoughnessTexture":{"index":0,"texCoord":1}},
+            "normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"offset":[1,0]}}},
+            "emissiveTexture":{"index":0}}])";
+    document["images"] = kWhitePixel;
+    document["textures"] = R"([{"source":0},{"source":0}])";
+    const Scene scene = load(document);
+    ASSERT_EQ(scene.textures.size(), 1U);  // an image is decoded once
+    const Material& metal = scene.materials.at(0);
+    EXPECT_EQ(metal.baseColorTexture, -1);
+    EXPECT_EQ(metal.metallicRoughnessTexture, 0);
+    EXPECT_EQ(metal.normalTexture, 0);
+    EXPECT_EQ(metal.normalScale, 0.5F);
+    EXPECT_EQ(metal.emissiveTexture, 0);
+    const Material& twoSets = scene.materials.at(1);
+    EXPECT_EQ(twoSets.baseColorTexture, 0);
+    EXPECT_EQ(twoSets.metallicRoughnessTexture, -1);
+    EXPECT_EQ(twoSets.normalTexture, -1);
+    EXPECT_EQ(twoSets.emissiveTexture, 0);
+    EXPECT_EQ(scene.warnings,
+              (std::vector<std::string>{
+                  "material 'two sets': its metallic-roughness texture is left out, as it reads "
+                  "other texture coordinates than those before it",
+                  "material 'two sets': its normal texture is left out, as it reads other texture "
+                  "coordinates than those before it"}));
+}
+
+TEST_F(LoadGltf, RefusesTexturesThatAreNotThere) {
+    Document document = square();
+    document["images"] = kWhitePixel;
+    document["textures"] = R"([{"source":0}])";
+    for (const char* texture :
+         {R"("pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":3}})",
+          R"("normalTexture":{"index":3})", R"("emissiveTexture":{"index":3})"}) {
+        document["materials"] = std::string("[{") + texture + "}]";
+        EXPECT_EQ(error(text(document)), "DIR/a.gltf: texture 3 does not exist; there are 1");
+    }
+}
+
 TEST_F(LoadGltf, AimsCamerasAtTheMiddleOfTheScene) {
     Document document = square();  // from (0, 0, 0) to (1, 1, 0)
     document["cameras"] = R"([{"type":"perspective","perspective":{"yfov":0.5,"znear":0.125}}])";

@@ -83,6 +83,10 @@ Material unusualMaterial() {
     material.roughness = 0.3F;
     material.emissive = {0.1F, 17.3F, 3.3F};
     material.baseColorTexture = 0;
+    material.metallicRoughnessTexture = 1;
+    material.normalTexture = 0;
+    material.normalScale = 0.75F;
+    material.emissiveTexture = 1;
     material.alphaCutoff = 0.6F;
     material.isDoubleSided = true;
     material.isUnlit = true;
@@ -137,6 +141,7 @@ TEST(SaveGlb, KeepsEveryMemberOfAMaterial) {
     const TemporaryFolder folder;
     Scene scene = sceneOf(randomMesh(5));
     scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});
+    scene.textures.emplace_back(1, 1, 3, std::uint8_t{9});
     scene.materials = {unusualMaterial(), Material{}};
     saveGlb(folder.path() / "a.glb", scene);
     const Scene back = loadGltf(folder.path() / "a.glb");
@@ -150,6 +155,10 @@ TEST(SaveGlb, KeepsEveryMemberOfAMaterial) {
         EXPECT_EQ(a.roughness, b.roughness);
         EXPECT_EQ(a.emissive, b.emissive);
         EXPECT_EQ(a.baseColorTexture, b.baseColorTexture);
+        EXPECT_EQ(a.metallicRoughnessTexture, b.metallicRoughnessTexture);
+        EXPECT_EQ(a.normalTexture, b.normalTexture);
+        EXPECT_EQ(a.normalScale, b.normalScale);
+        EXPECT_EQ(a.emissiveTexture, b.emissiveTexture);
         EXPECT_EQ(a.alphaCutoff, b.alphaCutoff);
         EXPECT_EQ(a.isDoubleSided, b.isDoubleSided);
         EXPECT_EQ(a.isUnlit, b.isUnlit);

@@ -16,5 +16,5 @@ void main() {
     diffuse = vec4(diffuseOf(normalWorld), 1.0);
     normal = octahedralFromUnit(normalWorld);
     depth = 1.0 / gl_FragCoord.w;
-    surface = objects[point.object].surface;
+    surface = surfaceOf(objects[point.object], point.texcoord);
 }

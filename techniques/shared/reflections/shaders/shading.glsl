@@ -12,6 +12,7 @@ layout(std140, binding = LIGHTS_BINDING) uniform Lights {
 };
 
 layout(binding = TEXTURE_LAYERS_UNIT) uniform sampler2DArray textureLayers;
+layout(binding = VALUE_LAYERS_UNIT) uniform sampler2DArray valueLayers;
 
 // Base colour times vertex colour times texture. Level 0 always: rays have no footprint to choose a
 // level by, and all methods must show the same.
@@ -21,6 +22,56 @@ vec3 albedoOf(Object object, vec2 texcoord, vec3 vertexColor) {
         albedo *= textureLod(textureLayers, vec3(texcoord, object.textureLayer), 0.0).rgb;
     }
     return albedo;
+}
+
+vec3 emissiveOf(Object object, vec2 texcoord) {
+    vec3 emissive = object.emissive.rgb;
+    if (object.layers.z >= 0) {
+        emissive *= textureLod(textureLayers, vec3(texcoord, object.layers.z), 0.0).rgb;
+    }
+    return emissive;
+}
+
+// What reflects how at a place, as in the G-buffer: with a metallic-roughness texture the texel
+// says it, and what is rougher than the rule allows does not reflect.
+uint surfaceOf(Object object, vec2 texcoord) {
+    if (object.layers.x < 0) return object.surface;
+    vec2 texel = textureLod(valueLayers, vec3(texcoord, object.layers.x), 0.0).gb;
+    float roughness = object.reflection.y * texel.x;
+    float reflectivity = max(object.reflection.x * texel.y, object.reflection.z);
+    uint s = uint(round(255.0 * clamp(reflectivity, 0.0, 1.0)));
+    if (roughness > object.reflection.w || s == 0u) return 0u;
+    uint g = object.layers.w != 0 ? object.surface >> 24
+                                  : uint(round(255.0 * clamp(roughness, 0.0, 1.0)));
+    return (object.surface & 0xFFFFu) | s << 16 | g << 24;
+}
+
+// The normal that the object's normal texture gives: unit, turned to the viewer. `normal` is the
+// interpolated one, unit, on the mesh's outside, toViewer of unit length. The frame is the
+// triangle's, of two edges and their texture coordinates: gradients of u and v across the normal
+// (Schüler 2013, "Followup: Normal Mapping Without Precomputed Tangents"). Departure from glTF 2.0
+// Sec. 3.9.3: no MikkTSpace tangents, so that rays, which know a triangle, and fragments, which know
+// derivatives, have the same frame.
+vec3 texturedNormal(Object object, vec2 texcoord, vec3 normal, vec3 toViewer, vec3 first,
+                    vec3 second, vec2 uvFirst, vec2 uvSecond) {
+    vec3 texel = 2.0 * textureLod(valueLayers, vec3(texcoord, object.layers.y), 0.0).xyz - 1.0;
+    vec3 acrossSecond = cross(second, normal), acrossFirst = cross(normal, first);
+    vec3 alongU = acrossSecond * uvFirst.x + acrossFirst * uvSecond.x;
+    vec3 alongV = acrossSecond * uvFirst.y + acrossFirst * uvSecond.y;
+    float squared = max(dot(alongU, alongU), dot(alongV, alongV));
+    vec3 bent = normal;
+    if (squared > 0.0) {  // 0: no coordinates that differ
+        float side = dot(cross(first, second), normal) < 0.0 ? -1.0 : 1.0;
+        float scale = side * object.emissive.w * inversesqrt(squared);
+        // v grows downwards, the texture's y upwards.
+        bent = scale * (texel.x * alongU - texel.y * alongV) + texel.z * normal;
+        bent = dot(bent, bent) > 0.0 ? normalize(bent) : normal;
+    }
+    if (dot(normal, toViewer) < 0.0) bent = -bent;
+    // One that turns away would send mirror rays through the surface: seen edge-on at most.
+    const float kLeastFacing = 1e-3;
+    float facing = dot(bent, toViewer);
+    return facing < kLeastFacing ? normalize(bent + (kLeastFacing - facing) * toViewer) : bent;
 }
 
 // normalWorld is of unit length and turned to the viewer.

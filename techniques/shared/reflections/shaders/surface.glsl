@@ -16,6 +16,13 @@ vec3 unitNormalTowards(vec3 viewerWorld) {
     vec3 normal = point.normalWorld;
     if (dot(normal, normal) == 0.0) normal = toViewer;
     normal = normalize(normal);
+    Object object = objects[point.object];
+    if (object.layers.y >= 0) {
+        // All of a quad is of one triangle, so derivatives are there, and they are edges in its plane.
+        return texturedNormal(object, point.texcoord, normal, normalize(toViewer),
+                              dFdx(point.positionWorld), dFdy(point.positionWorld),
+                              dFdx(point.texcoord), dFdy(point.texcoord));
+    }
     return dot(normal, toViewer) < 0.0 ? -normal : normal;
 }
 
@@ -23,5 +30,6 @@ vec3 unitNormalTowards(vec3 viewerWorld) {
 vec3 diffuseOf(vec3 normalWorld) {
     Object object = objects[point.object];
     return shadeDiffuse(point.positionWorld, normalWorld,
-                        albedoOf(object, point.texcoord, point.color), object.emissive.rgb);
+                        albedoOf(object, point.texcoord, point.color),
+                        emissiveOf(object, point.texcoord));
 }

@@ -7,10 +7,14 @@ layout(std430, binding = TEXCOORDS_BINDING) restrict readonly buffer Texcoords {
 };
 layout(std430, binding = COLORS_BINDING) restrict readonly buffer Colors { float colors[]; };
 
+vec2 texcoordOf(uint vertex) {
+    return vec2(texcoords[2u * vertex], texcoords[2u * vertex + 1u]);
+}
+
 // The diffuse colour ([xie2017] Sec. 4.7.4: second-order rays only). `vertices` are the triangle's,
-// `barycentric` weighs the second and the third.
+// `barycentric` weighs the second and the third, ab and ac lead to them in the world.
 vec3 diffuseAt(uvec3 vertices, uint objectIndex, vec2 barycentric, vec3 positionWorld,
-               vec3 direction) {
+               vec3 direction, vec3 ab, vec3 ac) {
     vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
     vec3 normal = vec3(0.0), color = vec3(0.0);
     vec2 texcoord = vec2(0.0);
@@ -19,14 +23,20 @@ vec3 diffuseAt(uvec3 vertices, uint objectIndex, vec2 barycentric, vec3 position
         uint at = 3u * vertex;
         normal += weights[i] * vec3(normals[at], normals[at + 1u], normals[at + 2u]);
         color += weights[i] * vec3(colors[at], colors[at + 1u], colors[at + 2u]);
-        texcoord += weights[i] * vec2(texcoords[2u * vertex], texcoords[2u * vertex + 1u]);
+        texcoord += weights[i] * texcoordOf(vertex);
     }
     Object object = objects[objectIndex];
     normal = mat3(object.normalFromMesh) * normal;
     // Where opposite normals cancel out in the middle of a triangle, as in surface.glsl.
     if (dot(normal, normal) == 0.0) normal = -direction;
     normal = normalize(normal);
-    if (dot(normal, direction) > 0.0) normal = -normal;
+    if (object.layers.y >= 0) {
+        normal = texturedNormal(object, texcoord, normal, -direction, ab, ac,
+                                texcoordOf(vertices.y) - texcoordOf(vertices.x),
+                                texcoordOf(vertices.z) - texcoordOf(vertices.x));
+    } else if (dot(normal, direction) > 0.0) {
+        normal = -normal;
+    }
     return shadeDiffuse(positionWorld, normal, albedoOf(object, texcoord, color),
-                        object.emissive.rgb);
+                        emissiveOf(object, texcoord));
 }

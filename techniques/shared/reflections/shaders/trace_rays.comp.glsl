@@ -13,6 +13,9 @@ layout(std430, binding = INDICES_BINDING) restrict readonly buffer Indices { uin
 layout(std430, binding = OBJECT_OF_TRIANGLE_BINDING) restrict readonly buffer ObjectOfTriangle {
     uint objectOfTriangle[];
 };
+layout(std430, binding = POSITIONS_BINDING) restrict readonly buffer Positions {
+    float positions[];
+};
 layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples { uint samples[]; };
 layout(std430, binding = ARGUMENTS_BINDING) restrict readonly buffer Arguments {
     uint groups[3];
@@ -24,12 +27,24 @@ layout(r32f, binding = DISTANCE_IMAGE) uniform restrict writeonly image2D distan
 
 uniform float rayStart;  // metres along the ray: less would meet the surface that it leaves
 
+vec3 positionMesh(uint vertex) {
+    uint at = 3u * vertex;
+    return vec3(positions[at], positions[at + 1u], positions[at + 2u]);
+}
+
 // The diffuse colour at a hit (Sec. 4.7.4: second-order rays only).
 vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction) {
     uint at = 3u * hit.triangle;
-    return diffuseAt(uvec3(indices[at], indices[at + 1u], indices[at + 2u]),
-                     objectOfTriangle[hit.triangle], hit.barycentric, origin + hit.t * direction,
-                     direction);
+    uint object = objectOfTriangle[hit.triangle];
+    uvec3 vertices = uvec3(indices[at], indices[at + 1u], indices[at + 2u]);
+    vec3 ab = vec3(0.0), ac = vec3(0.0);
+    if (objects[object].layers.y >= 0) {
+        mat3 worldFromMesh = mat3(objects[object].worldFromMesh);
+        ab = worldFromMesh * (positionMesh(vertices.y) - positionMesh(vertices.x));
+        ac = worldFromMesh * (positionMesh(vertices.z) - positionMesh(vertices.x));
+    }
+    return diffuseAt(vertices, object, hit.barycentric, origin + hit.t * direction, direction, ab,
+                     ac);
 }
 
 void traceSample(ivec2 pixel) {
