@@ -48,7 +48,8 @@ void waitForStarts(const std::string& dir, std::size_t count) {
 
 TEST(Weekend, NobodyReadsTheProgress) {
     const TemporaryFolder folder;
-    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3]}\n");
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 300}\nsweep: {number: [1, 2, 3]}\n");
     const std::string dir = folder.path() / "run";
     EXPECT_EQ(shell(mockRun(config, dir + "1") + " 2>/dev/full").exitCode, 0);
     EXPECT_EQ(shell(mockRun(config, dir + "2") + " 0<&- 2>&-").exitCode, 0);
