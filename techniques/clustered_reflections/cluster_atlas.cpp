@@ -69,17 +69,10 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 
-    target.beginDrawing(target.sizePx());
-    draw_.use();
-    draw_.set("atlasSizePx", glm::vec2(target.sizePx()));
-    vertexArray_.bind();
-    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
-                                sizeof(DrawCommand));
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
-    target.endDrawing(target.sizePx());
+    drawInPlaces(target, draw_, vertexArray_, commands_, [&] {
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
+                                    sizeof(DrawCommand));
+    });
 }
 
 std::size_t AtlasPainter::sizeBytes() const {

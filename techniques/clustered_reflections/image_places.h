@@ -25,6 +25,23 @@ struct AtlasHeader {
 };
 static_assert(sizeof(AtlasHeader) == 32);
 
+/// Draws into the images by the commands in `commands`, which `issue` gives to the device;
+/// triangles are cut to their image by clip distances 1 to 4.
+template <class Issue>
+void drawInPlaces(ClusterImages& target, const gl::Program& program,
+                  const gl::VertexArray& vertexArray, const gl::Buffer& commands, Issue&& issue) {
+    target.beginDrawing(target.sizePx());
+    program.use();
+    program.set("atlasSizePx", glm::vec2(target.sizePx()));
+    vertexArray.bind();
+    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.id());
+    issue();
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    target.endDrawing(target.sizePx());
+}
+
 class ImagePlaces {
   public:
     explicit ImagePlaces(const gl::ShaderLibrary& shaders);

@@ -114,16 +114,9 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 
-    target.beginDrawing(target.sizePx());
-    draw_.use();
-    draw_.set("atlasSizePx", glm::vec2(target.sizePx()));
-    vertexArray_.bind();
-    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
-    glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, kDraws, sizeof(DrawCommand));
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
-    target.endDrawing(target.sizePx());
+    drawInPlaces(target, draw_, vertexArray_, commands_, [&] {
+        glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, kDraws, sizeof(DrawCommand));
+    });
 }
 
 std::size_t VisiblePainter::sizeBytes() const {

@@ -4,6 +4,7 @@
 // different images, and commands keep the order of objects.
 #include "reflections/objects.glsl"
 #include "clustered_reflections/atlas.glsl"
+#include "clustered_reflections/culling.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -20,23 +21,7 @@ layout(std430, binding = kInstancesBinding) writeonly buffer Instances {
     uint instances[];  // cluster << 20 | object
 };
 
-layout(std430, binding = kFamiliesBinding) readonly buffer Families {
-    uint families[];  // reflectorFamilies() of cluster_images.h
-};
-
 shared uint seenCount, firstInstance;
-
-// Whether the box reaches to the inner side of a plane. False where a camera is not finite.
-bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {
-    return dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), halfSize) >= 0.0;
-}
-
-// As cluster_images.h has it; reflectors beyond the list are none of the scene's.
-bool areBackToBack(uint a, uint b) {
-    if (a >= uint(families.length()) || b >= uint(families.length())) return false;
-    uint family = families[a], other = families[b];
-    return family >> 2 == other >> 2 && family != other && (family & 3u) + (other & 3u) == 3u;
-}
 
 bool isSeen(uint object, uint cluster) {
     if (places[cluster].z == 0) return false;

@@ -5,6 +5,7 @@
 // of two at the same depth the same one is seen in every run.
 #include "reflections/objects.glsl"
 #include "clustered_reflections/atlas.glsl"
+#include "clustered_reflections/culling.glsl"
 #include "clustered_reflections/detail_levels.glsl"
 #include "clustered_reflections/workgroup_scan.glsl"
 
@@ -25,10 +26,6 @@ layout(std430, binding = kInstancesBinding) writeonly buffer Visible {
 };
 layout(std430, binding = kVisibleCornersBinding) writeonly buffer VisibleCorners {
     float visibleCorners[];  // clip x, y, w over the near distance, of three corners
-};
-
-layout(std430, binding = kFamiliesBinding) readonly buffer Families {
-    uint families[];  // reflectorFamilies() of cluster_images.h
 };
 
 uniform uint partCount;
@@ -63,17 +60,6 @@ uint countBefore(bool value, out uint total) {
         total += ofMarks;
     }
     return before;
-}
-
-bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {
-    return dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), halfSize) >= 0.0;
-}
-
-// As cluster_images.h has it; reflectors beyond the list are none of the scene's.
-bool areBackToBack(uint a, uint b) {
-    if (a >= uint(families.length()) || b >= uint(families.length())) return false;
-    uint family = families[a], other = families[b];
-    return family >> 2 == other >> 2 && family != other && (family & 3u) + (other & 3u) == 3u;
 }
 
 struct Frustum {

@@ -82,18 +82,10 @@ class ReprojectionTest : public reflections::ReflectionsTest {
     Warped warped(const Samples& samples, const depth_images::View& to,
                   const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
                   const ReprojectionSettings& settings = {}) {
-        upload(samples);
-        reflections::GBuffer gbuffer(to);
-        gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
-        gbuffer.depth.upload(GL_RED, GL_FLOAT, depthM.data());
-        Reprojection reprojection(shaders, settings, kSize);
-        reflections::ReflectionTarget target(kSize);
-        gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSize);
-        reprojection.setKeyFrame(*key);
-        reprojection.warp(*key, key->reflection.radiance, gbuffer, target, wanted);
-        return {target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
-                wanted.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1),
-                reprojection.reflectiveSamples()};
+        return moved(samples, to, surface, depthM, settings,
+                     [&](Reprojection& reprojection, auto&... images) {
+                         reprojection.warp(*key, key->reflection.radiance, images...);
+                     });
     }
 
     /// The key frame's own colours by the offsets, to `to` at once.
@@ -101,6 +93,16 @@ class ReprojectionTest : public reflections::ReflectionsTest {
                      const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
                      const ReprojectionSettings& settings = {},
                      const gl::Texture* doubtful = nullptr) {
+        return moved(samples, to, surface, depthM, settings,
+                     [&](Reprojection& reprojection, auto&... images) {
+                         reprojection.project(*key, *offsets, doubtful, images...);
+                     });
+    }
+
+    template <class Move>
+    Warped moved(const Samples& samples, const depth_images::View& to,
+                 const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
+                 const ReprojectionSettings& settings, Move&& move) {
         upload(samples);
         reflections::GBuffer gbuffer(to);
         gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
@@ -109,7 +111,7 @@ class ReprojectionTest : public reflections::ReflectionsTest {
         reflections::ReflectionTarget target(kSize);
         gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSize);
         reprojection.setKeyFrame(*key);
-        reprojection.project(*key, *offsets, doubtful, gbuffer, target, wanted);
+        move(reprojection, gbuffer, target, wanted);
         return {target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
                 wanted.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1),
                 reprojection.reflectiveSamples()};
