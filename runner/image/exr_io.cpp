@@ -24,6 +24,7 @@ namespace gfxrepro::image {
 namespace {
 
 constexpr int kCallingThreadOnly = 0;
+constexpr int kZipLevel = 1;  // of 1 … 9: a run writes hundreds of images, and waits for each
 
 int sampledCount(int count, int sampling) {
     return (count + sampling - 1) / sampling;
@@ -151,6 +152,7 @@ std::string encoded(const ExrImage& image) {
     checkWritable(image);
     Imf::Header header(image.width(), image.height());
     header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = kZipLevel;
     for (const auto& [key, value] : image.attributes) {
         header.insert(key, Imf::StringAttribute(value));
     }

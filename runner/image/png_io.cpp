@@ -16,6 +16,7 @@ namespace gfxrepro::image {
 namespace {
 
 constexpr bool kSwapBytes = std::endian::native == std::endian::little;  // PNG is big-endian
+constexpr int kZlibLevel = 2;  // of 1 … 9: a run writes hundreds of images, and waits for each
 
 /// libpng reports an error by this callback, which must not return.
 [[noreturn]] void keepMessageAndJump(png_structp png, png_const_charp message) {
@@ -124,6 +125,7 @@ class Writer {
             throw Error("libpng cannot be started");
         }
         png_set_write_fn(png_, &encoded_, append, nullptr);
+        png_set_compression_level(png_, kZlibLevel);
     }
     ~Writer() { png_destroy_write_struct(&png_, &info_); }
     Writer(const Writer&) = delete;
