@@ -95,11 +95,16 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
         "memory_bytes",
         static_cast<double>(frameBytes + composite_->sizeBytes() + tracer_->sizeBytes()), "byte");
     if (renderer_) recordReuse(recorder);
-    if (!params_.measuresErrors && !params_.showsPictures) return;
+    // A key frame is traced, and has nothing to be judged by; the next frame shows it
+    // (`key_frame`).
+    const bool isKeyFrame = renderer_ && renderer_->counts().isKeyFrame;
+    const bool isJudged = params_.measuresErrors && !isKeyFrame;
+    const bool isShown = params_.showsPictures && !(isKeyFrame && frame_ + 1 < frameCount_);
+    if (!isJudged && !isShown) return;
     const image::ImageF picture = composite_->read();
     const image::ImageF truth = params_.measuresErrors ? truthOf(host) : image::ImageF();
-    if (params_.measuresErrors) recordErrors(recorder, host, picture, truth);
-    if (params_.showsPictures) recordPictures(recorder, host, picture, truth);
+    if (isJudged) recordErrors(recorder, host, picture, truth);
+    if (isShown) recordPictures(recorder, host, picture, truth);
 }
 
 void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
@@ -186,10 +191,6 @@ void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuf
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
     recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
     if (renderer_) recordUndetected(recorder, host, picture, truth);
-    if (!params_.showsPictures) return;
-    recorder.image("truth", truth, seenFrom(host.view, "result"));
-    recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(host.view));
-    recorder.image("error_60", reflections::errorPicture(picture, truth, 60), seenFrom(host.view));
 }
 
 void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const HostGBuffer& host,
@@ -210,6 +211,12 @@ void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGB
     depth_images::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
     if (!truth.empty()) layers.errors(picture, truth);
     recorder.image("result", picture, layers.options());
+    if (!truth.empty()) {
+        recorder.image("truth", truth, seenFrom(host.view, "result"));
+        recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(host.view));
+        recorder.image("error_60", reflections::errorPicture(picture, truth, 60),
+                       seenFrom(host.view));
+    }
     composite_->render(gbuffer(), reflection(), true);
     recorder.image("reflection", composite_->read(), seenFrom(host.view));
     if (!renderer_) return;

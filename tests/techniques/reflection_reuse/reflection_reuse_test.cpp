@@ -65,10 +65,16 @@ class ReflectionReuseTest : public test::GlTest {
         }
         return frames;
     }
+    /// Of the frames that have it; NaN where none has.
     static double meanOf(const std::vector<test::MetricRecorder>& frames, const char* metric) {
-        double sum = 0.0;
-        for (const test::MetricRecorder& frame : frames) sum += frame.metrics.at(metric);
-        return sum / static_cast<double>(frames.size());
+        double sum = 0.0, count = 0.0;
+        for (const test::MetricRecorder& frame : frames) {
+            const auto found = frame.metrics.find(metric);
+            if (found == frame.metrics.end()) continue;
+            sum += found->second;
+            count += 1.0;
+        }
+        return sum / count;
     }
     /// K for a key frame, r for one that reuses it.
     static std::string kindsOf(const std::vector<test::MetricRecorder>& frames) {
@@ -178,6 +184,7 @@ TEST_F(ReflectionReuseTest, EveryMethodAndTracerRecordsSharesMemoryAndErrors) {
             EXPECT_EQ(kindsOf(frames), "Kr");
             EXPECT_EQ(frames[0].metrics.at("saved_pct"), 0.0);
             EXPECT_FALSE(frames[0].metrics.contains("recomputed_pct"));
+            EXPECT_FALSE(frames[0].metrics.contains("channel_error")) << "a key frame is traced";
             EXPECT_NEAR(metrics.at("saved_pct"), 100.0 - metrics.at("recomputed_pct"), 1e-9);
         }
     }
@@ -280,14 +287,19 @@ TEST_F(ReflectionReuseTest, ReuseIsNearerToTheTruthThanDirectReprojection) {
 }
 
 TEST_F(ReflectionReuseTest, AJumpIsRecomputedAndMakesTheNextFrameAKeyFrame) {
-    const auto frames = recorded("{view: jump, path_frames: 3, tracer: embree}", &room_, 3);
+    const std::string kJump = "{view: jump, path_frames: 3, tracer: embree, pictures: true";
+    const auto frames = recorded(kJump + "}", &room_, 3);
     EXPECT_EQ(kindsOf(frames), "KrK");
     EXPECT_GT(frames[1].metrics.at("recomputed_pct"), 60.0);
     EXPECT_FALSE(frames[0].metrics.contains("key_frame_interval"));
     EXPECT_EQ(frames[2].metrics.at("key_frame_interval"), 2.0);
     // What was traced is right, whatever the key frame showed.
-    EXPECT_EQ(frames[2].metrics.at("channel_error"), 0.0);
+    const auto traced = recorded(kJump + ", method: ray_traced}", &room_, 3);
+    EXPECT_EQ(frames[2].images.at("result"), traced[2].images.at("result"));
     EXPECT_LT(frames[1].metrics.at("channel_error"), 8.0);
+    // The next frame's pictures have the key frame; the last has no next.
+    EXPECT_FALSE(frames[0].images.contains("result"));
+    EXPECT_TRUE(frames[1].images.contains("key_frame"));
 }
 
 TEST_F(ReflectionReuseTest, TheThresholdDecidesWhatIsAKeyFrame) {
@@ -342,9 +354,9 @@ TEST_F(ReflectionReuseTest, ViewsWithoutReflectorsRecordNothingReflected) {
             fmt::format("{{view: ceiling, pictures: true, method: {}}}", method), &room_, 3);
         for (const test::MetricRecorder& frame : frames) {
             EXPECT_EQ(frame.metrics.at("reflective_pct"), 0.0);
-            EXPECT_EQ(frame.metrics.at("channel_error_image"), 0.0);
             EXPECT_FALSE(frame.metrics.contains("saved_pct"));
         }
+        EXPECT_EQ(frames[2].metrics.at("channel_error_image"), 0.0);
         if (std::string(method) == "ray_traced") continue;
         EXPECT_EQ(kindsOf(frames), "Krr");
         EXPECT_EQ(frames[1].metrics.at("recomputed_pct"), 0.0);
@@ -402,16 +414,19 @@ TEST_F(ReflectionReuseTest, FitsRecomputingOnceAfterTheLastFrame) {
 
 TEST_F(ReflectionReuseTest, ShowsPicturesOfEveryStep) {
     const auto frames = recorded("{pictures: true, path_frames: 40, supersampling: 2}", &room_, 2);
+    EXPECT_TRUE(frames[0].images.empty()) << "the next frame has the key frame";
     const char* expected[] = {"error",  "error_60", "recomputed", "reflection",
                               "result", "truth",    "undetected"};
-    for (const char* name : expected) EXPECT_TRUE(frames[0].images.contains(name)) << name;
-    EXPECT_EQ(frames[0].images.size(), std::size(expected));
     for (const char* name : expected) EXPECT_TRUE(frames[1].images.contains(name)) << name;
     for (const char* name : {"key_frame", "offsets", "shifted"}) {
         ASSERT_TRUE(frames[1].images.contains(name)) << name;
         EXPECT_EQ(frames[1].images.at(name).width(), 64) << name;
     }
-    EXPECT_EQ(frames[1].images.at("key_frame"), frames[0].images.at("result"));
+    const auto alone = recorded("{pictures: true, path_frames: 40, supersampling: 2}", &room_, 1);
+    for (const char* name : {"error", "error_60", "recomputed", "reflection", "result", "truth"}) {
+        EXPECT_TRUE(alone[0].images.contains(name)) << name;
+    }
+    EXPECT_EQ(frames[1].images.at("key_frame"), alone[0].images.at("result"));
 }
 
 }  // namespace
