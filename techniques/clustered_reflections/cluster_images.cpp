@@ -46,6 +46,12 @@ gl::Defines imageDefines() {
     return defines;
 }
 
+gl::Defines shadedImageDefines(const reflections::ReflectiveScene& scene) {
+    gl::Defines defines = imageDefines();
+    defines.merge(reflections::surfaceDefines(scene));
+    return defines;
+}
+
 // ---- ClusterImages ----
 
 ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid,
@@ -164,7 +170,7 @@ OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
         reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
         trianglesOfObject_.push_back(object.triangleCount);
     }
-    gl::Defines defines = imageDefines();
+    gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 0;
     program_ = gl::Program(shaders,
                            {"clustered_reflections/cluster_image.vert.glsl",

@@ -45,6 +45,8 @@ enum ImageUnit : unsigned {
     kClusterOfSampleUnit
 };
 gl::Defines imageDefines();
+/// Those, and what passes that shade surfaces ask of the scene.
+gl::Defines shadedImageDefines(const reflections::ReflectiveScene& scene);
 
 /// Levels above the depth image: tiles of 4, 8, 16 and 32 texels a side. (Tiles of 2 would cost
 /// more memory than all others and skip next to nothing.)

@@ -25,9 +25,9 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
         reflections::cameraFor(scene_->scene(), params_.view, 0, 1, size.x / size.y);
 
     objects_.emplace(*scene_);
-    map_.emplace(shaders, scene_->boundsWorld().centre());
+    map_.emplace(shaders, *scene_);
     map_->render(*objects_);
-    gbufferRenderer_.emplace(shaders);
+    gbufferRenderer_.emplace(shaders, *scene_);
     gbuffer_.emplace(depth_images::viewOf(camera, samplesPx));
     target_.emplace(samplesPx);
     tracer_ = makeTracer(shaders);

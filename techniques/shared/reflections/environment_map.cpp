@@ -67,13 +67,17 @@ gl::Defines tracerDefines() {
 
 }  // namespace
 
+EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
+    : EnvironmentMap(shaders, scene, scene.boundsWorld().centre()) {}
+
 // Colours are in [0, 1], as in the G-buffer.
-EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const glm::vec3& centreWorld)
+EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                               const glm::vec3& centreWorld)
     : centreWorld_(centreWorld),
       cube_(gl::Texture::makeCube(GL_RGB10_A2, kFaceSizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(kFaceSizePx))),
       program_(shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
-               objectDefines()) {}
+               surfaceDefines(scene)) {}
 
 void EnvironmentMap::render(const GpuObjects& objects) {
     ++version_;

@@ -12,8 +12,8 @@ namespace {
 /// Outputs in the order of the framebuffer's attachments.
 enum Target { kDiffuseTarget = 0, kNormalTarget = 1, kDepthTarget = 2, kSurfaceTarget = 3 };
 
-gl::Defines gbufferDefines() {
-    gl::Defines defines = objectDefines();
+gl::Defines gbufferDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = surfaceDefines(scene);
     defines["kDepthTarget"] = kDepthTarget;
     defines["kDiffuseTarget"] = kDiffuseTarget;
     defines["kNormalTarget"] = kNormalTarget;
@@ -74,9 +74,9 @@ std::size_t GBuffer::sizeBytes() const {
            depthBuffer.sizeBytes();
 }
 
-GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders)
+GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
     : program_(shaders, {"reflections/surface.vert.glsl", "reflections/gbuffer.frag.glsl"},
-               gbufferDefines()) {}
+               gbufferDefines(scene)) {}
 
 void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
     clear(target);

@@ -31,8 +31,9 @@ struct GBuffer {
 
 class GBufferRenderer {
   public:
-    explicit GBufferRenderer(const gl::ShaderLibrary& shaders);
-    /// Clears and draws; no culling, so that a surface is seen from both sides.
+    GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
+    /// `objects` are of the constructor's scene. Clears and draws; no culling, so that a surface is
+    /// seen from both sides.
     void render(const GpuObjects& objects, GBuffer& target) const;
 
   private:

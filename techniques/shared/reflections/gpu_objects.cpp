@@ -153,6 +153,12 @@ gl::Defines objectDefines() {
     return defines;
 }
 
+gl::Defines surfaceDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = objectDefines();
+    defines["MATERIAL_TEXTURES"] = scene.hasMaterialTextures() ? 1 : 0;
+    return defines;
+}
+
 GpuObjects::GpuObjects(const ReflectiveScene& scene)
     : scene_(&scene),
       positions_(gl::Buffer::of(scene.geometry().positions)),

@@ -38,8 +38,8 @@ struct Arguments {
 };
 static_assert(sizeof(Arguments) == 20);
 
-gl::Defines passDefines() {
-    gl::Defines defines = objectDefines();
+gl::Defines passDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = surfaceDefines(scene);
     defines.merge(GpuBvh::defines());
     defines.merge(
         gl::Defines{{"INDICES_BINDING", static_cast<unsigned>(kIndices)},
@@ -74,8 +74,8 @@ GpuRayTracer::GpuRayTracer(const gl::ShaderLibrary& shaders, const GpuObjects& o
       lobe_(lobe),
       diagonalM_(diagonalM),
       bvh_(shaders, objects),
-      list_(shaders, {"reflections/ray_list.comp.glsl"}, passDefines()),
-      trace_(shaders, {"reflections/trace_rays.comp.glsl"}, passDefines()),
+      list_(shaders, {"reflections/ray_list.comp.glsl"}, passDefines(objects.scene())),
+      trace_(shaders, {"reflections/trace_rays.comp.glsl"}, passDefines(objects.scene())),
       arguments_(sizeof(Arguments)) {
     arguments_.clear();
 }

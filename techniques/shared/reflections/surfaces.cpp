@@ -355,6 +355,13 @@ void ReflectiveScene::addGeometry(const scene::Mesh& mesh, Object& object) {
                                       static_cast<std::uint32_t>(objects_.size()));
 }
 
+bool ReflectiveScene::hasMaterialTextures() const {
+    return std::any_of(objects_.begin(), objects_.end(), [](const Object& object) {
+        return object.metallicRoughnessLayer >= 0 || object.normalLayer >= 0 ||
+               object.emissiveLayer >= 0;
+    });
+}
+
 float ReflectiveScene::diagonalM() const {
     return glm::length(boundsWorld_.size());
 }

@@ -99,6 +99,8 @@ class ReflectiveScene {
     const std::vector<image::Image8>& valueLayers() const {
         return valueLayers_.layers;
     }  // RGBA, linear: metallic-roughness and normals
+    /// Whether some object has a texture of roughness and metalness, of normals or of emission.
+    bool hasMaterialTextures() const;
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
     int wholeReflectorCount() const { return wholeReflectorCount_; }  // objects, not their parts

@@ -56,7 +56,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
     const reflections::GpuObjects objects(mirrored);
     reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(128)));
-    reflections::GBufferRenderer(shaders()).render(objects, truth);
+    reflections::GBufferRenderer(shaders(), mirrored).render(objects, truth);
     const reflections::HostGBuffer expected = readGBuffer(truth);
 
     for (const ImageDrawing drawing : kDrawings) {

@@ -77,7 +77,7 @@ using EnvironmentMapTest = ReflectionsTest;
 TEST_F(EnvironmentMapTest, ShowsTheWallsInTheirDirections) {
     const ReflectiveScene scene(room());
     const GpuObjects objects(scene);
-    EnvironmentMap map(shaders, kCentre);
+    EnvironmentMap map(shaders, scene, kCentre);
     map.render(objects);
     const EnvironmentMap::Host host = map.read();
     std::vector<glm::vec4> directions;
@@ -127,7 +127,7 @@ void main() {
 TEST_F(EnvironmentMapTest, ShowsTheBackgroundWhereNothingIs) {
     const ReflectiveScene scene(room(true));
     const GpuObjects objects(scene);
-    EnvironmentMap map(shaders, glm::vec3(0.0F));
+    EnvironmentMap map(shaders, scene, glm::vec3(0.0F));
     map.render(objects);
     const EnvironmentMap::Host host = map.read();
     EXPECT_EQ(host.radianceFrom({1, 0, 0}), kColors[0]);
@@ -156,8 +156,8 @@ TEST_F(EnvironmentTracerTest, TakesTheMeanOfTheMapOverTheLobe) {
         const ReflectiveScene scene(room(false, roughness));
         const GpuObjects objects(scene);
         GBuffer gbuffer(mirrorView());
-        GBufferRenderer(shaders).render(objects, gbuffer);
-        EnvironmentMap map(shaders, kCentre);
+        GBufferRenderer(shaders, scene).render(objects, gbuffer);
+        EnvironmentMap map(shaders, scene, kCentre);
         EnvironmentTracer tracer(shaders, map, lobe, scene.diagonalM());
         tracer.update(objects, profiler);
         ReflectionTarget target(gbuffer.view.sizePx);
@@ -196,8 +196,8 @@ TEST_F(EnvironmentTracerTest, LeavesAloneWhatIsNotWanted) {
     const ReflectiveScene scene(room());
     const GpuObjects objects(scene);
     GBuffer gbuffer(mirrorView());
-    GBufferRenderer(shaders).render(objects, gbuffer);
-    EnvironmentMap map(shaders, kCentre);
+    GBufferRenderer(shaders, scene).render(objects, gbuffer);
+    EnvironmentMap map(shaders, scene, kCentre);
     EnvironmentTracer tracer(shaders, map, lobe, scene.diagonalM());
     tracer.update(objects, profiler);
     ReflectionTarget target(gbuffer.view.sizePx);
@@ -221,7 +221,7 @@ TEST_F(EnvironmentTracerTest, LeavesAloneWhatIsNotWanted) {
 TEST_F(EnvironmentTracerTest, FollowsMovedObjects) {
     const ReflectiveScene scene(room());
     GpuObjects objects(scene);
-    EnvironmentMap map(shaders, kCentre);
+    EnvironmentMap map(shaders, scene, kCentre);
     EnvironmentTracer tracer(shaders, map, lobe, scene.diagonalM());
     const auto passesOfUpdate = [&] {
         tracer.update(objects, profiler);

@@ -81,7 +81,7 @@ class GBufferTest : public ReflectionsTest {
         for (std::size_t i = 0; i < posed.instances.size(); ++i) {
             posed.instances[i].worldFromMesh = objects.poses()[i];
         }
-        GBufferRenderer(shaders).render(objects, gbuffer);
+        GBufferRenderer(shaders, prepared).render(objects, gbuffer);
     }
 
     scene::Scene scene = floorWithBalls();
@@ -215,7 +215,7 @@ struct Halves {
         camera.position = {0, 0, 5.0F * side};
         camera.target = {0, 0, 0};
         GBuffer gbuffer(depth_images::viewOf(camera, kSize));
-        GBufferRenderer(shaders).render(GpuObjects(scene), gbuffer);
+        GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         host = readGBuffer(gbuffer);
         left = host.indexOf({kSize.x / 2 - static_cast<int>(9 * side), kSize.y / 2});
         right = host.indexOf({kSize.x / 2 + static_cast<int>(9 * side), kSize.y / 2});
@@ -271,7 +271,7 @@ TEST_F(GBufferTest, ClearsWhatWasThere) {
     std::vector<glm::mat4> away = posesOf(scene);
     for (glm::mat4& pose : away) pose = glm::translate(glm::mat4(1.0F), {0, 0, 50}) * pose;
     objects.setPoses(away);
-    GBufferRenderer(shaders).render(objects, gbuffer);
+    GBufferRenderer(shaders, prepared).render(objects, gbuffer);
     const HostGBuffer host = readGBuffer(gbuffer);
     EXPECT_EQ(host.depthM, std::vector<float>(host.depthM.size(), 0.0F));
     EXPECT_EQ(host.surface, std::vector<std::uint32_t>(host.surface.size(), 0U));

@@ -78,7 +78,7 @@ TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
         colours.push_back(shadeDiffuse(scene.lights(), position, normal, albedos.back(),
                                        scene.objects()[object].emissive));
     }
-    const gl::Program shade = compute(kShader, objectDefines());
+    const gl::Program shade = compute(kShader, surfaceDefines(scene));
     const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
     const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
     shade.use();

@@ -342,6 +342,18 @@ TEST(TexturedNormalTest, KeepsAMirrorFromBeingPlanar) {
     EXPECT_FALSE(ReflectiveScene(bentSquare({128, 128, 255})).objects()[0].isPlanar);
 }
 
+TEST(ReflectiveSceneTest, KnowsWhetherItHasMaterialTextures) {
+    const auto hasThem = [](const scene::Material& material) {
+        scene::Scene scene = sceneOf(squareMesh(), material);
+        scene.textures = {randomImage(4, 4, 1)};
+        return ReflectiveScene(scene).hasMaterialTextures();
+    };
+    EXPECT_FALSE(hasThem({.baseColorTexture = 0}));
+    EXPECT_TRUE(hasThem({.emissiveTexture = 0}));
+    EXPECT_TRUE(hasThem({.normalTexture = 0}));
+    EXPECT_TRUE(hasThem({.roughness = 0.0F, .metallicRoughnessTexture = 0}));
+}
+
 TEST(ReflectiveSceneTest, FiltersTexturesInLinearLight) {
     scene::Scene scene =
         sceneOf(squareMesh(), {.baseColor = {0.5F, 1.0F, 1.0F, 1.0F}, .baseColorTexture = 1});

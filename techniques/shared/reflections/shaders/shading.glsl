@@ -1,4 +1,6 @@
-// Light of diffuse surfaces, as surfaces.h has it.
+// Light of diffuse surfaces, as surfaces.h has it. MATERIAL_TEXTURES is 1 where some object of the
+// scene has a texture of roughness and metalness, of normals or of emission: asking each object for
+// them costs every scene.
 #include "reflections/objects.glsl"
 
 struct Light {
@@ -26,15 +28,18 @@ vec3 albedoOf(Object object, vec2 texcoord, vec3 vertexColor) {
 
 vec3 emissiveOf(Object object, vec2 texcoord) {
     vec3 emissive = object.emissive.rgb;
+#if MATERIAL_TEXTURES
     if (object.layers.z >= 0) {
         emissive *= textureLod(textureLayers, vec3(texcoord, object.layers.z), 0.0).rgb;
     }
+#endif
     return emissive;
 }
 
 // What reflects how at a place, as in the G-buffer: with a metallic-roughness texture the texel
 // says it, and what is rougher than the rule allows does not reflect.
 uint surfaceOf(Object object, vec2 texcoord) {
+#if MATERIAL_TEXTURES
     if (object.layers.x < 0) return object.surface;
     vec2 texel = textureLod(valueLayers, vec3(texcoord, object.layers.x), 0.0).gb;
     float roughness = object.reflection.y * texel.x;
@@ -44,8 +49,12 @@ uint surfaceOf(Object object, vec2 texcoord) {
     uint g = object.layers.w != 0 ? object.surface >> 24
                                   : uint(round(255.0 * clamp(roughness, 0.0, 1.0)));
     return (object.surface & 0xFFFFu) | s << 16 | g << 24;
+#else
+    return object.surface;
+#endif
 }
 
+#if MATERIAL_TEXTURES
 // The normal that the object's normal texture gives: unit, turned to the viewer. `normal` is the
 // interpolated one, unit, on the mesh's outside, toViewer of unit length. The frame is the
 // triangle's, of two edges and their texture coordinates: gradients of u and v across the normal
@@ -73,6 +82,7 @@ vec3 texturedNormal(Object object, vec2 texcoord, vec3 normal, vec3 toViewer, ve
     float facing = dot(bent, toViewer);
     return facing < kLeastFacing ? normalize(bent + (kLeastFacing - facing) * toViewer) : bent;
 }
+#endif
 
 // normalWorld is of unit length and turned to the viewer.
 vec3 shadeDiffuse(vec3 positionWorld, vec3 normalWorld, vec3 albedo, vec3 emissive) {

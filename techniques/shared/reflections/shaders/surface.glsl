@@ -16,6 +16,7 @@ vec3 unitNormalTowards(vec3 viewerWorld) {
     vec3 normal = point.normalWorld;
     if (dot(normal, normal) == 0.0) normal = toViewer;
     normal = normalize(normal);
+#if MATERIAL_TEXTURES
     Object object = objects[point.object];
     if (object.layers.y >= 0) {
         // All of a quad is of one triangle, so derivatives are there, and they are edges in its plane.
@@ -23,6 +24,7 @@ vec3 unitNormalTowards(vec3 viewerWorld) {
                               dFdx(point.positionWorld), dFdy(point.positionWorld),
                               dFdx(point.texcoord), dFdy(point.texcoord));
     }
+#endif
     return dot(normal, toViewer) < 0.0 ? -normal : normal;
 }
 

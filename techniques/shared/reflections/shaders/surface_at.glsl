@@ -30,13 +30,16 @@ vec3 diffuseAt(uvec3 vertices, uint objectIndex, vec2 barycentric, vec3 position
     // Where opposite normals cancel out in the middle of a triangle, as in surface.glsl.
     if (dot(normal, normal) == 0.0) normal = -direction;
     normal = normalize(normal);
+    bool isTurned = false;
+#if MATERIAL_TEXTURES
     if (object.layers.y >= 0) {
         normal = texturedNormal(object, texcoord, normal, -direction, ab, ac,
                                 texcoordOf(vertices.y) - texcoordOf(vertices.x),
                                 texcoordOf(vertices.z) - texcoordOf(vertices.x));
-    } else if (dot(normal, direction) > 0.0) {
-        normal = -normal;
+        isTurned = true;
     }
+#endif
+    if (!isTurned && dot(normal, direction) > 0.0) normal = -normal;
     return shadeDiffuse(positionWorld, normal, albedoOf(object, texcoord, color),
                         emissiveOf(object, texcoord));
 }

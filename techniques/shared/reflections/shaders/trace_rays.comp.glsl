@@ -38,11 +38,13 @@ vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction) {
     uint object = objectOfTriangle[hit.triangle];
     uvec3 vertices = uvec3(indices[at], indices[at + 1u], indices[at + 2u]);
     vec3 ab = vec3(0.0), ac = vec3(0.0);
+#if MATERIAL_TEXTURES
     if (objects[object].layers.y >= 0) {
         mat3 worldFromMesh = mat3(objects[object].worldFromMesh);
         ab = worldFromMesh * (positionMesh(vertices.y) - positionMesh(vertices.x));
         ac = worldFromMesh * (positionMesh(vertices.z) - positionMesh(vertices.x));
     }
+#endif
     return diffuseAt(vertices, object, hit.barycentric, origin + hit.t * direction, direction, ab,
                      ac);
 }
