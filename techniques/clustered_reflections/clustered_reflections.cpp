@@ -14,7 +14,7 @@ ClusteredReflections::ClusteredReflections(config::Params& params) : params_(par
 void ClusteredReflections::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'clustered_reflections' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors);
+    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);

@@ -16,7 +16,7 @@ ReflectionReuse::ReflectionReuse(config::Params& params) : params_(params) {}
 void ReflectionReuse::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'reflection_reuse' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors);
+    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);

@@ -17,8 +17,9 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     vec3 eyeWorld = cameras[clusterOfPoint].eyeWorld.xyz;
+    float footprint = footprintFrom(eyeWorld);
     bool isOwn = (objects[point.object].surface & 0xFFFFu) == cameras[clusterOfPoint].reflector;
     if (isOwn && dot(point.normalWorld, eyeWorld - point.positionWorld) < 0.0) discard;
-    vec3 normalWorld = unitNormalTowards(eyeWorld);
-    colour = vec4(diffuseOf(normalWorld), isOwn ? 1.0 : 0.0);
+    vec3 normalWorld = unitNormalTowards(eyeWorld, footprint);
+    colour = vec4(diffuseOf(normalWorld, footprint), isOwn ? 1.0 : 0.0);
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "runner/core/error.h"
 
@@ -31,6 +32,42 @@ void clear(const GBuffer& target) {
     target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
     glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kSurfaceTarget, kNoSurface);
     target.framebuffer.clearDepth(1.0F);
+}
+
+/// besideMirror() of shaders/beam.glsl.
+struct BesideMirror {
+    glm::vec3 begin{0.0F}, perMetre{0.0F};
+};
+BesideMirror besideMirror(const HostGBuffer& gbuffer, glm::ivec2 pixel, glm::ivec2 axis) {
+    const std::size_t index = gbuffer.indexOf(pixel);
+    const glm::vec3& eye = gbuffer.view.eyeWorld;
+    const auto viewDirection = [&](glm::ivec2 through) {
+        const glm::vec4 place((glm::vec2(through) + 0.5F), 1.0F, 1.0F);
+        return glm::normalize(glm::vec3(gbuffer.worldFromPixels * place) - eye);
+    };
+    const glm::vec3 normal = gbuffer.normalWorld[index];
+    float least = std::numeric_limits<float>::max();
+    int side = 1;
+    glm::vec3 besideNormal = normal;
+    for (const int i : {-1, 1}) {
+        const glm::ivec2 beside = pixel + i * axis;
+        if (glm::any(glm::lessThan(beside, glm::ivec2(0))) ||
+            glm::any(glm::greaterThanEqual(beside, gbuffer.view.sizePx)))
+            continue;
+        const std::size_t there = gbuffer.indexOf(beside);
+        if (gbuffer.reflector(there) != gbuffer.reflector(index)) continue;
+        const glm::vec3 difference = gbuffer.normalWorld[there] - normal;
+        const float bend = glm::dot(difference, difference);
+        if (bend >= least) continue;
+        least = bend;
+        side = i;
+        besideNormal = gbuffer.normalWorld[there];
+    }
+    const glm::vec3 view = viewDirection(pixel), besideView = viewDirection(pixel + side * axis);
+    const float distanceM = glm::distance(gbuffer.positionWorld(pixel), eye);
+    const auto sign = static_cast<float>(side);
+    return {sign * distanceM * glm::reflect(besideView - view, normal),
+            sign * (glm::reflect(besideView, besideNormal) - glm::reflect(view, normal))};
 }
 
 float signNotZero(float value) {
@@ -125,6 +162,19 @@ glm::vec3 HostGBuffer::positionWorld(glm::ivec2 pixel) const {
 glm::vec3 HostGBuffer::mirrorDirection(glm::ivec2 pixel) const {
     return glm::normalize(
         glm::reflect(positionWorld(pixel) - view.eyeWorld, normalWorld[indexOf(pixel)]));
+}
+
+glm::vec3 HostGBuffer::beam(glm::ivec2 pixel) const {
+    const BesideMirror a = besideMirror(*this, pixel, {1, 0});
+    const BesideMirror b = besideMirror(*this, pixel, {0, 1});
+    const glm::vec3 mirror = mirrorDirection(pixel);
+    return {glm::dot(mirror, glm::cross(a.begin, b.begin)),
+            glm::dot(mirror, glm::cross(a.begin, b.perMetre) + glm::cross(a.perMetre, b.begin)),
+            glm::dot(mirror, glm::cross(a.perMetre, b.perMetre))};
+}
+
+float beamArea(const glm::vec3& beam, float distanceM) {
+    return std::abs(beam.x + distanceM * (beam.y + distanceM * beam.z));
 }
 
 }  // namespace gfxrepro::reflections

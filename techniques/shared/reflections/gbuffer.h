@@ -61,7 +61,12 @@ struct HostGBuffer {
     glm::vec3 positionWorld(glm::ivec2 pixel) const;
     /// The mirror direction at a sample: unit.
     glm::vec3 mirrorDirection(glm::ivec2 pixel) const;
+    /// What a sample's reflected rays cover t metres on, in m²: |x + y·t + z·t²|, as
+    /// shaders/beam.glsl has it.
+    glm::vec3 beam(glm::ivec2 pixel) const;
 };
+float beamArea(const glm::vec3& beam, float distanceM);
+
 /// As shaders/octahedral.glsl has it: not of unit length, but the same as on the device.
 glm::vec3 directionFromOctahedral(const glm::vec2& e);
 

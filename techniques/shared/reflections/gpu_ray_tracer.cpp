@@ -16,7 +16,6 @@ enum Storage : unsigned {
     kObjectOfTriangle = 7,
     kSamples = kFirstFreeStorage,
     kArguments = kFirstFreeStorage + 1,
-    kPositions = kFirstFreeStorage + 2,
 };
 enum Unit : unsigned {
     kEnvironmentUnit = kFirstFreeUnit,
@@ -43,7 +42,6 @@ gl::Defines passDefines(const ReflectiveScene& scene) {
     defines.merge(GpuBvh::defines());
     defines.merge(
         gl::Defines{{"INDICES_BINDING", static_cast<unsigned>(kIndices)},
-                    {"POSITIONS_BINDING", static_cast<unsigned>(kPositions)},
                     {"NORMALS_BINDING", static_cast<unsigned>(kNormals)},
                     {"TEXCOORDS_BINDING", static_cast<unsigned>(kTexcoords)},
                     {"COLORS_BINDING", static_cast<unsigned>(kColors)},
@@ -117,7 +115,6 @@ void GpuRayTracer::traceSamples(const GBuffer& gbuffer, ReflectionTarget& target
     objects_.bind();
     bvh_.bind();
     objects_.indices().bindStorage(kIndices);
-    objects_.positions().bindStorage(kPositions);
     objects_.normals().bindStorage(kNormals);
     objects_.texcoords().bindStorage(kTexcoords);
     objects_.colors().bindStorage(kColors);

@@ -94,7 +94,7 @@ class GBufferTest : public ReflectionsTest {
 TEST_F(GBufferTest, SeesWhatRaysMeet) {
     const HostGBuffer host = readGBuffer(gbuffer);
     const raycast::RayTracer rays(posed);
-    int seen = 0, background = 0, elsewhere = 0, ofReflector[3] = {};
+    int seen = 0, background = 0, elsewhere = 0, filtered = 0, ofReflector[3] = {};
     for (int y = 0; y < kSize.y; ++y) {
         for (int x = 0; x < kSize.x; ++x) {
             const glm::ivec2 pixel(x, y);
@@ -132,9 +132,20 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
             const glm::vec3 mirror = direction - 2.0F * glm::dot(direction, normal) * normal;
             ASSERT_LE(glm::distance(host.mirrorDirection(pixel), mirror), 3e-3F);
 
-            const glm::vec3 colour = shadeDiffuse(
-                prepared.lights(), hit->position, normal,
-                prepared.albedoAt(hit->flattenedTriangle, hit->barycentric), object.emissive);
+            // What the pixel covers: between the rays through it and through its neighbours.
+            const auto toNeighbour = [&](const glm::vec2& offset) {
+                return rayThrough(host.view, glm::vec2(pixel) + 0.5F + offset) - direction;
+            };
+            const float beamArea = std::abs(glm::dot(direction, glm::cross(toNeighbour({1, 0}),
+                                                                           toNeighbour({0, 1})))) *
+                                   hit->distance * hit->distance;
+            const float footprint = prepared.footprintAt(
+                hit->flattenedTriangle, objects.poses()[hit->instance], direction, beamArea);
+            const glm::vec3 colour =
+                shadeDiffuse(prepared.lights(), hit->position, normal,
+                             prepared.albedoAt(hit->flattenedTriangle, hit->barycentric, footprint),
+                             object.emissive);
+            filtered += object.textureLayer >= 0 && footprint > 1.0F / 512.0F ? 1 : 0;
             for (int c = 0; c < 3; ++c) {
                 // 10 bits and the sampler's 256ths of a texel.
                 ASSERT_NEAR(host.diffuse[i][c], colour[c], 4e-3F) << x << " " << y << " " << c;
@@ -143,6 +154,7 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
     }
     EXPECT_LE(elsewhere, kSize.x * kSize.y / 500);
     EXPECT_GT(background, 500);
+    EXPECT_GT(filtered, 500);
     EXPECT_GT(ofReflector[0], 500);
     EXPECT_GT(ofReflector[1], 300);
     EXPECT_GT(ofReflector[2], 300);
@@ -187,6 +199,89 @@ void main() {
             ASSERT_NEAR(found[2].w, host.glossiness(i), 1e-7F);
             ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
         }
+    }
+}
+
+TEST_F(GBufferTest, BeamsOfReflectionsAreTheSameOnTheDevice) {
+    const gl::Program program = compute(R"(#version 450 core
+#include "reflections/beam.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
+    vec3 beam = beamOf(pixel);
+    results[i] = vec4(beamArea(beam, 0.0), beamArea(beam, 0.5), beamArea(beam, 3.0), 0.0);
+}
+)",
+                                        {{"GBUFFER_UNIT", 3}});
+    const HostGBuffer host = readGBuffer(gbuffer);
+    const gl::Buffer buffer(host.depthM.size() * sizeof(glm::vec4));
+    program.use();
+    gbuffer.bind(program, 3);
+    buffer.bindStorage(0);
+    glDispatchCompute(static_cast<GLuint>(kSize.x), static_cast<GLuint>(kSize.y), 1);
+    const auto results = buffer.read<glm::vec4>(host.depthM.size());
+    int reflective = 0;
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const std::size_t i = host.indexOf({x, y});
+            if (!host.isReflective(i)) continue;
+            ++reflective;
+            const glm::vec3 beam = host.beam({x, y});
+            int at = 0;
+            for (const float distanceM : {0.0F, 0.5F, 3.0F}) {
+                const float expected = beamArea(beam, distanceM);
+                // Differences of directions to neighbours: a hundredth of them, to 2^-24.
+                ASSERT_NEAR(results[i][at++], expected, 1e-3F * expected + 1e-6F)
+                    << x << " " << y << " " << distanceM;
+            }
+        }
+    }
+    EXPECT_GT(reflective, 600);
+}
+
+/// The middle of the view, 4 m away, is a mirror that faces the eye.
+HostGBuffer facedMirror(const gl::ShaderLibrary& shaders, scene::Mesh mesh, float tiltRad = 0.0F) {
+    scene::Scene source;
+    addPart(source, std::move(mesh), {.metallic = 1.0F, .roughness = 0.0F},
+            glm::rotate(glm::mat4(1.0F), tiltRad, {0, 1, 0}));
+    const ReflectiveScene scene(source);
+    scene::Camera camera;
+    camera.position = {0, 0, 4};
+    camera.target = {0, 0, 0};
+    camera.nearM = 0.1F;
+    camera.farM = 10.0F;
+    GBuffer gbuffer(depth_images::viewOf(camera, kSize + 1));  // the axis is a pixel's middle
+    GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
+    return readGBuffer(gbuffer);
+}
+
+TEST_F(GBufferTest, BeamsOfPlanesGrowAsTheEyesDo) {
+    for (const float tiltRad : {0.0F, 0.6F, -1.0F}) {
+        const HostGBuffer host = facedMirror(shaders, squareMesh(), tiltRad);
+        const glm::ivec2 middle = kSize / 2;
+        const float pitch =
+            glm::distance(rayThrough(host.view, glm::vec2(middle) + 0.5F),
+                          rayThrough(host.view, glm::vec2(middle) + glm::vec2(1.5F, 0.5F)));
+        for (const float distanceM : {0.0F, 1.0F, 6.0F}) {
+            const float side = pitch * (4.0F + distanceM);
+            EXPECT_NEAR(beamArea(host.beam(middle), distanceM), side * side, 0.01F * side * side);
+        }
+    }
+}
+
+TEST_F(GBufferTest, BeamsOfBallsSpread) {
+    // The mirror's equation: a ball of radius 1, seen from 3 m, has the eye's image 3/7 m behind
+    // its surface, where the beam comes from.
+    const HostGBuffer host = facedMirror(shaders, ballMesh());
+    const glm::ivec2 middle = kSize / 2;
+    const float pitch =
+        glm::distance(rayThrough(host.view, glm::vec2(middle) + 0.5F),
+                      rayThrough(host.view, glm::vec2(middle) + glm::vec2(1.5F, 0.5F)));
+    for (const float distanceM : {0.0F, 1.0F, 6.0F}) {
+        const float side = pitch * 3.0F * (distanceM + 3.0F / 7.0F) / (3.0F / 7.0F);
+        EXPECT_NEAR(beamArea(host.beam(middle), distanceM), side * side, 0.05F * side * side);
     }
 }
 

@@ -6,4 +6,7 @@ uniform vec3 eyeWorld;
 
 layout(location = 0) out vec4 radiance;
 
-void main() { radiance = vec4(diffuseOf(unitNormalTowards(eyeWorld)), 1.0); }
+void main() {
+    float footprint = footprintFrom(eyeWorld);
+    radiance = vec4(diffuseOf(unitNormalTowards(eyeWorld, footprint), footprint), 1.0);
+}

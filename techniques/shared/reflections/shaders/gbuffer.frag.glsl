@@ -12,9 +12,10 @@ layout(location = kDepthTarget) out float depth;
 layout(location = kSurfaceTarget) out uint surface;
 
 void main() {
-    vec3 normalWorld = unitNormalTowards(eyeWorld);
-    diffuse = vec4(diffuseOf(normalWorld), 1.0);
+    float footprint = footprintFrom(eyeWorld);
+    vec3 normalWorld = unitNormalTowards(eyeWorld, footprint);
+    diffuse = vec4(diffuseOf(normalWorld, footprint), 1.0);
     normal = octahedralFromUnit(normalWorld);
     depth = 1.0 / gl_FragCoord.w;
-    surface = surfaceOf(objects[point.object], point.texcoord);
+    surface = surfaceOf(objects[point.object], point.texcoord, footprint);
 }

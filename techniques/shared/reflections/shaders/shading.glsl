@@ -1,6 +1,7 @@
 // Light of diffuse surfaces, as surfaces.h has it. MATERIAL_TEXTURES is 1 where some object of the
 // scene has a texture of roughness and metalness, of normals or of emission: asking each object for
-// them costs every scene.
+// them costs every scene. A footprint is a width in texture coordinates, as footprint.glsl has it.
+#include "reflections/footprint.glsl"
 #include "reflections/objects.glsl"
 
 struct Light {
@@ -16,21 +17,21 @@ layout(std140, binding = LIGHTS_BINDING) uniform Lights {
 layout(binding = TEXTURE_LAYERS_UNIT) uniform sampler2DArray textureLayers;
 layout(binding = VALUE_LAYERS_UNIT) uniform sampler2DArray valueLayers;
 
-// Base colour times vertex colour times texture. Level 0 always: rays have no footprint to choose a
-// level by, and all methods must show the same.
-vec3 albedoOf(Object object, vec2 texcoord, vec3 vertexColor) {
+// Base colour times vertex colour times texture.
+vec3 albedoOf(Object object, vec2 texcoord, float footprint, vec3 vertexColor) {
     vec3 albedo = object.baseColor.rgb * vertexColor;
     if (object.textureLayer >= 0) {
-        albedo *= textureLod(textureLayers, vec3(texcoord, object.textureLayer), 0.0).rgb;
+        albedo *=
+            filteredTexel(textureLayers, vec3(texcoord, object.textureLayer), footprint).rgb;
     }
     return albedo;
 }
 
-vec3 emissiveOf(Object object, vec2 texcoord) {
+vec3 emissiveOf(Object object, vec2 texcoord, float footprint) {
     vec3 emissive = object.emissive.rgb;
 #if MATERIAL_TEXTURES
     if (object.layers.z >= 0) {
-        emissive *= textureLod(textureLayers, vec3(texcoord, object.layers.z), 0.0).rgb;
+        emissive *= filteredTexel(textureLayers, vec3(texcoord, object.layers.z), footprint).rgb;
     }
 #endif
     return emissive;
@@ -38,10 +39,10 @@ vec3 emissiveOf(Object object, vec2 texcoord) {
 
 // What reflects how at a place, as in the G-buffer: with a metallic-roughness texture the texel
 // says it, and what is rougher than the rule allows does not reflect.
-uint surfaceOf(Object object, vec2 texcoord) {
+uint surfaceOf(Object object, vec2 texcoord, float footprint) {
 #if MATERIAL_TEXTURES
     if (object.layers.x < 0) return object.surface;
-    vec2 texel = textureLod(valueLayers, vec3(texcoord, object.layers.x), 0.0).gb;
+    vec2 texel = filteredTexel(valueLayers, vec3(texcoord, object.layers.x), footprint).gb;
     float roughness = object.reflection.y * texel.x;
     float reflectivity = max(object.reflection.x * texel.y, object.reflection.z);
     uint s = uint(round(255.0 * clamp(reflectivity, 0.0, 1.0)));
@@ -61,9 +62,10 @@ uint surfaceOf(Object object, vec2 texcoord) {
 // (Schüler 2013, "Followup: Normal Mapping Without Precomputed Tangents"). Departure from glTF 2.0
 // Sec. 3.9.3: no MikkTSpace tangents, so that rays, which know a triangle, and fragments, which know
 // derivatives, have the same frame.
-vec3 texturedNormal(Object object, vec2 texcoord, vec3 normal, vec3 toViewer, vec3 first,
-                    vec3 second, vec2 uvFirst, vec2 uvSecond) {
-    vec3 texel = 2.0 * textureLod(valueLayers, vec3(texcoord, object.layers.y), 0.0).xyz - 1.0;
+vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, vec3 toViewer,
+                    vec3 first, vec3 second, vec2 uvFirst, vec2 uvSecond) {
+    vec3 place = vec3(texcoord, object.layers.y);
+    vec3 texel = 2.0 * filteredTexel(valueLayers, place, footprint).xyz - 1.0;
     vec3 acrossSecond = cross(second, normal), acrossFirst = cross(normal, first);
     vec3 alongU = acrossSecond * uvFirst.x + acrossFirst * uvSecond.x;
     vec3 alongV = acrossSecond * uvFirst.y + acrossFirst * uvSecond.y;
