@@ -82,8 +82,15 @@ class ClusterImages {
   private:
     bool hasPyramid_;
     TexelContent content_;
+    /// A level of the pyramid: read by itself while the next one is drawn.
+    struct Level {
+        gl::Texture nearest;
+        gl::Framebuffer framebuffer;
+    };
+
     gl::Texture colour_, depth_, nearest_;
-    gl::Framebuffer framebuffer_, nearestFramebuffer_;
+    gl::Framebuffer framebuffer_;
+    std::vector<Level> levels_;  // of nearest_
     gl::Program pyramid_;
     gl::VertexArray none_;
 };
