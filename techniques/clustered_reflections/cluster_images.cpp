@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "techniques/shared/reflections/kept_colour.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -58,14 +59,13 @@ ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx
                              TexelContent content)
     : hasPyramid_(hasPyramid),
       content_(content),
-      colour_(
-          gl::Texture::make2D(content == TexelContent::Colours ? GL_RGB10_A2 : GL_R32UI, sizePx)),
+      colour_(gl::Texture::make2D(
+          content == TexelContent::Colours ? reflections::kKeptColourFormat : GL_R32UI, sizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       nearest_(gl::Texture::make2D(GL_R32F, hasPyramid ? sizePx / 4 : glm::ivec2(1),
                                    hasPyramid ? kPyramidLevels : 1)),
       framebuffer_(std::array<const gl::Texture*, 1>{&colour_}, &depth_) {
     GFXREPRO_ASSERT(!hasPyramid || sizePx % kLargestTilePx == glm::ivec2(0));
-    if (content == TexelContent::Colours) colour_.setFilter(GL_LINEAR, GL_LINEAR);
     nearest_.setFilter(GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST);
     for (int level = 0; hasPyramid && level < kPyramidLevels; ++level) {
         gl::Texture nearest = nearest_.viewOfLevel(level);

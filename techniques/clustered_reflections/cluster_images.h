@@ -55,7 +55,7 @@ constexpr int kLargestTilePx = 2 << kPyramidLevels;
 
 /// What a texel keeps beside its depth.
 enum class TexelContent {
-    Colours,    // RGB10_A2, the diffuse colour; a: own reflector
+    Colours,    // reflections::keptColour() of the diffuse colour; a: own reflector
     Triangles,  // R32UI, the triangle (VisiblePainter); bit 31: own reflector
 };
 

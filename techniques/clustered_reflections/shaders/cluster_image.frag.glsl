@@ -4,6 +4,7 @@
 //
 // Departure [xie2017] Sec. 4.7.4: the own reflector's surface is drawn only where it faces the camera.
 // The camera stands behind it, and its back, which no ray meets, would hide what they do meet.
+#include "reflections/kept_colour.glsl"
 #include "reflections/surface.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
@@ -21,5 +22,5 @@ void main() {
     bool isOwn = (objects[point.object].surface & 0xFFFFu) == cameras[clusterOfPoint].reflector;
     if (isOwn && dot(point.normalWorld, eyeWorld - point.positionWorld) < 0.0) discard;
     vec3 normalWorld = unitNormalTowards(eyeWorld, footprint);
-    colour = vec4(diffuseOf(normalWorld, footprint), isOwn ? 1.0 : 0.0);
+    colour = vec4(keptColour(diffuseOf(normalWorld, footprint)), isOwn ? 1.0 : 0.0);
 }

@@ -38,7 +38,7 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
                                   cameras[cluster].eyeWorld.w);
     vec3 begin = gbufferPosition(pixel);
     vec3 mirror = gbufferMirrorDirection(begin, gbufferUnitNormal(pixel));
-    vec3 diffuse = texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 diffuse = gbufferDiffuseAt(pixel);
     float glossiness = glossinessOf(texelFetch(gbufferSurface, pixel, 0).r);
 
 #if OF_TRIANGLES && FILTERS_TEXTURES

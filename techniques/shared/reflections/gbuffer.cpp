@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "runner/core/error.h"
+#include "techniques/shared/reflections/kept_colour.h"
 
 namespace gfxrepro::reflections {
 
@@ -27,7 +28,7 @@ void clear(const GBuffer& target) {
     glDisable(GL_SCISSOR_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
-    target.framebuffer.clearColour(kDiffuseTarget, glm::vec4(kBackground, 0.0F));
+    target.framebuffer.clearColour(kDiffuseTarget, glm::vec4(keptColour(kBackground), 0.0F));
     target.framebuffer.clearColour(kNormalTarget, glm::vec4(0.0F));
     target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
     glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kSurfaceTarget, kNoSurface);
@@ -87,7 +88,7 @@ glm::vec3 directionFromOctahedral(const glm::vec2& e) {
 
 GBuffer::GBuffer(const depth_images::View& ofView)
     : view(ofView),
-      diffuse(gl::Texture::make2D(GL_RGB10_A2, view.sizePx)),
+      diffuse(gl::Texture::make2D(kKeptColourFormat, view.sizePx)),
       normal(gl::Texture::make2D(GL_RG32F, view.sizePx)),
       depth(gl::Texture::make2D(GL_R32F, view.sizePx)),
       surface(gl::Texture::make2D(GL_R32UI, view.sizePx)),
@@ -138,7 +139,8 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
     host.surface = gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
     for (std::size_t i = 0; i < host.depthM.size(); ++i) {
-        host.diffuse.emplace_back(diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]);
+        host.diffuse.push_back(
+            linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]}));
         host.normalOctahedral.emplace_back(normals[2 * i], normals[2 * i + 1]);
         host.normalWorld.push_back(
             glm::normalize(directionFromOctahedral(host.normalOctahedral.back())));

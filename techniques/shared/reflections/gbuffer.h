@@ -15,7 +15,7 @@ namespace gfxrepro::reflections {
 /// depth_images::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
 struct GBuffer {
     depth_images::View view;
-    gl::Texture diffuse;  // RGB10_A2, linear: rgb_d of Algorithm 6, as shadeDiffuse() gives it
+    gl::Texture diffuse;  // keptColour(): rgb_d of Algorithm 6, as shadeDiffuse() gives it
     gl::Texture normal;   // RG32F, octahedral, unit world normal turned to the eye
     gl::Texture depth;    // R32F, d: distance along the view axis in metres; 0: nothing there
     gl::Texture surface;  // R32UI: reflector id | s in 255ths << 16 | g in 255ths << 24

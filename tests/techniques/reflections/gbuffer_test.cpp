@@ -5,6 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "runner/image/srgb.h"
 #include "runner/raycast/ray_tracer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
@@ -175,7 +176,7 @@ void main() {
     results[4 * i] = vec4(position, reflectorOf(surface));
     results[4 * i + 1] = vec4(normal, reflectivityOf(surface));
     results[4 * i + 2] = vec4(gbufferMirrorDirection(position, normal), glossinessOf(surface));
-    results[4 * i + 3] = texelFetch(gbufferDiffuse, pixel, 0);
+    results[4 * i + 3] = vec4(gbufferDiffuseAt(pixel), 1.0);
 }
 )",
                                         {{"GBUFFER_UNIT", 3}});
@@ -200,6 +201,45 @@ void main() {
             ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
         }
     }
+}
+
+// A hundredth of the light: steps of linear colours in 10 bits are three levels there.
+TEST_F(GBufferTest, KeepsDarkColours) {
+    scene::Scene dark = floorWithBalls();
+    for (scene::Material& material : dark.materials) {
+        material.baseColor = glm::vec4(0.01F * glm::vec3(material.baseColor), 1.0F);
+    }
+    const ReflectiveScene scene(dark);
+    GpuObjects darkObjects(scene);
+    darkObjects.setPoses(posesOf(dark));
+    GBufferRenderer(shaders, scene).render(darkObjects, gbuffer);
+    const HostGBuffer host = readGBuffer(gbuffer);
+    const raycast::RayTracer rays(posed);
+    double sum = 0.0, most = 0.0;
+    int count = 0;
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const std::size_t i = host.indexOf({x, y});
+            const glm::vec3 direction = rayThrough(host.view, glm::vec2(x, y) + 0.5F);
+            const auto hit = rays.closestHit(host.view.eyeWorld, direction);
+            if (!hit || host.reflector(i) == 0) continue;  // the balls have no texture
+            if (glm::distance(host.positionWorld({x, y}), hit->position) > 1e-3F) continue;
+            const glm::vec3 colour =
+                shadeDiffuse(scene.lights(), hit->position, host.normalWorld[i],
+                             scene.albedoAt(hit->flattenedTriangle, hit->barycentric), {});
+            for (int c = 0; c < 3; ++c) {
+                const double off =
+                    255.0 * std::abs(image::srgbOf(host.diffuse[i][c]) - image::srgbOf(colour[c]));
+                sum += off;
+                most = std::max(most, off);
+                ++count;
+            }
+        }
+    }
+    EXPECT_GT(count, 1800);
+    // Steps of 0.36 levels; llvmpipe rounds down.
+    EXPECT_LE(most, 0.4);
+    EXPECT_LE(sum / count, 0.2);
 }
 
 TEST_F(GBufferTest, BeamsOfReflectionsAreTheSameOnTheDevice) {

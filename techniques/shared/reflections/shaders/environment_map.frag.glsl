@@ -1,5 +1,6 @@
 #version 450 core
 // A face of the environment map: the diffuse colours seen from its centre.
+#include "reflections/kept_colour.glsl"
 #include "reflections/surface.glsl"
 
 uniform vec3 eyeWorld;
@@ -8,5 +9,6 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     float footprint = footprintFrom(eyeWorld);
-    radiance = vec4(diffuseOf(unitNormalTowards(eyeWorld, footprint), footprint), 1.0);
+    vec3 colour = diffuseOf(unitNormalTowards(eyeWorld, footprint), footprint);
+    radiance = vec4(keptColour(colour), 1.0);
 }

@@ -62,7 +62,7 @@ void traceSample(ivec2 pixel) {
                       : radianceFrom(direction));
     }
     // The diffuse colour stands in for the weight that is missing.
-    vec3 diffuse = texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 diffuse = gbufferDiffuseAt(pixel);
     vec3 radiance = (sum + (float(rays) - weightSum) * diffuse) / float(rays);
     imageStore(radianceImage, pixel, vec4(radiance, 1.0));
     imageStore(distanceImage, pixel, vec4(mirrorDistance));
