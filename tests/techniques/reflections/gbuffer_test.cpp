@@ -14,32 +14,6 @@ namespace {
 
 constexpr glm::ivec2 kSize{96, 64};
 
-/// A ball with smooth normals and colours, radius 1.
-scene::Mesh ballMesh() {
-    constexpr int kRings = 24, kSectors = 32;
-    scene::Mesh mesh;
-    for (int ring = 0; ring <= kRings; ++ring) {
-        for (int sector = 0; sector <= kSectors; ++sector) {
-            const float theta = glm::radians(180.0F) * static_cast<float>(ring) / kRings;
-            const float phi = glm::radians(360.0F) * static_cast<float>(sector) / kSectors;
-            const glm::vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta),
-                              std::sin(theta) * std::sin(phi));
-            mesh.positions.push_back(n);
-            mesh.normals.push_back(n);
-            mesh.colors.push_back(0.5F + 0.5F * n);
-        }
-    }
-    for (unsigned ring = 0; ring < kRings; ++ring) {
-        for (unsigned sector = 0; sector < kSectors; ++sector) {
-            const unsigned a = ring * (kSectors + 1) + sector;
-            const unsigned b = a + kSectors + 1;
-            if (ring > 0) mesh.triangles.emplace_back(a, a + 1, b);
-            if (ring < kRings - 1) mesh.triangles.emplace_back(a + 1, b + 1, b);
-        }
-    }
-    return mesh;
-}
-
 /// A textured floor, seen from the side that its winding calls the back, and two turned, stretched
 /// instances of a reflecting ball, one of them mirrored.
 scene::Scene floorWithBalls() {
@@ -240,89 +214,6 @@ TEST_F(GBufferTest, KeepsDarkColours) {
     // Steps of 0.36 levels; llvmpipe rounds down.
     EXPECT_LE(most, 0.4);
     EXPECT_LE(sum / count, 0.2);
-}
-
-TEST_F(GBufferTest, BeamsOfReflectionsAreTheSameOnTheDevice) {
-    const gl::Program program = compute(R"(#version 450 core
-#include "reflections/beam.glsl"
-layout(local_size_x = 1) in;
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
-    vec3 beam = beamOf(pixel);
-    results[i] = vec4(beamArea(beam, 0.0), beamArea(beam, 0.5), beamArea(beam, 3.0), 0.0);
-}
-)",
-                                        {{"GBUFFER_UNIT", 3}});
-    const HostGBuffer host = readGBuffer(gbuffer);
-    const gl::Buffer buffer(host.depthM.size() * sizeof(glm::vec4));
-    program.use();
-    gbuffer.bind(program, 3);
-    buffer.bindStorage(0);
-    glDispatchCompute(static_cast<GLuint>(kSize.x), static_cast<GLuint>(kSize.y), 1);
-    const auto results = buffer.read<glm::vec4>(host.depthM.size());
-    int reflective = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
-            const std::size_t i = host.indexOf({x, y});
-            if (!host.isReflective(i)) continue;
-            ++reflective;
-            const glm::vec3 beam = host.beam({x, y});
-            int at = 0;
-            for (const float distanceM : {0.0F, 0.5F, 3.0F}) {
-                const float expected = beamArea(beam, distanceM);
-                // Differences of directions to neighbours: a hundredth of them, to 2^-24.
-                ASSERT_NEAR(results[i][at++], expected, 1e-3F * expected + 1e-6F)
-                    << x << " " << y << " " << distanceM;
-            }
-        }
-    }
-    EXPECT_GT(reflective, 600);
-}
-
-/// The middle of the view, 4 m away, is a mirror that faces the eye.
-HostGBuffer facedMirror(const gl::ShaderLibrary& shaders, scene::Mesh mesh, float tiltRad = 0.0F) {
-    scene::Scene source;
-    addPart(source, std::move(mesh), {.metallic = 1.0F, .roughness = 0.0F},
-            glm::rotate(glm::mat4(1.0F), tiltRad, {0, 1, 0}));
-    const ReflectiveScene scene(source);
-    scene::Camera camera;
-    camera.position = {0, 0, 4};
-    camera.target = {0, 0, 0};
-    camera.nearM = 0.1F;
-    camera.farM = 10.0F;
-    GBuffer gbuffer(depth_images::viewOf(camera, kSize + 1));  // the axis is a pixel's middle
-    GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
-    return readGBuffer(gbuffer);
-}
-
-TEST_F(GBufferTest, BeamsOfPlanesGrowAsTheEyesDo) {
-    for (const float tiltRad : {0.0F, 0.6F, -1.0F}) {
-        const HostGBuffer host = facedMirror(shaders, squareMesh(), tiltRad);
-        const glm::ivec2 middle = kSize / 2;
-        const float pitch =
-            glm::distance(rayThrough(host.view, glm::vec2(middle) + 0.5F),
-                          rayThrough(host.view, glm::vec2(middle) + glm::vec2(1.5F, 0.5F)));
-        for (const float distanceM : {0.0F, 1.0F, 6.0F}) {
-            const float side = pitch * (4.0F + distanceM);
-            EXPECT_NEAR(beamArea(host.beam(middle), distanceM), side * side, 0.01F * side * side);
-        }
-    }
-}
-
-TEST_F(GBufferTest, BeamsOfBallsSpread) {
-    // The mirror's equation: a ball of radius 1, seen from 3 m, has the eye's image 3/7 m behind
-    // its surface, where the beam comes from.
-    const HostGBuffer host = facedMirror(shaders, ballMesh());
-    const glm::ivec2 middle = kSize / 2;
-    const float pitch =
-        glm::distance(rayThrough(host.view, glm::vec2(middle) + 0.5F),
-                      rayThrough(host.view, glm::vec2(middle) + glm::vec2(1.5F, 0.5F)));
-    for (const float distanceM : {0.0F, 1.0F, 6.0F}) {
-        const float side = pitch * 3.0F * (distanceM + 3.0F / 7.0F) / (3.0F / 7.0F);
-        EXPECT_NEAR(beamArea(host.beam(middle), distanceM), side * side, 0.05F * side * side);
-    }
 }
 
 /// A square that fills the middle of the view, with a texture whose halves have one colour each.
