@@ -164,6 +164,22 @@ Texture Texture::makeCube(GLenum format, int size, int levels) {
     return make(GL_TEXTURE_CUBE_MAP, format, {size, size, 6}, levels);
 }
 
+Texture Texture::viewOfLevel(int level) const {
+    GFXREPRO_ASSERT(target_ == GL_TEXTURE_2D && level >= 0);
+    GLuint id = 0;
+    glGenTextures(1, &id);  // not glCreateTextures: a view's name has no target yet
+    Texture view;
+    view.name_ = detail::Name<detail::deleteTexture>(id);
+    view.target_ = target_;
+    view.format_ = format_;
+    view.size_ = {std::max(size_.x >> level, 1), std::max(size_.y >> level, 1), 1};
+    glTextureView(id, target_, this->id(), format_, static_cast<GLuint>(level), 1, 0, 1);
+    checkError("glTextureView");
+    view.setFilter(GL_NEAREST, GL_NEAREST);
+    view.setWrap(GL_CLAMP_TO_EDGE);
+    return view;
+}
+
 Texture Texture::fromImage(const image::Image8& image, bool isSrgb) {
     const int channels = image.channels();
     GFXREPRO_ASSERT(channels <= 4 && (!isSrgb || channels >= 3));
@@ -199,12 +215,14 @@ std::size_t Texture::sizeBytes() const {
     return texels * texelBits / 8;
 }
 
-void Texture::upload(GLenum pixelFormat, GLenum pixelType, const void* data) {
+void Texture::upload(GLenum pixelFormat, GLenum pixelType, const void* data, int level) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    const int width = std::max(size_.x >> level, 1), height = std::max(size_.y >> level, 1);
     if (target_ == GL_TEXTURE_2D) {
-        glTextureSubImage2D(id(), 0, 0, 0, size_.x, size_.y, pixelFormat, pixelType, data);
+        glTextureSubImage2D(id(), level, 0, 0, width, height, pixelFormat, pixelType, data);
     } else {
-        glTextureSubImage3D(id(), 0, 0, 0, 0, size_.x, size_.y, size_.z, pixelFormat, pixelType,
+        const int depth = target_ == GL_TEXTURE_3D ? std::max(size_.z >> level, 1) : size_.z;
+        glTextureSubImage3D(id(), level, 0, 0, 0, width, height, depth, pixelFormat, pixelType,
                             data);
     }
     checkError("glTextureSubImage");

@@ -104,6 +104,10 @@ class Texture {
     /// mipmapped, sampled trilinearly, repeating. The image's top row is at v = 0, as glTF has it.
     static Texture fromImage(const image::Image8& image, bool isSrgb);
 
+    /// One level of a 2D texture as a texture of its own: the same texels, which live as long as
+    /// one of the two does. So a level can be read while another one is drawn into.
+    Texture viewOfLevel(int level) const;
+
     GLuint id() const { return name_.get(); }
     GLenum target() const { return target_; }
     GLenum format() const { return format_; }
@@ -111,8 +115,8 @@ class Texture {
     /// All levels, by the bits that the device keeps a texel in.
     std::size_t sizeBytes() const;
 
-    /// Level 0, whole; `pixelFormat` and `pixelType` say how `data` is laid out.
-    void upload(GLenum pixelFormat, GLenum pixelType, const void* data);
+    /// A level, whole; `pixelFormat` and `pixelType` say how `data` is laid out.
+    void upload(GLenum pixelFormat, GLenum pixelType, const void* data, int level = 0);
     /// Level 0, whole, rows from the bottom as GL stores them; waits for the device.
     template <class T>
     std::vector<T> read(GLenum pixelFormat, GLenum pixelType, int components) const {

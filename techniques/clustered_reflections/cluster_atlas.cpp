@@ -30,7 +30,7 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                            const reflections::GpuObjects& objects, const CameraSettings& settings)
     : settings_(settings), families_(gl::Buffer::of(reflectorFamilies(scene))), places_(shaders) {
     GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
-    gl::Defines defines = imageDefines();
+    gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 1;
     cull_ = gl::Program(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
     draw_ = gl::Program(shaders,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "techniques/shared/reflections/kept_colour.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -46,22 +47,31 @@ gl::Defines imageDefines() {
     return defines;
 }
 
+gl::Defines shadedImageDefines(const reflections::ReflectiveScene& scene) {
+    gl::Defines defines = imageDefines();
+    defines.merge(reflections::surfaceDefines(scene));
+    return defines;
+}
+
 // ---- ClusterImages ----
 
 ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool hasPyramid,
                              TexelContent content)
     : hasPyramid_(hasPyramid),
       content_(content),
-      colour_(
-          gl::Texture::make2D(content == TexelContent::Colours ? GL_RGB10_A2 : GL_R32UI, sizePx)),
+      colour_(gl::Texture::make2D(
+          content == TexelContent::Colours ? reflections::kKeptColourFormat : GL_R32UI, sizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       nearest_(gl::Texture::make2D(GL_R32F, hasPyramid ? sizePx / 4 : glm::ivec2(1),
                                    hasPyramid ? kPyramidLevels : 1)),
-      framebuffer_(std::array<const gl::Texture*, 1>{&colour_}, &depth_),
-      nearestFramebuffer_(std::array<const gl::Texture*, 1>{&nearest_}) {
+      framebuffer_(std::array<const gl::Texture*, 1>{&colour_}, &depth_) {
     GFXREPRO_ASSERT(!hasPyramid || sizePx % kLargestTilePx == glm::ivec2(0));
-    if (content == TexelContent::Colours) colour_.setFilter(GL_LINEAR, GL_LINEAR);
     nearest_.setFilter(GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST);
+    for (int level = 0; hasPyramid && level < kPyramidLevels; ++level) {
+        gl::Texture nearest = nearest_.viewOfLevel(level);
+        gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&nearest});
+        levels_.push_back({std::move(nearest), std::move(framebuffer)});
+    }
     if (hasPyramid) {
         pyramid_ = gl::Program(
             shaders,
@@ -97,25 +107,14 @@ void ClusterImages::endDrawing(glm::ivec2 sizePx) {
     if (!hasPyramid_) return;
     pyramid_.use();
     none_.bind();
-    for (int level = 0; level < kPyramidLevels; ++level) {
-        nearestFramebuffer_.bind();
-        // A level is read while the next one is drawn: sampling is kept to what is not attached.
-        glNamedFramebufferTexture(nearestFramebuffer_.id(), GL_COLOR_ATTACHMENT0, nearest_.id(),
-                                  level);
-        if (level == 0) {
-            depth_.bind(kImageDepthUnit);
-        } else {
-            glTextureParameteri(nearest_.id(), GL_TEXTURE_BASE_LEVEL, level - 1);
-            glTextureParameteri(nearest_.id(), GL_TEXTURE_MAX_LEVEL, level - 1);
-            nearest_.bind(kImageDepthUnit);
-        }
+    for (std::size_t level = 0; level < levels_.size(); ++level) {
+        levels_[level].framebuffer.bind();
+        (level == 0 ? depth_ : levels_[level - 1].nearest).bind(kImageDepthUnit);
         const int tilePx = 4 << level;
         pyramid_.set("factor", level == 0 ? 4 : 2);
         glViewport(0, 0, (sizePx.x + tilePx - 1) / tilePx, (sizePx.y + tilePx - 1) / tilePx);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
-    glTextureParameteri(nearest_.id(), GL_TEXTURE_BASE_LEVEL, 0);
-    glTextureParameteri(nearest_.id(), GL_TEXTURE_MAX_LEVEL, kPyramidLevels - 1);
 }
 
 void ClusterImages::bind() const {
@@ -164,7 +163,7 @@ OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
         reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
         trianglesOfObject_.push_back(object.triangleCount);
     }
-    gl::Defines defines = imageDefines();
+    gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 0;
     program_ = gl::Program(shaders,
                            {"clustered_reflections/cluster_image.vert.glsl",

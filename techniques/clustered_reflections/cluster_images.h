@@ -45,6 +45,8 @@ enum ImageUnit : unsigned {
     kClusterOfSampleUnit
 };
 gl::Defines imageDefines();
+/// Those, and what passes that shade surfaces ask of the scene.
+gl::Defines shadedImageDefines(const reflections::ReflectiveScene& scene);
 
 /// Levels above the depth image: tiles of 4, 8, 16 and 32 texels a side. (Tiles of 2 would cost
 /// more memory than all others and skip next to nothing.)
@@ -53,7 +55,7 @@ constexpr int kLargestTilePx = 2 << kPyramidLevels;
 
 /// What a texel keeps beside its depth.
 enum class TexelContent {
-    Colours,    // RGB10_A2, the diffuse colour; a: own reflector
+    Colours,    // reflections::keptColour() of the diffuse colour; a: own reflector
     Triangles,  // R32UI, the triangle (VisiblePainter); bit 31: own reflector
 };
 
@@ -80,8 +82,15 @@ class ClusterImages {
   private:
     bool hasPyramid_;
     TexelContent content_;
+    /// A level of the pyramid: read by itself while the next one is drawn.
+    struct Level {
+        gl::Texture nearest;
+        gl::Framebuffer framebuffer;
+    };
+
     gl::Texture colour_, depth_, nearest_;
-    gl::Framebuffer framebuffer_, nearestFramebuffer_;
+    gl::Framebuffer framebuffer_;
+    std::vector<Level> levels_;  // of nearest_
     gl::Program pyramid_;
     gl::VertexArray none_;
 };

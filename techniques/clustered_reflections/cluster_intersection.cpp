@@ -5,10 +5,11 @@
 namespace gfxrepro::clustered_reflections {
 
 ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
+                                         const reflections::ReflectiveScene& scene,
                                          const CameraSettings& settings, March march,
                                          bool mayShowOwn, TexelContent content, glm::ivec2 sizePx)
     : settings_(settings), environmentSamples_(gl::Texture::make2D(GL_R8UI, sizePx)) {
-    gl::Defines defines = imageDefines();
+    gl::Defines defines = shadedImageDefines(scene);
     defines["MARCH"] = march == March::Hierarchical ? 1 : 0;
     defines["SEES_OWN"] = mayShowOwn ? 1 : 0;
     defines["OF_TRIANGLES"] = content == TexelContent::Triangles ? 1 : 0;

@@ -10,8 +10,9 @@ namespace gfxrepro::clustered_reflections {
 /// Cameras and places must be bound to kCamerasBinding and kPlacesBinding.
 class ClusterIntersection {
   public:
-    ClusterIntersection(const gl::ShaderLibrary& shaders, const CameraSettings& settings,
-                        March march, bool mayShowOwn, TexelContent content, glm::ivec2 sizePx);
+    ClusterIntersection(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
+                        const CameraSettings& settings, March march, bool mayShowOwn,
+                        TexelContent content, glm::ivec2 sizePx);
 
     /// Of all samples in a pass over the G-buffer: images in an atlas.
     void intersectAll(const reflections::GBuffer& gbuffer, const Clusters& clusters,

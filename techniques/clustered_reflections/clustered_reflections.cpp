@@ -14,7 +14,7 @@ ClusteredReflections::ClusteredReflections(config::Params& params) : params_(par
 void ClusteredReflections::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'clustered_reflections' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors);
+    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
@@ -25,9 +25,9 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
         reflections::cameraFor(scene_->scene(), params_.view, 0, 1, size.x / size.y);
 
     objects_.emplace(*scene_);
-    map_.emplace(shaders, scene_->boundsWorld().centre());
+    map_.emplace(shaders, *scene_);
     map_->render(*objects_);
-    gbufferRenderer_.emplace(shaders);
+    gbufferRenderer_.emplace(shaders, *scene_);
     gbuffer_.emplace(depth_images::viewOf(camera, samplesPx));
     target_.emplace(samplesPx);
     tracer_ = makeTracer(shaders);

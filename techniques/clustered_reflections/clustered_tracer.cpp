@@ -34,7 +34,7 @@ struct ClusteredTracer::Impl {
           clusterCameras(shaders, settings.camera),
           images(shaders, kImagesSizePx, settings.march == March::Hierarchical,
                  contentOf(settings.drawing)),
-          intersection(shaders, settings.camera, settings.march,
+          intersection(shaders, scene, settings.camera, settings.march,
                        settings.ownReflector != OwnReflector::LeftOut, contentOf(settings.drawing),
                        sizePx) {
         if (settings.drawing == ImageDrawing::Atlas) {

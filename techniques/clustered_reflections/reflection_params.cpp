@@ -134,6 +134,8 @@ ReflectionParams::ReflectionParams(config::Params& params)
     reflectors.splitsParts = params.getBool(
         "reflector_parts", true,
         {"smooth parts of an object are reflectors of their own: foot and shell, in- and outside"});
+    textureFilter = params.getEnum("texture_filter", textureFilter, reflections::kTextureFilters,
+                                   reflections::kTextureFilterSpec);
     thickness =
         number(params, "thickness", 0.02,
                {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});

@@ -25,6 +25,7 @@ struct ReflectionParams {
     std::optional<float> glossiness;  // overrides the materials'
     reflections::LobeSettings lobe;
     reflections::ReflectorRule reflectors;
+    reflections::TextureFilter textureFilter = reflections::TextureFilter::Footprint;
     ClusteredSettings clustered;  // camera.diagonalM and camera.lobe are set up with the scene
     float thickness = 0.02F;      // screen space: of what the eye sees, in diagonals of the box
     bool measuresErrors = true;   // against Embree

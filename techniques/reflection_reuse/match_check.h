@@ -13,6 +13,7 @@ bool isValid(const glm::vec2& offset);
 struct MatchCheck {
     std::size_t checked = 0;
     std::size_t wrong = 0;  // another sample of the reflector, not next to the match, fits better
+                            // than the match does where it is: between samples, of second order
 };
 
 /// At most `samples` of the valid matches, evenly spread over the image, against

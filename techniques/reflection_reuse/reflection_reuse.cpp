@@ -16,7 +16,7 @@ ReflectionReuse::ReflectionReuse(config::Params& params) : params_(params) {}
 void ReflectionReuse::setup(technique::SetupContext& context) {
     if (!context.scene) throw Error("technique 'reflection_reuse' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors);
+    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
@@ -24,13 +24,13 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
     const glm::ivec2 samplesPx = params_.supersampling * outputSizePx_;
 
     objects_.emplace(*scene_);
-    map_.emplace(shaders, scene_->boundsWorld().centre());
+    map_.emplace(shaders, *scene_);
     map_->render(*objects_);
     tracer_ = std::make_unique<RestingTracer>(makeTracer(shaders));
     composite_.emplace(shaders, outputSizePx_, params_.supersampling, params_.blend);
     place({0, 1, context.profiler});
     if (params_.method == Method::RayTraced) {
-        fullTracing_.emplace(FullTracing{reflections::GBufferRenderer(shaders),
+        fullTracing_.emplace(FullTracing{reflections::GBufferRenderer(shaders, *scene_),
                                          reflections::GBuffer(view_),
                                          reflections::ReflectionTarget(samplesPx)});
     } else {

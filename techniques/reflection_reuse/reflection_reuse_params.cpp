@@ -118,6 +118,8 @@ ReuseParams::ReuseParams(config::Params& params)
       reuse(readReuse(params)) {
     reflectors.maxRoughness = static_cast<float>(params.getDouble(
         "reflector_roughness", 0.4, {"materials up to this roughness reflect", "1", 0.0, 1.0}));
+    textureFilter = params.getEnum("texture_filter", textureFilter, reflections::kTextureFilters,
+                                   reflections::kTextureFilterSpec);
     glossiness = readGlossiness(params);
     lobe.rays = params.getInt(
         "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});

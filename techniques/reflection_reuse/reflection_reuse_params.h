@@ -33,6 +33,7 @@ struct ReuseParams {
     int supersampling = 1;
     reflections::Blend blend = reflections::Blend::Fresnel;
     reflections::ReflectorRule reflectors;
+    reflections::TextureFilter textureFilter = reflections::TextureFilter::Footprint;
     std::optional<float> glossiness;  // of all reflectors, instead of their materials'
     reflections::LobeSettings lobe;
     ReuseSettings reuse;  // isDirect is set, too

@@ -66,7 +66,7 @@ struct ReuseRenderer::Impl {
         : objects(ofObjects),
           tracer(byTracer),
           settings(withSettings),
-          gbufferRenderer(shaders),
+          gbufferRenderer(shaders, objects.scene()),
           matcher(shaders, settings.matching),
           reprojection(shaders, settings.reprojection, sizePx),
           movedObjects(shaders, sizePx),

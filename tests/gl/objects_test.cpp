@@ -94,6 +94,20 @@ TEST_F(GlTest, TextureKindsRoundTripAndKnowTheirSize) {
     EXPECT_EQ(Texture().sizeBytes(), 0U);
 }
 
+TEST_F(GlTest, LevelsAreFilledAndSeenOneByOne) {
+    Texture texture = Texture::make2D(GL_R32UI, {4, 2}, 0);
+    const std::vector<unsigned> finest{1, 2, 3, 4, 5, 6, 7, 8}, coarser{9, 10}, last{11};
+    texture.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, finest.data());
+    texture.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, coarser.data(), 1);
+    texture.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, last.data(), 2);
+    Texture level = texture.viewOfLevel(1);
+    EXPECT_EQ(level.size(), glm::ivec3(2, 1, 1));
+    EXPECT_EQ(level.read<unsigned>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1), coarser);
+    EXPECT_EQ(texture.viewOfLevel(2).read<unsigned>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1), last);
+    texture = Texture();  // the texels stay with their views
+    EXPECT_EQ(level.read<unsigned>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1), coarser);
+}
+
 TEST_F(GlTest, ClearToZeroForEveryKindOfFormat) {
     Texture integers = Texture::make2D(GL_R32UI, {2, 2});
     const std::vector<unsigned> ones(4, ~0U);

@@ -42,7 +42,8 @@ struct HitSurface {
 // Of the triangles in the texel of the hit and around the place where the ray meets the surface, the
 // one that the ray meets or passes nearest to. What it passes by less than a texel it is taken to
 // meet at the rim: the texel's triangle owns its middle only.
-HitSurface surfaceAt(MarchImage image, MarchHit hit, vec3 origin, vec3 direction, float rayLength) {
+HitSurface surfaceAt(MarchImage image, MarchHit hit, vec3 origin, vec3 direction, float rayLength,
+                     vec3 beam) {
     Meeting best = Meeting(0xFFFFFFFFu, vec2(0.0), kFarOutside);
     ivec2 last = image.sizePx - 1;
     ivec2 behind = clamp(ivec2(floor(hit.positionPx)), ivec2(0), last);
@@ -66,6 +67,7 @@ HitSurface surfaceAt(MarchImage image, MarchHit hit, vec3 origin, vec3 direction
     vec3 met = a + barycentric.x * ab + barycentric.y * ac;
     if (best.outside == 0.0) surface.distanceM = dot(met - origin, direction);
     uvec4 record = triangles[triangle];
-    surface.colour = diffuseAt(record.xyz, record.w, barycentric, met, direction, ab, ac);
+    surface.colour = diffuseAt(record.xyz, record.w, barycentric, met, direction, ab, ac,
+                               beamArea(beam, surface.distanceM));
     return surface;
 }

@@ -1,6 +1,6 @@
 // Step 3.c of [xie2017] Algorithm 6: the rays of one sample against its cluster's depth image.
+#include "reflections/beam.glsl"
 #include "reflections/environment.glsl"
-#include "reflections/gbuffer.glsl"
 #include "reflections/lobe.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 #include "clustered_reflections/cluster_image.glsl"
@@ -38,8 +38,14 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
                                   cameras[cluster].eyeWorld.w);
     vec3 begin = gbufferPosition(pixel);
     vec3 mirror = gbufferMirrorDirection(begin, gbufferUnitNormal(pixel));
-    vec3 diffuse = texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 diffuse = gbufferDiffuseAt(pixel);
     float glossiness = glossinessOf(texelFetch(gbufferSurface, pixel, 0).r);
+
+#if OF_TRIANGLES && FILTERS_TEXTURES
+    vec3 beam = beamOf(pixel);
+#else
+    vec3 beam = vec3(0.0);  // images of colours have averaged by their own pitch
+#endif
 
     Reflection result = Reflection(vec3(0.0), 0.0, 0u);
     int count = raysOf(glossiness);
@@ -49,7 +55,7 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
         MarchHit hit;
         if (march(image, begin, begin + direction * rayLength, hit)) {
 #if OF_TRIANGLES
-            HitSurface surface = surfaceAt(image, hit, begin, direction, rayLength);
+            HitSurface surface = surfaceAt(image, hit, begin, direction, rayLength, beam);
             float distance = surface.distanceM;
             vec3 colour = surface.colour;
 #else

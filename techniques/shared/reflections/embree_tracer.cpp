@@ -74,12 +74,15 @@ void EmbreeTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
         samples = trace(host, wanted != nullptr ? &wantedSamples : nullptr);
     }
     const gl::CpuScope scope(profiler, "transfer");
-    std::vector<glm::vec4> radiance;
-    std::vector<float> distancesM;
-    for (const TracedSample& sample : samples) {
-        radiance.emplace_back(sample.radiance, 1.0F);
-        distancesM.push_back(sample.distanceM);
-    }
+    std::vector<glm::vec4> radiance(samples.size());
+    std::vector<float> distancesM(samples.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 4096),
+                      [&](const auto& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              radiance[i] = glm::vec4(samples[i].radiance, 1.0F);
+                              distancesM[i] = samples[i].distanceM;
+                          }
+                      });
     target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
     target.distance.upload(GL_RED, GL_FLOAT, distancesM.data());
 }
@@ -115,6 +118,8 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
         return rays_->closestHit(origin, direction, kStart * diagonalM);
     };
 
+    const glm::vec3 beam =
+        scene_.textureFilter() == TextureFilter::Footprint ? gbuffer.beam(pixel) : glm::vec3(0.0F);
     TracedSample sample;
     const std::optional<raycast::Hit> mirrorHit = closestHit(mirrorDirection);
     if (mirrorHit) {
@@ -122,8 +127,9 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
         sample.object = 1 + mirrorHit->instance;
     }
     if (glossiness <= 0.0F) {
-        sample.radiance = mirrorHit ? radianceAt(*mirrorHit, mirrorDirection)
-                                    : environment_.radianceFrom(mirrorDirection);
+        sample.radiance =
+            mirrorHit ? radianceAt(*mirrorHit, mirrorDirection, beamArea(beam, mirrorHit->distance))
+                      : environment_.radianceFrom(mirrorDirection);
         return sample;
     }
     const int count = raysOf(lobe_, glossiness);
@@ -134,7 +140,9 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
         const std::optional<raycast::Hit> hit = closestHit(direction);
         if (!hit) continue;
         const float weight = fadeOf(lobe_, glossiness, hit->distance, diagonalM);
-        if (weight > 0.0F) sum += weight * radianceAt(*hit, direction);
+        if (weight > 0.0F) {
+            sum += weight * radianceAt(*hit, direction, beamArea(beam, hit->distance));
+        }
         weights += weight;
     }
     const auto all = static_cast<float>(count);
@@ -142,8 +150,11 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
     return sample;
 }
 
-glm::vec3 EmbreeTracer::radianceAt(const raycast::Hit& hit, const glm::vec3& direction) const {
+glm::vec3 EmbreeTracer::radianceAt(const raycast::Hit& hit, const glm::vec3& direction,
+                                   float beamArea) const {
     const std::uint32_t triangle = hit.flattenedTriangle;
+    const glm::mat4& pose = posed_.instances[hit.instance].worldFromMesh;
+    const float footprint = scene_.footprintAt(triangle, pose, direction, beamArea);
     // Turned to where the ray comes from; also where opposite normals cancel out in the middle of a
     // triangle, as shaders/surface.glsl has it.
     glm::vec3 normal =
@@ -152,15 +163,15 @@ glm::vec3 EmbreeTracer::radianceAt(const raycast::Hit& hit, const glm::vec3& dir
     normal = glm::normalize(normal);
     if (scene_.objects()[hit.instance].normalLayer >= 0) {
         // normalFromMesh_ turns the outside of mirrored instances in.
-        const glm::mat4& pose = posed_.instances[hit.instance].worldFromMesh;
         if (glm::determinant(glm::mat3(pose)) < 0.0F) normal = -normal;
-        normal = scene_.texturedNormalAt(triangle, hit.barycentric, pose, normal, -direction);
+        normal =
+            scene_.texturedNormalAt(triangle, hit.barycentric, pose, normal, -direction, footprint);
     } else if (glm::dot(normal, direction) > 0.0F) {
         normal = -normal;
     }
     return shadeDiffuse(scene_.lights(), hit.position, normal,
-                        scene_.albedoAt(triangle, hit.barycentric),
-                        scene_.emissiveAt(triangle, hit.barycentric));
+                        scene_.albedoAt(triangle, hit.barycentric, footprint),
+                        scene_.emissiveAt(triangle, hit.barycentric, footprint));
 }
 
 }  // namespace gfxrepro::reflections

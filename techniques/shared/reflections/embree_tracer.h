@@ -45,7 +45,7 @@ class EmbreeTracer final : public ReflectionTracer {
   private:
     void readEnvironment();
     TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel) const;
-    glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction) const;
+    glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction, float beamArea) const;
 
     const ReflectiveScene& scene_;
     const EnvironmentMap& map_;

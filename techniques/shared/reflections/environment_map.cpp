@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runner/core/error.h"
+#include "techniques/shared/reflections/kept_colour.h"
 #include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
@@ -67,13 +68,17 @@ gl::Defines tracerDefines() {
 
 }  // namespace
 
+EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
+    : EnvironmentMap(shaders, scene, scene.boundsWorld().centre()) {}
+
 // Colours are in [0, 1], as in the G-buffer.
-EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const glm::vec3& centreWorld)
+EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                               const glm::vec3& centreWorld)
     : centreWorld_(centreWorld),
-      cube_(gl::Texture::makeCube(GL_RGB10_A2, kFaceSizePx)),
+      cube_(gl::Texture::makeCube(kKeptColourFormat, kFaceSizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(kFaceSizePx))),
       program_(shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
-               objectDefines()) {}
+               surfaceDefines(scene)) {}
 
 void EnvironmentMap::render(const GpuObjects& objects) {
     ++version_;
@@ -92,7 +97,7 @@ void EnvironmentMap::render(const GpuObjects& objects) {
     objects.bind();
     for (int i = 0; i < 6; ++i) {
         const gl::Framebuffer framebuffer = gl::Framebuffer::ofLayer(cube_, i, &depth_);
-        framebuffer.clearColour(0, glm::vec4(kBackground, 1.0F));
+        framebuffer.clearColour(0, glm::vec4(keptColour(kBackground), 1.0F));
         framebuffer.clearDepth(1.0F);
         framebuffer.bind();
         program_.set("clipFromWorld",
@@ -114,7 +119,7 @@ EnvironmentMap::Host EnvironmentMap::read() const {
     for (std::vector<glm::vec3>& face : host.faces) {
         face.resize(std::size_t{kFaceSizePx} * kFaceSizePx);
         for (glm::vec3& texel : face) {
-            texel = {next[0], next[1], next[2]};
+            texel = linearColour({next[0], next[1], next[2]});
             next += 3;
         }
     }

@@ -16,7 +16,11 @@ namespace gfxrepro::reflections {
 class EnvironmentMap {
   public:
     static constexpr int kFaceSizePx = 512;
-    EnvironmentMap(const gl::ShaderLibrary& shaders, const glm::vec3& centreWorld);
+    /// From the middle of the scene's box.
+    EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
+    EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                   const glm::vec3& centreWorld);
+    /// `objects` are of the constructor's scene.
     void render(const GpuObjects& objects);
     /// How often it was drawn: what was read of it is stale when this has grown.
     std::uint64_t version() const { return version_; }

@@ -15,7 +15,7 @@ namespace gfxrepro::reflections {
 /// depth_images::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
 struct GBuffer {
     depth_images::View view;
-    gl::Texture diffuse;  // RGB10_A2, linear: rgb_d of Algorithm 6, as shadeDiffuse() gives it
+    gl::Texture diffuse;  // keptColour(): rgb_d of Algorithm 6, as shadeDiffuse() gives it
     gl::Texture normal;   // RG32F, octahedral, unit world normal turned to the eye
     gl::Texture depth;    // R32F, d: distance along the view axis in metres; 0: nothing there
     gl::Texture surface;  // R32UI: reflector id | s in 255ths << 16 | g in 255ths << 24
@@ -31,8 +31,9 @@ struct GBuffer {
 
 class GBufferRenderer {
   public:
-    explicit GBufferRenderer(const gl::ShaderLibrary& shaders);
-    /// Clears and draws; no culling, so that a surface is seen from both sides.
+    GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
+    /// `objects` are of the constructor's scene. Clears and draws; no culling, so that a surface is
+    /// seen from both sides.
     void render(const GpuObjects& objects, GBuffer& target) const;
 
   private:
@@ -60,7 +61,12 @@ struct HostGBuffer {
     glm::vec3 positionWorld(glm::ivec2 pixel) const;
     /// The mirror direction at a sample: unit.
     glm::vec3 mirrorDirection(glm::ivec2 pixel) const;
+    /// What a sample's reflected rays cover t metres on, in m²: |x + y·t + z·t²|, as
+    /// shaders/beam.glsl has it.
+    glm::vec3 beam(glm::ivec2 pixel) const;
 };
+float beamArea(const glm::vec3& beam, float distanceM);
+
 /// As shaders/octahedral.glsl has it: not of unit length, but the same as on the device.
 glm::vec3 directionFromOctahedral(const glm::vec2& e);
 

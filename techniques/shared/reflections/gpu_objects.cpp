@@ -123,19 +123,23 @@ gl::Buffer lightsBuffer(std::span<const scene::PointLight> lights) {
     return gl::Buffer::of(std::span<const LightsRecord>(&record, 1));
 }
 
-gl::Texture layersTexture(const std::vector<image::Image8>& layers, GLenum format) {
+gl::Texture layersTexture(const TextureLevels& levels, GLenum format) {
     // A sampler needs a texture, also where no object asks for one.
-    const bool isEmpty = layers.empty();
-    const int sizePx = isEmpty ? 1 : layers.front().width();
-    gl::Texture texture = gl::Texture::make2DArray(format, glm::ivec2(sizePx),
-                                                   isEmpty ? 1 : static_cast<int>(layers.size()));
-    std::vector<std::uint8_t> texels;
-    for (const image::Image8& layer : layers) {
-        texels.insert(texels.end(), layer.values().begin(), layer.values().end());
+    const bool isEmpty = levels.front().empty();
+    const int sizePx = isEmpty ? 1 : levels.front().front().width();
+    const auto layerCount = isEmpty ? 1 : static_cast<int>(levels.front().size());
+    gl::Texture texture = gl::Texture::make2DArray(format, glm::ivec2(sizePx), layerCount,
+                                                   static_cast<int>(levels.size()));
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+        std::vector<std::uint8_t> texels;
+        for (const image::Image8& layer : levels[level]) {
+            texels.insert(texels.end(), layer.values().begin(), layer.values().end());
+        }
+        if (isEmpty) texels.assign(4, 255);
+        texture.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data(), static_cast<int>(level));
     }
-    if (isEmpty) texels.assign(4, 255);
-    texture.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-    texture.setFilter(GL_LINEAR, GL_LINEAR);
+    // Shaders mix levels themselves: shaders/footprint.glsl.
+    texture.setFilter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
     texture.setWrap(GL_REPEAT);
     return texture;
 }
@@ -153,6 +157,13 @@ gl::Defines objectDefines() {
     return defines;
 }
 
+gl::Defines surfaceDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = objectDefines();
+    defines["FILTERS_TEXTURES"] = scene.textureFilter() == TextureFilter::Footprint ? 1 : 0;
+    defines["MATERIAL_TEXTURES"] = scene.hasMaterialTextures() ? 1 : 0;
+    return defines;
+}
+
 GpuObjects::GpuObjects(const ReflectiveScene& scene)
     : scene_(&scene),
       positions_(gl::Buffer::of(scene.geometry().positions)),
@@ -163,8 +174,8 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene)
       objectOfTriangle_(gl::Buffer::of(scene.geometry().objectOfTriangle)),
       records_(scene.objects().size() * sizeof(ObjectRecord)),
       lights_(lightsBuffer(scene.lights())),
-      textureLayers_(layersTexture(scene.textureLayers(), GL_SRGB8_ALPHA8)),
-      valueLayers_(layersTexture(scene.valueLayers(), GL_RGBA8)),
+      textureLayers_(layersTexture(scene.textureLevels(), GL_SRGB8_ALPHA8)),
+      valueLayers_(layersTexture(scene.valueLevels(), GL_RGBA8)),
       objectCount_(static_cast<std::uint32_t>(scene.objects().size())),
       triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())) {
     std::vector<std::uint32_t> indices(objectCount_);
@@ -241,7 +252,7 @@ std::size_t GpuObjects::sizeBytes() const {
            colors_.sizeBytes() + indices_.sizeBytes() + objectOfTriangle_.sizeBytes() +
            records_.sizeBytes() + lights_.sizeBytes() + objectIndices_.sizeBytes() +
            textureLayers_.sizeBytes() +
-           (scene_->valueLayers().empty() ? 0 : valueLayers_.sizeBytes());
+           (scene_->valueLevels().front().empty() ? 0 : valueLayers_.sizeBytes());
 }
 
 }  // namespace gfxrepro::reflections

@@ -28,6 +28,8 @@ constexpr unsigned kObjectIndexAttribute = 4;
 
 /// Defines of gpu_scene::attributeDefines() and of the bindings above.
 gl::Defines objectDefines();
+/// Those, and what shading.glsl asks of the scene.
+gl::Defines surfaceDefines(const ReflectiveScene& scene);
 
 class GpuObjects {
   public:
@@ -46,6 +48,7 @@ class GpuObjects {
     /// from `objectIndices` (one unsigned an instance) instead of 0, 1, 2, ….
     gl::VertexArray makeVertexArray(const gl::Buffer& objectIndices) const;
 
+    const ReflectiveScene& scene() const { return *scene_; }
     std::uint32_t objectCount() const { return objectCount_; }
     std::uint32_t triangleCount() const { return triangleCount_; }
     std::span<const glm::mat4> poses() const { return poses_; }

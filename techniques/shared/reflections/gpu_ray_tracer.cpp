@@ -16,7 +16,6 @@ enum Storage : unsigned {
     kObjectOfTriangle = 7,
     kSamples = kFirstFreeStorage,
     kArguments = kFirstFreeStorage + 1,
-    kPositions = kFirstFreeStorage + 2,
 };
 enum Unit : unsigned {
     kEnvironmentUnit = kFirstFreeUnit,
@@ -38,12 +37,11 @@ struct Arguments {
 };
 static_assert(sizeof(Arguments) == 20);
 
-gl::Defines passDefines() {
-    gl::Defines defines = objectDefines();
+gl::Defines passDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = surfaceDefines(scene);
     defines.merge(GpuBvh::defines());
     defines.merge(
         gl::Defines{{"INDICES_BINDING", static_cast<unsigned>(kIndices)},
-                    {"POSITIONS_BINDING", static_cast<unsigned>(kPositions)},
                     {"NORMALS_BINDING", static_cast<unsigned>(kNormals)},
                     {"TEXCOORDS_BINDING", static_cast<unsigned>(kTexcoords)},
                     {"COLORS_BINDING", static_cast<unsigned>(kColors)},
@@ -74,8 +72,8 @@ GpuRayTracer::GpuRayTracer(const gl::ShaderLibrary& shaders, const GpuObjects& o
       lobe_(lobe),
       diagonalM_(diagonalM),
       bvh_(shaders, objects),
-      list_(shaders, {"reflections/ray_list.comp.glsl"}, passDefines()),
-      trace_(shaders, {"reflections/trace_rays.comp.glsl"}, passDefines()),
+      list_(shaders, {"reflections/ray_list.comp.glsl"}, passDefines(objects.scene())),
+      trace_(shaders, {"reflections/trace_rays.comp.glsl"}, passDefines(objects.scene())),
       arguments_(sizeof(Arguments)) {
     arguments_.clear();
 }
@@ -117,7 +115,6 @@ void GpuRayTracer::traceSamples(const GBuffer& gbuffer, ReflectionTarget& target
     objects_.bind();
     bvh_.bind();
     objects_.indices().bindStorage(kIndices);
-    objects_.positions().bindStorage(kPositions);
     objects_.normals().bindStorage(kNormals);
     objects_.texcoords().bindStorage(kTexcoords);
     objects_.colors().bindStorage(kColors);

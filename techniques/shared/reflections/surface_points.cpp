@@ -18,13 +18,10 @@ T interpolated(const std::vector<T>& values, const glm::uvec3& triangle,
            barycentric.x * values[triangle.y] + barycentric.y * values[triangle.z];
 }
 
-}  // namespace
-
-glm::vec3 ReflectiveScene::texelsAt(const Layers& layers, int layer, const glm::vec2& texcoord) {
+glm::vec3 bilinear(const image::Image8& texels, TexelKind kind, const glm::vec2& texcoord) {
     static const std::array<float, 256> kColours = decodingOf(TexelKind::Colours);
     static const std::array<float, 256> kValues = decodingOf(TexelKind::Values);
-    const std::array<float, 256>& decoding = layers.kind == TexelKind::Colours ? kColours : kValues;
-    const image::Image8& texels = layers.layers[static_cast<std::size_t>(layer)];
+    const std::array<float, 256>& decoding = kind == TexelKind::Colours ? kColours : kValues;
     const int sizePx = texels.width();
     const glm::vec2 place = (texcoord - glm::floor(texcoord)) * static_cast<float>(sizePx) - 0.5F;
     const glm::vec2 low = glm::floor(place);
@@ -40,28 +37,64 @@ glm::vec3 ReflectiveScene::texelsAt(const Layers& layers, int layer, const glm::
                     glm::mix(texel(0, 1), texel(1, 1), fraction.x), fraction.y);
 }
 
-glm::vec3 ReflectiveScene::albedoAt(std::uint32_t triangle, const glm::vec2& barycentric) const {
+}  // namespace
+
+float ReflectiveScene::footprintAt(std::uint32_t triangle, const glm::mat4& worldFromMesh,
+                                   const glm::vec3& direction, float beamArea) const {
+    if (filter_ == TextureFilter::FinestLevel) return 0.0F;
+    const glm::uvec3 corners = geometry_.triangles[triangle];
+    const auto edge = [&](const auto& values, int corner) {
+        return values[corners[corner]] - values[corners.x];
+    };
+    const glm::mat3 turned(worldFromMesh);
+    const glm::vec3 areaWorld =
+        glm::cross(turned * edge(geometry_.positions, 1), turned * edge(geometry_.positions, 2));
+    const glm::vec2 first = edge(geometry_.texcoords, 1), second = edge(geometry_.texcoords, 2);
+    const float areaTexture = first.x * second.y - first.y * second.x;
+    const float facing = std::max(std::abs(glm::dot(areaWorld, direction)), 1e-30F);
+    return std::sqrt(beamArea * std::abs(areaTexture) * glm::length(areaWorld)) / facing;
+}
+
+glm::vec3 ReflectiveScene::texelsAt(const Layers& layers, int layer, const glm::vec2& texcoord,
+                                    float footprint) {
+    const auto last = static_cast<float>(layers.levels.size() - 1);
+    const auto sizePx =
+        static_cast<float>(layers.levels.front()[static_cast<std::size_t>(layer)].width());
+    const float level = std::clamp(std::log2(std::max(footprint * sizePx, 1e-30F)), 0.0F, last);
+    const auto finer = static_cast<std::size_t>(level);
+    const auto at = [&](std::size_t ofLevel) {
+        return bilinear(layers.levels[ofLevel][static_cast<std::size_t>(layer)], layers.kind,
+                        texcoord);
+    };
+    const float fraction = level - static_cast<float>(finer);
+    return fraction == 0.0F ? at(finer) : glm::mix(at(finer), at(finer + 1), fraction);
+}
+
+glm::vec3 ReflectiveScene::albedoAt(std::uint32_t triangle, const glm::vec2& barycentric,
+                                    float footprint) const {
     const glm::uvec3 corners = geometry_.triangles[triangle];
     const Object& object = objects_[geometry_.objectOfTriangle[triangle]];
     const glm::vec3 albedo =
         object.baseColor * interpolated(geometry_.colors, corners, barycentric);
     if (object.textureLayer < 0) return albedo;
     return albedo * texelsAt(textureLayers_, object.textureLayer,
-                             interpolated(geometry_.texcoords, corners, barycentric));
+                             interpolated(geometry_.texcoords, corners, barycentric), footprint);
 }
 
-glm::vec3 ReflectiveScene::emissiveAt(std::uint32_t triangle, const glm::vec2& barycentric) const {
+glm::vec3 ReflectiveScene::emissiveAt(std::uint32_t triangle, const glm::vec2& barycentric,
+                                      float footprint) const {
     const Object& object = objects_[geometry_.objectOfTriangle[triangle]];
     if (object.emissiveLayer < 0) return object.emissive;
     return object.emissive *
            texelsAt(textureLayers_, object.emissiveLayer,
-                    interpolated(geometry_.texcoords, geometry_.triangles[triangle], barycentric));
+                    interpolated(geometry_.texcoords, geometry_.triangles[triangle], barycentric),
+                    footprint);
 }
 
 glm::vec3 ReflectiveScene::texturedNormalAt(std::uint32_t triangle, const glm::vec2& barycentric,
                                             const glm::mat4& worldFromMesh,
-                                            const glm::vec3& normalWorld,
-                                            const glm::vec3& toViewer) const {
+                                            const glm::vec3& normalWorld, const glm::vec3& toViewer,
+                                            float footprint) const {
     const Object& object = objects_[geometry_.objectOfTriangle[triangle]];
     const glm::uvec3 corners = geometry_.triangles[triangle];
     const auto edge = [&](int corner) {
@@ -75,7 +108,7 @@ glm::vec3 ReflectiveScene::texturedNormalAt(std::uint32_t triangle, const glm::v
     const glm::vec2 uvFirst = texcoordEdge(1), uvSecond = texcoordEdge(2);
     const glm::vec3 texel =
         2.0F * texelsAt(valueLayers_, object.normalLayer,
-                        interpolated(geometry_.texcoords, corners, barycentric)) -
+                        interpolated(geometry_.texcoords, corners, barycentric), footprint) -
         1.0F;
     const glm::vec3 acrossSecond = glm::cross(second, normalWorld);
     const glm::vec3 acrossFirst = glm::cross(normalWorld, first);

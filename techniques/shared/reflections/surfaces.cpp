@@ -180,8 +180,9 @@ scene::PointLight madeUpLight(const scene::Box& box) {
 
 }  // namespace
 
-ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule)
-    : scene_(scene), rule_(rule) {
+ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule,
+                                 TextureFilter filter)
+    : scene_(scene), rule_(rule), filter_(filter) {
     for (const std::string& line : scene_.warnings) warn(line);
     transmissiveCount_ = dropTransmissive(scene_);
     if (scene_.triangleCount() == 0) {
@@ -274,7 +275,15 @@ void ReflectiveScene::fillLayers(Layers& layers) {
                          largest));
     }
     for (const int texture : layers.textures) {
-        layers.layers.push_back(textureLayer(imageOf(texture), sizePx, layers.kind));
+        layers.levels.front().push_back(textureLayer(imageOf(texture), sizePx, layers.kind));
+    }
+    if (filter_ == TextureFilter::FinestLevel || layers.textures.empty()) return;
+    for (; sizePx > 1; sizePx /= 2) {
+        std::vector<image::Image8> coarser;
+        for (const image::Image8& layer : layers.levels.back()) {
+            coarser.push_back(halvedLayer(layer, layers.kind));
+        }
+        layers.levels.push_back(std::move(coarser));
     }
 }
 
@@ -353,6 +362,13 @@ void ReflectiveScene::addGeometry(const scene::Mesh& mesh, Object& object) {
     }
     geometry_.objectOfTriangle.resize(geometry_.triangles.size(),
                                       static_cast<std::uint32_t>(objects_.size()));
+}
+
+bool ReflectiveScene::hasMaterialTextures() const {
+    return std::any_of(objects_.begin(), objects_.end(), [](const Object& object) {
+        return object.metallicRoughnessLayer >= 0 || object.normalLayer >= 0 ||
+               object.emissiveLayer >= 0;
+    });
 }
 
 float ReflectiveScene::diagonalM() const {

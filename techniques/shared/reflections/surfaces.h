@@ -10,6 +10,7 @@
 
 #include "runner/image/image.h"
 #include "runner/scene/scene.h"
+#include "techniques/shared/reflections/texture_filter.h"
 #include "techniques/shared/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
@@ -43,9 +44,9 @@ struct Object {
     scene::Box boundsMesh;            // of its vertices, in mesh space
     glm::vec3 baseColor{0.8F};        // linear, times texture and vertex colour
     glm::vec3 emissive{0.0F};         // linear
-    int textureLayer = -1;            // into ReflectiveScene::textureLayers(); -1: none
+    int textureLayer = -1;            // into ReflectiveScene::textureLevels(); -1: none
     int emissiveLayer = -1;           // the same
-    int metallicRoughnessLayer = -1;  // into ReflectiveScene::valueLayers(); -1: none
+    int metallicRoughnessLayer = -1;  // into ReflectiveScene::valueLevels(); -1: none
     int normalLayer = -1;             // the same
     float normalScale = 1.0F;
     // Factors of metallicRoughnessLayer, the least s, and the largest roughness that reflects.
@@ -75,30 +76,39 @@ struct ObjectGeometry {
     std::vector<std::uint32_t> objectOfTriangle;
 };
 
+/// Textures as layers of an array, in levels: each half as wide as the one before, the last of one
+/// texel; the first alone where textures are not filtered. A level holds an image a layer.
+using TextureLevels = std::vector<std::vector<image::Image8>>;
+
 /// A scene prepared for reflections. Objects whose material lets light through (transmission above
 /// one half) are left out, and counted: nothing here refracts.
 class ReflectiveScene {
   public:
     /// Texture layers are squares, all of an array of one size, a power of two that holds the
     /// largest image; images are resampled to it (box filter). At most kMostLayerSizePx, and less
-    /// where an array would take more than kMostLayersBytes: a warning tells of larger images.
+    /// where an array would take more than kMostLayersBytes, its coarser levels (a third more) not
+    /// counted: a warning tells of larger images.
     static constexpr int kLeastLayerSizePx = 512, kMostLayerSizePx = 2048;
     static constexpr std::size_t kMostLayersBytes = std::size_t{1} << 29;
 
     /// Throws Error for a scene without triangles, UnsupportedError for more reflectors than the
     /// G-buffer numbers (65535).
-    explicit ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule = {});
+    explicit ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule = {},
+                             TextureFilter filter = TextureFilter::Footprint);
 
     /// Without what was left out; its instances are the objects, in order.
     const scene::Scene& scene() const { return scene_; }
     std::span<const Object> objects() const { return objects_; }
     const ObjectGeometry& geometry() const { return geometry_; }
-    const std::vector<image::Image8>& textureLayers() const {
-        return textureLayers_.layers;
+    TextureFilter textureFilter() const { return filter_; }
+    const TextureLevels& textureLevels() const {
+        return textureLayers_.levels;
     }  // RGBA, sRGB: base colours and emission
-    const std::vector<image::Image8>& valueLayers() const {
-        return valueLayers_.layers;
+    const TextureLevels& valueLevels() const {
+        return valueLayers_.levels;
     }  // RGBA, linear: metallic-roughness and normals
+    /// Whether some object has a texture of roughness and metalness, of normals or of emission.
+    bool hasMaterialTextures() const;
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
     int wholeReflectorCount() const { return wholeReflectorCount_; }  // objects, not their parts
@@ -118,11 +128,18 @@ class ReflectiveScene {
     /// Overrides every reflector's glossiness, 0 to 1; before GpuObjects are made of the scene.
     void setGlossiness(float glossiness);
 
-    /// Albedo at a point of a triangle: base colour · texture (bilinear, level 0) · vertex colour.
-    /// `barycentric` weighs vertices 1 and 2.
-    glm::vec3 albedoAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
+    /// Width in texture coordinates of what a beam covers of a triangle: `beamArea` is its
+    /// cross-section there in m², `direction` the beam's, unit (shaders/footprint.glsl). 0 where
+    /// textures are not filtered.
+    float footprintAt(std::uint32_t triangle, const glm::mat4& worldFromMesh,
+                      const glm::vec3& direction, float beamArea) const;
+    /// Albedo at a point of a triangle: base colour · texture · vertex colour. `barycentric` weighs
+    /// vertices 1 and 2; the texture is averaged over `footprint` (bilinear, between two levels).
+    glm::vec3 albedoAt(std::uint32_t triangle, const glm::vec2& barycentric,
+                       float footprint = 0.0F) const;
     /// Emission at a point of a triangle, as albedoAt() has it.
-    glm::vec3 emissiveAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
+    glm::vec3 emissiveAt(std::uint32_t triangle, const glm::vec2& barycentric,
+                         float footprint = 0.0F) const;
     /// The interpolated normal in mesh space, not of unit length.
     glm::vec3 normalMeshAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
     /// The normal that the object's normal texture gives, as texturedNormal() of
@@ -130,14 +147,14 @@ class ReflectiveScene {
     /// interpolated one, unit, on the mesh's outside.
     glm::vec3 texturedNormalAt(std::uint32_t triangle, const glm::vec2& barycentric,
                                const glm::mat4& worldFromMesh, const glm::vec3& normalWorld,
-                               const glm::vec3& toViewer) const;
+                               const glm::vec3& toViewer, float footprint = 0.0F) const;
 
   private:
     /// Textures in the order of their layers.
     struct Layers {
         TexelKind kind;
         std::vector<int> textures = {};  // of the scene
-        std::vector<image::Image8> layers = {};
+        TextureLevels levels = {{}};
     };
 
     void addObject(const scene::Instance& instance);
@@ -147,10 +164,12 @@ class ReflectiveScene {
     void fillLayers(Layers& layers);
     void warn(const std::string& what);
     static int layerOf(Layers& layers, int texture);
-    static glm::vec3 texelsAt(const Layers& layers, int layer, const glm::vec2& texcoord);
+    static glm::vec3 texelsAt(const Layers& layers, int layer, const glm::vec2& texcoord,
+                              float footprint);
 
     scene::Scene scene_;
     ReflectorRule rule_;
+    TextureFilter filter_;
     std::vector<Object> objects_;
     ObjectGeometry geometry_;
     Layers textureLayers_{TexelKind::Colours}, valueLayers_{TexelKind::Values};

@@ -44,6 +44,18 @@ image::Image8 toBytes(const image::ImageF& values) {
     return bytes;
 }
 
+/// 4 channels, with an alpha of 1 where there was none.
+image::Image8 withAlpha(const image::Image8& image) {
+    if (image.channels() == 4) return image;
+    image::Image8 result(image.width(), image.height(), 4);
+    const std::uint8_t* from = image.values().data();
+    for (std::size_t i = 0; i < result.values().size(); i += 4, from += 3) {
+        std::copy_n(from, 3, result.values().begin() + static_cast<std::ptrdiff_t>(i));
+        result.values()[i + 3] = 255;
+    }
+    return result;
+}
+
 }  // namespace
 
 std::array<float, 256> decodingOf(TexelKind kind) {
@@ -57,6 +69,7 @@ std::array<float, 256> decodingOf(TexelKind kind) {
 
 image::Image8 textureLayer(const image::Image8& image, int sizePx, TexelKind kind) {
     GFXREPRO_ASSERT(image.channels() >= 3 && !image.empty());
+    if (image.width() == sizePx && image.height() == sizePx) return withAlpha(image);
     const std::array<float, 256> decoding = decodingOf(kind);
     const auto value = [&](int x, int y, int channel) {
         if (channel < 3) return decoding[image.at(x, y, channel)];
@@ -88,6 +101,25 @@ image::Image8 textureLayer(const image::Image8& image, int sizePx, TexelKind kin
         }
     }
     return kind == TexelKind::Colours ? image::toSrgb8(layer) : toBytes(layer);
+}
+
+image::Image8 halvedLayer(const image::Image8& layer, TexelKind kind) {
+    GFXREPRO_ASSERT(layer.channels() == 4 && layer.width() % 2 == 0 && layer.height() % 2 == 0);
+    const std::array<float, 256> decoding = decodingOf(kind);
+    const std::array<float, 256> alphas = decodingOf(TexelKind::Values);
+    image::ImageF half(layer.width() / 2, layer.height() / 2, 4);
+    for (int y = 0; y < half.height(); ++y) {
+        for (int x = 0; x < half.width(); ++x) {
+            for (int channel = 0; channel < 4; ++channel) {
+                const auto& decoded = channel < 3 ? decoding : alphas;
+                const auto at = [&](int dx, int dy) {
+                    return decoded[layer.at(2 * x + dx, 2 * y + dy, channel)];
+                };
+                half.at(x, y, channel) = 0.25F * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1));
+            }
+        }
+    }
+    return kind == TexelKind::Colours ? image::toSrgb8(half) : toBytes(half);
 }
 
 }  // namespace gfxrepro::reflections

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "runner/image/image.h"
 
@@ -20,5 +21,9 @@ std::array<float, 256> decodingOf(TexelKind kind);
 /// linear light) of the part of the image that it covers. The same size stays as it is.
 image::Image8 textureLayer(const image::Image8& image, int sizePx,
                            TexelKind kind = TexelKind::Colours);
+
+/// The same at half the width and height: each texel is the mean of four. The image has 4 channels
+/// and an even size.
+image::Image8 halvedLayer(const image::Image8& layer, TexelKind kind = TexelKind::Colours);
 
 }  // namespace gfxrepro::reflections

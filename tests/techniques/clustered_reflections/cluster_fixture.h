@@ -94,7 +94,7 @@ class ClusterTest : public test::GlTest {
                                 const depth_images::View& view) const {
         reflections::GpuObjects objects(scene);
         reflections::GBuffer gbuffer(view);
-        reflections::GBufferRenderer(shaders).render(objects, gbuffer);
+        reflections::GBufferRenderer(shaders, scene).render(objects, gbuffer);
         return gbuffer;
     }
 

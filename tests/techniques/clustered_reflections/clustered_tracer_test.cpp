@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "runner/core/random.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"
 
@@ -56,7 +57,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
     const reflections::GpuObjects objects(mirrored);
     reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(128)));
-    reflections::GBufferRenderer(shaders()).render(objects, truth);
+    reflections::GBufferRenderer(shaders(), mirrored).render(objects, truth);
     const reflections::HostGBuffer expected = readGBuffer(truth);
 
     for (const ImageDrawing drawing : kDrawings) {
@@ -84,6 +85,54 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
             if (std::abs(traced.distanceM[i] - seen) > 0.02F) ++silhouettes;
         }
         EXPECT_LT(silhouettes, traced.reflectiveCount() / 50);
+    }
+}
+
+/// The wall at +z and the floor have tiles with grain in them, a texel wide: much finer than
+/// samples are apart.
+void addPattern(scene::Scene& scene) {
+    Random random(5);
+    image::Image8 pattern(512, 512, 3);
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            const std::uint32_t tile = (x / 64 + y / 64) % 2 == 0 ? 120 : 60;
+            for (int c = 0; c < 3; ++c) {
+                pattern.at(x, y, c) = static_cast<std::uint8_t>(tile + random.index(136));
+            }
+        }
+    }
+    scene.textures = {std::move(pattern)};
+    for (scene::Mesh mesh :
+         {rooms::rectangle({0.0F, 0.0F, 1.99F}, {-2.0F, 0.0F, 0.0F}, {0.0F, 1.5F, 0.0F}),
+          rooms::rectangle({0.0F, -1.49F, 0.0F}, {2.0F, 0.0F, 0.0F}, {0.0F, 0.0F, -2.0F})}) {
+        mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+        rooms::add(scene, mesh, glm::vec3(1.0F));
+        scene.materials.back().baseColorTexture = 0;
+    }
+}
+
+TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
+    scene::Scene source = rooms::room(false);
+    addPattern(source);
+    const reflections::ReflectiveScene mirrored(rooms::mirroredInZ(source, -2.0F));
+    reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(128)));
+    reflections::GBufferRenderer(shaders(), mirrored)
+        .render(reflections::GpuObjects(mirrored), truth);
+    const reflections::HostGBuffer expected = readGBuffer(truth);
+    rooms::add(source, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
+
+    const auto shownPsnr = [&](reflections::TextureFilter filter, ImageDrawing drawing) {
+        const ReflectiveScene scene(source, {}, filter);
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        return shownPsnrDb(trace(scene, frontCamera(), settings), expected.diffuse);
+    };
+    for (const ImageDrawing drawing : kDrawings) {
+        const double filtered = shownPsnr(reflections::TextureFilter::Footprint, drawing);
+        // Bilinear fetches soften images of colours where tiles meet.
+        EXPECT_GE(filtered, drawing == ImageDrawing::Visible ? 48.0 : 43.0);
+        const double finest = shownPsnr(reflections::TextureFilter::FinestLevel, drawing);
+        EXPECT_LT(finest, 35.0);
     }
 }
 

@@ -64,8 +64,8 @@ class TracerTest : public testing::Test {
                         const ClusteredSettings& settings, int sizePx = 128) {
         const reflections::GpuObjects objects(scene);
         reflections::GBuffer gbuffer(depth_images::viewOf(camera, glm::ivec2(sizePx)));
-        reflections::GBufferRenderer(shaders()).render(objects, gbuffer);
-        reflections::EnvironmentMap map(shaders(), scene.boundsWorld().centre());
+        reflections::GBufferRenderer(shaders(), scene).render(objects, gbuffer);
+        reflections::EnvironmentMap map(shaders(), scene);
         map.render(objects);
         reflections::ReflectionTarget target{glm::ivec2(sizePx)};
         gl::Profiler profiler(true);

@@ -23,10 +23,10 @@ struct KeyFrame {
              const scene::Camera& camera, glm::ivec2 sizePx)
         : scene(source),
           objects(scene),
-          map(shaders, scene.boundsWorld().centre()),
+          map(shaders, scene),
           image(depth_images::viewOf(camera, sizePx), scene.diagonalM()) {
         map.render(objects);
-        reflections::GBufferRenderer(shaders).render(objects, image.gbuffer);
+        reflections::GBufferRenderer(shaders, scene).render(objects, image.gbuffer);
         gl::Profiler profiler(true);
         reflections::EmbreeTracer tracer(scene, map, {});
         tracer.update(objects, profiler);

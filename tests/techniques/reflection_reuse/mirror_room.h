@@ -84,7 +84,7 @@ class ReuseTest : public reflections::ReflectionsTest {
               const ReuseSettings& settings)
             : scene(source),
               objects(scene),
-              map(shaders, scene.boundsWorld().centre()),
+              map(shaders, scene),
               tracer(scene, map, {}),
               renderer(shaders, objects, tracer, settings, kSize, scene.diagonalM()) {
             map.render(objects);

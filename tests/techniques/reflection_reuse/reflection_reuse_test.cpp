@@ -379,12 +379,17 @@ TEST_F(ReflectionReuseTest, MovedObjectsAreRecomputedWhereAsked) {
 }
 
 TEST_F(ReflectionReuseTest, MatchesAreComparedWithTheWholeReflector) {
-    const auto frames = recorded(
-        "{exhaustive_samples: 200, errors: false, path_frames: 40, threshold: 1}", &room_, 3);
-    EXPECT_FALSE(frames[0].metrics.contains("wrong_minimum_pct"));
-    // A plane has one minimum, and the column bends one way.
-    EXPECT_LT(frames[2].metrics.at("wrong_minimum_pct"), 5.0);
-    EXPECT_LT(frames[2].metrics.at("unmatched_pct"), 50.0);
+    for (const char* matching : {"first_order", "second_order"}) {
+        const auto frames =
+            recorded(fmt::format("{{matching: {}, exhaustive_samples: 200, errors: false, "
+                                 "path_frames: 40, threshold: 1}}",
+                                 matching),
+                     &room_, 3);
+        EXPECT_FALSE(frames[0].metrics.contains("wrong_minimum_pct"));
+        // A plane has one minimum, and the column bends one way.
+        EXPECT_LT(frames[2].metrics.at("wrong_minimum_pct"), 5.0) << matching;
+        EXPECT_LT(frames[2].metrics.at("unmatched_pct"), 50.0) << matching;
+    }
 }
 
 // Times are not tested, but that there are as many as frames to fit a line to.

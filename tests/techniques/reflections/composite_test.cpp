@@ -51,7 +51,7 @@ class CompositeTest : public ReflectionsTest {
                 const glm::ivec2 at = pixel * supersampling + glm::ivec2(dx, dy);
                 const auto i =
                     static_cast<std::size_t>(at.y * kOutputSize.x * supersampling + at.x);
-                const glm::vec3 own = showsReflectionOnly ? glm::vec3(0) : glm::vec3(diffuse[i]);
+                const glm::vec3 own = showsReflectionOnly ? glm::vec3(0) : host.diffuse[i];
                 float s = static_cast<float>(surface[i] >> 16 & 0xFFU) / 255.0F;
                 if (blend == Blend::Fresnel) {
                     const glm::vec3 toEye =
@@ -129,7 +129,7 @@ TEST_F(CompositeTest, FresnelReflectsMoreAtGrazingViews) {
             const float cosine = std::clamp(glm::dot(host.normalWorld[i], toEye), 0.0F, 1.0F);
             const float s = host.reflectivity(i);
             const float share = s + (1.0F - s) * std::pow(1.0F - cosine, 5.0F);
-            const glm::vec3 own(diffuse[i]);
+            const glm::vec3 own = host.diffuse[i];
             glm::vec3 colour = own;
             if (host.isReflective(i)) colour = glm::mix(own, glm::vec3(reflected[i]), share);
             for (int c = 0; c < 3; ++c) {

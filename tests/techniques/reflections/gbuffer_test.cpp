@@ -5,6 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "runner/image/srgb.h"
 #include "runner/raycast/ray_tracer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
@@ -12,32 +13,6 @@ namespace gfxrepro::reflections {
 namespace {
 
 constexpr glm::ivec2 kSize{96, 64};
-
-/// A ball with smooth normals and colours, radius 1.
-scene::Mesh ballMesh() {
-    constexpr int kRings = 24, kSectors = 32;
-    scene::Mesh mesh;
-    for (int ring = 0; ring <= kRings; ++ring) {
-        for (int sector = 0; sector <= kSectors; ++sector) {
-            const float theta = glm::radians(180.0F) * static_cast<float>(ring) / kRings;
-            const float phi = glm::radians(360.0F) * static_cast<float>(sector) / kSectors;
-            const glm::vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta),
-                              std::sin(theta) * std::sin(phi));
-            mesh.positions.push_back(n);
-            mesh.normals.push_back(n);
-            mesh.colors.push_back(0.5F + 0.5F * n);
-        }
-    }
-    for (unsigned ring = 0; ring < kRings; ++ring) {
-        for (unsigned sector = 0; sector < kSectors; ++sector) {
-            const unsigned a = ring * (kSectors + 1) + sector;
-            const unsigned b = a + kSectors + 1;
-            if (ring > 0) mesh.triangles.emplace_back(a, a + 1, b);
-            if (ring < kRings - 1) mesh.triangles.emplace_back(a + 1, b + 1, b);
-        }
-    }
-    return mesh;
-}
 
 /// A textured floor, seen from the side that its winding calls the back, and two turned, stretched
 /// instances of a reflecting ball, one of them mirrored.
@@ -81,7 +56,7 @@ class GBufferTest : public ReflectionsTest {
         for (std::size_t i = 0; i < posed.instances.size(); ++i) {
             posed.instances[i].worldFromMesh = objects.poses()[i];
         }
-        GBufferRenderer(shaders).render(objects, gbuffer);
+        GBufferRenderer(shaders, prepared).render(objects, gbuffer);
     }
 
     scene::Scene scene = floorWithBalls();
@@ -94,7 +69,7 @@ class GBufferTest : public ReflectionsTest {
 TEST_F(GBufferTest, SeesWhatRaysMeet) {
     const HostGBuffer host = readGBuffer(gbuffer);
     const raycast::RayTracer rays(posed);
-    int seen = 0, background = 0, elsewhere = 0, ofReflector[3] = {};
+    int seen = 0, background = 0, elsewhere = 0, filtered = 0, ofReflector[3] = {};
     for (int y = 0; y < kSize.y; ++y) {
         for (int x = 0; x < kSize.x; ++x) {
             const glm::ivec2 pixel(x, y);
@@ -132,9 +107,20 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
             const glm::vec3 mirror = direction - 2.0F * glm::dot(direction, normal) * normal;
             ASSERT_LE(glm::distance(host.mirrorDirection(pixel), mirror), 3e-3F);
 
-            const glm::vec3 colour = shadeDiffuse(
-                prepared.lights(), hit->position, normal,
-                prepared.albedoAt(hit->flattenedTriangle, hit->barycentric), object.emissive);
+            // What the pixel covers: between the rays through it and through its neighbours.
+            const auto toNeighbour = [&](const glm::vec2& offset) {
+                return rayThrough(host.view, glm::vec2(pixel) + 0.5F + offset) - direction;
+            };
+            const float beamArea = std::abs(glm::dot(direction, glm::cross(toNeighbour({1, 0}),
+                                                                           toNeighbour({0, 1})))) *
+                                   hit->distance * hit->distance;
+            const float footprint = prepared.footprintAt(
+                hit->flattenedTriangle, objects.poses()[hit->instance], direction, beamArea);
+            const glm::vec3 colour =
+                shadeDiffuse(prepared.lights(), hit->position, normal,
+                             prepared.albedoAt(hit->flattenedTriangle, hit->barycentric, footprint),
+                             object.emissive);
+            filtered += object.textureLayer >= 0 && footprint > 1.0F / 512.0F ? 1 : 0;
             for (int c = 0; c < 3; ++c) {
                 // 10 bits and the sampler's 256ths of a texel.
                 ASSERT_NEAR(host.diffuse[i][c], colour[c], 4e-3F) << x << " " << y << " " << c;
@@ -143,6 +129,7 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
     }
     EXPECT_LE(elsewhere, kSize.x * kSize.y / 500);
     EXPECT_GT(background, 500);
+    EXPECT_GT(filtered, 500);
     EXPECT_GT(ofReflector[0], 500);
     EXPECT_GT(ofReflector[1], 300);
     EXPECT_GT(ofReflector[2], 300);
@@ -163,7 +150,7 @@ void main() {
     results[4 * i] = vec4(position, reflectorOf(surface));
     results[4 * i + 1] = vec4(normal, reflectivityOf(surface));
     results[4 * i + 2] = vec4(gbufferMirrorDirection(position, normal), glossinessOf(surface));
-    results[4 * i + 3] = texelFetch(gbufferDiffuse, pixel, 0);
+    results[4 * i + 3] = vec4(gbufferDiffuseAt(pixel), 1.0);
 }
 )",
                                         {{"GBUFFER_UNIT", 3}});
@@ -188,6 +175,45 @@ void main() {
             ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
         }
     }
+}
+
+// A hundredth of the light: steps of linear colours in 10 bits are three levels there.
+TEST_F(GBufferTest, KeepsDarkColours) {
+    scene::Scene dark = floorWithBalls();
+    for (scene::Material& material : dark.materials) {
+        material.baseColor = glm::vec4(0.01F * glm::vec3(material.baseColor), 1.0F);
+    }
+    const ReflectiveScene scene(dark);
+    GpuObjects darkObjects(scene);
+    darkObjects.setPoses(posesOf(dark));
+    GBufferRenderer(shaders, scene).render(darkObjects, gbuffer);
+    const HostGBuffer host = readGBuffer(gbuffer);
+    const raycast::RayTracer rays(posed);
+    double sum = 0.0, most = 0.0;
+    int count = 0;
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const std::size_t i = host.indexOf({x, y});
+            const glm::vec3 direction = rayThrough(host.view, glm::vec2(x, y) + 0.5F);
+            const auto hit = rays.closestHit(host.view.eyeWorld, direction);
+            if (!hit || host.reflector(i) == 0) continue;  // the balls have no texture
+            if (glm::distance(host.positionWorld({x, y}), hit->position) > 1e-3F) continue;
+            const glm::vec3 colour =
+                shadeDiffuse(scene.lights(), hit->position, host.normalWorld[i],
+                             scene.albedoAt(hit->flattenedTriangle, hit->barycentric), {});
+            for (int c = 0; c < 3; ++c) {
+                const double off =
+                    255.0 * std::abs(image::srgbOf(host.diffuse[i][c]) - image::srgbOf(colour[c]));
+                sum += off;
+                most = std::max(most, off);
+                ++count;
+            }
+        }
+    }
+    EXPECT_GT(count, 1800);
+    // Steps of 0.36 levels; llvmpipe rounds down.
+    EXPECT_LE(most, 0.4);
+    EXPECT_LE(sum / count, 0.2);
 }
 
 /// A square that fills the middle of the view, with a texture whose halves have one colour each.
@@ -215,7 +241,7 @@ struct Halves {
         camera.position = {0, 0, 5.0F * side};
         camera.target = {0, 0, 0};
         GBuffer gbuffer(depth_images::viewOf(camera, kSize));
-        GBufferRenderer(shaders).render(GpuObjects(scene), gbuffer);
+        GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         host = readGBuffer(gbuffer);
         left = host.indexOf({kSize.x / 2 - static_cast<int>(9 * side), kSize.y / 2});
         right = host.indexOf({kSize.x / 2 + static_cast<int>(9 * side), kSize.y / 2});
@@ -271,7 +297,7 @@ TEST_F(GBufferTest, ClearsWhatWasThere) {
     std::vector<glm::mat4> away = posesOf(scene);
     for (glm::mat4& pose : away) pose = glm::translate(glm::mat4(1.0F), {0, 0, 50}) * pose;
     objects.setPoses(away);
-    GBufferRenderer(shaders).render(objects, gbuffer);
+    GBufferRenderer(shaders, prepared).render(objects, gbuffer);
     const HostGBuffer host = readGBuffer(gbuffer);
     EXPECT_EQ(host.depthM, std::vector<float>(host.depthM.size(), 0.0F));
     EXPECT_EQ(host.surface, std::vector<std::uint32_t>(host.surface.size(), 0U));

@@ -87,11 +87,11 @@ class GpuRayTracerTest : public test::GlTest {
         ReflectiveScene scene(from);
         if (glossiness >= 0.0F) scene.setGlossiness(glossiness);
         GpuObjects objects(scene);
-        EnvironmentMap map(shaders_, scene.boundsWorld().centre());
+        EnvironmentMap map(shaders_, scene);
         map.render(objects);
         objects.setPoses(scene::posesAt(scene.scene(), time));
         GBuffer gbuffer(depth_images::viewOf(from.cameras.front(), kSizePx));
-        GBufferRenderer(shaders_).render(objects, gbuffer);
+        GBufferRenderer(shaders_, scene).render(objects, gbuffer);
         ReflectionTarget target(kSizePx);
         GpuRayTracer tracer(shaders_, objects, map, lobe, scene.diagonalM());
         tracer.update(objects, profiler_);
@@ -206,11 +206,11 @@ TEST_F(GpuRayTracerTest, FollowsMovedObjects) {
 TEST_F(GpuRayTracerTest, TracesOnlyWhatIsWanted) {
     const ReflectiveScene scene(mirrors());
     GpuObjects objects(scene);
-    EnvironmentMap map(shaders_, scene.boundsWorld().centre());
+    EnvironmentMap map(shaders_, scene);
     map.render(objects);
     const glm::ivec2 size(65, 47);  // no multiple of a group's
     GBuffer gbuffer(depth_images::viewOf(scene.scene().cameras.front(), size));
-    GBufferRenderer(shaders_).render(objects, gbuffer);
+    GBufferRenderer(shaders_, scene).render(objects, gbuffer);
     GpuRayTracer tracer(shaders_, objects, map, {}, scene.diagonalM());
     ReflectionTarget all(size), some(size);
     some.radiance.clearToZero();

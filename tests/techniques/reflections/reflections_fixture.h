@@ -1,6 +1,7 @@
 // What the tests of reflections share: shaders under test inside of compute shaders, small scenes.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -33,6 +34,32 @@ inline scene::Mesh squareMesh() {
     mesh.normals.assign(4, {0, 0, 1});
     mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// A ball with smooth normals and colours, radius 1.
+inline scene::Mesh ballMesh() {
+    constexpr int kRings = 24, kSectors = 32;
+    scene::Mesh mesh;
+    for (int ring = 0; ring <= kRings; ++ring) {
+        for (int sector = 0; sector <= kSectors; ++sector) {
+            const float theta = glm::radians(180.0F) * static_cast<float>(ring) / kRings;
+            const float phi = glm::radians(360.0F) * static_cast<float>(sector) / kSectors;
+            const glm::vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta),
+                              std::sin(theta) * std::sin(phi));
+            mesh.positions.push_back(n);
+            mesh.normals.push_back(n);
+            mesh.colors.push_back(0.5F + 0.5F * n);
+        }
+    }
+    for (unsigned ring = 0; ring < kRings; ++ring) {
+        for (unsigned sector = 0; sector < kSectors; ++sector) {
+            const unsigned a = ring * (kSectors + 1) + sector;
+            const unsigned b = a + kSectors + 1;
+            if (ring > 0) mesh.triangles.emplace_back(a, a + 1, b);
+            if (ring < kRings - 1) mesh.triangles.emplace_back(a + 1, b + 1, b);
+        }
+    }
     return mesh;
 }
 

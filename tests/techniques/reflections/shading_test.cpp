@@ -18,7 +18,8 @@ layout(std430, binding = 9) writeonly buffer Results { vec4 results[]; };
 void main() {
     Input point = inputs[gl_GlobalInvocationID.x];
     Object object = objects[int(point.texcoordAndObject.z)];
-    vec3 albedo = albedoOf(object, point.texcoordAndObject.xy, point.color.rgb);
+    vec3 albedo = albedoOf(object, point.texcoordAndObject.xy, point.texcoordAndObject.w,
+                           point.color.rgb);
     results[2 * gl_GlobalInvocationID.x] = vec4(albedo, 0.0);
     results[2 * gl_GlobalInvocationID.x + 1] = vec4(
         shadeDiffuse(point.position.xyz, point.normal.xyz, albedo, object.emissive.rgb), 0.0);
@@ -72,13 +73,15 @@ TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
             color += weights[corner] * geometry.colors[vertex];
         }
         const std::uint32_t object = geometry.objectOfTriangle[triangle];
+        // From less than a texel to more than the texture.
+        const float footprint = std::exp2(random.uniform(-12.0F, 2.0F));
         inputs.push_back({glm::vec4(position, 1), glm::vec4(normal, 0), glm::vec4(color, 0),
-                          glm::vec4(texcoord, object, 0)});
-        albedos.push_back(scene.albedoAt(triangle, b));
+                          glm::vec4(texcoord, object, footprint)});
+        albedos.push_back(scene.albedoAt(triangle, b, footprint));
         colours.push_back(shadeDiffuse(scene.lights(), position, normal, albedos.back(),
                                        scene.objects()[object].emissive));
     }
-    const gl::Program shade = compute(kShader, objectDefines());
+    const gl::Program shade = compute(kShader, surfaceDefines(scene));
     const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
     const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
     shade.use();

@@ -219,7 +219,11 @@ scene::Scene texturedScene(const image::Image8& texture) {
 
 TEST(ReflectiveSceneTest, KeepsTheSizeOfTexturesUpToALimit) {
     const auto sizeOf = [](int width, int height) {
-        return ReflectiveScene(texturedScene({width, height, 3})).textureLayers().at(0).width();
+        return ReflectiveScene(texturedScene({width, height, 3}))
+            .textureLevels()
+            .front()
+            .at(0)
+            .width();
     };
     EXPECT_EQ(sizeOf(8, 8), 512);
     EXPECT_EQ(sizeOf(512, 512), 512);
@@ -228,11 +232,11 @@ TEST(ReflectiveSceneTest, KeepsTheSizeOfTexturesUpToALimit) {
     EXPECT_EQ(sizeOf(2048, 4), 2048);
     const image::Image8 image = randomImage(1024, 1024, 3);
     const ReflectiveScene kept(texturedScene(image));
-    EXPECT_EQ(kept.textureLayers().at(0), image);
+    EXPECT_EQ(kept.textureLevels().front().at(0), image);
     EXPECT_TRUE(kept.warnings().empty());
 
     const ReflectiveScene reduced(texturedScene({2049, 4, 3}));
-    EXPECT_EQ(reduced.textureLayers().at(0).width(), 2048);
+    EXPECT_EQ(reduced.textureLevels().front().at(0).width(), 2048);
     EXPECT_EQ(reduced.warnings(),
               std::vector<std::string>{"scene 'test': 1 of 1 colour textures are reduced to 2048 "
                                        "texels a side; the largest has 2049"});
@@ -342,6 +346,18 @@ TEST(TexturedNormalTest, KeepsAMirrorFromBeingPlanar) {
     EXPECT_FALSE(ReflectiveScene(bentSquare({128, 128, 255})).objects()[0].isPlanar);
 }
 
+TEST(ReflectiveSceneTest, KnowsWhetherItHasMaterialTextures) {
+    const auto hasThem = [](const scene::Material& material) {
+        scene::Scene scene = sceneOf(squareMesh(), material);
+        scene.textures = {randomImage(4, 4, 1)};
+        return ReflectiveScene(scene).hasMaterialTextures();
+    };
+    EXPECT_FALSE(hasThem({.baseColorTexture = 0}));
+    EXPECT_TRUE(hasThem({.emissiveTexture = 0}));
+    EXPECT_TRUE(hasThem({.normalTexture = 0}));
+    EXPECT_TRUE(hasThem({.roughness = 0.0F, .metallicRoughnessTexture = 0}));
+}
+
 TEST(ReflectiveSceneTest, FiltersTexturesInLinearLight) {
     scene::Scene scene =
         sceneOf(squareMesh(), {.baseColor = {0.5F, 1.0F, 1.0F, 1.0F}, .baseColorTexture = 1});
@@ -349,7 +365,7 @@ TEST(ReflectiveSceneTest, FiltersTexturesInLinearLight) {
                       randomImage(512, 512, 2)};
     scene.meshes[0].colors.assign(4, {1.0F, 0.25F, 1.0F});
     const ReflectiveScene prepared(scene);
-    ASSERT_EQ(prepared.textureLayers().size(), 1U);
+    ASSERT_EQ(prepared.textureLevels().front().size(), 1U);
     const std::array<float, 256> decoding = image::srgbDecoding();
     const auto texel = [&](int x, int y) {
         glm::vec3 value;

@@ -43,6 +43,21 @@ TEST(TextureLayerTest, AveragesInLinearLight) {
     }
 }
 
+TEST(TextureLayerTest, HalvesInLinearLight) {
+    image::Image8 image(2, 4, 4);
+    for (int channel = 0; channel < 4; ++channel) {
+        image.at(1, 0, channel) = image.at(0, 1, channel) = 255;
+        image.at(0, 2, channel) = 255;
+    }
+    const image::Image8 half = halvedLayer(image);
+    ASSERT_EQ(half.width(), 1);
+    ASSERT_EQ(half.height(), 2);
+    EXPECT_EQ(half.at(0, 0, 0), 188);  // a linear half
+    EXPECT_EQ(half.at(0, 0, 3), 128);
+    EXPECT_EQ(half.at(0, 1, 1), 137);  // a quarter
+    EXPECT_EQ(halvedLayer(image, TexelKind::Values).at(0, 1, 1), 64);
+}
+
 TEST(TextureLayerTest, KeepsTheMeanOfSizesThatDoNotDivide) {
     const std::array<float, 256> decoding = image::srgbDecoding();
     const auto meanOf = [&](const image::Image8& image) {

@@ -118,8 +118,8 @@ struct Prepared {
              const scene::Camera& from, glm::ivec2 sizePx)
         : scene(source),
           objects(scene),
-          map(shaders, scene.boundsWorld().centre()),
-          renderer(shaders),
+          map(shaders, scene),
+          renderer(shaders, scene),
           gbuffer(depth_images::viewOf(from, sizePx)) {
         map.render(objects);
         renderer.render(objects, gbuffer);

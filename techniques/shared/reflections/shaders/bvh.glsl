@@ -12,6 +12,7 @@ struct RayHit {
     float t;           // in lengths of the direction
     vec2 barycentric;  // weights of the triangle's vertices 1 and 2
     uint triangle;     // of scene::flattened(scene)
+    uint leaf;         // into bvhTriangles
 };
 
 // Where a ray enters a box; infinity if it misses. Along an axis with direction 0 the inverse is a
@@ -31,8 +32,8 @@ float boxEntry(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 inverse, float tMin, 
 // that two triangles share gives both the same number up to the sign, so that no ray slips between
 // them. A ray through the edge may meet both; the one whose t is less, or that was visited first, is
 // reported. Triangles are met from both sides; those without area never: t is then not a number.
-void meetTriangle(BvhTriangle triangle, vec3 origin, vec3 direction, float tMin,
-                  inout RayHit hit) {
+void meetTriangle(uint leaf, vec3 origin, vec3 direction, float tMin, inout RayHit hit) {
+    BvhTriangle triangle = bvhTriangles[leaf];
     vec3 a = triangle.a - origin, b = triangle.b - origin, c = triangle.c - origin;
     vec3 ca = c - a, ab = a - b, bc = b - c;
     float ofB = dot(cross(ca, c + a), direction);  // weights, up to one factor
@@ -46,7 +47,7 @@ void meetTriangle(BvhTriangle triangle, vec3 origin, vec3 direction, float tMin,
     vec3 normal = cross(ab, ca);
     float t = dot(a, normal) / dot(direction, normal);
     if (!(t > tMin && t < hit.t)) return;
-    hit = RayHit(t, clamp(vec2(ofB, ofC) / sum, 0.0, 1.0), triangle.triangle);
+    hit = RayHit(t, clamp(vec2(ofB, ofC) / sum, 0.0, 1.0), triangle.triangle, leaf);
 }
 
 // The nearest hit in (tMin, tMax), if any.
@@ -58,13 +59,13 @@ bool closestHit(vec3 origin, vec3 direction, float tMin, float tMax, out RayHit 
     int size = 0;
     // 1e-20 m: a direction's component that moves no ray; its inverse times any distance is finite.
     vec3 inverse = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    hit = RayHit(tMax, vec2(0.0), 0xFFFFFFFFu);
+    hit = RayHit(tMax, vec2(0.0), 0xFFFFFFFFu, 0u);
     uint node = 0u;
     for (;;) {
         uint next = 0u;
         bool isNext = false;
         if ((node & kLeaf) != 0u) {
-            meetTriangle(bvhTriangles[node & ~kLeaf], origin, direction, tMin, hit);
+            meetTriangle(node & ~kLeaf, origin, direction, tMin, hit);
         } else {
             BvhNode n = bvhNodes[node];
             float left = boxEntry(n.leftMin, n.leftMax, origin, inverse, tMin, hit.t);

@@ -21,7 +21,7 @@ float shareOf(ivec2 pixel, uint surface) {
 }
 
 vec3 sampleColor(ivec2 pixel) {
-    vec3 diffuse = showsReflectionOnly != 0 ? vec3(0.0) : texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 diffuse = showsReflectionOnly != 0 ? vec3(0.0) : gbufferDiffuseAt(pixel);
     uint surface = texelFetch(gbufferSurface, pixel, 0).r;
     // What reflects nothing has no reflected colour: its texel is undefined.
     if (reflectorOf(surface) == 0u) return diffuse;

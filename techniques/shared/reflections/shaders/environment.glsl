@@ -1,7 +1,8 @@
 // The environment map as a fallback. The includer defines ENVIRONMENT_UNIT.
+#include "reflections/kept_colour.glsl"
 
 layout(binding = ENVIRONMENT_UNIT) uniform samplerCube environmentMap;
 
 vec3 radianceFrom(vec3 direction) {
-    return textureLod(environmentMap, direction, 0.0).rgb;
+    return linearColour(textureLod(environmentMap, direction, 0.0).rgb);
 }

@@ -1,6 +1,7 @@
 #version 450 core
 // Step 1 of [xie2017] Algorithm 6: diffuse colour, normal, distance along the view axis, and what
 // reflects how.
+#include "reflections/kept_colour.glsl"
 #include "reflections/octahedral.glsl"
 #include "reflections/surface.glsl"
 
@@ -12,9 +13,10 @@ layout(location = kDepthTarget) out float depth;
 layout(location = kSurfaceTarget) out uint surface;
 
 void main() {
-    vec3 normalWorld = unitNormalTowards(eyeWorld);
-    diffuse = vec4(diffuseOf(normalWorld), 1.0);
+    float footprint = footprintFrom(eyeWorld);
+    vec3 normalWorld = unitNormalTowards(eyeWorld, footprint);
+    diffuse = vec4(keptColour(diffuseOf(normalWorld, footprint)), 1.0);
     normal = octahedralFromUnit(normalWorld);
     depth = 1.0 / gl_FragCoord.w;
-    surface = surfaceOf(objects[point.object], point.texcoord);
+    surface = surfaceOf(objects[point.object], point.texcoord, footprint);
 }

@@ -1,5 +1,6 @@
 // Reads what GBufferRenderer drew. The includer defines GBUFFER_UNIT, the first of four texture
 // units, and GBuffer::bind() fills them and the uniforms.
+#include "reflections/kept_colour.glsl"
 #include "reflections/octahedral.glsl"
 
 layout(binding = GBUFFER_UNIT) uniform sampler2D gbufferDiffuse;
@@ -19,6 +20,10 @@ float glossinessOf(uint surface) {
     return float(surface >> 24) / 255.0;
 }
 
+// rgb_d of [xie2017] Algorithm 6.
+vec3 gbufferDiffuseAt(ivec2 pixel) {
+    return linearColour(texelFetch(gbufferDiffuse, pixel, 0).rgb);
+}
 vec3 gbufferPositionAt(ivec2 pixel, float depth) {
     return (gbufferWorldFromPixels * vec4((vec2(pixel) + 0.5) * depth, depth, 1.0)).xyz;
 }

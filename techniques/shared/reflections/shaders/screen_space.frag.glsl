@@ -82,7 +82,7 @@ void main() {
     bool isHit = march(position, mirrorDirection, 2.0 * lobeDiagonal, hit);
     distanceM = isHit ? hit.distanceM : 0.0;
     if (glossiness <= 0.0) {
-        radiance = vec4(isHit ? texelFetch(gbufferDiffuse, hit.pixel, 0).rgb
+        radiance = vec4(isHit ? gbufferDiffuseAt(hit.pixel)
                               : radianceFrom(mirrorDirection),
                         1.0);
         return;
@@ -96,9 +96,9 @@ void main() {
         vec3 direction = lobeDirection(mirrorDirection, glossiness, i, count);
         if (!march(position, direction, far, hit)) continue;
         float weight = fadeOf(glossiness, hit.distanceM);
-        sum += weight * texelFetch(gbufferDiffuse, hit.pixel, 0).rgb;
+        sum += weight * gbufferDiffuseAt(hit.pixel);
         weights += weight;
     }
-    vec3 diffuse = texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 diffuse = gbufferDiffuseAt(pixel);
     radiance = vec4((sum + (float(count) - weights) * diffuse) / float(count), 1.0);
 }

@@ -1,4 +1,7 @@
-// Light of diffuse surfaces, as surfaces.h has it.
+// Light of diffuse surfaces, as surfaces.h has it. MATERIAL_TEXTURES is 1 where some object of the
+// scene has a texture of roughness and metalness, of normals or of emission: asking each object for
+// them costs every scene. A footprint is a width in texture coordinates, as footprint.glsl has it.
+#include "reflections/footprint.glsl"
 #include "reflections/objects.glsl"
 
 struct Light {
@@ -14,29 +17,32 @@ layout(std140, binding = LIGHTS_BINDING) uniform Lights {
 layout(binding = TEXTURE_LAYERS_UNIT) uniform sampler2DArray textureLayers;
 layout(binding = VALUE_LAYERS_UNIT) uniform sampler2DArray valueLayers;
 
-// Base colour times vertex colour times texture. Level 0 always: rays have no footprint to choose a
-// level by, and all methods must show the same.
-vec3 albedoOf(Object object, vec2 texcoord, vec3 vertexColor) {
+// Base colour times vertex colour times texture.
+vec3 albedoOf(Object object, vec2 texcoord, float footprint, vec3 vertexColor) {
     vec3 albedo = object.baseColor.rgb * vertexColor;
     if (object.textureLayer >= 0) {
-        albedo *= textureLod(textureLayers, vec3(texcoord, object.textureLayer), 0.0).rgb;
+        albedo *=
+            filteredTexel(textureLayers, vec3(texcoord, object.textureLayer), footprint).rgb;
     }
     return albedo;
 }
 
-vec3 emissiveOf(Object object, vec2 texcoord) {
+vec3 emissiveOf(Object object, vec2 texcoord, float footprint) {
     vec3 emissive = object.emissive.rgb;
+#if MATERIAL_TEXTURES
     if (object.layers.z >= 0) {
-        emissive *= textureLod(textureLayers, vec3(texcoord, object.layers.z), 0.0).rgb;
+        emissive *= filteredTexel(textureLayers, vec3(texcoord, object.layers.z), footprint).rgb;
     }
+#endif
     return emissive;
 }
 
 // What reflects how at a place, as in the G-buffer: with a metallic-roughness texture the texel
 // says it, and what is rougher than the rule allows does not reflect.
-uint surfaceOf(Object object, vec2 texcoord) {
+uint surfaceOf(Object object, vec2 texcoord, float footprint) {
+#if MATERIAL_TEXTURES
     if (object.layers.x < 0) return object.surface;
-    vec2 texel = textureLod(valueLayers, vec3(texcoord, object.layers.x), 0.0).gb;
+    vec2 texel = filteredTexel(valueLayers, vec3(texcoord, object.layers.x), footprint).gb;
     float roughness = object.reflection.y * texel.x;
     float reflectivity = max(object.reflection.x * texel.y, object.reflection.z);
     uint s = uint(round(255.0 * clamp(reflectivity, 0.0, 1.0)));
@@ -44,17 +50,22 @@ uint surfaceOf(Object object, vec2 texcoord) {
     uint g = object.layers.w != 0 ? object.surface >> 24
                                   : uint(round(255.0 * clamp(roughness, 0.0, 1.0)));
     return (object.surface & 0xFFFFu) | s << 16 | g << 24;
+#else
+    return object.surface;
+#endif
 }
 
+#if MATERIAL_TEXTURES
 // The normal that the object's normal texture gives: unit, turned to the viewer. `normal` is the
 // interpolated one, unit, on the mesh's outside, toViewer of unit length. The frame is the
 // triangle's, of two edges and their texture coordinates: gradients of u and v across the normal
 // (Schüler 2013, "Followup: Normal Mapping Without Precomputed Tangents"). Departure from glTF 2.0
 // Sec. 3.9.3: no MikkTSpace tangents, so that rays, which know a triangle, and fragments, which know
 // derivatives, have the same frame.
-vec3 texturedNormal(Object object, vec2 texcoord, vec3 normal, vec3 toViewer, vec3 first,
-                    vec3 second, vec2 uvFirst, vec2 uvSecond) {
-    vec3 texel = 2.0 * textureLod(valueLayers, vec3(texcoord, object.layers.y), 0.0).xyz - 1.0;
+vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, vec3 toViewer,
+                    vec3 first, vec3 second, vec2 uvFirst, vec2 uvSecond) {
+    vec3 place = vec3(texcoord, object.layers.y);
+    vec3 texel = 2.0 * filteredTexel(valueLayers, place, footprint).xyz - 1.0;
     vec3 acrossSecond = cross(second, normal), acrossFirst = cross(normal, first);
     vec3 alongU = acrossSecond * uvFirst.x + acrossFirst * uvSecond.x;
     vec3 alongV = acrossSecond * uvFirst.y + acrossFirst * uvSecond.y;
@@ -73,6 +84,7 @@ vec3 texturedNormal(Object object, vec2 texcoord, vec3 normal, vec3 toViewer, ve
     float facing = dot(bent, toViewer);
     return facing < kLeastFacing ? normalize(bent + (kLeastFacing - facing) * toViewer) : bent;
 }
+#endif
 
 // normalWorld is of unit length and turned to the viewer.
 vec3 shadeDiffuse(vec3 positionWorld, vec3 normalWorld, vec3 albedo, vec3 emissive) {

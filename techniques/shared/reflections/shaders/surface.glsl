@@ -9,27 +9,43 @@ in SurfacePoint {
     flat uint object;
 } point;
 
+// Width in texture coordinates of what the image's pixel covers of the surface. Needs derivatives:
+// before any discard.
+float footprintFrom(vec3 viewerWorld) {
+#if FILTERS_TEXTURES
+    // All of a quad is of one triangle, so that these are edges in its plane, a pixel's cell of it.
+    vec3 area = cross(dFdx(point.positionWorld), dFdy(point.positionWorld));
+    float areaTexture = wedge(dFdx(point.texcoord), dFdy(point.texcoord));
+    vec3 direction = normalize(point.positionWorld - viewerWorld);
+    return footprintOf(abs(dot(area, direction)), area, areaTexture, direction);
+#else
+    return 0.0;
+#endif
+}
+
 // Unit and turned to the viewer, as meshes need not wind consistently. Where opposite normals cancel
 // out in the middle of a triangle: to the viewer.
-vec3 unitNormalTowards(vec3 viewerWorld) {
+vec3 unitNormalTowards(vec3 viewerWorld, float footprint) {
     vec3 toViewer = viewerWorld - point.positionWorld;
     vec3 normal = point.normalWorld;
     if (dot(normal, normal) == 0.0) normal = toViewer;
     normal = normalize(normal);
+#if MATERIAL_TEXTURES
     Object object = objects[point.object];
     if (object.layers.y >= 0) {
         // All of a quad is of one triangle, so derivatives are there, and they are edges in its plane.
-        return texturedNormal(object, point.texcoord, normal, normalize(toViewer),
+        return texturedNormal(object, point.texcoord, footprint, normal, normalize(toViewer),
                               dFdx(point.positionWorld), dFdy(point.positionWorld),
                               dFdx(point.texcoord), dFdy(point.texcoord));
     }
+#endif
     return dot(normal, toViewer) < 0.0 ? -normal : normal;
 }
 
 // What the surface shows: rgb_d of [xie2017] Algorithm 6.
-vec3 diffuseOf(vec3 normalWorld) {
+vec3 diffuseOf(vec3 normalWorld, float footprint) {
     Object object = objects[point.object];
     return shadeDiffuse(point.positionWorld, normalWorld,
-                        albedoOf(object, point.texcoord, point.color),
-                        emissiveOf(object, point.texcoord));
+                        albedoOf(object, point.texcoord, footprint, point.color),
+                        emissiveOf(object, point.texcoord, footprint));
 }

@@ -1,9 +1,9 @@
 #version 450 core
 // GpuRayTracer, second pass: the rays of the listed samples through the BVH, shaded where they end
 // ([xie2017] Sec. 4.7.1: the ray tracer that the method is compared with).
+#include "reflections/beam.glsl"
 #include "reflections/bvh.glsl"
 #include "reflections/environment.glsl"
-#include "reflections/gbuffer.glsl"
 #include "reflections/lobe.glsl"
 #include "reflections/surface_at.glsl"
 
@@ -12,9 +12,6 @@ layout(local_size_x = TRACE_GROUP_SIZE) in;
 layout(std430, binding = INDICES_BINDING) restrict readonly buffer Indices { uint indices[]; };
 layout(std430, binding = OBJECT_OF_TRIANGLE_BINDING) restrict readonly buffer ObjectOfTriangle {
     uint objectOfTriangle[];
-};
-layout(std430, binding = POSITIONS_BINDING) restrict readonly buffer Positions {
-    float positions[];
 };
 layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples { uint samples[]; };
 layout(std430, binding = ARGUMENTS_BINDING) restrict readonly buffer Arguments {
@@ -27,30 +24,25 @@ layout(r32f, binding = DISTANCE_IMAGE) uniform restrict writeonly image2D distan
 
 uniform float rayStart;  // metres along the ray: less would meet the surface that it leaves
 
-vec3 positionMesh(uint vertex) {
-    uint at = 3u * vertex;
-    return vec3(positions[at], positions[at + 1u], positions[at + 2u]);
-}
-
 // The diffuse colour at a hit (Sec. 4.7.4: second-order rays only).
-vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction) {
+vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction, float beamArea) {
     uint at = 3u * hit.triangle;
-    uint object = objectOfTriangle[hit.triangle];
     uvec3 vertices = uvec3(indices[at], indices[at + 1u], indices[at + 2u]);
-    vec3 ab = vec3(0.0), ac = vec3(0.0);
-    if (objects[object].layers.y >= 0) {
-        mat3 worldFromMesh = mat3(objects[object].worldFromMesh);
-        ab = worldFromMesh * (positionMesh(vertices.y) - positionMesh(vertices.x));
-        ac = worldFromMesh * (positionMesh(vertices.z) - positionMesh(vertices.x));
-    }
-    return diffuseAt(vertices, object, hit.barycentric, origin + hit.t * direction, direction, ab,
-                     ac);
+    BvhTriangle triangle = bvhTriangles[hit.leaf];
+    return diffuseAt(vertices, objectOfTriangle[hit.triangle], hit.barycentric,
+                     origin + hit.t * direction, direction, triangle.b - triangle.a,
+                     triangle.c - triangle.a, beamArea);
 }
 
 void traceSample(ivec2 pixel) {
     float glossiness = glossinessOf(texelFetch(gbufferSurface, pixel, 0).r);
     vec3 origin = gbufferPosition(pixel);
     vec3 mirror = gbufferMirrorDirection(origin, gbufferUnitNormal(pixel));
+#if FILTERS_TEXTURES
+    vec3 beam = beamOf(pixel);
+#else
+    vec3 beam = vec3(0.0);
+#endif
     int rays = raysOf(glossiness);
     vec3 sum = vec3(0.0);
     float weightSum = 0.0;
@@ -66,10 +58,11 @@ void traceSample(ivec2 pixel) {
         if (weight == 0.0) continue;
         weightSum += weight;
         sum += weight *
-               (isHit ? radianceAt(hit, origin, direction) : radianceFrom(direction));
+               (isHit ? radianceAt(hit, origin, direction, beamArea(beam, hit.t))
+                      : radianceFrom(direction));
     }
     // The diffuse colour stands in for the weight that is missing.
-    vec3 diffuse = texelFetch(gbufferDiffuse, pixel, 0).rgb;
+    vec3 diffuse = gbufferDiffuseAt(pixel);
     vec3 radiance = (sum + (float(rays) - weightSum) * diffuse) / float(rays);
     imageStore(radianceImage, pixel, vec4(radiance, 1.0));
     imageStore(distanceImage, pixel, vec4(mirrorDistance));

@@ -1,0 +1,9 @@
+// Colours that are drawn once and read again, as kept_colour.h has them.
+
+vec3 keptColour(vec3 linear) {
+    return sqrt(linear);
+}
+
+vec3 linearColour(vec3 kept) {
+    return kept * kept;
+}
