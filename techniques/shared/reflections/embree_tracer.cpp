@@ -74,15 +74,12 @@ void EmbreeTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
         samples = trace(host, wanted != nullptr ? &wantedSamples : nullptr);
     }
     const gl::CpuScope scope(profiler, "transfer");
-    std::vector<glm::vec4> radiance(samples.size());
-    std::vector<float> distancesM(samples.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 4096),
-                      [&](const auto& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              radiance[i] = glm::vec4(samples[i].radiance, 1.0F);
-                              distancesM[i] = samples[i].distanceM;
-                          }
-                      });
+    std::vector<glm::vec4> radiance;
+    std::vector<float> distancesM;
+    for (const TracedSample& sample : samples) {
+        radiance.emplace_back(sample.radiance, 1.0F);
+        distancesM.push_back(sample.distanceM);
+    }
     target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
     target.distance.upload(GL_RED, GL_FLOAT, distancesM.data());
 }

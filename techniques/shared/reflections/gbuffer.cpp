@@ -1,8 +1,5 @@
 #include "techniques/shared/reflections/gbuffer.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <cmath>
 #include <limits>
@@ -141,18 +138,13 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
     host.surface = gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
-    const std::size_t count = host.depthM.size();
-    host.diffuse.resize(count);
-    host.normalOctahedral.resize(count);
-    host.normalWorld.resize(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& samples) {
-        for (std::size_t i = samples.begin(); i < samples.end(); ++i) {
-            host.diffuse[i] =
-                linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]});
-            host.normalOctahedral[i] = {normals[2 * i], normals[2 * i + 1]};
-            host.normalWorld[i] = glm::normalize(directionFromOctahedral(host.normalOctahedral[i]));
-        }
-    });
+    for (std::size_t i = 0; i < host.depthM.size(); ++i) {
+        host.diffuse.push_back(
+            linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]}));
+        host.normalOctahedral.emplace_back(normals[2 * i], normals[2 * i + 1]);
+        host.normalWorld.push_back(
+            glm::normalize(directionFromOctahedral(host.normalOctahedral.back())));
+    }
     return host;
 }
 
