@@ -11,8 +11,4 @@ namespace gfxrepro::scene {
 /// Mountains and lowland of fractal noise (fractalTerrain), a height map without triangles.
 Scene terrain(config::Params& params, std::uint64_t seed);
 
-/// Two views of a height map: "overview" from the south-east above it, "flight" low over its middle
-/// northwards. Their reach covers the whole map.
-void addTerrainCameras(Scene& scene);
-
 }  // namespace gfxrepro::scene

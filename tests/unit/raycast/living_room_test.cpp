@@ -7,7 +7,7 @@
 
 #include "runner/raycast/ray_tracer.h"
 #include "runner/scene/animation.h"
-#include "runner/scene/generators.h"
+#include "scenes/registry.h"
 
 namespace gfxrepro::raycast {
 namespace {
@@ -17,7 +17,9 @@ class LivingRoom : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         config::Params params(config::parseYaml("{}", "t.yaml"), "generator 'living_room'");
-        scene_ = new scene::Scene(scene::findGenerator("living_room", {}).generate(params, 1));
+        scene_ =
+            new scene::Scene(scene::findGenerator(scene::registeredGenerators(), "living_room", {})
+                                 .generate(params, 1));
         tracer_ = new RayTracer(*scene_);
     }
     static void TearDownTestSuite() {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "runner/raycast/ray_tracer.h"
-#include "runner/scene/generators.h"
+#include "scenes/registry.h"
 
 namespace gfxrepro::raycast {
 namespace {
@@ -14,7 +14,8 @@ class OutdoorWinding : public testing::TestWithParam<const char*> {};
 
 TEST_P(OutdoorWinding, AlmostNoRayMeetsABackFaceFirst) {
     config::Params params({}, "generator");
-    const scene::Scene scene = scene::findGenerator(GetParam(), {}).generate(params, 1);
+    const scene::Scene scene =
+        scene::findGenerator(scene::registeredGenerators(), GetParam(), {}).generate(params, 1);
     const RayTracer tracer(scene);
     const glm::vec3 target = scene.cameras.at(0).target;
     int hits = 0;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "runner/scene/topology.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -28,7 +29,9 @@ struct Folders {
         folder.write("scenes/readme", "");
     }
     void entry(const std::string& yaml) const { folder.write("scenes/m/x.yaml", yaml); }
-    Catalog catalog() const { return {folder.path() / "scenes", folder.path() / "assets"}; }
+    Catalog catalog() const {
+        return {folder.path() / "scenes", folder.path() / "assets", registeredGenerators()};
+    }
     std::string errorOf(const std::string& yaml) const {
         entry(yaml);
         return test::errorText([&] { catalog(); }, folder.path());
@@ -269,7 +272,7 @@ TEST(Catalog, RefiningBelowTheFileIsLocated) {
 /// The triangles and vertices that the thesis prints, from generators alone.
 TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
     const test::TemporaryFolder noAssets;
-    const Catalog catalog(kShippedScenes, noAssets.path());
+    const Catalog catalog(kShippedScenes, noAssets.path(), registeredGenerators());
     const struct {
         const char* name;
         std::size_t triangles, vertices;
@@ -299,7 +302,8 @@ TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
 TEST(ShippedCatalog, RealModelsAreRecognized) {
     const auto bunny = test::asset("bunny/bun_zipper.ply");
     if (!bunny) GTEST_SKIP() << "bunny/bun_zipper.ply";
-    const Catalog catalog(kShippedScenes, bunny->parent_path().parent_path());
+    const Catalog catalog(kShippedScenes, bunny->parent_path().parent_path(),
+                          registeredGenerators());
     const Scene scene = catalog.load(reference("models/bunny"));
     EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
     EXPECT_EQ(scene.origin.description, "bunny/bun_zipper.ply");
@@ -310,7 +314,8 @@ TEST(ShippedCatalog, RealModelsAreRecognized) {
 TEST(ShippedCatalog, DecimatedScansAreRefinedToThePrintedCount) {
     const auto blade = test::asset("blade/turbineblade.ply");
     if (!blade) GTEST_SKIP() << "blade/turbineblade.ply";
-    const Catalog catalog(kShippedScenes, blade->parent_path().parent_path());
+    const Catalog catalog(kShippedScenes, blade->parent_path().parent_path(),
+                          registeredGenerators());
     const Scene scene = catalog.load(reference("models/blade"));
     EXPECT_EQ(scene.triangleCount(), 1765388U);
     EXPECT_EQ(scene.origin.kind, Origin::Kind::StandIn);

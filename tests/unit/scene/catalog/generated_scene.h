@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "runner/core/hash.h"
-#include "runner/scene/generators.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -20,7 +20,7 @@ namespace gfxrepro::scene {
 /// The scene of a generator with parameters in YAML.
 inline Scene generated(const std::string& name, const std::string& yaml, std::uint64_t seed = 1) {
     config::Params params(config::parseYaml(yaml, "t.yaml"), "generator '" + name + "'");
-    return findGenerator(name, {}).generate(params, seed);
+    return findGenerator(registeredGenerators(), name, {}).generate(params, seed);
 }
 
 template <class T>

@@ -9,7 +9,7 @@
 #include "runner/core/hash.h"
 #include "runner/raycast/ray_tracer.h"
 #include "runner/scene/animation.h"
-#include "runner/scene/generators.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -17,7 +17,7 @@ namespace {
 
 Scene generated(std::uint64_t seed = 1, const std::string& yaml = "{}") {
     config::Params params(config::parseYaml(yaml, "t.yaml"), "generator 'bathroom'");
-    return findGenerator("bathroom", {}).generate(params, seed);
+    return findGenerator(registeredGenerators(), "bathroom", {}).generate(params, seed);
 }
 
 const Scene& bathroomScene() {

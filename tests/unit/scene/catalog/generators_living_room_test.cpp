@@ -8,9 +8,9 @@
 
 #include "runner/core/hash.h"
 #include "runner/scene/animation.h"
-#include "runner/scene/generators.h"
 #include "runner/scene/generators_indoor_parts.h"
 #include "runner/scene/topology.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -18,7 +18,7 @@ namespace {
 
 Scene room(const std::string& yaml = "{}", std::uint64_t seed = 1) {
     config::Params params(config::parseYaml(yaml, "t.yaml"), "generator 'living_room'");
-    return findGenerator("living_room", {}).generate(params, seed);
+    return findGenerator(registeredGenerators(), "living_room", {}).generate(params, seed);
 }
 
 /// The default one, made once.

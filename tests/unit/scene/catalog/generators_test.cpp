@@ -9,6 +9,7 @@
 #include "runner/core/hash.h"
 #include "runner/scene/generators_shapes.h"
 #include "runner/scene/topology.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -16,7 +17,7 @@ namespace {
 
 Scene generated(const std::string& yaml, std::uint64_t seed = 1) {
     config::Params params(config::parseYaml(yaml, "t.yaml"), "generator 'sdf_model'");
-    return findGenerator("sdf_model", {}).generate(params, seed);
+    return findGenerator(registeredGenerators(), "sdf_model", {}).generate(params, seed);
 }
 
 std::string digestOf(const Mesh& mesh) {
@@ -157,7 +158,7 @@ TEST(Generators, BadParametersAreLocated) {
               "t.yaml:1:2: generator 'sdf_model': unknown parameter 'triangels'; did you mean "
               "'triangles'?");
     EXPECT_EQ(test::errorText([] {
-                  findGenerator("sdf_modle", {"s.yaml", 4, 9});
+                  findGenerator(registeredGenerators(), "sdf_modle", {"s.yaml", 4, 9});
               }),
               "s.yaml:4:9: unknown generator 'sdf_modle'; did you mean 'sdf_model'? (there are: "
               "bathroom, bird_nest, city, four_objects, grass, living_room, "
