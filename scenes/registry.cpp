@@ -2,11 +2,11 @@
 // objects are dropped by the linker.
 #include "scenes/registry.h"
 
-#include "runner/scene/generators_indoor.h"
-#include "runner/scene/generators_outdoor.h"
-#include "runner/scene/generators_sdf_model.h"
-#include "runner/scene/generators_shadow_scenes.h"
-#include "runner/scene/generators_terrain.h"
+#include "scenes/indoor/rooms.h"
+#include "scenes/models/sdf_model.h"
+#include "scenes/outdoor/outdoor.h"
+#include "scenes/shadows/shadow_scenes.h"
+#include "scenes/terrain/terrain.h"
 
 namespace gfxrepro::scene {
 
