@@ -1,11 +1,13 @@
+#include "scenes/indoor/lofts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "scenes/indoor/bathroom_parts.h"
+#include "runner/core/random.h"
 #include "scenes/shared/sdf.h"
 
-namespace gfxrepro::scene::bathroom_parts {
+namespace gfxrepro::scene::indoor {
 
 namespace {
 
@@ -176,4 +178,4 @@ glm::vec2 ovalAt(float u, const glm::vec2& halfAxes, float squareness) {
     return halfAxes * glm::vec2(c, s) * (1.0F + squareness * (square - 1.0F));
 }
 
-}  // namespace gfxrepro::scene::bathroom_parts
+}  // namespace gfxrepro::scene::indoor
