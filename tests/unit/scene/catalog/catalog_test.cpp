@@ -121,6 +121,32 @@ TEST(Catalog, TakesAGeneratedSceneWithOtherParameters) {
               "'triangles'?");
 }
 
+/// One triangle, `size_m` wide.
+Scene oneTriangle(config::Params& params, std::uint64_t) {
+    const auto sizeM = static_cast<float>(params.getDouble("size_m", 1.0, {"width", "m", 0.1, 9}));
+    params.finish();
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {sizeM, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    return sceneOf(std::move(mesh));
+}
+
+TEST(Catalog, KnowsTheGeneratorsThatItIsGiven) {
+    constexpr GeneratorInfo kOwn[] = {{"one_triangle", "a triangle", &oneTriangle, false}};
+    const Folders f;
+    f.entry(
+        "scene: m/x\ndoc: d\ngenerated: true\nsources:\n"
+        "  - {generator: one_triangle, params: {size_m: 4}}\n");
+    const auto open = [&](std::span<const GeneratorInfo> generators) {
+        return Catalog(f.folder.path() / "scenes", f.folder.path() / "assets", generators);
+    };
+    const Scene scene = open(kOwn).load(reference("m/x"));
+    EXPECT_EQ(scene.bounds().max.x, 4.0F);
+    EXPECT_EQ(scene.origin.description, "generator one_triangle, seed 1: {size_m: 4}");
+    EXPECT_EQ(test::errorText([&] { open({}); }, f.folder.path()),
+              "DIR/scenes/m/x.yaml:5:17: unknown generator 'one_triangle' (there are: )");
+}
+
 TEST(Catalog, TakesTheFirstSourceAtHand) {
     const Folders folders;
     folders.entry(
