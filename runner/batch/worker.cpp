@@ -57,8 +57,10 @@ CaseResult resultOf(const Case& item, MeasureContext& context) {
 }
 
 void serve(gl::Device& device, const WorkerOptions& options,
-           std::span<const technique::TechniqueInfo> techniques) {
-    const scene::Catalog catalog(dataFolder("configs") / "scenes", options.assetsFolder);
+           std::span<const technique::TechniqueInfo> techniques,
+           std::span<const scene::GeneratorInfo> generators) {
+    const scene::Catalog catalog(dataFolder("configs") / "scenes", options.assetsFolder,
+                                 generators);
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     // A timing worker keeps nothing but the scene at hand, so that memory is the case's own.
     SceneCache scenes(catalog,
@@ -87,7 +89,8 @@ void serve(gl::Device& device, const WorkerOptions& options,
 
 }  // namespace
 
-void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques) {
+void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques,
+               std::span<const scene::GeneratorInfo> generators) {
     if (::fcntl(kMessageFd, F_SETFD, FD_CLOEXEC) != 0) {
         throw UsageError("the worker command is for the program's own use: descriptor 3 is closed");
     }
@@ -97,7 +100,7 @@ void runWorker(const WorkerOptions& options, std::span<const technique::Techniqu
     try {
         gl::Device device = gl::Device::open({options.device, debug});
         send({{"end", "device"}});
-        serve(device, options, techniques);
+        serve(device, options, techniques, generators);
     } catch (const NoDeviceError& error) {
         send({{"unavailable", error.what()}});
     }

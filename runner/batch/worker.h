@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runner/config/experiment.h"
+#include "runner/scene/generators.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::batch {
@@ -19,6 +20,7 @@ struct WorkerOptions {
 
 /// Runs until standard input ends. Every failure of a case becomes its status; nothing is thrown
 /// but for a broken channel to the runner.
-void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques);
+void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques,
+               std::span<const scene::GeneratorInfo> generators);
 
 }  // namespace gfxrepro::batch

@@ -8,7 +8,7 @@
 namespace gfxrepro::cli {
 
 int check(const Context& context, const Selection& selection) {
-    const scene::Catalog catalog = openCatalog(selection.assets);
+    const scene::Catalog catalog = openCatalog(context, selection.assets);
     batch::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
     for (const std::string& file : selection.names) {
         request.configs = {file};

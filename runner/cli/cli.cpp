@@ -204,7 +204,7 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     exportApp->add_option("--out", o.out, "folder (default RUN-artifact)")->option_text("DIR");
     addAssets(exportApp, o.selection.assets);
     exportApp->callback(
-        [&o] { o.command = [&o] { return exportRun(o.name, o.out, o.selection.assets); }; });
+        [&] { o.command = [&] { return exportRun(context, o.name, o.out, o.selection.assets); }; });
 }
 
 void addCluster(CLI::App& app, const Context& context, Options& o) {
@@ -306,7 +306,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
         ->option_text("N");
     addDevice(sceneApp, o.scene.device);
     addAssets(sceneApp, o.scene.assets);
-    sceneApp->callback([&] { o.command = [&] { return scene(o.scene); }; });
+    sceneApp->callback([&] { o.command = [&] { return scene(context, o.scene); }; });
 
     // The program starts itself with this; `group("")` keeps it out of the help.
     CLI::App* workerApp = app.add_subcommand("worker", "")->group("");
@@ -319,7 +319,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
         o.command = [&] {
             o.worker.lane =
                 o.lane == "timing" ? config::Measure::Lane::Timing : config::Measure::Lane::Quality;
-            batch::runWorker(o.worker, context.techniques);
+            batch::runWorker(o.worker, context.techniques, context.generators);
             return kExitOk;
         };
     });
@@ -349,8 +349,9 @@ void addShell(CLI::App& app, Options& o) {
 }
 
 int runCommand(int argc, const char* const* argv,
-               std::span<const technique::TechniqueInfo> techniques) {
-    Context context{techniques, "gfxrepro", std::chrono::steady_clock::now()};
+               std::span<const technique::TechniqueInfo> techniques,
+               std::span<const scene::GeneratorInfo> generators) {
+    Context context{techniques, generators, "gfxrepro", std::chrono::steady_clock::now()};
     for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
@@ -380,9 +381,10 @@ int runCommand(int argc, const char* const* argv,
 
 // The catch of the program stands here and not in main.cpp, so that a program with other techniques
 // (tests) has the same exit codes.
-int run(int argc, const char* const* argv, std::span<const technique::TechniqueInfo> techniques) {
+int run(int argc, const char* const* argv, std::span<const technique::TechniqueInfo> techniques,
+        std::span<const scene::GeneratorInfo> generators) {
     try {
-        const int code = runCommand(argc, argv, techniques);
+        const int code = runCommand(argc, argv, techniques, generators);
         if (std::fflush(stdout) == 0) return code;
         tell("gfxrepro: cannot write the standard output: {}\n", std::strerror(errno));
         return kExitUsage;

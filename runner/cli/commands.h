@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/scene/generators.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::cli {
@@ -20,6 +21,7 @@ inline constexpr int kExitInterrupted = 130;
 /// What every command may ask for.
 struct Context {
     std::span<const technique::TechniqueInfo> techniques;
+    std::span<const scene::GeneratorInfo> generators;
     std::string commandLine;  // as typed, for the manifest
     std::chrono::steady_clock::time_point start;
 };
@@ -126,7 +128,8 @@ int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
 int sensitivity(const Context& context, const SensitivityOptions& options);
 /// To `out`, or DIR-artifact.
-int exportRun(const std::string& runDir, const std::string& out, const std::string& assets);
-int scene(const SceneOptions& options);
+int exportRun(const Context& context, const std::string& runDir, const std::string& out,
+              const std::string& assets);
+int scene(const Context& context, const SceneOptions& options);
 
 }  // namespace gfxrepro::cli

@@ -8,7 +8,6 @@
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
 #include "runner/core/text.h"
-#include "runner/scene/generators.h"
 
 namespace gfxrepro::cli {
 
@@ -104,9 +103,9 @@ void append(Words& words, Words more) {
     for (std::string& word : more) words.push_back(std::move(word));
 }
 
-Words sceneNames() {
+Words sceneNames(const Context& context) {
     Words names;
-    const scene::Catalog catalog = openCatalog("");
+    const scene::Catalog catalog = openCatalog(context, "");
     for (const auto& [name, entry] : catalog.entries()) names.push_back(name);
     return names;
 }
@@ -114,8 +113,8 @@ Words sceneNames() {
 Words describedNames(const Context& context, const std::string& prefix) {
     Words names = {"config"};
     for (const technique::TechniqueInfo& info : context.techniques) names.emplace_back(info.name);
-    for (const scene::GeneratorInfo& info : scene::generators()) names.emplace_back(info.name);
-    append(names, sceneNames());
+    for (const scene::GeneratorInfo& info : context.generators) names.emplace_back(info.name);
+    append(names, sceneNames(context));
     append(names, paperNames());
     append(names, paths(prefix, isYaml));
     return names;
@@ -136,7 +135,7 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
         {"RUN", [&] { return paths(prefix, isRun, prefix.empty() ? Words{"runs/"} : Words{}); }},
         {"SCENE",
          [&] {
-             Words names = sceneNames();
+             Words names = sceneNames(context);
              append(names, paths(prefix, isAnyFile));
              return names;
          }},

@@ -7,7 +7,6 @@
 #include "runner/cli/experiments.h"
 #include "runner/config/schema.h"
 #include "runner/core/text.h"
-#include "runner/scene/generators.h"
 
 namespace gfxrepro::cli {
 
@@ -72,7 +71,7 @@ void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog
                            : source.kind == scene::Origin::Kind::StandIn ? "stand-in"
                                                                          : "generated";
         if (source.file.empty()) {
-            fmt::print("source    {}: generator {}, seed {}\n", kind, source.generator,
+            fmt::print("source    {}: generator {}, seed {}\n", kind, source.generator->name,
                        source.seed);
             continue;
         }
@@ -121,7 +120,7 @@ config::SchemaNames schemaNames(const Context& context) {
     for (const technique::TechniqueInfo& info : context.techniques) {
         names.techniques.push_back({std::string(info.name), paramsOf(info)});
     }
-    for (const scene::GeneratorInfo& info : scene::generators()) {
+    for (const scene::GeneratorInfo& info : context.generators) {
         names.generators.emplace_back(info.name);
     }
     return names;
@@ -157,13 +156,12 @@ int describe(const Context& context, const DescribeOptions& options) {
         describeTechnique(*technique);
         return kExitOk;
     }
-    const auto generators = scene::generators();
-    const auto generator = findNamed(generators, name);
-    if (generator != generators.end()) {
+    const auto generator = findNamed(context.generators, name);
+    if (generator != context.generators.end()) {
         describeGenerator(*generator);
         return kExitOk;
     }
-    const scene::Catalog catalog = openCatalog(options.assets);
+    const scene::Catalog catalog = openCatalog(context, options.assets);
     const auto entry = catalog.entries().find(name);
     if (entry != catalog.entries().end()) {
         describeScene(entry->second, catalog);
@@ -182,7 +180,7 @@ int describe(const Context& context, const DescribeOptions& options) {
         known.push_back(experiment.id);
     }
     for (const technique::TechniqueInfo& info : context.techniques) known.emplace_back(info.name);
-    for (const scene::GeneratorInfo& info : generators) known.emplace_back(info.name);
+    for (const scene::GeneratorInfo& info : context.generators) known.emplace_back(info.name);
     for (const auto& [sceneName, unused] : catalog.entries()) known.push_back(sceneName);
     throw UsageError("describe: nothing is called '" + name + "'" + suggestion(name, known) +
                      "; see 'gfxrepro list tables|techniques|scenes|configs|generators'");

@@ -217,8 +217,8 @@ void print(const Json& found) {
 
 }  // namespace
 
-int doctor(const Context&, const std::string& assets, bool asJson) {
-    const scene::Catalog catalog = openCatalog(assets);
+int doctor(const Context& context, const std::string& assets, bool asJson) {
+    const scene::Catalog catalog = openCatalog(context, assets);
     const std::vector<gl::DeviceReport> reports = gl::listDevices();
     const MachineFacts facts = gatherFacts(reports, catalog);
     const std::vector<Finding> findings = findingsOf(facts);

@@ -146,8 +146,9 @@ std::string deviceClassFor(const Selection& selection) {
 batch::Plan planFor(const Context& context, const batch::Request& request,
                     const std::string& profile, const std::string& assets,
                     const std::string& deviceClass) {
-    batch::Plan plan = batch::makePlan(loadExperiments(request, profile), openCatalog(assets),
-                                       context.techniques, profile, deviceClass, kSeed);
+    batch::Plan plan =
+        batch::makePlan(loadExperiments(request, profile), openCatalog(context, assets),
+                        context.techniques, profile, deviceClass, kSeed);
     plan.request = request;
     batch::keepOnly(plan, request.only);
     return plan;
@@ -169,9 +170,11 @@ void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequenc
     if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
 }
 
-batch::Plan submittedPlan(const std::string& file, const std::string& assets) {
+batch::Plan submittedPlan(const Context& context, const std::string& file,
+                          const std::string& assets) {
     batch::Plan plan = batch::Plan::fromJsonFile(file);
-    const std::string reason = batch::whyNotResumable(plan, plan.deviceClass, openCatalog(assets));
+    const std::string reason =
+        batch::whyNotResumable(plan, plan.deviceClass, openCatalog(context, assets));
     if (!reason.empty()) {
         throw Error(file + ": cannot be measured: " + reason + "; submit again, to another folder");
     }
@@ -186,8 +189,8 @@ std::string runSlug(const batch::Plan& plan) {
     return id.substr(0, id.find('/'));
 }
 
-scene::Catalog openCatalog(const std::string& assets) {
-    return scene::Catalog(dataFolder("configs") / "scenes", assetsFolder(assets));
+scene::Catalog openCatalog(const Context& context, const std::string& assets) {
+    return {dataFolder("configs") / "scenes", assetsFolder(assets), context.generators};
 }
 
 std::string alignedColumns(const std::vector<std::vector<std::string>>& rows) {

@@ -42,12 +42,13 @@ void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequenc
 
 /// A plan as it was frozen when it was submitted; warns of changed configs. Throws Error where the
 /// program or a scene is another by now, or the plan itself was changed.
-batch::Plan submittedPlan(const std::string& file, const std::string& assets);
+batch::Plan submittedPlan(const Context& context, const std::string& file,
+                          const std::string& assets);
 
 /// "zju2005-2.1" for one experiment, "zju2005" for several of a paper.
 std::string runSlug(const batch::Plan& plan);
 
-scene::Catalog openCatalog(const std::string& assets);
+scene::Catalog openCatalog(const Context& context, const std::string& assets);
 
 /// Rows as aligned columns, two spaces apart.
 std::string alignedColumns(const std::vector<std::vector<std::string>>& rows);

@@ -10,10 +10,11 @@
 
 namespace gfxrepro::cli {
 
-int exportRun(const std::string& runDir, const std::string& out, const std::string& assets) {
+int exportRun(const Context& context, const std::string& runDir, const std::string& out,
+              const std::string& assets) {
     const std::string target = out.empty() ? runDir + "-artifact" : out;
     const batch::StoredRun run = batch::readRun(runDir);
-    batch::writeArtifact(runDir, run, openCatalog(assets), target);
+    batch::writeArtifact(runDir, run, openCatalog(context, assets), target);
     sayNotes(run.manifest);
     fmt::print("{}\n", target);
     return kExitOk;

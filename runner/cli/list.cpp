@@ -10,7 +10,6 @@
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/scene/generators.h"
 
 namespace gfxrepro::cli {
 
@@ -44,9 +43,9 @@ Rows configs() {
     return rows;
 }
 
-Rows scenes(const std::string& assets) {
+Rows scenes(const Context& context, const std::string& assets) {
     Rows rows;
-    const scene::Catalog catalog = openCatalog(assets);
+    const scene::Catalog catalog = openCatalog(context, assets);
     for (const auto& [name, entry] : catalog.entries()) {
         rows.push_back({name, entry.doc});
     }
@@ -61,9 +60,9 @@ Rows techniques(const Context& context) {
     return rows;
 }
 
-Rows generators() {
+Rows generators(const Context& context) {
     Rows rows;
-    for (const scene::GeneratorInfo& info : scene::generators()) {
+    for (const scene::GeneratorInfo& info : context.generators) {
         rows.push_back({std::string(info.name), std::string(info.summary)});
     }
     return rows;
@@ -74,8 +73,8 @@ Rows generators() {
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson) {
     const std::map<std::string, std::function<Rows()>> kinds = {
         {"configs", configs},
-        {"generators", generators},
-        {"scenes", [&] { return scenes(assets); }},
+        {"generators", [&] { return generators(context); }},
+        {"scenes", [&] { return scenes(context, assets); }},
         {"tables", tables},
         {"techniques", [&] { return techniques(context); }},
     };

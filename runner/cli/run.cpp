@@ -164,8 +164,8 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                                             {},
                                             context.commandLine};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
-    const std::string reason = batch::whyNotResumable(stored.plan, deviceClassOf(device),
-                                                      openCatalog(options.selection.assets));
+    const std::string reason = batch::whyNotResumable(
+        stored.plan, deviceClassOf(device), openCatalog(context, options.selection.assets));
     if (!reason.empty()) {
         throw Error(options.resume + ": cannot be resumed: " + reason +
                     "; start a new run instead");
@@ -278,7 +278,7 @@ int runSubmitted(const Context& context, RunOptions options) {
         !selection.only.empty() || !options.budget.empty()) {
         throw UsageError("run: --plan has configs and options of its own; give none");
     }
-    batch::Plan plan = submittedPlan(options.plan, selection.assets);
+    batch::Plan plan = submittedPlan(context, options.plan, selection.assets);
     selection.profile = plan.profile;
     const batch::Request request = plan.request;
     return execute(context, options, request, false, std::move(plan));

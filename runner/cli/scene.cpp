@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-scene::Scene loadNamed(const SceneOptions& options) {
+scene::Scene loadNamed(const Context& context, const SceneOptions& options) {
     if (config::isSceneFile(options.name)) return scene::loadScene(options.name);
-    return openCatalog(options.assets).load(config::Node::scalar(options.name));
+    return openCatalog(context, options.assets).load(config::Node::scalar(options.name));
 }
 
 void print(const scene::Scene& scene) {
@@ -86,8 +86,8 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
 
 }  // namespace
 
-int scene(const SceneOptions& options) {
-    const scene::Scene scene = loadNamed(options);
+int scene(const Context& context, const SceneOptions& options) {
+    const scene::Scene scene = loadNamed(context, options);
     print(scene);
     if (!options.exportFile.empty()) exportTo(options.exportFile, scene);
     if (!options.renderFile.empty()) renderTo(options.renderFile, scene, options);

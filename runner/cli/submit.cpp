@@ -113,7 +113,7 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     const std::optional<Stored> before = readStored(out);
     const bool isBegun = before.has_value();
     const bool isFrozen = isBegun && before->asked == cut.asked && fs::exists(frozenPlan(out));
-    cut.plan = isFrozen ? submittedPlan(frozenPlan(out), assets)
+    cut.plan = isFrozen ? submittedPlan(context, frozenPlan(out), assets)
                         : planFor(context, request, options.selection.profile, assets,
                                   deviceClassFor(options.selection));
     History history = isBegun ? openHistory({out / "predictions.csv"}, "")

@@ -10,8 +10,6 @@
 #include "runner/core/text.h"
 #include "runner/image/png_io.h"
 #include "runner/scene/catalog_entry.h"
-#include "runner/scene/generators.h"
-#include "runner/scene/generators_terrain.h"
 #include "runner/scene/load.h"
 #include "runner/scene/point_sampling.h"
 #include "runner/scene/refine.h"
@@ -26,11 +24,17 @@ namespace {
 /// Goes up when resampled() makes other heights.
 constexpr int kResamplingVersion = 1;
 
+/// "the file s.obj", "generator grass".
+std::string kindOf(const SceneSource& source) {
+    return source.generator ? "generator " + std::string(source.generator->name)
+                            : "the file " + source.file;
+}
+
 /// "file, refined to N triangles" or "generator g, seed n: {params}".
 std::string descriptionOf(const SceneSource& source) {
     std::string text = source.file;
-    if (!source.generator.empty()) {
-        text = "generator " + source.generator + ", seed " + std::to_string(source.seed) +
+    if (source.generator) {
+        text = kindOf(source) + ", seed " + std::to_string(source.seed) +
                (source.params.isNull() ? "" : ": " + source.params.toFlowText());
     }
     if (source.heightMap && source.heightMap->resampleTo) {
@@ -123,11 +127,6 @@ Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     return scene;
 }
 
-/// "the file s.obj", "generator grass".
-std::string kindOf(const SceneSource& source) {
-    return source.file.empty() ? "generator " + source.generator : "the file " + source.file;
-}
-
 void takeSeed(const std::string& name, const std::string& seed, const SourceLocation& where,
               SceneSource& source) {
     const auto number = parseInteger(seed);
@@ -147,7 +146,8 @@ void takeSeed(const std::string& name, const std::string& seed, const SourceLoca
 
 }  // namespace
 
-Catalog::Catalog(const fs::path& scenesFolder, fs::path assetsFolder)
+Catalog::Catalog(const fs::path& scenesFolder, fs::path assetsFolder,
+                 std::span<const GeneratorInfo> generators)
     : assetsFolder_(std::move(assetsFolder)) {
     std::vector<fs::path> files;
     for (const auto& file : fs::recursive_directory_iterator(scenesFolder)) {
@@ -159,7 +159,7 @@ Catalog::Catalog(const fs::path& scenesFolder, fs::path assetsFolder)
     for (const fs::path& file : files) {
         const std::string name =
             file.lexically_relative(scenesFolder).replace_extension().generic_string();
-        entries_.emplace(name, readEntry(file, name));
+        entries_.emplace(name, readEntry(file, name, generators));
     }
 }
 
@@ -174,12 +174,12 @@ const SceneEntry& Catalog::entryNamed(const Node& reference) const {
 }
 
 bool SceneSource::isSeeded() const {
-    if (!generator.empty()) return findGenerator(generator, where).isSeeded;
+    if (generator) return generator->isSeeded;
     return heightMap && heightMap->detailM > 0.0F;
 }
 
 void takeParams(const std::string& name, const Node& params, SceneSource& source) {
-    if (source.generator.empty()) {
+    if (!source.generator) {
         const std::string& first = params.entries().front().first;
         throw Error(
             params.keyLocation(first),
@@ -187,7 +187,7 @@ void takeParams(const std::string& name, const Node& params, SceneSource& source
                         first, kindOf(source)));
     }
     source.params = config::merged(source.params, params);
-    declaredParams(findGenerator(source.generator, source.where), source.params);
+    declaredParams(*source.generator, source.params);
 }
 
 SceneSource Catalog::resolve(const Node& reference) const {
@@ -213,7 +213,7 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
     const SceneEntry& entry = entryNamed(reference);
     std::string tried;
     for (const SceneSource& source : entry.sources) {
-        if (!source.generator.empty()) return source;
+        if (source.generator) return source;
         const fs::path path = assetsFolder_ / source.file;
         if (fs::is_regular_file(path)) return source;
         tried += "\n  " + path.string();
@@ -228,10 +228,10 @@ std::string Catalog::contentKey(const Node& reference) const {
     const SceneSource source = resolve(reference);
     const std::string points =
         source.points ? " sampled to " + std::to_string(*source.points) : std::string();
-    if (!source.generator.empty()) {
-        return sha256("generator " + std::to_string(kGeneratorVersion) + ' ' + source.generator +
-                      ' ' + std::to_string(source.seed) + ' ' + source.params.toFlowText() +
-                      points);
+    if (source.generator) {
+        return sha256("generator " + std::to_string(kGeneratorVersion) + ' ' +
+                      std::string(source.generator->name) + ' ' + std::to_string(source.seed) +
+                      ' ' + source.params.toFlowText() + points);
     }
     const fs::path path = assetsFolder_ / source.file;
     FileDigest& digest = digests_[path];
@@ -253,14 +253,15 @@ Scene Catalog::load(const Node& reference) const {
     if (source.heightMap) {
         scene = loadTerrain(assetsFolder_, source);
         sha256 = sha256OfFile(assetsFolder_ / source.file);
-    } else if (source.generator.empty()) {
+    } else if (!source.generator) {
         scene = loadScene(assetsFolder_ / source.file);
         sha256 = scene.origin.sha256;
         if (source.isZUp) turnUp(scene);
         if (source.refineTo) refine(scene, source);
     } else {
-        config::Params params(source.params, "generator '" + source.generator + "'");
-        scene = findGenerator(source.generator, source.where).generate(params, source.seed);
+        config::Params params(source.params,
+                              "generator '" + std::string(source.generator->name) + "'");
+        scene = source.generator->generate(params, source.seed);
     }
     if (source.points) turnIntoPoints(scene, source);
     scene.name = reference.text();

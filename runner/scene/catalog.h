@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "runner/config/node.h"
+#include "runner/scene/generators.h"
 #include "runner/scene/scene.h"
 
 namespace gfxrepro::scene {
@@ -33,8 +35,8 @@ struct SceneSource {
     bool isZUp = false;  // the file's up is +z: turned so that it is +y
     std::optional<long long> points;  // the surface sampled (or its points thinned) to this many
     std::optional<HeightMapSource> heightMap;  // `file` is one
-    std::string generator;
-    config::Node params;  // of the generator
+    const GeneratorInfo* generator = nullptr;  // one of those the catalogue was given
+    config::Node params;                       // of the generator
     std::uint64_t seed = 1;
     Origin::Kind kind = Origin::Kind::Real;
     SourceLocation where;
@@ -58,8 +60,10 @@ void takeParams(const std::string& name, const config::Node& params, SceneSource
 
 class Catalog {
   public:
-    /// Reads every YAML file under `scenesFolder`. Throws Error on the first that is wrong.
-    Catalog(const std::filesystem::path& scenesFolder, std::filesystem::path assetsFolder);
+    /// Reads every YAML file under `scenesFolder`, whose sources may name one of `generators`
+    /// (which must outlive the catalogue). Throws Error on the first that is wrong.
+    Catalog(const std::filesystem::path& scenesFolder, std::filesystem::path assetsFolder,
+            std::span<const GeneratorInfo> generators);
 
     const std::map<std::string, SceneEntry>& entries() const { return entries_; }
 

@@ -6,7 +6,6 @@
 
 #include "runner/config/schema.h"
 #include "runner/core/text.h"
-#include "runner/scene/generators.h"
 
 namespace gfxrepro::scene {
 
@@ -123,11 +122,12 @@ SceneSource readHeightMapSource(const Node& node) {
     return source;
 }
 
-SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
+SceneSource readGeneratorSource(const Node& node, bool isGenerated,
+                                std::span<const GeneratorInfo> generators) {
     requireKeys(node, "source", "generator_source");
     SceneSource source;
     const Node& generator = required(node, "source", "generator");
-    source.generator = findGenerator(generator.text(), generator.location()).name;
+    source.generator = &findGenerator(generators, generator.text(), generator.location());
     if (const Node* params = node.find("params")) source.params = *params;
     if (const Node* seed = node.find("seed")) {
         const long long value = seed->asInteger();
@@ -141,7 +141,8 @@ SceneSource readGeneratorSource(const Node& node, bool isGenerated) {
     return source;
 }
 
-SceneSource readSource(const Node& node, bool isGenerated) {
+SceneSource readSource(const Node& node, bool isGenerated,
+                       std::span<const GeneratorInfo> generators) {
     if (!node.isMap()) {
         throw Error(node.location(), "source is " + node.kindName() + ", but must be a map");
     }
@@ -155,14 +156,15 @@ SceneSource readSource(const Node& node, bool isGenerated) {
     const bool isHeightMap = isFile && node.find("height_map") != nullptr;
     SceneSource source = isHeightMap ? readHeightMapSource(node)
                          : isFile    ? readFileSource(node)
-                                     : readGeneratorSource(node, isGenerated);
+                                     : readGeneratorSource(node, isGenerated, generators);
     source.where = node.location();
     return source;
 }
 
 }  // namespace
 
-SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
+SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
+                     std::span<const GeneratorInfo> generators) {
     const Node root = config::parseYamlFile(path);
     requireKeys(root, "scene entry", "scene");
     SceneEntry entry;
@@ -180,7 +182,7 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName) {
     const bool isGenerated = generated && generated->asBool();
     const Node& sources = required(root, "scene entry", "sources");
     for (const Node& source : sources.items()) {
-        entry.sources.push_back(readSource(source, isGenerated));
+        entry.sources.push_back(readSource(source, isGenerated, generators));
     }
     if (entry.sources.empty()) {
         throw Error(sources.location(), "sources is empty; an entry needs at least one");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "runner/scene/catalog.h"
@@ -10,6 +11,7 @@ namespace gfxrepro::scene {
 
 /// Throws Error, at its place, for anything that is wrong in the file, and for a scene of another
 /// name than `expectedName`.
-SceneEntry readEntry(const std::filesystem::path& path, const std::string& expectedName);
+SceneEntry readEntry(const std::filesystem::path& path, const std::string& expectedName,
+                     std::span<const GeneratorInfo> generators);
 
 }  // namespace gfxrepro::scene

@@ -1,4 +1,5 @@
-// Seeded scene generators: same seed, same bytes, on every machine.
+// What a seeded scene generator is: same seed, same bytes, on every machine. The program gives its
+// generators to whoever asks for one; this module has none.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +24,13 @@ struct GeneratorInfo {
     bool isSeeded = true;  // false: every seed makes the same scene
 };
 
-std::span<const GeneratorInfo> generators();
-
 /// What the generator declares; throws Error where it does not take `values` (a map or null). No
 /// scene is made.
 std::vector<config::ParamInfo> declaredParams(const GeneratorInfo& generator,
                                               const config::Node& values);
 
-/// Throws Error with the nearest name when there is none of that name.
-const GeneratorInfo& findGenerator(std::string_view name, const SourceLocation& where);
+/// Throws Error with the nearest name when none of `generators` has that name.
+const GeneratorInfo& findGenerator(std::span<const GeneratorInfo> generators, std::string_view name,
+                                   const SourceLocation& where);
 
 }  // namespace gfxrepro::scene

@@ -81,20 +81,6 @@ bool isHeightMapFile(const std::filesystem::path& path);
 /// data around it. Counts them in filledCount. Throws Error when no sample has data.
 void fillHoles(HeightMap& map);
 
-/// Seeded terrain: ridged mountains that fade into rolling lowland (noise summed over octaves).
-struct FractalTerrain {
-    int sizeSamples = 4097;
-    float spacingM = 10.0F;
-    float reliefM = 3000.0F;   // from the lowest to the highest, at most
-    float featureM = 8000.0F;  // the longest wave of the noise
-    int octaves = 11;
-    float ridges = 0.7F;  // 0: rolling hills only, 1: ridges only
-};
-HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed);
-/// The same in a file of `folder`, as resampledInFile() keeps it.
-HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed,
-                               const std::filesystem::path& folder, const std::string& key);
-
 /// The same ground with `sizeSamples` a side (bicubic, through the old samples) and fractal detail
 /// between the old samples, at most `detailM` up or down: a stand-in for a finer survey.
 HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed);

@@ -164,4 +164,8 @@ std::vector<glm::vec3> vertexNormals(const Mesh& mesh);
 /// height).
 Camera framingCamera(const Box& box, float aspect);
 
+/// Two views of a height map: "overview" from the south-east above it, "flight" low over its middle
+/// northwards. Their reach covers the whole map.
+void addTerrainCameras(Scene& scene);
+
 }  // namespace gfxrepro::scene

@@ -17,6 +17,7 @@
 
 #include "runner/cli/cli.h"
 #include "runner/technique/technique.h"
+#include "scenes/registry.h"
 
 namespace {
 
@@ -177,5 +178,5 @@ int main(int argc, char** argv) {
         ::pause();
     }
     const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create}};
-    return cli::run(argc, argv, techniques);
+    return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }

@@ -39,6 +39,11 @@ expect("check_layers", {"runner/report/a.cpp": "#include <EGL/egl.h>\n"},
        "runner/report/a.cpp:1: runner/report may not include EGL/egl.h")
 expect("check_layers", {"techniques/a/a.cpp": '#include "techniques/b/b.h"\n'},
        "techniques/a/a.cpp:1: techniques/a may not include techniques/b/b.h")
+for folder in ("runner/batch", "runner/scene", "techniques/a"):
+    expect("check_layers", {folder + "/a.cpp": '#include "scenes/city/parts.h"\n'},
+           f"{folder}/a.cpp:1: {folder} may not include scenes/city/parts.h")
+expect("check_layers", {"scenes/city/a.cpp": '#include "runner/technique/technique.h"\n'},
+       "scenes/city/a.cpp:1: scenes may not include runner/technique/technique.h")
 # An exception holds one way.
 expect("check_layers",
        {"techniques/reflection_reuse/a.cpp": '#include "techniques/clustered_reflections/b.h"\n',
@@ -51,6 +56,13 @@ expect("check_layers", {"runner/core/a.cpp": '#include "error.h"\n'},
        'runner/core/a.cpp:1: includes are root-relative, not "error.h"')
 expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")
 expect("check_style", {"runner/core/a.cpp": "\n" * 401}, "runner/core/a.cpp: 401 lines, at most 400")
+# The data of a scene may be long, that of others not.
+DATA = "// Longer than other files: the data of one scene.\n" + "int a;\n" * 400
+expect("check_style", {"scenes/a.cpp": "\n" * 401}, "scenes/a.cpp: 401 lines, at most 400")
+expect("check_style", {"runner/core/a.cpp": DATA}, "runner/core/a.cpp: 401 lines, at most 400")
+code, output = run("check_style", {"scenes/README.md": "", "scenes/a.cpp": DATA})
+if code != 0:
+    sys.exit(f"check_style found something in a long scene:\n{output}")
 expect("check_style", {"runner/core/a.cpp": "// TO" + "DO later\n"}, "runner/core/a.cpp:1: unfinished")
 expect("check_style", {"runner/core/a.cpp": ""}, "runner/core: no README.md")
 print("checks find violations")

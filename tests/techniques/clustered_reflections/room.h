@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -6,7 +6,7 @@
 
 #include "runner/core/files.h"
 #include "runner/core/random.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/technique_recorder.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "runner/core/files.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::depth_sampling {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "techniques/point_splatting/compression_errors.h"
 #include "tests/techniques/technique_fixture.h"
 

@@ -9,7 +9,7 @@
 #include "runner/core/random.h"
 #include "runner/raycast/ray_tracer.h"
 #include "runner/scene/load.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::reflections {

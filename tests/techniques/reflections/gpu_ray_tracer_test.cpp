@@ -6,7 +6,7 @@
 
 #include "runner/core/files.h"
 #include "runner/scene/animation.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "techniques/shared/reflections/embree_tracer.h"
 #include "tests/gl/gl_fixture.h"
 

@@ -1,6 +1,6 @@
 #include "techniques/shared/reflections/path_view.h"
 
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::reflections {

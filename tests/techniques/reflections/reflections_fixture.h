@@ -7,7 +7,7 @@
 
 #include "runner/core/files.h"
 #include "runner/core/random.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "techniques/shared/reflections/gpu_objects.h"
 #include "tests/gl/gl_fixture.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "techniques/shared/reflections/surfaces.h"
 
 namespace gfxrepro::reflections {

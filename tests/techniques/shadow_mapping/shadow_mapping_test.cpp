@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::shadow_mapping {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "runner/core/files.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "techniques/shadow_mapping/shaded_view.h"
 #include "tests/gl/gl_fixture.h"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/device.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "techniques/soft_shadows/shadow_casters.h"
 #include "techniques/soft_shadows/shadow_errors.h"
 #include "tests/support/support.h"

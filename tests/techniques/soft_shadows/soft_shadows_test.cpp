@@ -6,7 +6,7 @@
 #include <map>
 
 #include "runner/core/random.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::soft_shadows {

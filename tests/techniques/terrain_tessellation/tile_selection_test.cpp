@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "runner/scene/height_map.h"
+#include "scenes/terrain/terrain.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runner/report/case_records.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::batch {
@@ -50,7 +51,8 @@ struct Ledger {
         folder.write("assets/s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     }
     scene::Catalog catalog() const {
-        return {folder.path() / "configs/scenes", folder.path() / "assets"};
+        return {folder.path() / "configs/scenes", folder.path() / "assets",
+                scene::registeredGenerators()};
     }
     config::Experiment load(const std::string& lines) const {
         const auto file =

@@ -8,7 +8,7 @@
 #include "runner/config/params.h"
 #include "runner/core/random.h"
 #include "runner/raycast/ray_tracer.h"
-#include "runner/scene/generators.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::raycast {
@@ -30,7 +30,7 @@ scene::Scene body(const std::string& shape, int triangles = 20000) {
     values.set("shape", config::Node::scalar(shape));
     values.set("triangles", config::Node::number(triangles));
     config::Params params(values, "generator");
-    return scene::findGenerator("sdf_model", {}).generate(params, 1);
+    return scene::findGenerator(scene::registeredGenerators(), "sdf_model", {}).generate(params, 1);
 }
 
 glm::vec3 randomPoint(Random& random, float reach) {

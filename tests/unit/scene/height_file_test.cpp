@@ -8,6 +8,7 @@
 
 #include "runner/core/error.h"
 #include "runner/scene/height_map.h"
+#include "scenes/terrain/terrain.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -123,24 +124,6 @@ TEST(HeightFile, ResamplesAsInMemoryAndStaysThereWithoutAFolder) {
     EXPECT_EQ(test::errorText(
                   [&] { resampledInFile(coarse, 32769, 0.0F, 3, folder.path() / "file", "key"); }),
               "cannot create " + (folder.path() / "file").string() + ": Not a directory");
-}
-
-TEST(HeightFile, GeneratesAsInMemory) {
-    const test::TemporaryFolder folder;
-    FractalTerrain shape;
-    shape.sizeSamples = 129;
-    const HeightMap expected = fractalTerrain(shape, 5);
-    for (int i = 0; i < 2; ++i) {  // made, then found
-        const HeightMap found = fractalTerrainInFile(shape, 5, folder.path(), "key");
-        ASSERT_NE(found.file, nullptr);
-        EXPECT_EQ(found.spacingM, expected.spacingM);
-        for (int at = 0; at < 129 * 129; ++at) {
-            ASSERT_EQ(found.heightM(at % 129, at / 129), expected.heightM(at % 129, at / 129));
-        }
-    }
-    writeFileAtomic(folder.path() / "file", "no folder");
-    const HeightMap kept = fractalTerrainInFile(shape, 5, folder.path() / "file", "key");
-    EXPECT_EQ(kept.heightsM, expected.heightsM);
 }
 
 }  // namespace

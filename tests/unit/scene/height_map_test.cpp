@@ -12,6 +12,7 @@
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/scene/scene.h"
+#include "scenes/terrain/terrain.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -249,18 +250,6 @@ TEST(HeightMap, HolesAreFilledFromAround) {
         EXPECT_LE(height, 20.0F);
     }
     EXPECT_LT(map.heightM(2, 2), map.heightM(37, 20));
-}
-
-TEST(HeightMap, FractalIsTheSameForASeedAndHasItsRelief) {
-    FractalTerrain shape;
-    shape.sizeSamples = 129;
-    const HeightMap a = fractalTerrain(shape, 1);
-    EXPECT_EQ(a.heightsM, fractalTerrain(shape, 1).heightsM);
-    EXPECT_NE(a.heightsM, fractalTerrain(shape, 2).heightsM);
-    EXPECT_EQ(a.bounds().min.y, 0.0F);
-    EXPECT_NEAR(a.bounds().max.y, shape.reliefM, 0.01F);
-    shape.sizeSamples = 1;
-    EXPECT_EQ(fractalTerrain(shape, 1).heightsM, std::vector<float>{0.0F});
 }
 
 TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {

@@ -10,7 +10,7 @@
 #include "runner/core/error.h"
 #include "runner/core/random.h"
 #include "runner/scene/covariance.h"
-#include "runner/scene/mesh_builder.h"
+#include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene {
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "runner/scene/topology.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -28,7 +29,9 @@ struct Folders {
         folder.write("scenes/readme", "");
     }
     void entry(const std::string& yaml) const { folder.write("scenes/m/x.yaml", yaml); }
-    Catalog catalog() const { return {folder.path() / "scenes", folder.path() / "assets"}; }
+    Catalog catalog() const {
+        return {folder.path() / "scenes", folder.path() / "assets", registeredGenerators()};
+    }
     std::string errorOf(const std::string& yaml) const {
         entry(yaml);
         return test::errorText([&] { catalog(); }, folder.path());
@@ -116,6 +119,32 @@ TEST(Catalog, TakesAGeneratedSceneWithOtherParameters) {
     EXPECT_EQ(test::errorText([&] { catalog.resolve(reference("m/x?triangle=1")); }),
               "table.yaml:5:8: generator 'grass': unknown parameter 'triangle'; did you mean "
               "'triangles'?");
+}
+
+/// One triangle, `size_m` wide.
+Scene oneTriangle(config::Params& params, std::uint64_t) {
+    const auto sizeM = static_cast<float>(params.getDouble("size_m", 1.0, {"width", "m", 0.1, 9}));
+    params.finish();
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {sizeM, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    return sceneOf(std::move(mesh));
+}
+
+TEST(Catalog, KnowsTheGeneratorsThatItIsGiven) {
+    constexpr GeneratorInfo kOwn[] = {{"one_triangle", "a triangle", &oneTriangle, false}};
+    const Folders f;
+    f.entry(
+        "scene: m/x\ndoc: d\ngenerated: true\nsources:\n"
+        "  - {generator: one_triangle, params: {size_m: 4}}\n");
+    const auto open = [&](std::span<const GeneratorInfo> generators) {
+        return Catalog(f.folder.path() / "scenes", f.folder.path() / "assets", generators);
+    };
+    const Scene scene = open(kOwn).load(reference("m/x"));
+    EXPECT_EQ(scene.bounds().max.x, 4.0F);
+    EXPECT_EQ(scene.origin.description, "generator one_triangle, seed 1: {size_m: 4}");
+    EXPECT_EQ(test::errorText([&] { open({}); }, f.folder.path()),
+              "DIR/scenes/m/x.yaml:5:17: unknown generator 'one_triangle' (there are: )");
 }
 
 TEST(Catalog, TakesTheFirstSourceAtHand) {
@@ -269,7 +298,7 @@ TEST(Catalog, RefiningBelowTheFileIsLocated) {
 /// The triangles and vertices that the thesis prints, from generators alone.
 TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
     const test::TemporaryFolder noAssets;
-    const Catalog catalog(kShippedScenes, noAssets.path());
+    const Catalog catalog(kShippedScenes, noAssets.path(), registeredGenerators());
     const struct {
         const char* name;
         std::size_t triangles, vertices;
@@ -299,7 +328,8 @@ TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
 TEST(ShippedCatalog, RealModelsAreRecognized) {
     const auto bunny = test::asset("bunny/bun_zipper.ply");
     if (!bunny) GTEST_SKIP() << "bunny/bun_zipper.ply";
-    const Catalog catalog(kShippedScenes, bunny->parent_path().parent_path());
+    const Catalog catalog(kShippedScenes, bunny->parent_path().parent_path(),
+                          registeredGenerators());
     const Scene scene = catalog.load(reference("models/bunny"));
     EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
     EXPECT_EQ(scene.origin.description, "bunny/bun_zipper.ply");
@@ -310,7 +340,8 @@ TEST(ShippedCatalog, RealModelsAreRecognized) {
 TEST(ShippedCatalog, DecimatedScansAreRefinedToThePrintedCount) {
     const auto blade = test::asset("blade/turbineblade.ply");
     if (!blade) GTEST_SKIP() << "blade/turbineblade.ply";
-    const Catalog catalog(kShippedScenes, blade->parent_path().parent_path());
+    const Catalog catalog(kShippedScenes, blade->parent_path().parent_path(),
+                          registeredGenerators());
     const Scene scene = catalog.load(reference("models/blade"));
     EXPECT_EQ(scene.triangleCount(), 1765388U);
     EXPECT_EQ(scene.origin.kind, Origin::Kind::StandIn);

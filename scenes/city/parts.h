@@ -1,0 +1,55 @@
+// Parts of the city generator: what it is made of, one function a kind.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "runner/core/random.h"
+#include "scenes/shared/mesh_builder.h"
+
+namespace gfxrepro::scene::city_parts {
+
+/// One builder a material.
+struct Builders {
+    MeshBuilder ground, walls, glass, roofs, metal, plants;
+
+    std::size_t triangleCount() const {
+        return ground.triangleCount() + walls.triangleCount() + glass.triangleCount() +
+               roofs.triangleCount() + metal.triangleCount() + plants.triangleCount();
+    }
+};
+
+/// An upright box, parallel to the axes.
+struct Solid {
+    glm::vec3 min, max;
+};
+
+/// A piece of land with its height limit.
+struct Lot {
+    glm::vec2 min, max;  // x and z
+    float heightM = 10.0F;
+    float density = 0.0F;  // 0 at the city's rim, 1 at its centre
+};
+
+/// A box whose faces are left out where they cannot be seen.
+void addSolid(MeshBuilder& builder, const Solid& solid, bool hasBottom = false);
+
+/// What facades share.
+struct FacadeDetail {
+    float windows = 1.0F;  // scales their number, 1 is the usual
+    float recessedShare =
+        1.0F / 3.0F;  // of the buildings of middle height whose windows lie in the wall
+};
+
+void addBuilding(Builders& builders, const Lot& lot, const FacadeDetail& detail,
+                 std::uint64_t seed);
+/// Lawn, paths and trees instead of houses.
+void addPark(Builders& builders, const Lot& lot, std::uint64_t seed);
+
+void addWaterTank(Builders& builders, const glm::vec3& base, Random& random);
+void addTree(Builders& builders, const glm::vec3& base, float heightM, Random& random);
+/// The arm points along `overStreet` (unit).
+void addLampPost(Builders& builders, const glm::vec3& base, const glm::vec3& overStreet);
+/// `along` is the direction of travel (unit).
+void addCar(Builders& builders, const glm::vec3& base, const glm::vec3& along, Random& random);
+
+}  // namespace gfxrepro::scene::city_parts

@@ -1,0 +1,31 @@
+// Generated height maps as scenes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "runner/config/params.h"
+#include "runner/scene/height_map.h"
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::scene {
+
+/// Seeded terrain: ridged mountains that fade into rolling lowland (noise summed over octaves).
+struct FractalTerrain {
+    int sizeSamples = 4097;
+    float spacingM = 10.0F;
+    float reliefM = 3000.0F;   // from the lowest to the highest, at most
+    float featureM = 8000.0F;  // the longest wave of the noise
+    int octaves = 11;
+    float ridges = 0.7F;  // 0: rolling hills only, 1: ridges only
+};
+HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed);
+/// The same in a file of `folder`, as resampledInFile() keeps its own.
+HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed,
+                               const std::filesystem::path& folder, const std::string& key);
+
+/// Mountains and lowland of fractal noise (fractalTerrain), a height map without triangles.
+Scene terrain(config::Params& params, std::uint64_t seed);
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,71 @@
+// The generators object_on_plane and town_square.
+#include "scenes/shadows/shadow_scenes.h"
+
+#include "runner/scene/topology.h"
+#include "tests/scenes/generated_scene.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+const Mesh& meshNamed(const Scene& scene, const std::string& name) {
+    for (const Mesh& mesh : scene.meshes) {
+        if (mesh.name == name) return mesh;
+    }
+    throw Error("no mesh '" + name + "'");
+}
+
+TEST(ShadowScenes, MeshesAreSound) {
+    for (const char* name : {"object_on_plane", "town_square"}) {
+        for (const Mesh& mesh : generated(name, "{}").meshes) {
+            if (mesh.name == "object") continue;  // polygonized: slivers, tested below
+            SCOPED_TRACE(mesh.name);
+            expectSoundMesh(mesh);
+        }
+    }
+}
+
+TEST(ShadowScenes, SameSeedSameBytes) {
+    for (const char* name : {"object_on_plane", "town_square"}) {
+        EXPECT_EQ(digestOf(generated(name, "{}")), digestOf(generated(name, "{}"))) << name;
+    }
+    EXPECT_NE(digestOf(generated("town_square", "{}", 1)),
+              digestOf(generated("town_square", "{}", 2)));
+}
+
+TEST(ShadowScenes, SameBytesOnEveryMachine) {
+    EXPECT_EQ(digestOf(generated("object_on_plane", "{}")),
+              "d1f5559e429724dbcb54bc36aed6b0d5186ff9e334afecfe591bca3255203e57");
+    EXPECT_EQ(digestOf(generated("town_square", "{}")),
+              "cd3cfd1d40cd8b70f727dcbe3d7d3b1f0bdc4777e4c15bb06df23445fd8e43e7");
+}
+
+TEST(ObjectOnPlane, TheShapeStandsOnThePlaneAndPlatesFloatAboveIt) {
+    for (const float gap : {0.01F, 0.03F}) {
+        const Scene scene = generated("object_on_plane", gap == 0.01F ? "{}" : "{gap: 0.03}");
+        const float floor = meshNamed(scene, "plane").bounds().max.y;
+        EXPECT_NEAR(meshNamed(scene, "object").bounds().min.y, floor, 1e-5F);
+        EXPECT_NEAR(meshNamed(scene, "plates").bounds().min.y, floor + gap, 1e-5F);
+        const Topology object = topologyOf(meshNamed(scene, "object"));
+        EXPECT_TRUE(object.isClosed() && object.isManifold() && object.isOriented());
+        EXPECT_GT(signedVolume(meshNamed(scene, "object")), 0.0);
+        EXPECT_EQ(topologyOf(meshNamed(scene, "plates")).components, 3U);
+    }
+}
+
+TEST(TownSquare, HasAsManyLeavesAsAsked) {
+    const auto leaves = [](const char* yaml) {
+        return meshNamed(generated("town_square", yaml), "leaves").triangles.size();
+    };
+    // The bunting's flags are leaves, too.
+    EXPECT_GT(leaves("{leaves: 150}"), leaves("{leaves: 0}"));
+    EXPECT_EQ(leaves("{leaves: 300}") - leaves("{leaves: 150}"),
+              leaves("{leaves: 150}") - leaves("{leaves: 0}"));
+}
+
+TEST(TownSquare, BadParametersAreLocated) {
+    EXPECT_EQ(test::errorText([] { generated("town_square", "{detail: 9}"); }),
+              "t.yaml:1:10: generator 'town_square': detail is 9; allowed: 0.1 … 4 1");
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
