@@ -135,7 +135,8 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
         return Node::sequence(std::move(items), reference.location());
     }
     if (!reference.isScalar() || !isSceneFile(reference.text())) return reference;
-    const fs::path beside = folder ? *folder : fs::path(reference.location().file).parent_path();
+    const fs::path beside =
+        folder ? *folder : fs::path(reference.location().file.text()).parent_path();
     const fs::path file = fs::absolute(beside / reference.text()).lexically_normal();
     return Node::scalar(file.string(), reference.location(), true);
 }
@@ -207,7 +208,7 @@ std::string parameterName(const std::string& key) {
 Node axisOf(const Override& sweep) {
     if (!sweep.value.isScalar()) return sweep.value;
     const SourceLocation& where = sweep.value.location();
-    return relocated(parseYaml("[" + sweep.value.text() + "]", where.file), where);
+    return relocated(parseYaml("[" + sweep.value.text() + "]", where.file.text()), where);
 }
 
 void applySweeps(const std::vector<Override>& sweeps, Node& document) {
@@ -306,7 +307,7 @@ Override parseOverride(const std::string& text) {
         throw UsageError("'" + text + "' on the command line; allowed: key=value");
     }
     const SourceLocation where{"command line, " + text, 0, 0};
-    const Node value = parseYaml(text.substr(equals + 1), where.file);
+    const Node value = parseYaml(text.substr(equals + 1), where.file.text());
     return {std::string(trimmed(text.substr(0, equals))), relocated(value, where)};
 }
 
