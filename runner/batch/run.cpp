@@ -139,6 +139,42 @@ Completeness completeness(const StoredRun& run) {
     Completeness counts;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         ++counts.units;
+std::vector<report::CaseResult> caseResults(const StoredRun& run) {
+    using Ended = report::CaseResult::Outcome;
+    std::map<std::string, SourceLocation> files;
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        files[experiment.id] = {experiment.file.string(), 0, 0};
+    }
+    std::map<UnitKey, const report::Record*> worst;
+    for (const report::Record& row : run.records) {
+        const auto [unit, isNew] = worst.try_emplace({row.caseId, row.process}, &row);
+        if (!isNew && unit->second->status == report::Status::Ok) unit->second = &row;
+    }
+    std::map<std::string, report::CaseResult> results;
+    std::vector<std::string> order;
+    for (const Unit& unit : unitsOf(run.plan, run.records)) {
+        const Case& item = *unit.item;
+        const auto [result, isNew] = results.try_emplace(
+            item.id, report::CaseResult{item.experiment, item.title(), Ended::Measured, "",
+                                        files[item.experiment]});
+        if (isNew) order.push_back(item.id);
+        if (result->second.outcome == Ended::Failed) continue;
+        const auto found = worst.find({item.id, unit.process});
+        const report::Record* row = found == worst.end() ? nullptr : found->second;
+        if (row && (row->status == report::Status::Ok || row->status == report::Status::Flaky)) {
+            continue;
+        }
+        const bool isSkipped = row && (row->status == report::Status::Missing ||
+                                       row->status == report::Status::Unsupported);
+        result->second.outcome = isSkipped ? Ended::Skipped : Ended::Failed;
+        result->second.text = row ? std::string(report::statusName(row->status)) : "not run";
+        if (row && !row->message.empty()) result->second.text += ": " + row->message;
+    }
+    std::vector<report::CaseResult> ordered;
+    for (const std::string& id : order) ordered.push_back(std::move(results.at(id)));
+    return ordered;
+}
+
         const auto found = recorded.find({unit.item->id, unit.process});
         if (found == recorded.end()) {
             ++counts.missing;
@@ -174,7 +210,7 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     }
     if (which.claims) {
         conclusion.claims = report::evaluateClaims(run.plan.experiments, tables, context);
-        report::writeClaims(out, conclusion.claims, context);
+        report::writeClaims(out, caseResults(run), conclusion.claims, context);
     }
     if (which.report) {
         const html::ReportRun shown = reportRun(runDir, run);

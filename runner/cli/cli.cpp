@@ -10,6 +10,7 @@
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/worker.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
 #include "runner/cli/console.h"
@@ -386,12 +387,10 @@ int run(int argc, const char* const* argv, std::span<const technique::TechniqueI
         if (std::fflush(stdout) == 0) return code;
         tell("gfxrepro: cannot write the standard output: {}\n", std::strerror(errno));
         return kExitUsage;
-    } catch (const NoDeviceError& error) {
-        tell("gfxrepro: {}\n", error.what());
-        return kExitNoDevice;
     } catch (const std::exception& error) {
         tell("gfxrepro: {}\n", error.what());
-        return kExitUsage;
+        annotate(error);
+        return dynamic_cast<const NoDeviceError*>(&error) ? kExitNoDevice : kExitUsage;
     }
 }
 

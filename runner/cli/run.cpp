@@ -10,6 +10,7 @@
 #include "runner/batch/budget.h"
 #include "runner/batch/shards.h"
 #include "runner/batch/twins.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -255,6 +256,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     const int verdict = conclude(path);
     saveManifest(context, run, phases);
     // A case that is missing weighs more than a claim that fails.
+    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(batch::readRun(path)));
     return isComplete ? verdict : kExitIncomplete;
 }
 

@@ -255,6 +255,8 @@ bool isReadable(const ClaimSpec& claim, const Table& table) {
         return false;
     }
 }
+        const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
+        results.back().where = claim.location.file == file.file ? claim.location : file;
 
 }  // namespace
 
