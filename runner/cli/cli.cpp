@@ -244,8 +244,8 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
 }
 
 void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& command) {
-    CLI::App* compareApp =
-        app.add_subcommand("compare", "regressions between two runs, or two builds by turns");
+    CLI::App* compareApp = app.add_subcommand(
+        "compare", "times, values and pictures of two runs, or of two builds by turns");
     compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… with --binaries")
         ->required()
         ->option_text("RUN");
