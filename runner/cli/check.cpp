@@ -4,7 +4,9 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/report/claims.h"
+#include "runner/cli/expectation_lists.h"
 
+#include "runner/config/schema.h"
 namespace gfxrepro::cli {
 
 int check(const Context& context, const Selection& selection) {
@@ -28,3 +30,7 @@ int check(const Context& context, const Selection& selection) {
 }
 
 }  // namespace gfxrepro::cli
+    const std::vector<Error> unknown = unknownExpectations(
+        context, selection.names, {config::kDeviceClasses.begin(), config::kDeviceClasses.end()},
+        selection.assets);
+    if (!unknown.empty()) throw unknown.front();

@@ -13,6 +13,7 @@
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
+#include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/cli/progress.h"
@@ -218,6 +219,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
+    for (const Error& unknown : unknownExpectations(
+             context, run.plan.request.configs, {run.plan.deviceClass}, options.selection.assets)) {
+        tell("warning: {}\n", unknown.what());
+    }
     run.scheduler.failuresAtMost = options.failuresAtMost;
     if (!options.triesAgain) run.scheduler.givenUp = batch::unitsNotSurvived(run.directory);
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
@@ -251,12 +256,12 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
     const bool isComplete = outcome.failed + outcome.voided == 0 && outcome.stopReason.empty();
+    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(batch::readRun(path)));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;
 
     const int verdict = conclude(path);
     saveManifest(context, run, phases);
     // A case that is missing weighs more than a claim that fails.
-    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(batch::readRun(path)));
     return isComplete ? verdict : kExitIncomplete;
 }
 
