@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "runner/batch/case_filter.h"
+#include "runner/batch/run_files.h"
 #include "runner/batch/submission.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -49,10 +50,8 @@ std::string eventText(const Json& event) {
 /// Of each case, what the log says; a torn or foreign line is passed over.
 std::map<std::string, std::vector<std::string>> caseLogs(const fs::path& runDir) {
     std::map<std::string, std::vector<std::string>> logs;
-    if (!fs::exists(runDir / "log.jsonl")) return logs;
-    for (const std::string& line : split(readFile(runDir / "log.jsonl"), '\n')) {
-        const Json event = Json::parse(line, nullptr, false);
-        if (!event.is_object() || !event.contains("case")) continue;
+    for (const Json& event : readLog(runDir / "log.jsonl")) {
+        if (!event.contains("case")) continue;
         logs[event.value("case", "")].push_back(eventText(event));
     }
     return logs;
@@ -106,10 +105,7 @@ html::ReportRun reportRun(const fs::path& folder) {
     }
     html::ReportRun result;
     result.folder = folder;
-    result.manifest = Json::parse(readFile(folder / "manifest.json"), nullptr, false);
-    if (!result.manifest.is_object()) {
-        throw Error((folder / "manifest.json").string() + ": is no JSON object");
-    }
+    result.manifest = readManifest(folder / "manifest.json");
     result.context = reportContext(result.manifest);
     result.keptClaims = report::readClaims(folder / "claims.csv");
     return result;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runner/batch/report_runs.h"
+#include "runner/batch/run_files.h"
 #include "runner/batch/sensitivity.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -37,15 +38,6 @@ void rewriteRecords(const RunDirectory& directory, const std::vector<report::Rec
     fs::rename(rewritten, directory.recordsFile());
 }
 
-std::vector<Json> logOf(const RunDirectory& directory) {
-    std::vector<Json> log;
-    for (const std::string& line : split(readFile(directory.path() / "log.jsonl"), '\n')) {
-        Json event = Json::parse(line, nullptr, false);  // the last line may be torn
-        if (event.is_object()) log.push_back(std::move(event));
-    }
-    return log;
-}
-
 }  // namespace
 
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
@@ -67,7 +59,7 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
 
 std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
     std::map<UnitKey, int> begun;  // since its last end
-    for (const Json& event : logOf(directory)) {
+    for (const Json& event : readLog(directory.path() / "log.jsonl")) {
         const std::string name = event.value("event", "");
         if (name == "interrupted") begun.clear();
         if (!event.contains("case") || !event.contains("process")) continue;
@@ -87,7 +79,7 @@ std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
 Rounds roundsOf(const Plan& plan, const RunDirectory& directory) {
     std::vector<report::Record> records;
     if (fs::exists(directory.recordsFile())) records = report::readRecords(directory.recordsFile());
-    return {plan, records, logOf(directory)};
+    return {plan, records, readLog(directory.path() / "log.jsonl")};
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
@@ -123,9 +115,7 @@ StoredRun readRun(const fs::path& runDir) {
     }
     StoredRun run;
     run.plan = Plan::fromJsonFile(runDir / "plan.json");
-    const fs::path manifestFile = runDir / "manifest.json";
-    run.manifest = Json::parse(readFile(manifestFile), nullptr, false);
-    if (!run.manifest.is_object()) throw Error(manifestFile.string() + ": is no JSON object");
+    run.manifest = readManifest(runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
     if (fs::exists(runDir / "records.csv")) {
@@ -139,6 +129,16 @@ Completeness completeness(const StoredRun& run) {
     Completeness counts;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         ++counts.units;
+        const auto found = recorded.find({unit.item->id, unit.process});
+        if (found == recorded.end()) {
+            ++counts.missing;
+        } else if (!found->second) {
+            ++counts.failed;
+        }
+    }
+    return counts;
+}
+
 std::vector<report::CaseResult> caseResults(const StoredRun& run) {
     using Ended = report::CaseResult::Outcome;
     std::map<std::string, SourceLocation> files;
@@ -173,16 +173,6 @@ std::vector<report::CaseResult> caseResults(const StoredRun& run) {
     std::vector<report::CaseResult> ordered;
     for (const std::string& id : order) ordered.push_back(std::move(results.at(id)));
     return ordered;
-}
-
-        const auto found = recorded.find({unit.item->id, unit.process});
-        if (found == recorded.end()) {
-            ++counts.missing;
-        } else if (!found->second) {
-            ++counts.failed;
-        }
-    }
-    return counts;
 }
 
 report::ReportContext reportContext(const StoredRun& run) {
