@@ -67,7 +67,7 @@ std::string configName(const fs::path& file) {
     return isPaper ? (folder.filename() / file.stem()).string() : file.string();
 }
 
-std::string commandOf(const Case& item, const Plan& plan) {
+std::string commandOf(const Case& item, const Plan& plan, CaseNames& names) {
     std::string config;
     for (const config::Experiment& experiment : plan.experiments) {
         if (experiment.id == item.experiment) config = configName(experiment.file);
@@ -80,7 +80,7 @@ std::string commandOf(const Case& item, const Plan& plan) {
     if (plan.request.device != "auto") add("--device", plan.request.device);
     for (const std::string& set : plan.request.sets) add("--set", set);
     for (const std::string& sweep : plan.request.sweeps) add("--sweep", sweep);
-    for (const std::string& only : onlyOf(item, plan)) add("--only", only);
+    for (const std::string& only : names.onlyOf(item)) add("--only", only);
     return command;
 }
 
@@ -90,9 +90,10 @@ html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
     html::ReportRun result{
         runDir, reportContext(run), run.manifest, run.plan.experiments, run.records, {}, {}};
     auto logs = caseLogs(runDir);
+    CaseNames names(run.plan);
     for (const Case& item : run.plan.cases) {
-        result.cases.push_back({item.id, item.experiment, item.title(), commandOf(item, run.plan),
-                                std::move(logs[item.id])});
+        result.cases.push_back({item.id, item.experiment, item.title(),
+                                commandOf(item, run.plan, names), std::move(logs[item.id])});
     }
     return result;
 }
