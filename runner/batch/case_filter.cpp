@@ -33,6 +33,18 @@ bool has(const Case& item, const config::Override& wanted) {
     return value == report::canonicalText(wanted.value);
 }
 
+/// What the case has under all of the keys; empty where it lacks one.
+std::optional<std::vector<std::string>> valuesOf(const Case& item,
+                                                 const std::vector<std::string>& keys) {
+    std::vector<std::string> values;
+    for (const std::string& key : keys) {
+        std::optional<std::string> value = valueOf(item, key);
+        if (!value) return std::nullopt;
+        values.push_back(std::move(*value));
+    }
+    return values;
+}
+
 [[noreturn]] void failWithout(const config::Override& wanted, const std::string& written,
                               const std::vector<Case>& cases) {
     std::set<std::string> values, keys;
@@ -72,20 +84,27 @@ void keepOnly(Plan& plan, const std::vector<std::string>& only) {
     }
 }
 
-std::vector<std::string> onlyOf(const Case& item, const Plan& plan) {
+std::vector<std::string> CaseNames::onlyOf(const Case& item) {
     std::vector<std::string> only;
-    std::vector<config::Override> axes;
+    Keys keys;
     if (item.axes.isMap()) {
         for (const auto& [key, value] : item.axes.entries()) {
             only.push_back(key + '=' + (value.isScalar() ? value.text() : value.toFlowText()));
-            axes.push_back({key, value});
+            keys.push_back(key);
         }
     }
-    const auto alike = std::ranges::count_if(plan.cases, [&](const Case& other) {
-        return other.experiment == item.experiment &&
-               std::ranges::all_of(axes, [&](const auto& axis) { return has(other, axis); });
-    });
-    if (alike > 1) return {std::string(kCaseKey) + '=' + item.id};
+    const auto [counts, isNew] = counts_.try_emplace({item.experiment, keys});
+    if (isNew) {
+        for (const Case& other : plan_.cases) {
+            if (other.experiment != item.experiment) continue;
+            if (const auto values = valuesOf(other, keys)) ++counts->second[*values];
+        }
+    }
+    const auto values = valuesOf(item, keys);
+    const auto alike = counts->second.find(values.value_or(Keys()));
+    if (alike != counts->second.end() && alike->second > 1) {
+        return {std::string(kCaseKey) + '=' + item.id};
+    }
     return only;
 }
 

@@ -78,17 +78,70 @@ Expectation readEntry(const config::Node& node, Expectation::Kind kind, const st
     return entry;
 }
 
+/// What the case has of an axis or parameter, or `scene`; null for no such one.
+const config::Node* valueOf(const Case& item, const std::string& axis) {
+    const config::Node* value = item.axes.find(axis);
+    if (!value) value = item.params.find(axis);
+    return !value && axis == "scene" ? &item.scene : value;
+}
+
 }  // namespace
 
 bool Expectation::matches(const Case& item) const {
     if (item.experiment != table) return false;
     for (const auto& [axis, allowed] : at) {
-        const config::Node* value = item.axes.find(axis);
-        if (!value) value = item.params.find(axis);
-        if (!value && axis == "scene") value = &item.scene;
+        const config::Node* value = valueOf(item, axis);
         if (!value || !isOneOf(*value, allowed)) return false;
     }
     return true;
+}
+
+std::vector<Expectation> readExpectations(const fs::path& file) {
+    const config::Node document = config::parseYamlFile(file);
+    std::vector<Expectation> entries;
+    if (document.isNull()) return entries;
+    for (const auto& [name, list] : document.entries()) {
+        const auto* found = std::find_if(std::begin(kLists), std::end(kLists),
+                                         [&key = name](const auto& l) { return l.first == key; });
+        if (found == std::end(kLists)) {
+            throw Error(document.keyLocation(name),
+                        fmt::format("unknown list '{}'; allowed: fails, flakes, skips", name));
+        }
+        for (const config::Node& node : list.items()) {
+            entries.push_back(readEntry(node, found->second, name));
+        }
+    }
+    return entries;
+}
+
+void requireKnown(const Expectation& entry, const std::vector<Case>& cases) {
+    for (const auto& [axis, allowed] : entry.at) {
+        std::vector<std::string> names = {"scene"}, values;
+        std::vector<const config::Node*> nodes;
+        for (const Case& item : cases) {
+            for (const config::Node* map : {&item.axes, &item.params}) {
+                for (const auto& [name, value] : map->entries()) names.push_back(name);
+            }
+            if (const config::Node* value = valueOf(item, axis)) {
+                nodes.push_back(value);
+                values.push_back(value->toFlowText());
+            }
+        }
+        if (nodes.empty()) {
+            throw Error(allowed.location(),
+                        fmt::format("at: '{}' is no axis or parameter of {}{}", axis, entry.table,
+                                    suggestion(axis, names)));
+        }
+        const config::Node::Sequence one = {allowed};
+        for (const config::Node& value : allowed.isSequence() ? allowed.items() : one) {
+            const bool isKnown = std::ranges::any_of(
+                nodes, [&](const config::Node* node) { return node->sameContent(value); });
+            if (isKnown) continue;
+            throw Error(value.location(),
+                        fmt::format("at: no case of {} has {}={}{}", entry.table, axis,
+                                    value.toFlowText(), suggestion(value.toFlowText(), values)));
+        }
+    }
 }
 
 Expectations::Expectations(const std::vector<std::string>& configs, const std::string& deviceClass,
@@ -98,21 +151,8 @@ Expectations::Expectations(const std::vector<std::string>& configs, const std::s
         files.insert(fs::path(config).parent_path() / ("expect-" + deviceClass + ".yaml"));
     }
     for (const fs::path& file : files) {
-        if (fs::exists(file)) read(config::parseYamlFile(file), today);
-    }
-}
-
-void Expectations::read(const config::Node& document, std::string_view today) {
-    if (document.isNull()) return;
-    for (const auto& [name, list] : document.entries()) {
-        const auto* found = std::find_if(std::begin(kLists), std::end(kLists),
-                                         [&key = name](const auto& l) { return l.first == key; });
-        if (found == std::end(kLists)) {
-            throw Error(document.keyLocation(name),
-                        fmt::format("unknown list '{}'; allowed: fails, flakes, skips", name));
-        }
-        for (const config::Node& node : list.items()) {
-            Expectation entry = readEntry(node, found->second, name);
+        if (!fs::exists(file)) continue;
+        for (Expectation& entry : readExpectations(file)) {
             const bool isExpired = entry.until < today;
             entries_.push_back({std::move(entry), isExpired});
         }

@@ -28,6 +28,13 @@ struct Expectation {
     bool matches(const Case& item) const;
 };
 
+/// The entries of a list, in its order. Throws Error with file:line:column.
+std::vector<Expectation> readExpectations(const std::filesystem::path& file);
+
+/// Throws Error where the entry names an axis or parameter that none of `cases`, all cases of its
+/// table in every profile, has, or a value that none has there.
+void requireKnown(const Expectation& entry, const std::vector<Case>& cases);
+
 /// Those of the configs of a run.
 class Expectations {
   public:
@@ -55,8 +62,6 @@ class Expectations {
         int passed = 0;  // units that it matches, by how they ended
         int met = 0;
     };
-    void read(const config::Node& document, std::string_view today);
-
     std::vector<Entry> entries_;
 };
 

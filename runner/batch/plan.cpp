@@ -103,6 +103,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         }
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);
+        plan.cases.reserve(plan.cases.size() + cases.size());
         for (Case& item : cases) {
             std::string sceneKey;
             if (!item.scene.isNull()) {

@@ -79,7 +79,8 @@ struct Plan {
 
     /// Whether a run of this plan measures the case: all do but those of other shards.
     bool measures(const Case& item) const;
-    nlohmann::ordered_json toJson() const;
+    /// As JSON, whose cases are written one after another: there may be 100,000.
+    std::string toText() const;
     static Plan fromJsonFile(const std::filesystem::path& path);
 };
 

@@ -1,4 +1,6 @@
 // plan.json: written by the program, and read by it alone.
+#include <fmt/format.h>
+
 #include <charconv>
 #include <nlohmann/json.hpp>
 
@@ -177,7 +179,7 @@ Case Case::fromJson(const config::Node& node) {
     return item;
 }
 
-Json Plan::toJson() const {
+std::string Plan::toText() const {
     Json json = {{"schema", kPlanSchema},
                  {"hash", hash},
                  {"build", buildId},
@@ -191,8 +193,7 @@ Json Plan::toJson() const {
                    {"only", request.only},
                    {"device", request.device}}},
                  {"scenes", Json::object()},
-                 {"experiments", Json::array()},
-                 {"cases", Json::array()}};
+                 {"experiments", Json::array()}};
     for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
     for (const config::Experiment& experiment : experiments) {
         json["experiments"].push_back({{"file", experiment.file.string()},
@@ -202,12 +203,17 @@ Json Plan::toJson() const {
             json["experiments"].back()["paper"] = paperToJson(experiment);
         }
     }
-    for (const Case& item : cases) json["cases"].push_back(item.toJson());
     if (shard) {
         json["shard"] = {
             {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
     }
-    return json;
+    std::string text = json.dump(1);
+    text.resize(text.size() - 2);  // "\n}"
+    text += ",\n \"cases\": [";
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        text += fmt::format("{}\n  {}", i == 0 ? "" : ",", cases[i].toJson().dump());
+    }
+    return text + "\n ]\n}\n";
 }
 
 Plan Plan::fromJsonFile(const fs::path& path) {

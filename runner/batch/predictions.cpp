@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "runner/batch/run_files.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/metrics/statistics.h"
@@ -58,10 +59,8 @@ Cost medianOf(const std::vector<Cost>& costs) {
 /// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
 std::map<std::string, std::vector<Cost>> loggedCosts(const fs::path& runDir) {
     std::map<std::string, std::vector<Cost>> costs;
-    if (!fs::exists(runDir / "log.jsonl")) return costs;
-    for (const std::string& line : split(readFile(runDir / "log.jsonl"), '\n')) {
-        const Json event = Json::parse(line, nullptr, false);
-        if (!event.is_object() || !event.contains("cost")) continue;
+    for (const Json& event : readLog(runDir / "log.jsonl")) {
+        if (!event.contains("cost") || !event.contains("case")) continue;
         costs[event.at("case").get<std::string>()].push_back(costFromJson(event.at("cost")));
     }
     return costs;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "runner/batch/case_filter.h"
+#include "runner/batch/run_files.h"
 #include "runner/batch/submission.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -49,10 +50,8 @@ std::string eventText(const Json& event) {
 /// Of each case, what the log says; a torn or foreign line is passed over.
 std::map<std::string, std::vector<std::string>> caseLogs(const fs::path& runDir) {
     std::map<std::string, std::vector<std::string>> logs;
-    if (!fs::exists(runDir / "log.jsonl")) return logs;
-    for (const std::string& line : split(readFile(runDir / "log.jsonl"), '\n')) {
-        const Json event = Json::parse(line, nullptr, false);
-        if (!event.is_object() || !event.contains("case")) continue;
+    for (const Json& event : readLog(runDir / "log.jsonl")) {
+        if (!event.contains("case")) continue;
         logs[event.value("case", "")].push_back(eventText(event));
     }
     return logs;
@@ -68,7 +67,7 @@ std::string configName(const fs::path& file) {
     return isPaper ? (folder.filename() / file.stem()).string() : file.string();
 }
 
-std::string commandOf(const Case& item, const Plan& plan) {
+std::string commandOf(const Case& item, const Plan& plan, CaseNames& names) {
     std::string config;
     for (const config::Experiment& experiment : plan.experiments) {
         if (experiment.id == item.experiment) config = configName(experiment.file);
@@ -81,7 +80,7 @@ std::string commandOf(const Case& item, const Plan& plan) {
     if (plan.request.device != "auto") add("--device", plan.request.device);
     for (const std::string& set : plan.request.sets) add("--set", set);
     for (const std::string& sweep : plan.request.sweeps) add("--sweep", sweep);
-    for (const std::string& only : onlyOf(item, plan)) add("--only", only);
+    for (const std::string& only : names.onlyOf(item)) add("--only", only);
     return command;
 }
 
@@ -91,9 +90,10 @@ html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
     html::ReportRun result{
         runDir, reportContext(run), run.manifest, run.plan.experiments, run.records, {}, {}};
     auto logs = caseLogs(runDir);
+    CaseNames names(run.plan);
     for (const Case& item : run.plan.cases) {
-        result.cases.push_back({item.id, item.experiment, item.title(), commandOf(item, run.plan),
-                                std::move(logs[item.id])});
+        result.cases.push_back({item.id, item.experiment, item.title(),
+                                commandOf(item, run.plan, names), std::move(logs[item.id])});
     }
     return result;
 }
@@ -106,10 +106,7 @@ html::ReportRun reportRun(const fs::path& folder) {
     }
     html::ReportRun result;
     result.folder = folder;
-    result.manifest = Json::parse(readFile(folder / "manifest.json"), nullptr, false);
-    if (!result.manifest.is_object()) {
-        throw Error((folder / "manifest.json").string() + ": is no JSON object");
-    }
+    result.manifest = readManifest(folder / "manifest.json");
     result.context = reportContext(result.manifest);
     result.keptClaims = report::readClaims(folder / "claims.csv");
     return result;

@@ -6,6 +6,7 @@
 #include "runner/batch/case_variation.h"
 #include "runner/batch/plan.h"
 #include "runner/config/scene_reference.h"
+#include "runner/core/hash.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::batch {
@@ -19,7 +20,7 @@ config::Node absoluteReference(const config::Node& reference, const scene::Catal
     if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
     const fs::path path = reference.text();
     if (!config::isSceneFile(reference.text()) || path.is_absolute()) return reference;
-    const fs::path folder = fs::path(reference.location().file).parent_path();
+    const fs::path folder = fs::path(reference.location().file.text()).parent_path();
     return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
                                 reference.location());
 }
@@ -42,7 +43,7 @@ void requireKnownAt(const config::Printed& printed, const config::Node& params) 
 void requireDistinct(const config::Experiment& experiment, const std::vector<Case>& cases) {
     std::set<std::string> known;
     for (const Case& item : cases) {
-        if (known.insert(item.toJson().dump()).second) continue;
+        if (known.insert(sha256(item.toJson().dump())).second) continue;
         throw Error(experiment.file.string() + ": the sweep gives the case '" + item.title() +
                     "' twice");
     }
@@ -59,8 +60,11 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
     const technique::TechniqueInfo& info = technique::findTechnique(
         techniques, experiment.technique,
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
+    std::vector<config::CaseSpec> specs = config::expandCases(experiment);
     std::vector<Case> cases;
-    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
+    cases.reserve(specs.size());
+    for (config::CaseSpec& given : specs) {
+        const config::CaseSpec spec = std::move(given);  // there may be 100,000: one at a time
         Case item;
         takeInstead(spec, experiment.paramsInstead, item);
         config::Params params(item.given, "technique '" + std::string(info.name) + "'");
@@ -90,7 +94,10 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
     std::vector<Case> cases;
-    for (const Case& item : resolveParameters(experiment, catalog, techniques, seed)) {
+    std::vector<Case> resolved = resolveParameters(experiment, catalog, techniques, seed);
+    cases.reserve(resolved.size());
+    for (Case& one : resolved) {
+        const Case item = std::move(one);
         for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
     }
     requireTaken(experiment, cases, catalog);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runner/batch/report_runs.h"
+#include "runner/batch/run_files.h"
 #include "runner/batch/sensitivity.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -37,15 +38,6 @@ void rewriteRecords(const RunDirectory& directory, const std::vector<report::Rec
     fs::rename(rewritten, directory.recordsFile());
 }
 
-std::vector<Json> logOf(const RunDirectory& directory) {
-    std::vector<Json> log;
-    for (const std::string& line : split(readFile(directory.path() / "log.jsonl"), '\n')) {
-        Json event = Json::parse(line, nullptr, false);  // the last line may be torn
-        if (event.is_object()) log.push_back(std::move(event));
-    }
-    return log;
-}
-
 }  // namespace
 
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
@@ -67,7 +59,7 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
 
 std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
     std::map<UnitKey, int> begun;  // since its last end
-    for (const Json& event : logOf(directory)) {
+    for (const Json& event : readLog(directory.path() / "log.jsonl")) {
         const std::string name = event.value("event", "");
         if (name == "interrupted") begun.clear();
         if (!event.contains("case") || !event.contains("process")) continue;
@@ -87,7 +79,7 @@ std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
 Rounds roundsOf(const Plan& plan, const RunDirectory& directory) {
     std::vector<report::Record> records;
     if (fs::exists(directory.recordsFile())) records = report::readRecords(directory.recordsFile());
-    return {plan, records, logOf(directory)};
+    return {plan, records, readLog(directory.path() / "log.jsonl")};
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
@@ -123,9 +115,7 @@ StoredRun readRun(const fs::path& runDir) {
     }
     StoredRun run;
     run.plan = Plan::fromJsonFile(runDir / "plan.json");
-    const fs::path manifestFile = runDir / "manifest.json";
-    run.manifest = Json::parse(readFile(manifestFile), nullptr, false);
-    if (!run.manifest.is_object()) throw Error(manifestFile.string() + ": is no JSON object");
+    run.manifest = readManifest(runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
     if (fs::exists(runDir / "records.csv")) {
@@ -147,6 +137,42 @@ Completeness completeness(const StoredRun& run) {
         }
     }
     return counts;
+}
+
+std::vector<report::CaseResult> caseResults(const StoredRun& run) {
+    using Ended = report::CaseResult::Outcome;
+    std::map<std::string, SourceLocation> files;
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        files[experiment.id] = {experiment.file.string(), 0, 0};
+    }
+    std::map<UnitKey, const report::Record*> worst;
+    for (const report::Record& row : run.records) {
+        const auto [unit, isNew] = worst.try_emplace({row.caseId, row.process}, &row);
+        if (!isNew && unit->second->status == report::Status::Ok) unit->second = &row;
+    }
+    std::map<std::string, report::CaseResult> results;
+    std::vector<std::string> order;
+    for (const Unit& unit : unitsOf(run.plan, run.records)) {
+        const Case& item = *unit.item;
+        const auto [result, isNew] = results.try_emplace(
+            item.id, report::CaseResult{item.experiment, item.title(), Ended::Measured, "",
+                                        files[item.experiment]});
+        if (isNew) order.push_back(item.id);
+        if (result->second.outcome == Ended::Failed) continue;
+        const auto found = worst.find({item.id, unit.process});
+        const report::Record* row = found == worst.end() ? nullptr : found->second;
+        if (row && (row->status == report::Status::Ok || row->status == report::Status::Flaky)) {
+            continue;
+        }
+        const bool isSkipped = row && (row->status == report::Status::Missing ||
+                                       row->status == report::Status::Unsupported);
+        result->second.outcome = isSkipped ? Ended::Skipped : Ended::Failed;
+        result->second.text = row ? std::string(report::statusName(row->status)) : "not run";
+        if (row && !row->message.empty()) result->second.text += ": " + row->message;
+    }
+    std::vector<report::CaseResult> ordered;
+    for (const std::string& id : order) ordered.push_back(std::move(results.at(id)));
+    return ordered;
 }
 
 report::ReportContext reportContext(const StoredRun& run) {
@@ -174,7 +200,7 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     }
     if (which.claims) {
         conclusion.claims = report::evaluateClaims(run.plan.experiments, tables, context);
-        report::writeClaims(out, conclusion.claims, context);
+        report::writeClaims(out, caseResults(run), conclusion.claims, context);
     }
     if (which.report) {
         const html::ReportRun shown = reportRun(runDir, run);

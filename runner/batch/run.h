@@ -14,6 +14,7 @@
 #include "runner/batch/scheduler.h"
 #include "runner/report/claims.h"
 #include "runner/report/printed_parameters.h"
+#include "runner/report/report.h"
 
 namespace gfxrepro::batch {
 
@@ -55,6 +56,9 @@ struct Completeness {
     int failed = 0;
 };
 Completeness completeness(const StoredRun& run);
+
+/// How every case of the run's plan, or of its shard, ended: by its worst process.
+std::vector<report::CaseResult> caseResults(const StoredRun& run);
 
 /// Which of the derived files writeResults makes.
 struct Results {

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -119,7 +120,20 @@ RunDirectory RunDirectory::open(const fs::path& path) {
     return directory;
 }
 
+void RunDirectory::requireOurs() const {
+    struct stat locked = {}, there = {};
+    const bool isThere = ::stat((path_ / "lock").c_str(), &there) == 0;
+    if (!isThere && errno != ENOENT && errno != ENOTDIR) return;  // a file system that is away
+    const bool isOurs = isThere && ::fstat(lockFd_, &locked) == 0 &&
+                        locked.st_ino == there.st_ino && locked.st_dev == there.st_dev;
+    if (isOurs) return;
+    throw Error(path_.string() +
+                ": was removed or moved, or its lock was, while a run wrote to it; nothing is "
+                "measured into it any more");
+}
+
 void RunDirectory::log(const nlohmann::ordered_json& event) const {
+    requireOurs();
     nlohmann::ordered_json line = {{"time", utcTime()}};
     line.update(event);
     const std::string text =

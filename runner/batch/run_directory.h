@@ -26,13 +26,16 @@ class RunDirectory {
     std::filesystem::path manifestFile() const { return path_ / "manifest.json"; }
     std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
 
-    /// Appends one line to log.jsonl: "time" and the members of `event`.
+    /// Appends one line to log.jsonl: "time" and the members of `event`. Throws Error where the
+    /// folder is no longer this run's: removed, moved, or without the file that locks it, so that
+    /// another one may write to it.
     void log(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
     void logFlushed(const nlohmann::ordered_json& event) const;
 
   private:
     explicit RunDirectory(const std::filesystem::path& path);
+    void requireOurs() const;
 
     std::filesystem::path path_;
     int lockFd_ = -1;

@@ -1,11 +1,35 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "runner/batch/ledger.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/schema.h"
 #include "runner/report/claims.h"
 
 namespace gfxrepro::cli {
+
+namespace {
+
+/// Says which claims the profile or an override leaves without what they read in the file as it
+/// stands: they will be unmeasured.
+void sayUnread(const std::string& file, const config::Experiment& experiment,
+               const report::Table& table) {
+    const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
+    const report::Table wholeTable = report::buildTable(whole, {});
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        const std::string absent = report::whatIsAbsent(claim, table);
+        const auto then = std::ranges::find(whole.claims, claim.id, &config::ClaimSpec::id);
+        const bool isOurs =
+            then == whole.claims.end() || report::whatIsAbsent(*then, wholeTable).empty();
+        if (absent.empty() || !isOurs) continue;
+        fmt::print("{}: claim '{}' will be unmeasured: {}\n", file, claim.id, absent);
+    }
+}
+
+}  // namespace
 
 int check(const Context& context, const Selection& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
@@ -18,12 +42,20 @@ int check(const Context& context, const Selection& selection) {
         batch::bindAssumptions(experiment, cases, catalog, context.techniques);
         batch::requireRanges(experiment, cases, catalog, context.techniques);
         const std::size_t caseCount = cases.size();
-        report::requireProvenance(experiment, report::buildTable(experiment, {}));
+        const report::Table table = report::buildTable(experiment, {});
+        report::requireProvenance(experiment, table);
         batch::resolvePaperCases(experiment, catalog, context.techniques);
         fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
                    caseCount == 1 ? "" : "s", experiment.claims.size(),
                    experiment.claims.size() == 1 ? "" : "s");
+        const bool isReduced =
+            !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
+        if (isReduced) sayUnread(file, experiment, table);
     }
+    const std::vector<Error> unknown = unknownExpectations(
+        context, selection.names, {config::kDeviceClasses.begin(), config::kDeviceClasses.end()},
+        selection.assets);
+    if (!unknown.empty()) throw unknown.front();
     return kExitOk;
 }
 

@@ -10,6 +10,7 @@
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/worker.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
 #include "runner/cli/console.h"
@@ -243,8 +244,8 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
 }
 
 void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& command) {
-    CLI::App* compareApp =
-        app.add_subcommand("compare", "regressions between two runs, or two builds by turns");
+    CLI::App* compareApp = app.add_subcommand(
+        "compare", "times, values and pictures of two runs, or of two builds by turns");
     compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… with --binaries")
         ->required()
         ->option_text("RUN");
@@ -388,12 +389,10 @@ int run(int argc, const char* const* argv, std::span<const technique::TechniqueI
         if (std::fflush(stdout) == 0) return code;
         tell("gfxrepro: cannot write the standard output: {}\n", std::strerror(errno));
         return kExitUsage;
-    } catch (const NoDeviceError& error) {
-        tell("gfxrepro: {}\n", error.what());
-        return kExitNoDevice;
     } catch (const std::exception& error) {
         tell("gfxrepro: {}\n", error.what());
-        return kExitUsage;
+        annotate(error);
+        return dynamic_cast<const NoDeviceError*>(&error) ? kExitNoDevice : kExitUsage;
     }
 }
 

@@ -10,10 +10,12 @@
 
 #include "runner/batch/child_process.h"
 #include "runner/batch/run.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/core/files.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/history.h"
+#include "runner/regression/pictures.h"
 #include "runner/regression/summary.h"
 
 namespace gfxrepro::cli {
@@ -37,15 +39,27 @@ struct Measured {
     bool isSoftware = false;
     std::map<std::string, std::string> configs;  // absolute path by table
     std::vector<std::string> notes;
+    regression::PictureMap pictures;
+    std::map<std::string, config::PictureTolerance> tolerances;  // by table that has one
+    std::string buildId;
 };
 
 Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    Measured measured{
-        regression::seriesOf(run.records),  regression::failuresOf(run.records),
-        batch::machineName(run.manifest),   run.manifest.at("commit").get<std::string>(),
-        run.plan.deviceClass == "software", {},
-        batch::notesOf(run.manifest)};
+    Measured measured{regression::seriesOf(run.records),
+                      regression::failuresOf(run.records),
+                      batch::machineName(run.manifest),
+                      run.manifest.at("commit").get<std::string>(),
+                      run.plan.deviceClass == "software",
+                      {},
+                      batch::notesOf(run.manifest),
+                      regression::picturesOf(runDir, run.records),
+                      {},
+                      run.plan.buildId};
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        if (!experiment.pictureTolerance) continue;
+        measured.tolerances[experiment.id] = *experiment.pictureTolerance;
+    }
     const std::vector<std::string>& configs = run.plan.request.configs;
     for (std::size_t i = 0; i < std::min(configs.size(), run.plan.experiments.size()); ++i) {
         measured.configs[run.plan.experiments[i].id] = configs[i];
@@ -57,6 +71,21 @@ void requireSameMachine(const Measured& a, const Measured& b) {
     if (a.machine == b.machine) return;
     throw Error(fmt::format("measured on different machines, whose times are not compared: {}; {}",
                             a.machine, b.machine));
+}
+
+/// The pictures of two runs. Where one has none (kept results have not), nothing is missing: a note
+/// tells it instead.
+std::vector<Difference> comparePictures(const Measured& older, const Measured& newer,
+                                        const fs::path& folder, std::vector<std::string>& notes) {
+    if (older.pictures.empty() != newer.pictures.empty()) {
+        notes.push_back(fmt::format("the {} run has no pictures: none are compared",
+                                    older.pictures.empty() ? "older" : "newer"));
+        return {};
+    }
+    return regression::comparePictures(older.pictures, newer.pictures,
+                                       {.byTable = newer.tolerances,
+                                        .isOneBuild = older.buildId == newer.buildId,
+                                        .folder = folder});
 }
 
 /// Runs a program to its end; its output is shown when it fails. Exit code 4 (a case did not
@@ -77,22 +106,31 @@ class Turns {
     std::vector<Difference> compare() {
         return regression::compareByTurns(
             [&](regression::Sides& sides, const std::set<std::string>& tables) {
-                if (!tables.empty() && sides.before.empty()) fmt::print("alarm; measuring again\n");
-                for (int i = 0; i < options_.rounds; ++i) takeRound(sides, tables);
+                const bool isFirst = sides.before.empty() && sides.after.empty();
+                if (!tables.empty() && isFirst) fmt::print("alarm; measuring again\n");
+                for (int i = 0; i < options_.rounds; ++i) {
+                    takeRound(sides, tables, isFirst && i == 0);
+                }
             });
     }
     /// The newer program's rounds, without those that confirm.
     const Measured& newer() const { return newer_; }
+    const std::vector<std::string>& notes() const { return notes_; }
     /// Whether a case of either program failed.
     bool hasFailures() const { return hasFailures_; }
 
   private:
-    void takeRound(regression::Sides& sides, const std::set<std::string>& tables) {
+    void takeRound(regression::Sides& sides, const std::set<std::string>& tables,
+                   bool comparesPictures) {
         const std::size_t first = static_cast<std::size_t>(roundCount_ % 2);
         Measured measured[2];
         for (const std::size_t side : {first, 1 - first}) measured[side] = take(side, tables);
-        ++roundCount_;
         requireSameMachine(measured[0], measured[1]);
+        ++roundCount_;
+        if (comparesPictures) {
+            notes_.clear();  // a second first round says them again
+            sides.pictures = comparePictures(measured[0], measured[1], folder_, notes_);
+        }
         sides.isSoftware = measured[1].isSoftware;
         regression::append(sides.before, measured[0].series);
         regression::append(sides.after, measured[1].series);
@@ -129,6 +167,7 @@ class Turns {
     fs::path folder_;
     int roundCount_ = 0;
     bool hasFailures_ = false;
+    std::vector<std::string> notes_;
     Measured newer_;
 };
 
@@ -141,20 +180,45 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
 }
 
 /// What two runs say that were measured for themselves.
-std::vector<Difference> compareRuns(const Measured& older, const Measured& newer) {
+std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
+                                    const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);
     std::vector<Difference> differences = regression::compare(
         older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
     regression::noteFailures(differences, older.failures, newer.failures);
+    std::ranges::move(comparePictures(older, newer, folder, notes),
+                      std::back_inserter(differences));
+    std::ranges::sort(differences, {}, &Difference::key);
     return differences;
+}
+
+/// `configs` by table, as far as they are known.
+void annotate(const regression::Comparison& comparison,
+              const std::map<std::string, std::string>& configs) {
+    const auto fileOf = [&](const std::string& table) {
+        const auto found = configs.find(table);
+        return SourceLocation{found == configs.end() ? "" : found->second, 0, 0};
+    };
+    for (const Difference& one : comparison.differences) {
+        if (!one.isAlarm()) continue;
+        const std::string text =
+            one.reason.empty() ? fmt::format("× {:.3f}", one.ratio) : one.reason;
+        annotateError(fileOf(one.key.table), one.key.title(),
+                      fmt::format("{}: {}", regression::verdictName(one.verdict), text));
+    }
+    for (const regression::SeriesStep& step : comparison.steps) {
+        if (!step.isAlarm()) continue;
+        annotateError(fileOf(step.key.table), step.key.title(), regression::stepLine(step));
+    }
 }
 
 void say(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
     for (const Difference& difference : comparison.differences) {
         if (!difference.isAlarm()) continue;
-        if (difference.verdict == regression::Verdict::Lost) {
-            fmt::print("{}: lost: {}\n", difference.key.title(), difference.reason);
+        if (difference.verdict == regression::Verdict::Lost || difference.isPicture()) {
+            fmt::print("{}: {}: {}\n", difference.key.title(),
+                       regression::verdictName(difference.verdict), difference.reason);
             continue;
         }
         fmt::print("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
@@ -186,10 +250,11 @@ int compare(const CompareOptions& options) {
         comparison.differences = turns.compare();
         newer = turns.newer();
         hasFailures = turns.hasFailures();
+        comparison.notes = turns.notes();
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
-        comparison.differences = compareRuns(older, newer);
+        comparison.differences = compareRuns(older, newer, folder, comparison.notes);
         hasFailures = !older.failures.empty() || !newer.failures.empty();
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {
@@ -203,6 +268,7 @@ int compare(const CompareOptions& options) {
     writeFileAtomic(folder / "benchmark.json",
                     regression::smallerIsBetterJson(comparison.differences));
     say(comparison, folder);
+    annotate(comparison, newer.configs);
     if (comparison.isAlarm()) return kExitClaimFailed;
     return hasFailures ? kExitIncomplete : kExitOk;
 }

@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/protocol.h"
+#include "runner/batch/worker_handle.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
@@ -215,11 +218,26 @@ void print(const Json& found) {
                found["free_disk_bytes"].get<double>() / kBytesPerGib);
 }
 
+/// Drivers are asked in this process, which one that does not answer would hold for ever.
+void giveUp(int) {
+    static constexpr std::string_view kText = "gfxrepro: a driver did not answer in time\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText.data(), kText.size());
+    ::_exit(kExitNoDevice);
+}
+
+std::vector<gl::DeviceReport> askDrivers() {
+    std::signal(SIGALRM, giveUp);
+    ::alarm(static_cast<unsigned>(batch::WorkerHandle::startLimit().count()));
+    std::vector<gl::DeviceReport> reports = gl::listDevices();
+    ::alarm(0);
+    return reports;
+}
+
 }  // namespace
 
 int doctor(const Context& context, const std::string& assets, bool asJson) {
     const scene::Catalog catalog = openCatalog(context, assets);
-    const std::vector<gl::DeviceReport> reports = gl::listDevices();
+    const std::vector<gl::DeviceReport> reports = askDrivers();
     const MachineFacts facts = gatherFacts(reports, catalog);
     const std::vector<Finding> findings = findingsOf(facts);
     Json found = gather(reports, catalog, facts);

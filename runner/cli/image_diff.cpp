@@ -28,19 +28,6 @@ struct Pair {
     ImageF linearReference, linearTest;
 };
 
-/// The three channels that FLIP looks at: a grey image's thrice, without alpha.
-ImageF coloursOf(const ImageF& image) {
-    ImageF result(image.width(), image.height(), 3);
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            for (int c = 0; c < 3; ++c) {
-                result.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
-            }
-        }
-    }
-    return result;
-}
-
 Pair readPair(const ImageDiffOptions& options) {
     Pair pair;
     pair.isLinear = image::isExrFile(options.reference);
@@ -58,18 +45,15 @@ Pair readPair(const ImageDiffOptions& options) {
     return pair;
 }
 
-bool exceedsOne(const ImageF& image) {
-    return std::any_of(image.values().begin(), image.values().end(),
-                       [](float value) { return value > 1.0F; });
-}
-
 bool usesHdrFlip(const ImageDiffOptions& options, const Pair& pair) {
     if (options.flip != "auto") return options.flip == "hdr";
-    return pair.isLinear && (exceedsOne(pair.reference) || exceedsOne(pair.test));
+    return pair.isLinear &&
+           (metrics::exceedsDisplay(pair.reference) || metrics::exceedsDisplay(pair.test));
 }
 
 ImageF flipMapOf(const ImageDiffOptions& options, const Pair& pair) {
-    const ImageF reference = coloursOf(pair.linearReference), test = coloursOf(pair.linearTest);
+    const ImageF reference = metrics::coloursOf(pair.linearReference);
+    const ImageF test = metrics::coloursOf(pair.linearTest);
     return usesHdrFlip(options, pair) ? metrics::hdrFlipMap(reference, test)
                                       : metrics::flipMap(reference, test);
 }

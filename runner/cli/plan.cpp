@@ -36,7 +36,7 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
         planFor(context, requestOf(selection, findPaperConfigs(selection.names)), selection.profile,
                 selection.assets, deviceClassFor(selection));
     if (asJson) {
-        fmt::print("{}\n", plan.toJson().dump(2));
+        fmt::print("{}", plan.toText());
         return kExitOk;
     }
     const History history = openHistory(from, plan.deviceClass);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "runner/batch/report_runs.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
@@ -26,6 +27,7 @@ constexpr std::size_t kSaidFailing = 20;
 int completenessCode(const batch::StoredRun& run) {
     const batch::Completeness counts = batch::completeness(run);
     if (counts.missing + counts.failed == 0) return kExitOk;
+    if (areAnnotationsWanted()) annotate(batch::caseResults(run));
     fmt::print("incomplete: {} not run, {} failed\n", counts.missing, counts.failed);
     return kExitIncomplete;
 }
@@ -83,6 +85,7 @@ int sayClaims(const std::vector<report::ClaimResult>& claims) {
                    claim.reason.empty() ? "" : "; " + claim.reason);
     }
     fmt::print("{}\n", report::originSummaryLine(claims));
+    annotate(claims);
     const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
         return claim.verdict == report::Verdict::Fails;
     });
@@ -119,7 +122,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, tables);
-    report::writeClaims(folder, claims, context);
+    report::writeClaims(folder, batch::caseResults(run), claims, context);
     const int code = sayClaims(claims);
     sayNotes(run.manifest);
     fmt::print("judged after the run: {}\n", (folder / "claims.csv").string());
@@ -160,6 +163,7 @@ int conclude(const fs::path& runDir) {
     sayNotes(run.manifest);
     const std::size_t failing = sayFailing(conclusion.claims);
     sayVerdicts(conclusion.claims);
+    annotate(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
     fmt::print("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     sayReport(runDir);

@@ -10,8 +10,10 @@
 #include "runner/batch/budget.h"
 #include "runner/batch/shards.h"
 #include "runner/batch/twins.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
+#include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/cli/progress.h"
@@ -106,7 +108,7 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
     batch::beginInvocation(manifest, context.commandLine);
     // The plan last: a folder with a plan has all that a resumed run needs.
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
-    writeFileAtomic(directory.planFile(), plan.toJson().dump(1) + '\n');
+    writeFileAtomic(directory.planFile(), plan.toText());
     return {std::move(plan), std::move(directory), std::move(manifest), scheduler};
 }
 
@@ -217,6 +219,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
+    for (const Error& unknown : unknownExpectations(
+             context, run.plan.request.configs, {run.plan.deviceClass}, options.selection.assets)) {
+        tell("warning: {}\n", unknown.what());
+    }
     run.scheduler.failuresAtMost = options.failuresAtMost;
     if (!options.triesAgain) run.scheduler.givenUp = batch::unitsNotSurvived(run.directory);
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
@@ -250,6 +256,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
     const bool isComplete = outcome.failed + outcome.voided == 0 && outcome.stopReason.empty();
+    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(batch::readRun(path)));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;
 
     const int verdict = conclude(path);

@@ -311,7 +311,7 @@ int submit(const Context& context, const SubmitOptions& options) {
         batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
     }
     if (!options.isDryRun && !fs::exists(frozenPlan(s.out))) {
-        writeFileAtomic(frozenPlan(s.out), cut.plan.toJson().dump(1) + '\n');
+        writeFileAtomic(frozenPlan(s.out), cut.plan.toText());
     }
     if (options.engine == "commands") return writeCommands(cut, options.isDryRun);
     return submitToSlurm(cut, before, options.isDryRun);

@@ -139,9 +139,9 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key :
-         {"scene", "scene_params", "scene_seed", "scene_instead", "params", "params_by_scene",
-          "params_instead", "output", "sweep", "measure", "layout", "fit", "claims", "plots"}) {
+    for (const char* key : {"scene", "scene_params", "scene_seed", "scene_instead", "params",
+                            "params_by_scene", "params_instead", "output", "sweep", "measure",
+                            "picture_tolerance", "layout", "fit", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -207,6 +207,10 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
     Params measure(section("measure"), "measure");
     experiment.measure = readMeasure(measure);
+    if (const Node* given = document.find("picture_tolerance")) {
+        Params tolerance(*given, "picture_tolerance");
+        experiment.pictureTolerance = readPictureTolerance(tolerance);
+    }
 }
 
 /// `printed.at` is of all cases alike.
@@ -272,64 +276,6 @@ const Names& identityKeys() {
 const Names& sectionKeys() {
     static const Names keys = keysOf("content");
     return keys;
-}
-
-bool Measure::mayContinue() const {
-    return relativeError > 0.0 && lane == Lane::Timing && processes >= kFewestRounds &&
-           processes < processesAtMost;
-}
-
-std::pair<int, int> readOutput(Params& params) {
-    const int width =
-        params.getInt("width", 512, {"width of the image", "pixels", 1, kMaxOutputPx});
-    const int height =
-        params.getInt("height", 512, {"height of the image", "pixels", 1, kMaxOutputPx});
-    params.finish();
-    return {width, height};
-}
-
-Measure readMeasure(Params& params) {
-    constexpr Choice<Measure::Lane> kLanes[] = {
-        {Measure::Lane::Quality, "quality", "may run beside others"},
-        {Measure::Lane::Timing, "timing", "runs alone"}};
-    constexpr double kMax = 1'000'000;
-    Measure measure;
-    measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
-    measure.warmup = params.getInt("warmup", measure.warmup,
-                                   {"iterations before the first measured one", "", 0, kMax});
-    measure.repeats = params.getInt("repeats", measure.repeats,
-                                    {"measured iterations in one process", "", 1, kMax});
-    measure.processes =
-        params.getInt("processes", measure.processes,
-                      {"rounds: in each every case is run, in a process of its own", "", 1, kMax});
-    measure.relativeError = params.getDouble(
-        "relative_error", measure.relativeError,
-        {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
-         "to 8, 11, 14, 16 or 19 (not if the first look finds half of it); with 6 "
-         "processes or more in the timing lane; 0: they do not",
-         "", 0, 1});
-    measure.processesAtMost = params.getInt("processes_at_most", measure.processesAtMost,
-                                            {"rounds, where they go on", "", 1, kMax});
-    measure.timeBudgetS = params.getDouble(
-        "time_budget_s", measure.timeBudgetS,
-        {"of all rounds of the file: none is begun to end later", "seconds", 0, 1e9});
-    measure.frames = params.getInt("frames", measure.frames,
-                                   {"frames of a path; each is repeated", "", 1, kMax});
-    measure.sceneSeeds = params.getInt(
-        "scene_seeds", measure.sceneSeeds,
-        {"seeds of a generated scene, from the catalogue's on: a case each", "", 1, 1000});
-    if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
-        throw Error(params.locationOf("scene_seeds"),
-                    "'scene_seeds' needs the quality lane: a time varies by the process");
-    }
-    measure.timeLimitS =
-        params.getDouble("time_limit_s", measure.timeLimitS,
-                         {"of the whole case, scene loading included", "seconds", 1e-3, 1e9});
-    const double bytes = params.getDouble("memory_limit_bytes", 0.0,
-                                          {"resident memory; 0: no limit", "bytes", 0, 1e15});
-    measure.memoryLimitBytes = std::llround(bytes);
-    params.finish();
-    return measure;
 }
 
 Experiment readExperiment(const Node& document, const std::filesystem::path& file,

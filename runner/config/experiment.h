@@ -59,6 +59,13 @@ struct Measure {
     bool mayContinue() const;
 };
 
+/// `picture_tolerance:` — how far apart the pictures of a case may be that two builds have
+/// recorded.
+struct PictureTolerance {
+    double flip = 1e-3;       // mean FLIP: a thousandth of the pixels is wholly another
+    double difference = 1.0;  // of any value; white is 1
+};
+
 /// What a share is of: another metric, or another pass, of the same cases.
 struct Whole {
     std::string metric;
@@ -228,6 +235,8 @@ struct Experiment {
     int outputHeightPx = 512;
     Node sweep;
     Measure measure;
+    /// Given or not: then PictureTolerance's own of two builds, and nothing of one.
+    std::optional<PictureTolerance> pictureTolerance;
     Layout layout;
     Printed printed;
     std::vector<ClaimSpec> claims;

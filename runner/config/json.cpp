@@ -11,26 +11,94 @@ namespace gfxrepro::config {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kDeepest = 200;
+constexpr std::size_t kDeepest = 200;
 
-Node nodeOf(const Json& value, const SourceLocation& where) {
-    if (value.is_null()) return Node::null(where);
-    if (value.is_string()) return Node::scalar(value.get<std::string>(), where, true);
-    if (value.is_array()) {
-        Node::Sequence items;
-        items.reserve(value.size());
-        for (const Json& item : value) items.push_back(nodeOf(item, where));
-        return Node::sequence(std::move(items), where);
+/// Builds the tree while the parser walks the text: a tree of the parser's own would be as large as
+/// the plan once more, and search each object for every key that it adds.
+class Builder : public nlohmann::json_sax<Json> {
+  public:
+    explicit Builder(SourceLocation where) : where_(std::move(where)) {}
+
+    Node takeRoot() { return std::move(root_); }
+    std::size_t errorByte() const { return errorByte_; }
+
+    bool null() override { return add(Node::null(where_)); }
+    bool boolean(bool value) override {
+        return add(Node::scalar(value ? "true" : "false", where_));
     }
-    if (value.is_object()) {
+    bool number_integer(number_integer_t value) override {
+        return add(Node::scalar(std::to_string(value), where_));
+    }
+    bool number_unsigned(number_unsigned_t value) override {
+        return add(Node::scalar(std::to_string(value), where_));
+    }
+    /// As it was written: 1.0 stays no integer.
+    bool number_float(number_float_t, const string_t& text) override {
+        return add(Node::scalar(text, where_));
+    }
+    bool string(string_t& text) override {
+        return add(Node::scalar(std::move(text), where_, true));
+    }
+    bool binary(binary_t&) override { return false; }  // of other formats
+
+    bool start_object(std::size_t) override { return open(); }
+    bool key(string_t& name) override {
+        open_.back().keys.push_back(std::move(name));
+        return true;
+    }
+    bool end_object() override {
+        Open done = close();
         Node::Map entries;
-        entries.reserve(value.size());
-        for (const auto& [key, item] : value.items())
-            entries.emplace_back(key, nodeOf(item, where));
-        return Node::map(std::move(entries), where);
+        entries.reserve(done.values.size());
+        for (std::size_t i = 0; i < done.values.size(); ++i) {
+            entries.emplace_back(std::move(done.keys[i]), std::move(done.values[i]));
+        }
+        return add(Node::map(std::move(entries), where_));
     }
-    return Node::scalar(value.dump(), where);  // as it was written: 1.0 stays no integer
-}
+    bool start_array(std::size_t) override { return open(); }
+    bool end_array() override {
+        Open done = close();
+        done.values.shrink_to_fit();
+        return add(Node::sequence(std::move(done.values), where_));
+    }
+    bool parse_error(std::size_t byte, const std::string&, const Json::exception&) override {
+        errorByte_ = byte;
+        return false;
+    }
+
+  private:
+    /// An object or array whose end has not come yet.
+    struct Open {
+        std::vector<std::string> keys;
+        Node::Sequence values;
+    };
+
+    bool open() {
+        if (open_.size() == kDeepest) {
+            throw Error(where_, "nested deeper than " + std::to_string(kDeepest));
+        }
+        open_.emplace_back();
+        return true;
+    }
+    Open close() {
+        Open done = std::move(open_.back());
+        open_.pop_back();
+        return done;
+    }
+    bool add(Node node) {
+        if (open_.empty()) {
+            root_ = std::move(node);
+        } else {
+            open_.back().values.push_back(std::move(node));
+        }
+        return true;
+    }
+
+    SourceLocation where_;
+    std::vector<Open> open_;
+    Node root_;
+    std::size_t errorByte_ = 0;
+};
 
 SourceLocation placeOf(std::string_view text, std::size_t byte, const std::string& fileName) {
     const std::string_view before = text.substr(0, std::min(byte, text.size()));
@@ -42,17 +110,11 @@ SourceLocation placeOf(std::string_view text, std::size_t byte, const std::strin
 }  // namespace
 
 Node parseJson(std::string_view text, const std::string& fileName) {
-    const auto limit = [&](int depth, Json::parse_event_t, Json&) {
-        if (depth > kDeepest) {
-            throw Error({fileName, 0, 0}, "nested deeper than " + std::to_string(kDeepest));
-        }
-        return true;
-    };
-    try {
-        return nodeOf(Json::parse(text, limit), {fileName, 0, 0});
-    } catch (const Json::parse_error& error) {
-        throw Error(placeOf(text, error.byte, fileName), "this is no JSON");
+    Builder builder({fileName, 0, 0});
+    if (!Json::sax_parse(text, &builder)) {
+        throw Error(placeOf(text, builder.errorByte(), fileName), "this is no JSON");
     }
+    return builder.takeRoot();
 }
 
 Node parseJsonFile(const std::filesystem::path& path) {

@@ -49,6 +49,9 @@ class Reader {
   public:
     explicit Reader(fs::path configsFolder) : configsFolder_(std::move(configsFolder)) {}
 
+    /// Throws Error beyond: 30 files that extend the next one twice would be read for an hour.
+    static constexpr int kMostFiles = 1000;
+
     Merged read(const fs::path& file) {
         const Node whole = parseYamlFile(file);
         if (!whole.isMap()) {
@@ -58,6 +61,11 @@ class Reader {
         requireFileKeys(whole);
         refuseTornTexts(whole);
         open_.push_back(fs::weakly_canonical(file));
+        if (++count_ > kMostFiles) {
+            throw Error(
+                whole.location(),
+                "extends: more than 1000 files, those that are extended twice counted twice");
+        }
         Merged result{Node::map({}, whole.location()), {}};
         if (const Node* extends = whole.find("extends")) {
             const Node::Sequence names =
@@ -123,6 +131,7 @@ class Reader {
         }
     }
 
+    int count_ = 0;
     fs::path configsFolder_;
     std::vector<fs::path> open_;
 };
@@ -135,7 +144,8 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
         return Node::sequence(std::move(items), reference.location());
     }
     if (!reference.isScalar() || !isSceneFile(reference.text())) return reference;
-    const fs::path beside = folder ? *folder : fs::path(reference.location().file).parent_path();
+    const fs::path beside =
+        folder ? *folder : fs::path(reference.location().file.text()).parent_path();
     const fs::path file = fs::absolute(beside / reference.text()).lexically_normal();
     return Node::scalar(file.string(), reference.location(), true);
 }
@@ -207,13 +217,18 @@ std::string parameterName(const std::string& key) {
 Node axisOf(const Override& sweep) {
     if (!sweep.value.isScalar()) return sweep.value;
     const SourceLocation& where = sweep.value.location();
-    return relocated(parseYaml("[" + sweep.value.text() + "]", where.file), where);
+    return relocated(parseYaml("[" + sweep.value.text() + "]", where.file.text()), where);
 }
 
 void applySweeps(const std::vector<Override>& sweeps, Node& document) {
     for (const Override& given : sweeps) {
         const std::string axis = parameterName(given.key);
         Node values = axisOf(given);
+        const Node* swept = document.find("sweep");
+        const bool isSwept = swept && swept->isMap() && swept->find(axis);
+        if (values.isNull() && !isSwept) {
+            throw Error(given.value.location(), "'" + axis + "' is not swept; nothing to remove");
+        }
         if (axis == "scene") values = withSceneFile(values, fs::current_path());
         if (!document.find("sweep")) document.set("sweep", Node::map({}, values.location()));
         Node& sweep = *document.find("sweep");
@@ -305,8 +320,12 @@ Override parseOverride(const std::string& text) {
     if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty()) {
         throw UsageError("'" + text + "' on the command line; allowed: key=value");
     }
+    // Perhaps of a shell's variable that is not set.
+    if (trimmed(text.substr(equals + 1)).empty()) {
+        throw UsageError("'" + text + "' on the command line has no value; null removes the key");
+    }
     const SourceLocation where{"command line, " + text, 0, 0};
-    const Node value = parseYaml(text.substr(equals + 1), where.file);
+    const Node value = parseYaml(text.substr(equals + 1), where.file.text());
     return {std::string(trimmed(text.substr(0, equals))), relocated(value, where)};
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,11 +16,8 @@ namespace gfxrepro::config {
 
 namespace {
 
-template <class Entries>
-auto findKey(Entries& entries, std::string_view key) {
-    return std::find_if(entries.begin(), entries.end(),
-                        [&](const auto& entry) { return entry.first == key; });
-}
+/// A map of so many keys is searched one after another.
+constexpr std::size_t kFewKeys = 16;
 
 [[noreturn]] void throwExpected(const char* wanted, const Node& found) {
     std::string what = found.kindName();
@@ -40,6 +39,65 @@ bool needsQuotes(const std::string& text) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> Node::MapContent::placeOf(std::string_view key) const {
+    if (slots.empty()) {
+        const auto at = std::ranges::find(entries, key, &Map::value_type::first);
+        if (at == entries.end()) return std::nullopt;
+        return static_cast<std::size_t>(at - entries.begin());
+    }
+    const std::size_t mask = slots.size() - 1;
+    for (std::size_t i = std::hash<std::string_view>()(key) & mask; slots[i] != 0;
+         i = (i + 1) & mask) {
+        if (entries[slots[i] - 1].first == key) return slots[i] - 1;
+    }
+    return std::nullopt;
+}
+
+void Node::MapContent::add(std::string key, Node value) {
+    entries.emplace_back(std::move(key), std::move(value));
+    if (entries.size() <= kFewKeys) return;
+    if (slots.size() < 2 * entries.size()) {
+        enterSlots();
+    } else {
+        enterSlot(entries.size() - 1);
+    }
+}
+
+void Node::MapContent::enterSlot(std::size_t place) {
+    const std::size_t mask = slots.size() - 1;
+    std::size_t i = std::hash<std::string>()(entries[place].first) & mask;
+    while (slots[i] != 0) i = (i + 1) & mask;
+    slots[i] = static_cast<std::uint32_t>(place + 1);
+}
+
+void Node::MapContent::enterSlots() {
+    slots.clear();
+    if (entries.size() <= kFewKeys) return;
+    slots.resize(std::bit_ceil(4 * entries.size()), 0);
+    for (std::size_t place = 0; place < entries.size(); ++place) enterSlot(place);
+}
+
+Node::OwnMap::OwnMap(MapContent content)
+    : content_(std::make_unique<MapContent>(std::move(content))) {}
+Node::OwnMap::OwnMap(const OwnMap& other)
+    : content_(other.content_ ? std::make_unique<MapContent>(*other.content_) : nullptr) {}
+Node::OwnMap::OwnMap(OwnMap&& other) noexcept = default;
+Node::OwnMap& Node::OwnMap::operator=(OwnMap other) noexcept {
+    content_ = std::move(other.content_);
+    return *this;
+}
+Node::OwnMap::~OwnMap() = default;
+
+const Node::MapContent& Node::OwnMap::get() const {
+    static const MapContent kEmpty;
+    return content_ ? *content_ : kEmpty;
+}
+
+Node::MapContent& Node::OwnMap::get() {
+    if (!content_) content_ = std::make_unique<MapContent>();
+    return *content_;
+}
 
 Node Node::scalar(std::string text, SourceLocation where, bool quoted) {
     Node node;
@@ -80,8 +138,17 @@ Node Node::sequence(Sequence items, SourceLocation where) {
 }
 
 Node Node::map(Map entries, SourceLocation where) {
+    MapContent content;
+    content.entries.reserve(entries.size());
+    for (auto& [key, value] : entries) {
+        if (const auto place = content.placeOf(key)) {
+            content.entries[*place].second = std::move(value);
+        } else {
+            content.add(std::move(key), std::move(value));
+        }
+    }
     Node node;
-    node.value_ = std::move(entries);
+    node.value_ = OwnMap(std::move(content));
     node.location_ = std::move(where);
     return node;
 }
@@ -124,12 +191,12 @@ const Node::Sequence& Node::items() const {
 
 const Node::Map& Node::entries() const {
     if (!isMap()) throwExpected("a map", *this);
-    return std::get<Map>(value_);
+    return mapContent().entries;
 }
 
-Node::Map& Node::entries() {
+std::span<Node::Map::value_type> Node::entries() {
     if (!isMap()) throwExpected("a map", *this);
-    return std::get<Map>(value_);
+    return std::get<OwnMap>(value_).get().entries;
 }
 
 std::optional<double> Node::tryDouble() const {
@@ -152,9 +219,8 @@ std::optional<bool> Node::tryBool() const {
 
 const Node* Node::find(std::string_view key) const {
     GFXREPRO_ASSERT(isMap());
-    const auto& map = std::get<Map>(value_);
-    const auto at = findKey(map, key);
-    return at == map.end() ? nullptr : &at->second;
+    const std::optional<std::size_t> place = mapContent().placeOf(key);
+    return place ? &mapContent().entries[*place].second : nullptr;
 }
 
 Node* Node::find(std::string_view key) {
@@ -162,8 +228,10 @@ Node* Node::find(std::string_view key) {
 }
 
 const SourceLocation& Node::keyLocation(std::string_view key) const {
-    const auto at = findKey(keyLocations_, key);
-    return at == keyLocations_.end() ? location_ : at->second;
+    if (!isMap()) return location_;
+    const MapContent& content = mapContent();
+    const std::optional<std::size_t> place = content.placeOf(key);
+    return place && *place < content.keyLocations.size() ? content.keyLocations[*place] : location_;
 }
 
 void Node::set(std::string key, Node value) {
@@ -172,22 +240,32 @@ void Node::set(std::string key, Node value) {
 }
 
 void Node::set(std::string key, Node value, SourceLocation keyWhere) {
-    if (isNull()) value_ = Map{};
-    const auto place = findKey(keyLocations_, key);
-    if (place == keyLocations_.end()) {
-        keyLocations_.emplace_back(key, std::move(keyWhere));
+    if (isNull()) value_ = OwnMap();
+    if (!isMap()) throwExpected("a map", *this);
+    MapContent& content = std::get<OwnMap>(value_).get();
+    const std::optional<std::size_t> found = content.placeOf(key);
+    const std::size_t place = found.value_or(content.entries.size());
+    if (content.keyLocations.size() <= place) content.keyLocations.resize(place + 1, location_);
+    content.keyLocations[place] = std::move(keyWhere);
+    if (found) {
+        content.entries[place].second = std::move(value);
     } else {
-        place->second = std::move(keyWhere);
-    }
-    if (Node* old = find(key)) {
-        *old = std::move(value);
-    } else {
-        entries().emplace_back(std::move(key), std::move(value));
+        content.add(std::move(key), std::move(value));
     }
 }
 
 bool Node::erase(std::string_view key) {
-    return std::erase_if(entries(), [&](const auto& entry) { return entry.first == key; }) > 0;
+    if (!isMap()) throwExpected("a map", *this);
+    MapContent& content = std::get<OwnMap>(value_).get();
+    const std::optional<std::size_t> place = content.placeOf(key);
+    if (!place) return false;
+    const auto offset = static_cast<std::ptrdiff_t>(*place);
+    content.entries.erase(content.entries.begin() + offset);
+    if (*place < content.keyLocations.size()) {
+        content.keyLocations.erase(content.keyLocations.begin() + offset);
+    }
+    content.enterSlots();
+    return true;
 }
 
 void Node::setPath(std::string_view dottedPath, Node value) {
@@ -236,9 +314,11 @@ nlohmann::ordered_json Node::toJson() const {
         for (const Node& item : *list) json.push_back(item.toJson());
         return json;
     }
-    if (const auto* map = std::get_if<Map>(&value_)) {
+    if (isMap()) {
         auto json = nlohmann::ordered_json::object();
-        for (const auto& [key, value] : *map) json[key] = value.toJson();
+        auto& members = json.get_ref<nlohmann::ordered_json::object_t&>();
+        // Not looked up, each key behind all others: they differ.
+        for (const auto& [key, value] : entries()) members.emplace_back(key, value.toJson());
         return json;
     }
     if (const auto integer = tryInteger()) return *integer;

@@ -1,8 +1,11 @@
 // A YAML value that remembers where it stands.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,6 +36,7 @@ class Node {
     static Node block(std::string text, SourceLocation where = {});
     static Node null(SourceLocation where);
     static Node sequence(Sequence items, SourceLocation where = {});
+    /// Of two entries with one key the last counts.
     static Node map(Map entries, SourceLocation where = {});
 
     const SourceLocation& location() const { return location_; }
@@ -44,7 +48,7 @@ class Node {
     bool isNull() const { return std::holds_alternative<std::monostate>(value_); }
     bool isScalar() const { return std::holds_alternative<Scalar>(value_); }
     bool isSequence() const { return std::holds_alternative<Sequence>(value_); }
-    bool isMap() const { return std::holds_alternative<Map>(value_); }
+    bool isMap() const { return std::holds_alternative<OwnMap>(value_); }
 
     // Typed reads. Each throws Error with the location, what was found and what was allowed.
     const std::string& text() const;
@@ -53,14 +57,16 @@ class Node {
     bool asBool() const;
     const Sequence& items() const;
     const Map& entries() const;
-    Map& entries();
+    /// For changing values; keys stay as they are.
+    std::span<Map::value_type> entries();
 
     // Typed reads that answer whether the value is such a one.
     std::optional<double> tryDouble() const;
     std::optional<long long> tryInteger() const;
     std::optional<bool> tryBool() const;
 
-    /// The entry of a map, or null. `this` must be a map.
+    /// The entry of a map, or null, in a time that does not grow with the map. `this` must be a
+    /// map.
     const Node* find(std::string_view key) const;
     Node* find(std::string_view key);
     /// Where the key itself stands (for "unknown key" messages); the map's place when not known.
@@ -85,9 +91,37 @@ class Node {
         bool quoted = false;   // a quoted "12" is text, not a number
         bool isBlock = false;  // written below a bar
     };
-    std::variant<std::monostate, Scalar, Sequence, Map> value_;
+    struct MapContent {
+        Map entries;
+        std::vector<SourceLocation> keyLocations;  // of the first entries
+        /// Of a map of many keys: 1 + the place of an entry, or 0, by the hash of its key; what
+        /// finds its slot taken has the next that is free.
+        std::vector<std::uint32_t> slots;
+
+        std::optional<std::size_t> placeOf(std::string_view key) const;
+        void add(std::string key, Node value);
+        void enterSlot(std::size_t place);
+        void enterSlots();
+    };
+    /// Apart from the node, which is as small as its text; one that was moved from is empty.
+    class OwnMap {
+      public:
+        OwnMap() = default;
+        explicit OwnMap(MapContent content);
+        OwnMap(const OwnMap& other);
+        OwnMap(OwnMap&& other) noexcept;
+        OwnMap& operator=(OwnMap other) noexcept;
+        ~OwnMap();
+        const MapContent& get() const;
+        MapContent& get();
+
+      private:
+        std::unique_ptr<MapContent> content_;
+    };
+    const MapContent& mapContent() const { return std::get<OwnMap>(value_).get(); }
+
+    std::variant<std::monostate, Scalar, Sequence, OwnMap> value_;
     SourceLocation location_;
-    std::vector<std::pair<std::string, SourceLocation>> keyLocations_;  // of a map
 };
 
 /// Parses one YAML document (JSON is YAML); an empty one is null. Throws Error with

@@ -76,6 +76,11 @@ SchemaSection content() {
          {"output", "map", "512 × 512", "size of the image", refTo("output")},
          {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
          {"measure", "map", "once", "how, and how often", refTo("measure")},
+         {"picture_tolerance", "map", "none",
+          "what `gfxrepro compare` lets the pictures of two builds differ by: without it the "
+          "values "
+          "below, and of one build nothing",
+          refTo("picture_tolerance")},
          {"layout", "map", "none", "what the table looks like", refTo("layout")},
          {"printed", "map", "none", "what the paper printed; never reaches a worker",
           refTo("printed")},
@@ -259,14 +264,20 @@ SchemaSection measure() {
     return declared("measure", params);
 }
 
+SchemaSection pictureTolerance() {
+    Params params(Node(), "picture_tolerance");
+    readPictureTolerance(params);
+    return declared("picture_tolerance", params);
+}
+
 }  // namespace
 
 SchemaFile experimentSchema() {
-    SchemaFile file{
-        "experiment",
-        "A table, figure, section or sweep",
-        {identity(), composition(), content(), output(), sweep(), axis(), measure(), profiles(),
-         layout(), selection(), share(), printed(), fit(), plot(), assumption()}};
+    SchemaFile file{"experiment",
+                    "A table, figure, section or sweep",
+                    {identity(), composition(), content(), output(), sweep(), axis(), measure(),
+                     pictureTolerance(), profiles(), layout(), selection(), share(), printed(),
+                     fit(), plot(), assumption()}};
     for (SchemaSection& section : claimSections()) file.sections.push_back(std::move(section));
     return file;
 }

@@ -72,8 +72,10 @@ inline constexpr int kMaxOutputPx = 16384;
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
 
-/// The `measure` and `output` sections; their declarations are part of the schema.
+/// The `measure`, `output` and `picture_tolerance` sections; their declarations are part of the
+/// schema.
 Measure readMeasure(Params& params);
 std::pair<int, int> readOutput(Params& params);
+PictureTolerance readPictureTolerance(Params& params);
 
 }  // namespace gfxrepro::config

@@ -13,7 +13,8 @@ std::string toString(const SourceLocation& location) {
 }
 
 Error::Error(const SourceLocation& where, const std::string& message)
-    : std::runtime_error(where.file.empty() ? message : toString(where) + ": " + message) {}
+    : std::runtime_error(where.file.empty() ? message : toString(where) + ": " + message),
+      where_(where) {}
 
 namespace detail {
 void assertionFailed(const char* condition, const std::string& values, const char* file, int line) {

@@ -6,6 +6,11 @@
 
 namespace gfxrepro::metrics {
 
+/// The three channels that FLIP looks at: a grey image's thrice, without alpha.
+image::ImageF coloursOf(const image::ImageF& image);
+/// Whether a value is beyond 1, which HDR-FLIP is for.
+bool exceedsDisplay(const image::ImageF& image);
+
 /// The exposures, in stops, at which two images are compared: `count` of them at equal steps.
 struct Exposures {
     double start = 0.0;

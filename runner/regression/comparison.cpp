@@ -171,6 +171,8 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         own.isSoftware = sides.isSoftware;
         differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
         noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
+        differences.insert(differences.end(), sides.pictures.begin(), sides.pictures.end());
+        std::ranges::sort(differences, {}, &Difference::key);
         const bool isDecided = std::ranges::none_of(
             differences, [](const Difference& one) { return one.verdict == Verdict::CannotTell; });
         if (isDecided) break;

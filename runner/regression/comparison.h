@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -38,7 +39,14 @@ struct Rules {
     std::size_t looks = 3;    // at most, each after as many further rounds
 };
 
-/// What became of one series. `ratio` is after / before, of times: above 1 is slower.
+/// How far two pictures are apart.
+struct PictureError {
+    double flip = 0.0;     // mean; of the exposures' largest where a value exceeds 1
+    double largest = 0.0;  // difference of any value of any channel
+};
+
+/// What became of one series, or of a picture (isPicture). `ratio` is after / before, of times:
+/// above 1 is slower.
 struct Difference {
     SeriesKey key;
     double before = 0.0;  // median over processes
@@ -47,8 +55,13 @@ struct Difference {
     metrics::Interval interval{1.0, 1.0};  // of the ratio, at 95 %
     double floor = 0.0;                    // the smallest change that counts, relative
     Verdict verdict = Verdict::CannotTell;
-    std::string reason{};  // of CannotTell, Missing and Lost
+    std::string reason{};  // of CannotTell, Missing and Lost, and of a picture that is Changed
+    std::optional<PictureError> picture{};  // of two that can be subtracted
+    /// Of a picture that is Changed: both, and the map of differences if there is one, lie beside
+    /// the comparison under this name with -before, -after and -flip.
+    std::string evidence{};
 
+    bool isPicture() const { return key.metric == kPictureMetric; }
     bool isAlarm() const {
         return verdict == Verdict::Slower || verdict == Verdict::Changed ||
                verdict == Verdict::Lost;
@@ -80,7 +93,8 @@ void confirm(std::vector<Difference>& differences, const std::vector<Difference>
 struct Sides {
     SeriesMap before, after;
     Failures failuresBefore, failuresAfter;
-    bool isSoftware = false;  // the device, as in Rules
+    std::vector<Difference> pictures{};  // those of the first round held against each other
+    bool isSoftware = false;             // the device, as in Rules
 };
 /// Appends further rounds by turns; of `tables` alone where there are some.
 using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;

@@ -10,6 +10,9 @@
 
 namespace gfxrepro::regression {
 
+/// The metric of a picture's key, whose pass is the picture's name.
+inline constexpr const char* kPictureMetric = "picture";
+
 /// One metric of one case. Two builds have the same key where they were asked the same.
 struct SeriesKey {
     std::string table;

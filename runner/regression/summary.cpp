@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "runner/report/markup.h"
 
@@ -16,7 +19,9 @@ std::size_t countOf(const std::vector<Difference>& differences, Verdict verdict)
 }
 
 std::string ratioText(const Difference& difference) {
-    if (difference.verdict == Verdict::Missing || difference.verdict == Verdict::Lost) return "";
+    const bool isOfTwo =
+        difference.verdict != Verdict::Missing && difference.verdict != Verdict::Lost;
+    if (!isOfTwo || difference.isPicture()) return "";
     return fmt::format("{:.3f} [{:.3f}, {:.3f}]", difference.ratio, difference.interval.low,
                        difference.interval.high);
 }
@@ -25,6 +30,49 @@ std::string verdictText(const Difference& difference) {
     const std::string_view name = verdictName(difference.verdict);
     return difference.reason.empty() ? std::string(name)
                                      : fmt::format("{}: {}", name, difference.reason);
+}
+
+/// " ([before](…), [after](…), [difference](…))" of a picture whose files are kept.
+std::string evidenceLinks(const Difference& difference) {
+    if (difference.evidence.empty()) return "";
+    std::string links;
+    for (const auto& [label, ending] :
+         {std::pair{"before", "-before.png"}, std::pair{"after", "-after.png"},
+          std::pair{"difference", "-flip.png"}}) {
+        if (!difference.picture && std::string_view(label) == "difference") continue;
+        links += fmt::format("{}[{}]({}{})", links.empty() ? "" : ", ", label, difference.evidence,
+                             ending);
+    }
+    return fmt::format(" ({})", links);
+}
+
+std::string markdownRow(const Difference& difference) {
+    const std::string title = report::escapeMarkdown(difference.key.title());
+    const std::string verdict =
+        report::escapeMarkdown(verdictText(difference)) + evidenceLinks(difference);
+    if (difference.isPicture()) return fmt::format("| {} | | | | | {} |\n", title, verdict);
+    return fmt::format("| {} | {:.4g} | {:.4g} {} | {} | {:.2g} | {} |\n", title, difference.before,
+                       difference.after, report::escapeMarkdown(difference.key.unit),
+                       ratioText(difference), difference.floor, verdict);
+}
+
+/// The names of tests: titles, and where several series have one, what else they differ in.
+std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) {
+    std::map<std::string, int> counts;
+    for (const SeriesKey* key : keys) ++counts[key->title()];
+    std::vector<std::string> names;
+    for (const SeriesKey* key : keys) {
+        names.push_back(key->title());
+        if (counts[names.back()] > 1) names.back() += fmt::format(" {} {}", key->unit, key->params);
+    }
+    return names;
+}
+
+template <class Results>
+std::vector<std::string> uniqueNamesOf(const Results& results) {
+    std::vector<const SeriesKey*> keys;
+    for (const auto& result : results) keys.push_back(&result.key);
+    return uniqueNames(keys);
 }
 
 }  // namespace
@@ -64,10 +112,7 @@ std::string markdown(const Comparison& comparison) {
     text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
     for (const Difference& difference : differences) {
         if (difference.verdict == Verdict::Same) continue;
-        text += fmt::format("| {} | {:.4g} | {:.4g} {} | {} | {:.2g} | {} |\n",
-                            report::escapeMarkdown(difference.key.title()), difference.before,
-                            difference.after, difference.key.unit, ratioText(difference),
-                            difference.floor, verdictText(difference));
+        text += markdownRow(difference);
     }
     return text;
 }
@@ -82,10 +127,11 @@ std::string junitXml(const Comparison& comparison) {
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<testsuite name=\"regression\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
         differences.size() + comparison.steps.size(), failures, skipped);
-    for (const Difference& difference : differences) {
+    const std::vector<std::string> names = uniqueNamesOf(differences);
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        const Difference& difference = differences[i];
         text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"",
-                            report::escapeXml(difference.key.table),
-                            report::escapeXml(difference.key.title()));
+                            report::escapeXml(difference.key.table), report::escapeXml(names[i]));
         const bool isPass =
             difference.verdict == Verdict::Same || difference.verdict == Verdict::Faster;
         if (isPass) {
@@ -97,9 +143,11 @@ std::string junitXml(const Comparison& comparison) {
                             report::escapeXml(fmt::format("{} {}", verdictText(difference),
                                                           ratioText(difference))));
     }
-    for (const SeriesStep& step : comparison.steps) {
+    const std::vector<std::string> stepNames = uniqueNamesOf(comparison.steps);
+    for (std::size_t i = 0; i < comparison.steps.size(); ++i) {
+        const SeriesStep& step = comparison.steps[i];
         text += fmt::format("  <testcase classname=\"{}\" name=\"history of {}\"",
-                            report::escapeXml(step.key.table), report::escapeXml(step.key.title()));
+                            report::escapeXml(step.key.table), report::escapeXml(stepNames[i]));
         text += step.isAlarm() ? fmt::format("><failure message=\"{}\"/></testcase>\n",
                                              report::escapeXml(stepLine(step)))
                                : "/>\n";
@@ -110,6 +158,13 @@ std::string junitXml(const Comparison& comparison) {
 std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
     nlohmann::ordered_json entries = nlohmann::ordered_json::array();
     for (const Difference& difference : differences) {
+        if (difference.isAlarm() && difference.picture) {
+            entries.push_back(
+                {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
+                 {"unit", "FLIP"},
+                 {"value", difference.picture->flip},
+                 {"range", fmt::format("largest difference {:.3g}", difference.picture->largest)}});
+        }
         if (!difference.key.isTime() || difference.after <= 0.0) continue;
         entries.push_back(
             {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},

@@ -28,11 +28,11 @@ struct Comparison {
 /// A table of everything that is not the same, the summary line, steps and notes.
 std::string markdown(const Comparison& comparison);
 
-/// Alarms are failures; what could not be told is skipped.
+/// A test each, of a name of its own: alarms are failures; what could not be told is skipped.
 std::string junitXml(const Comparison& comparison);
 
-/// [{"name", "unit", "value", "range"}]: the times after, in the form `customSmallerIsBetter` of
-/// GitHub's benchmark action.
+/// [{"name", "unit", "value", "range"}]: the times after, and the FLIP of each picture that
+/// changed, in the form `customSmallerIsBetter` of GitHub's benchmark action.
 std::string smallerIsBetterJson(const std::vector<Difference>& differences);
 
 }  // namespace gfxrepro::regression

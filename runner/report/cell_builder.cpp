@@ -59,20 +59,6 @@ Laid partsOver(const config::Layout& layout, const Key& row, const Key& column) 
     return laid;
 }
 
-/// Whether a case lies where the query looks. What is not known of a planned case may match.
-bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
-             bool isUnknownMatching) {
-    for (const auto& [axis, allowed] : where) {
-        if (axis == "frame") continue;
-        const auto& value = values[cases.indexOf(axis)];
-        const bool isMatching =
-            value ? std::find(allowed.begin(), allowed.end(), *value) != allowed.end()
-                  : isUnknownMatching;
-        if (!isMatching) return false;
-    }
-    return true;
-}
-
 bool matchesFrame(const Where& where, int frame) {
     const auto found = where.find("frame");
     if (found == where.end()) return true;
@@ -174,9 +160,8 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
 /// was asked for is not among them.
 std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
     std::set<std::string> passes;
-    for (const CaseRecords& run : cases.run) {
-        if (!matches(run.axes, cases, query.where, false)) continue;
-        for (const auto& [number, attempt] : run.processes) {
+    for (const CaseRecords* run : casesAt(query.where, cases)) {
+        for (const auto& [number, attempt] : run->processes) {
             for (const auto& [place, record] : attempt.rows) {
                 if (place.metric == query.metric) {
                     passes.insert(place.pass.empty() ? "none" : std::string(place.pass));
@@ -198,11 +183,10 @@ std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
 Gathered gather(const CellQuery& query, const LayoutCases& cases) {
     Gathered gathered;
     int unitCount = 0;
-    for (const CaseRecords& run : cases.run) {
-        if (!matches(run.axes, cases, query.where, false)) continue;
-        gathered.caseIds.push_back(run.id);
+    for (const CaseRecords* run : casesAt(query.where, cases)) {
+        gathered.caseIds.push_back(run->id);
         std::map<int, int> unitOfFrame;
-        takeCase(run, query, unitOfFrame, unitCount, gathered);
+        takeCase(*run, query, unitOfFrame, unitCount, gathered);
     }
     if (const std::optional<CellQuery> whole = wholeOf(query)) {
         Gathered all = gather(*whole, cases);
@@ -221,21 +205,17 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
 
 std::size_t plannedCount(const CellQuery& query, const LayoutCases& cases) {
     std::set<std::string_view> identities;
-    for (const PlannedCase& planned : cases.planned) {
-        if (matches(planned.axes, cases, query.where, true)) identities.insert(planned.identity);
+    for (const PlannedCase* planned : plannedAt(query.where, cases)) {
+        identities.insert(planned->identity);
     }
     return identities.size();
 }
 
 /// Whether the plan knows all that the query asks, so that the number of cases can be counted on.
 bool isPlanComplete(const CellQuery& query, const LayoutCases& cases) {
-    for (const PlannedCase& planned : cases.planned) {
-        if (matches(planned.axes, cases, query.where, true) &&
-            !matches(planned.axes, cases, query.where, false)) {
-            return false;
-        }
-    }
-    return true;
+    return std::ranges::all_of(plannedAt(query.where, cases), [&](const PlannedCase* planned) {
+        return matches(planned->axes, cases, query.where, false);
+    });
 }
 
 std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathered) {
@@ -310,14 +290,6 @@ Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
     return partsOver(layout, row, column).where;
 }
 
-std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases) {
-    std::vector<const CaseRecords*> found;
-    for (const CaseRecords& run : cases.run) {
-        if (matches(run.axes, cases, where, false)) found.push_back(&run);
-    }
-    return found;
-}
-
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {
     auto [selection, where] = partsOver(layout, row, column);
     if (!selection.metric) {
@@ -381,9 +353,8 @@ SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const La
     Where where;
     layKeyOver(layout.rows, row, selection, where);
     SceneSource source = SceneSource::Unknown;
-    for (const CaseRecords& run : cases.run) {
-        if (!matches(run.axes, cases, where, false)) continue;
-        for (const auto& [number, attempt] : run.processes) {
+    for (const CaseRecords* run : casesAt(where, cases)) {
+        for (const auto& [number, attempt] : run->processes) {
             const CaseRecords::Place first{"scene_source", "", INT_MIN, INT_MIN};
             const auto found = attempt.rows.lower_bound(first);
             if (found == attempt.rows.end() || found->first.metric != "scene_source") continue;

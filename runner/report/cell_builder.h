@@ -14,11 +14,8 @@
 
 namespace gfxrepro::report {
 
-/// Which cases a layout asks for: axis → any of these values.
-using Where = std::map<std::string, std::vector<std::string>>;
+/// Which cases the cell shows.
 Where whereOf(const config::Layout& layout, const Key& row, const Key& column);
-/// Those of the cases that were run.
-std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases);
 
 /// What a cell shows, after the parts of its column, its row and `cell` are laid over one another.
 struct CellQuery {

@@ -132,9 +132,8 @@ void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult
     }
 }
 
-ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
-    ClaimReader reader(claim, table);
-    const std::vector<ClaimPart> parts = partsOf(claim);
+/// The claim with what its config says of it, not judged yet.
+ClaimResult unjudged(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
     ClaimResult result;
     result.id = claim.id;
     result.table = table.id;
@@ -144,13 +143,18 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
     result.timeKind = claim.timeKind;
     takeKnown(claim, context, result);
     std::vector<std::string> required;
-    for (const ClaimPart& part : parts) required.push_back(part.requirement.text);
+    for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
     result.required = joined(required, "; ");
     result.reason = whyNotApplicable(claim, context);
-    if (!result.reason.empty()) {
-        result.verdict = Verdict::NotApplicable;
-        return result;
-    }
+    if (!result.reason.empty()) result.verdict = Verdict::NotApplicable;
+    return result;
+}
+
+ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
+    ClaimResult result = unjudged(claim, table, context);
+    if (result.verdict == Verdict::NotApplicable) return result;
+    ClaimReader reader(claim, table);
+    const std::vector<ClaimPart> parts = partsOf(claim);
     const bool isAbsolute = claim.timeKind == ClaimSpec::TimeKind::Absolute;
     if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
         result.verdict = Verdict::NotApplicable;
@@ -175,6 +179,19 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
     result.reason = worst->reason;
     if (!clock.empty()) result.reason += (result.reason.empty() ? "" : "; ") + clock;
     return result;
+}
+
+/// The same of a table that may lack what the claim reads.
+ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const Table& table,
+                                const ReportContext& context) {
+    const Table own = tableFor(claim, table);
+    try {
+        return evaluate(claim, own, context);
+    } catch (const AbsentColumnError& error) {
+        ClaimResult result = unjudged(claim, own, context);
+        result.reason = "not among what was measured: " + error.text();
+        return result;
+    }
 }
 
 /// Kept results tell nothing of a verdict that they do not start from.
@@ -236,9 +253,10 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, co
                                         const ReportContext& context) {
     std::vector<ClaimResult> results;
     for (const ClaimSpec& claim : experiment.claims) {
-        results.push_back(claim.across ? evaluate(claim, tableFor(claim, table), context)
-                                       : evaluate(claim, table, context));
+        results.push_back(evaluateWhatIsThere(claim, table, context));
         results.back().restsOn = restsOn(results.back(), context.tried);
+        const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
+        results.back().where = claim.location.file == file.file ? claim.location : file;
     }
     return results;
 }
@@ -310,6 +328,15 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
                 "holds a time against a number, which no count of work decides; its 'kind' "
                 "is architectural | absolute");
         }
+    }
+}
+
+std::string whatIsAbsent(const ClaimSpec& claim, const Table& table) {
+    const Table own = tableFor(claim, table);
+    try {
+        return ClaimReader(claim, own).readsAny() ? "" : "no row that it reads";
+    } catch (const AbsentColumnError& error) {
+        return error.text();
     }
 }
 

@@ -70,6 +70,8 @@ struct ClaimResult {
         return isVerdict(verdict) && isVerdict(known) && verdict != known;
     }
 
+    SourceLocation where{};  // its config, with the line where that is known; not in claims.csv
+
     /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not
     /// tried"; empty where there is no verdict.
     std::string restsOn = {};
@@ -80,10 +82,16 @@ struct ClaimResult {
 /// claim_quantity.h); of times in each round, and a 95 % interval over rounds wholly inside of the
 /// range holds, wholly outside fails, else it is ambiguous (judgeTimes(), claim_times.h). On a
 /// software device the times of an algorithmic claim are the CPU times of the process. Groups of
-/// rows are judged apart; the worst verdict counts. Throws Error with the claim's place for an
-/// operand that is no expression over the columns, or an axis that the table has not.
+/// rows are judged apart; the worst verdict counts. What reads a column that
+/// the table does not have is unmeasured. Throws Error with the claim's place for an operand that
+/// is no expression, or an axis that the table has not.
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,
                                         const ReportContext& context);
+
+/// What the claim reads and the table does not have, as one whose profile or override took a column
+/// or rows away: "'y' is no column (columns: x)"; empty where it has all of it. The table may have
+/// been built from no records.
+std::string whatIsAbsent(const config::ClaimSpec& claim, const Table& table);
 
 /// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
 /// none, or where a document's table does not say whose the claim or its bound is. `table` may have

@@ -79,8 +79,9 @@ std::string Operand::translated(const Table& table, const SourceLocation& where,
         if (isNameStart(word[0]) && !isCall) {
             std::vector<std::string> labels;
             for (const TableColumn& column : table.columns) labels.push_back(column.label);
-            throw Error(where, owner + ": '" + word + "' is no column" + suggestion(word, labels) +
-                                   " (columns: " + joined(labels) + ")");
+            throw AbsentColumnError(where, owner,
+                                    "'" + word + "' is no column" + suggestion(word, labels) +
+                                        " (columns: " + joined(labels) + ")");
         }
         expression += word;
         i += length;

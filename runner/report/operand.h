@@ -30,11 +30,25 @@ bool keepRoundsOrDraws(std::span<Sampled* const> values);
 /// The rounds that all of them have but those that are certain.
 std::vector<int> commonRounds(std::span<const Sampled> values);
 
+/// A name that is no column of the table: a profile or an override may have taken it away.
+class AbsentColumnError : public Error {
+  public:
+    AbsentColumnError(const SourceLocation& where, const std::string& owner,
+                      const std::string& text)
+        : Error(where, owner + ": " + text), text_(text) {}
+    /// Without the place and the owner.
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
 class Operand {
   public:
     /// Columns are written by their labels, whatever characters these have; a label that is a
     /// number means a column only where it is the whole expression. Throws Error at `where`, its
-    /// message begun with `owner`, for a name that is no column and for bad syntax.
+    /// message begun with `owner`, for bad syntax, and AbsentColumnError for a name that is no
+    /// column.
     Operand(const std::string& text, const Table& table, const SourceLocation& where,
             const std::string& owner);
     Operand(Operand&&) = default;

@@ -276,6 +276,7 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     for (const config::PaperCase& item : experiment.paperCases) {
         cases_.run.push_back(unmeasured(item, cases_.axes));
     }
+    cases_.makeIndices();
 }
 
 void PrintedParameters::compare(const config::Layout& layout, const Key& row, const Key& column,

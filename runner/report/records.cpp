@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -118,6 +119,15 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
     return record;
 }
 
+/// A JSON object, or nothing; its `output`, if it has one, is an object, too.
+void requireParams(const SourceLocation& where, const std::string& params) {
+    if (params.empty()) return;
+    const auto json = nlohmann::json::parse(params, nullptr, false);
+    if (json.is_object() && (!json.contains("output") || json["output"].is_object())) return;
+    throw Error(where,
+                "column 'params': expected a JSON object, found '" + params.substr(0, 80) + "'");
+}
+
 void checkHeader(const fs::path& path, std::string_view text) {
     const std::string_view first = text.substr(0, text.find('\n'));
     if (first != kHeader) {
@@ -205,6 +215,9 @@ WholeUnits readWholeUnits(const fs::path& path, std::string_view text) {
         }
         const SourceLocation where = reader.location();
         Record record = recordFromFields(where, fields);
+        if (rows.empty() || record.params != rows.back().record.params) {
+            requireParams(where, record.params);
+        }
         rows.push_back({std::move(record), where.line, integerField(where, "rows", fields.back()),
                         reader.rowEnd()});
     }

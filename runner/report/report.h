@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,10 +37,23 @@ inline constexpr std::array<std::string_view, 15> kClaimsColumns = {
     "claim", "table",    "device",   "profile", "origin", "bound_from", "kind",    "verdict",
     "known", "measured", "required", "margin",  "reason", "because",    "rests_on"};
 
-/// claims.csv (kClaimsColumns) and junit.xml (a failed claim is a failure, one that could not be
-/// judged is skipped).
-void writeClaims(const std::filesystem::path& runDir, const std::vector<ClaimResult>& results,
-                 const ReportContext& context);
+/// How a case ended, for junit.xml.
+struct CaseResult {
+    enum class Outcome { Measured, Skipped, Failed };
+    std::string table;  // "zju2005/2.1"
+    std::string title;  // "zju2005/2.1 scene=models/duck"
+    Outcome outcome = Outcome::Measured;
+    std::string text = {};   // of the others: "crash: SIGSEGV", "not run"
+    SourceLocation where{};  // its config
+};
+
+/// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
+/// its own. A case or claim that failed is a failure; a case that was left out and a claim that
+/// could not be judged are skipped.
+void writeClaims(const std::filesystem::path& runDir, const std::vector<CaseResult>& cases,
+                 const std::vector<ClaimResult>& results, const ReportContext& context);
+/// The text of junit.xml.
+std::string junitXml(const std::vector<CaseResult>& cases, const std::vector<ClaimResult>& results);
 
 /// The verdict of that name. Throws Error at `where` for a name that is none.
 Verdict verdictAt(const SourceLocation& where, const std::string& name);

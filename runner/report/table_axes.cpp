@@ -78,12 +78,107 @@ void addAxesOf(const config::Selection& selection, std::vector<std::string>& axe
     for (const auto& [axis, value] : selection.where) addAxis(axes, axis);
 }
 
+/// The places of the cases that may lie there: those that fit on the axis that leaves the fewest.
+std::vector<std::size_t> candidates(const LayoutCases& cases, const CaseIndex& index,
+                                    const Where& where) {
+    std::optional<std::size_t> best;
+    const std::vector<std::string>* values = nullptr;
+    std::size_t fewest = 0;
+    for (const auto& [name, allowed] : where) {
+        if (name == "frame") continue;
+        const std::size_t axis = cases.indexOf(name);
+        const std::size_t count = index.countOf(axis, allowed);
+        if (best && count >= fewest) continue;
+        best = axis;
+        fewest = count;
+        values = &allowed;
+    }
+    if (best) return index.placesOf(*best, *values);
+    std::vector<std::size_t> all(index.caseCount());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+}
+
 }  // namespace
+
+CaseIndex::CaseIndex(const std::vector<const AxisValues*>& cases) : caseCount_(cases.size()) {
+    for (std::size_t place = 0; place < cases.size(); ++place) {
+        const AxisValues& values = *cases[place];
+        axes_.resize(std::max(axes_.size(), values.size()));
+        for (std::size_t axis = 0; axis < values.size(); ++axis) {
+            Axis& own = axes_[axis];
+            (values[axis] ? own.places[*values[axis]] : own.unknown).push_back(place);
+        }
+    }
+}
+
+std::size_t CaseIndex::countOf(std::size_t axis, const std::vector<std::string>& values) const {
+    if (axis >= axes_.size()) return 0;
+    std::size_t count = axes_[axis].unknown.size();
+    for (const std::string& value : values) {
+        const auto found = axes_[axis].places.find(value);
+        if (found != axes_[axis].places.end()) count += found->second.size();
+    }
+    return count;
+}
+
+std::vector<std::size_t> CaseIndex::placesOf(std::size_t axis,
+                                             const std::vector<std::string>& values) const {
+    if (axis >= axes_.size()) return {};
+    std::vector<std::size_t> places = axes_[axis].unknown;
+    for (const std::string& value : values) {
+        const auto found = axes_[axis].places.find(value);
+        if (found == axes_[axis].places.end()) continue;
+        places.insert(places.end(), found->second.begin(), found->second.end());
+    }
+    std::ranges::sort(places);
+    places.erase(std::ranges::unique(places).begin(), places.end());
+    return places;
+}
+
+void LayoutCases::makeIndices() {
+    std::vector<const AxisValues*> plannedAxes, runAxes;
+    for (const PlannedCase& one : planned) plannedAxes.push_back(&one.axes);
+    for (const CaseRecords& one : run) runAxes.push_back(&one.axes);
+    plannedIndex = CaseIndex(plannedAxes);
+    runIndex = CaseIndex(runAxes);
+}
 
 std::size_t LayoutCases::indexOf(const std::string& axis) const {
     const auto found = std::find(axes.begin(), axes.end(), axis);
     GFXREPRO_ASSERT(found != axes.end());
     return static_cast<std::size_t>(found - axes.begin());
+}
+
+bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
+             bool isUnknownMatching) {
+    for (const auto& [axis, allowed] : where) {
+        if (axis == "frame") continue;
+        const auto& value = values[cases.indexOf(axis)];
+        const bool isMatching =
+            value ? std::find(allowed.begin(), allowed.end(), *value) != allowed.end()
+                  : isUnknownMatching;
+        if (!isMatching) return false;
+    }
+    return true;
+}
+
+std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases) {
+    std::vector<const CaseRecords*> found;
+    for (const std::size_t place : candidates(cases, cases.runIndex, where)) {
+        const CaseRecords& run = cases.run[place];
+        if (matches(run.axes, cases, where, false)) found.push_back(&run);
+    }
+    return found;
+}
+
+std::vector<const PlannedCase*> plannedAt(const Where& where, const LayoutCases& cases) {
+    std::vector<const PlannedCase*> found;
+    for (const std::size_t place : candidates(cases, cases.plannedIndex, where)) {
+        const PlannedCase& planned = cases.planned[place];
+        if (matches(planned.axes, cases, where, true)) found.push_back(&planned);
+    }
+    return found;
 }
 
 LayoutCases gatherCases(const config::Experiment& experiment, const std::vector<Record>& records) {
@@ -99,6 +194,7 @@ LayoutCases gatherCases(const config::Experiment& experiment, const std::vector<
     cases.planned = planCases(experiment, cases.axes);
     cases.run = groupByCase(records, experiment.id, cases.axes);
     cases.frameCount = experiment.measure.frames;
+    cases.makeIndices();
     return cases;
 }
 

@@ -1,7 +1,9 @@
 // The rows and columns of a table: which combinations of axis values it has, in which order.
 #pragma once
 
+#include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "runner/config/experiment.h"
@@ -12,6 +14,28 @@ namespace gfxrepro::report {
 /// A row or a column: the label on each of its layout axes.
 using Key = std::vector<std::string>;
 
+/// Cases by their value on each axis, so that a cell asks those that may be its own, not each.
+class CaseIndex {
+  public:
+    CaseIndex() = default;
+    explicit CaseIndex(const std::vector<const AxisValues*>& cases);
+
+    std::size_t caseCount() const { return caseCount_; }
+    /// How many cases have one of the values on the axis, or none that is known.
+    std::size_t countOf(std::size_t axis, const std::vector<std::string>& values) const;
+    /// Their places, ascending.
+    std::vector<std::size_t> placesOf(std::size_t axis,
+                                      const std::vector<std::string>& values) const;
+
+  private:
+    struct Axis {
+        std::unordered_map<std::string, std::vector<std::size_t>> places;
+        std::vector<std::size_t> unknown;
+    };
+    std::size_t caseCount_ = 0;
+    std::vector<Axis> axes_;
+};
+
 /// What is known of a layout's cases. `axes` names the sweep axes of its rows and columns and of
 /// all `where` selections; planned and run cases carry their values beside it.
 struct LayoutCases {
@@ -19,10 +43,24 @@ struct LayoutCases {
     std::vector<PlannedCase> planned;
     std::vector<CaseRecords> run;
     int frameCount = 1;
+    CaseIndex plannedIndex, runIndex;
 
+    /// Makes the indices; again when cases were added.
+    void makeIndices();
     /// The place of an axis in `axes`.
     std::size_t indexOf(const std::string& axis) const;
 };
+
+/// Which cases a layout asks for: axis → any of these values.
+using Where = std::map<std::string, std::vector<std::string>>;
+/// Whether a case with these values lies there; `isUnknownMatching`: also where a value is not known.
+bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
+             bool isUnknownMatching);
+/// Those that were run and lie there.
+std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases);
+/// Those of the plan that lie there, or may: what is not known of one may match.
+std::vector<const PlannedCase*> plannedAt(const Where& where, const LayoutCases& cases);
+
 LayoutCases gatherCases(const config::Experiment& experiment, const std::vector<Record>& records);
 
 /// The combinations of `layoutAxes`: on sweep axes those that occur in the plan or, where that does

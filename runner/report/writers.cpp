@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "runner/core/files.h"
@@ -168,37 +167,6 @@ std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportConte
     return text;
 }
 
-std::string junitXml(const std::vector<ClaimResult>& results) {
-    const auto count = [&](const std::function<bool(Verdict)>& isCounted) {
-        return std::count_if(results.begin(), results.end(),
-                             [&](const ClaimResult& result) { return isCounted(result.verdict); });
-    };
-    const auto isFailure = [](Verdict verdict) { return verdict == Verdict::Fails; };
-    const auto isSkipped = [](Verdict verdict) {
-        return verdict != Verdict::Fails && verdict != Verdict::Holds;
-    };
-    std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<testsuite name=\"claims\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
-        results.size(), count(isFailure), count(isSkipped));
-    for (const ClaimResult& result : results) {
-        text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escapeXml(result.table),
-                            escapeXml(result.id));
-        if (result.verdict == Verdict::Holds) {
-            text += "/>\n";
-            continue;
-        }
-        const std::string message =
-            fmt::format("{}: measured {}, required {}{}", verdictName(result.verdict),
-                        result.measured.empty() ? "nothing" : result.measured, result.required,
-                        result.reason.empty() ? "" : fmt::format(" ({})", result.reason)) +
-            (result.because.empty() ? "" : fmt::format("; known: {}", result.because));
-        text += fmt::format("><{} message=\"{}\"/></testcase>\n",
-                            isFailure(result.verdict) ? "failure" : "skipped", escapeXml(message));
-    }
-    return text + "</testsuite>\n";
-}
-
 }  // namespace
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
@@ -233,10 +201,10 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
     return results;
 }
 
-void writeClaims(const fs::path& runDir, const std::vector<ClaimResult>& results,
-                 const ReportContext& context) {
+void writeClaims(const fs::path& runDir, const std::vector<CaseResult>& cases,
+                 const std::vector<ClaimResult>& results, const ReportContext& context) {
     writeFileAtomic(runDir / "claims.csv", claimsCsv(results, context));
-    writeFileAtomic(runDir / "junit.xml", junitXml(results));
+    writeFileAtomic(runDir / "junit.xml", junitXml(cases, results));
 }
 
 }  // namespace gfxrepro::report

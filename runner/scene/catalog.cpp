@@ -203,7 +203,7 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
     const std::string& name = reference.text();
     if (config::isSceneFile(name)) {
         SceneSource source;
-        source.file = fs::absolute(fs::path(reference.location().file).parent_path() / name)
+        source.file = fs::absolute(fs::path(reference.location().file.text()).parent_path() / name)
                           .lexically_normal();
         source.where = reference.location();
         if (fs::is_regular_file(source.file)) return source;

@@ -13,11 +13,13 @@ namespace fs = std::filesystem;
 
 class Compare : public ::testing::Test {
   protected:
-    /// The mock program, slower by `extraMs` in each iteration.
-    std::string program(const std::string& name, int extraMs) const {
+    /// The mock program, slower by `extraMs` in each iteration, whose picture is of this shade.
+    std::string program(const std::string& name, int extraMs,
+                        const std::string& shade = "0.5") const {
         const fs::path path =
             folder.write(name, "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
-                                   " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
+                                   " GFXREPRO_MOCK_SHADE=" + shade + " exec " +
+                                   GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
         fs::permissions(path, fs::perms::owner_all);
         return path;
     }
@@ -82,6 +84,59 @@ TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
               std::string::npos);
     const ProcessResult both = compared(crashing, crashing);
     EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+}
+
+TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
+    const fs::path config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
+    const ProcessResult result =
+        mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
+                      out, program("old", 0), program("new", 0, "0.75"), config});
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_NE(result.out.find("alarm; measuring again\n"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("sweep/mock mock picture/flat: changed: FLIP "), std::string::npos)
+        << result.out;
+    EXPECT_NE(result.out.find("largest difference 0.25 (0 allowed)"), std::string::npos)
+        << result.out;
+    EXPECT_EQ(result.out.find("picture/truth: changed"), std::string::npos) << "it is the same";
+    std::size_t kept = 0;
+    for (const auto& entry : fs::directory_iterator(out + "/pictures/sweep-mock")) {
+        kept += entry.path().string().ends_with("-flat-flip.png") ? 1 : 0;
+    }
+    EXPECT_EQ(kept, 2U) << "a map a case";
+    const std::string junit = readFile(out + "/junit.xml");
+    EXPECT_NE(junit.find("<failure message=\"changed: FLIP "), std::string::npos);
+    EXPECT_NE(junit.find("number&quot;:2"), std::string::npos) << "cases with names of their own";
+    EXPECT_NE(readFile(out + "/comparison.md").find("[difference](pictures/sweep-mock/"),
+              std::string::npos);
+    EXPECT_NE(readFile(out + "/benchmark.json").find("\"unit\": \"FLIP\""), std::string::npos);
+}
+
+TEST_F(Compare, PicturesMayDifferByWhatTheTableAllows) {
+    const fs::path config =
+        writeMockConfig(folder, "picture_tolerance: {flip: 0.5, difference: 0.3}\n");
+    const std::string a = folder.path() / "a", b = folder.path() / "b";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", a}).exitCode, 0);
+    const auto compared = [&](const std::string& shade) {
+        fs::remove_all(b);
+        const ProcessResult run = runProgram(
+            {program("other", 0, shade), "run", config, "--device", "software", "--out", b});
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        return mockGfxrepro({"compare", a, b, "--out", out});
+    };
+    EXPECT_EQ(compared("0.75").exitCode, 0);
+    EXPECT_FALSE(fs::exists(out + "/pictures"));
+    EXPECT_EQ(compared("0.875").exitCode, 1);
+    const ProcessResult notFinite = compared("nan");
+    EXPECT_EQ(notFinite.exitCode, 1);
+    EXPECT_NE(notFinite.out.find("channel B has a value of 0.5 before, nan after"),
+              std::string::npos)
+        << notFinite.out;
+    fs::remove_all(a + "/images");  // as kept results are
+    const ProcessResult without = mockGfxrepro({"compare", a, b, "--out", out});
+    EXPECT_EQ(without.exitCode, 0) << without.out;
+    EXPECT_NE(without.out.find("warning: the older run has no pictures: none are compared\n"),
+              std::string::npos)
+        << without.out;
 }
 
 TEST_F(Compare, RefusesWhatIsNoPair) {

@@ -72,6 +72,36 @@ TEST(Expectations, MatchByTableAndAxesUntilTheirDay) {
     EXPECT_FALSE(other.isExpected(caseWith("p/1", "{n: 2}"), report::Status::Crash));
 }
 
+TEST(Expectations, WhatTheyNameHasToBeThere) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "sweep: {behaviour: [ok, crash]}\nprofiles:\n  quick: {sweep: {number: [7]}}\n");
+    const std::string list = folder.path() / "expect-software.yaml";
+    const auto complaint = [&](const std::string& table, const std::string& at) {
+        folder.write("expect-software.yaml", "fails:\n  - table: " + table + "\n    at: " + at +
+                                                 "\n    reason: r\n    until: 9999-12-31\n");
+        const ProcessResult check = mockGfxrepro({"check", config});
+        EXPECT_EQ(check.exitCode, check.err.empty() ? 0 : 2);
+        return check.err;
+    };
+    EXPECT_EQ(complaint("sweep/mock", "{behaviour: [crash, ok]}"), "");
+    EXPECT_EQ(complaint("sweep/mock", "{number: 7}"), "") << "in the profile quick";
+    EXPECT_EQ(complaint("sweep/mokc", "{}"),
+              "gfxrepro: " + list +
+                  ":2:5: table: no config beside the list is 'sweep/mokc'; did you mean "
+                  "'sweep/mock'?\n");
+    EXPECT_EQ(complaint("sweep/mock", "{behavior: crash}"),
+              "gfxrepro: " + list +
+                  ":3:20: at: 'behavior' is no axis or parameter of sweep/mock; did you mean "
+                  "'behaviour'?\n");
+    const std::string unknown =
+        list + ":3:26: at: no case of sweep/mock has behaviour=crush; did you mean 'crash'?\n";
+    EXPECT_EQ(complaint("sweep/mock", "{behaviour: [ok, crush]}"), "gfxrepro: " + unknown);
+    const ProcessResult run = mockGfxrepro(
+        {"run", config, "--device", "software", "--quiet", "--out", folder.path() / "run"});
+    EXPECT_NE(run.err.find("warning: " + unknown), std::string::npos) << run.err;
+}
+
 TEST(Expectations, RunFollowsThem) {
     const TemporaryFolder folder;
     const std::string config =

@@ -235,5 +235,34 @@ TEST(Faults, NoSuchDevice) {
     EXPECT_EQ(run.err.substr(0, 10), "gfxrepro: ");
 }
 
+TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder,
+        "sweep: {marker: [x, y], number: [1, 2]}\n"
+        "layout:\n  rows: number\n  columns: marker\n"
+        "  cell: {metric: number, format: \"{median:.0f}\"}\n"
+        "claims:\n  order: {says: it is, order: x < y}\n"
+        "  two: {says: it is, bound: x, bound_from: ours, less_than: 9, at: {number: 2}}\n");
+    const auto checked = [&](const std::string& sweep) {
+        return mockGfxrepro({"check", config, "--sweep", sweep}).out;
+    };
+    EXPECT_EQ(mockGfxrepro({"check", config}).out,
+              config + ": ok, sweep/mock, 4 cases, 2 claims\n");
+    EXPECT_EQ(checked("marker=x"),
+              config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
+                  ": claim 'order' will be unmeasured: 'y' is no column; did you mean 'x'? "
+                  "(columns: x)\n");
+    EXPECT_EQ(checked("number=1"), config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
+                                       ": claim 'two' will be unmeasured: no row that it reads\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
+                                            "software", "--quiet", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_NE(readFile(dir + "/claims.csv").find("not among what was measured: 'y' is no column"),
+              std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

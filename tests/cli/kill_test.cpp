@@ -1,6 +1,7 @@
 // The runner, its workers or both are killed at 25 random moments (GFXREPRO_TEST_KILLS: at as
-// many): nothing measured is lost, nothing is left, and the tables end as those of a run that
-// nobody touched.
+// many), some of them on a disk that is nearly full, some with the write of a unit cut anywhere:
+// nothing measured is lost but what was cut, nothing is left, and the tables end as those of a run
+// that nobody touched.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -30,9 +31,16 @@ int folderCount() {
     return (moments ? std::atoi(moments) : kMoments) / kMomentsInFolder;
 }
 
-/// Starts or continues the run in `dir` and kills something `delayMs` later.
-void runAndKill(const std::string& config, const std::string& dir, int delayMs, Victim victim) {
+/// Starts or continues the run in `dir` and kills something `delayMs` later. No file grows beyond
+/// `blocks` of 512 bytes, if that is not 0.
+void runAndKill(const std::string& config, const std::string& dir, int delayMs, Victim victim,
+                int blocks) {
     std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "run"};
+    if (blocks > 0) {
+        command = {"/bin/sh", "-c",
+                   "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec \"$0\" \"$@\"",
+                   GFXREPRO_MOCK_PROGRAM, "run"};
+    }
     if (fs::exists(dir + "/plan.json")) {
         command.insert(command.end(), {"--resume", dir, "--retry"});
     } else {
@@ -57,6 +65,17 @@ std::vector<fs::path> temporaryFiles(const fs::path& dir) {
     return files;
 }
 
+/// Cuts the file somewhere in its last `rows` lines, as a kernel that stops a write at a page does.
+void tear(const fs::path& file, std::size_t rows, std::mt19937& random) {
+    const std::string text = fs::exists(file) ? readFile(file) : "";
+    std::size_t begin = text.size();
+    for (std::size_t i = 0; i <= rows && begin != text.npos && begin > 0; ++i) {
+        begin = text.rfind('\n', begin - 1);
+    }
+    if (begin == text.npos || begin == 0) return;  // not that many
+    fs::resize_file(file, begin + 1 + random() % (text.size() - begin - 1));
+}
+
 std::size_t measuredCount(const std::string& dir) {
     return fs::exists(dir + "/records.csv") ? rowsOf(dir, "number").size() : 0;
 }
@@ -71,16 +90,21 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
     std::mt19937 random(20261121);
+    const std::size_t unitRows = report::readRecords(whole + "/records.csv").size() / 12;
     std::size_t unfinished = 0;
     for (int i = 0; i < folderCount(); ++i) {
         const std::string dir = folder.path() / ("killed" + std::to_string(i));
         std::size_t measured = 0;
         for (int moment = 0; moment < kMomentsInFolder; ++moment) {
             const int delayMs = static_cast<int>(random() % kLatestMs);
-            runAndKill(config, dir, delayMs, static_cast<Victim>(random() % 3));
+            const int blocks = random() % 4 == 0 ? static_cast<int>(8 + random() % 40) : 0;
+            runAndKill(config, dir, delayMs, static_cast<Victim>(random() % 3), blocks);
             const std::size_t now = measuredCount(dir);
             EXPECT_GE(now, measured) << dir << ", " << delayMs << " ms";
-            measured = now;
+            const bool isTorn = now < 12 && random() % 4 == 0;  // not of a run that has ended
+            if (isTorn) tear(dir + "/records.csv", unitRows, random);
+            measured = measuredCount(dir);
+            EXPECT_GE(measured + 1, now) << "one unit was cut";
             unfinished += now < 12 ? 1 : 0;
         }
         // A run that was killed before its plan was frozen is begun, not continued.

@@ -130,7 +130,10 @@ class Mock : public technique::Technique {
         recorder.metric("number", isNan ? std::nan("") : number_, "1");
         if (behaviour_ == Behaviour::Twice) recorder.metric("number", number_, "1");
         if (behaviour_ == Behaviour::Infinite) recorder.metric("psnr_db", HUGE_VAL, "dB");
-        recorder.image("flat", image::ImageF(4, 4, 3, 0.5F));
+        // A build that draws something else, for tests that compare two.
+        const char* shade = std::getenv("GFXREPRO_MOCK_SHADE");
+        const float value = shade ? std::strtof(shade, nullptr) : 0.5F;
+        recorder.image("flat", image::ImageF(4, 4, 3, value));
         recorder.image("truth", image::ImageF(4, 4, 3, 0.25F), {.truthOf = "flat"});
     }
 

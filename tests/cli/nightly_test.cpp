@@ -13,13 +13,14 @@ namespace fs = std::filesystem;
 
 class Nightly : public ::testing::Test {
   protected:
-    /// A bundle of the mock program, slower by `extraMs` in each iteration.
+    /// A bundle of the mock program, slower by `extraMs` in each iteration, its picture of `shade`.
     std::string bundle(int extraMs) const {
         const std::string name = "bundle-" + std::to_string(extraMs);
         fs::create_directories(folder.path() / name);
         const fs::path program = folder.write(
             name + "/gfxrepro", "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
-                                    " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
+                                    " GFXREPRO_MOCK_SHADE=" + shade + " exec " +
+                                    GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
         fs::permissions(program, fs::perms::owner_all);
         return program.parent_path();
     }
@@ -51,6 +52,7 @@ class Nightly : public ::testing::Test {
 
     TemporaryFolder folder;
     std::string state = folder.path() / "state";
+    std::string shade = "0.5";
 };
 
 TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
@@ -82,6 +84,21 @@ TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     const ProcessResult fixed = night(0, true);
     EXPECT_EQ(fixed.exitCode, 0) << fixed.err;
     EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+}
+
+TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    shade = "0.75";
+    const ProcessResult other = night(1);
+    EXPECT_EQ(other.exitCode, 1) << other.out << other.err;
+    EXPECT_NE(other.out.find("picture/flat: changed: FLIP "), std::string::npos) << other.out;
+    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    std::size_t kept = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(state)) {
+        const bool isKept = entry.path().string().find("/pictures/") != std::string::npos;
+        kept += isKept && entry.is_regular_file() ? 1 : 0;
+    }
+    EXPECT_EQ(kept, 5U) << "two EXR files, two PNG files, and the map of differences";
 }
 
 TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {

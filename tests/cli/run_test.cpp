@@ -283,7 +283,7 @@ TEST(Run, ResumeRefusesAPlanThatWasChanged) {
         writeFileAtomic(dir + "/plan.json", text);
         return mockGfxrepro({"run", "--resume", dir});
     };
-    const ProcessResult other = resumedWith("\"number\": 1", "\"number\": 77");
+    const ProcessResult other = resumedWith("\"number\":1", "\"number\":77");
     EXPECT_EQ(other.exitCode, 2);
     EXPECT_NE(other.err.find("is not the one that was planned: plan.json was changed"),
               std::string::npos)

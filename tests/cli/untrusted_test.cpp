@@ -81,7 +81,7 @@ TEST_F(Untrusted, APlanNamesConfigsAndCases) {
     }
     replaceInPlan(file, "\"file\": \"" + other);
     expectRefused({"export", dir, "--out", out}, other + ": is no config");
-    replaceInPlan("\"id\": \"", "\"id\": \"../../");
+    replaceInPlan("\"id\":\"", "\"id\":\"../../");
     expectRefused({"table", dir}, "is no id of a case");
 }
 

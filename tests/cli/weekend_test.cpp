@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "runner/core/files.h"
@@ -78,6 +80,39 @@ TEST(Weekend, ADriverThatDoesNotAnswer) {
     EXPECT_EQ(result.err, "gfxrepro: the driver did not open a device within 1 s\n");
     EXPECT_EQ(started("soon").err,
               "gfxrepro: GFXREPRO_START_LIMIT_S: expected a number of seconds, found 'soon'\n");
+}
+
+TEST(Weekend, DoctorWaitsForNoDriverEither) {
+    const TemporaryFolder folder;
+    const std::string pipe = folder.path() / "vendor.json";  // which the loader of drivers reads
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const ProcessResult result =
+        runProgram({GFXREPRO_MOCK_PROGRAM, "doctor"},
+                   {"__EGL_VENDOR_LIBRARY_FILENAMES=" + pipe, "GFXREPRO_START_LIMIT_S=1"});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_EQ(result.err, "gfxrepro: a driver did not answer in time\n");
+}
+
+TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 300}\nsweep: {number: [1, 2, 3, 4]}\n");
+    const auto ended = [&](const std::string& dir, const std::function<void()>& disturb) {
+        BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
+                               "--jobs", "1", "--out", dir});
+        waitForStarts(dir, 1);
+        disturb();
+        const ProcessResult result = run.wait();
+        EXPECT_EQ(result.exitCode, 2) << result.out;
+        EXPECT_THAT(result.err,
+                    HasSubstr("gfxrepro: " + dir + ": was removed or moved, or its lock"));
+    };
+    const std::string moved = folder.path() / "moved", locked = folder.path() / "locked";
+    ended(moved, [&] { fs::rename(moved, moved + "-away"); });
+    ended(locked, [&] { fs::remove(locked + "/lock"); });
+    const ProcessResult rest = mockGfxrepro({"run", "--resume", locked});
+    EXPECT_EQ(rest.exitCode, 0) << rest.err;
+    EXPECT_EQ(rowsOf(locked, "number").size(), 4U);
 }
 
 TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "runner/config/experiment.h"
 #include "runner/core/files.h"
 #include "runner/core/random.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
+#include "runner/report/images.h"
+#include "runner/report/records.h"
 #include "runner/scene/load.h"
 #include "tests/fuzz/memory_meter.h"
 #include "tests/support/support.h"
@@ -23,8 +27,13 @@ namespace {
 namespace fs = std::filesystem;
 using Load = std::function<void(const fs::path&)>;
 
-constexpr int kMutations = 5;
+constexpr int kMutations = 5;  // of each seed; GFXREPRO_TEST_MUTATIONS: as many
 constexpr std::uintmax_t kMaxMutatedBytes = 200'000;  // larger seeds are loaded as they are only
+
+int mutationCount() {
+    const char* count = std::getenv("GFXREPRO_TEST_MUTATIONS");
+    return count ? std::atoi(count) : kMutations;
+}
 
 bool isFinite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -74,6 +83,17 @@ const Load kReadExr = [](const fs::path& path) {
         EXPECT_EQ(channel.values.width(), exr.width());
         EXPECT_EQ(channel.values.height(), exr.height());
     }
+};
+
+const Load kLoadConfig = [](const fs::path& path) {
+    const config::Experiment experiment = config::loadExperiment(path, {}, GFXREPRO_CONFIGS);
+    config::experimentFromDocument(experiment.document, path);
+    config::expandCases(experiment);
+};
+const Load kParseJson = [](const fs::path& path) { config::parseJsonFile(path); };
+const Load kReadRecords = [](const fs::path& path) { report::readRecords(path); };
+const Load kReadImages = [](const fs::path& path) {
+    report::readImages(path.parent_path().parent_path());
 };
 
 /// A file may fail, but only by an Error that names it, and within the memory that its size allows:
@@ -149,8 +169,10 @@ void fuzz(const Load& load, const fs::path& seed, std::uint64_t number, const fs
     expectRefusedOrLoaded(load, seed, content.size() + neighbours);
     if (content.size() > kMaxMutatedBytes) return;
     Random random(number);
-    const fs::path path = folder / ("mutated" + seed.filename().extension().string());
-    for (int i = 0; i < kMutations; ++i) {
+    const bool isList = seed.filename() == "index.csv";  // of a folder, which has one name for it
+    const fs::path path =
+        folder / (isList ? "index.csv" : "mutated" + seed.filename().extension().string());
+    for (int i = 0; i < mutationCount(); ++i) {
         const std::string variant = mutated(content, random);
         std::ofstream(path, std::ios::binary) << variant;
         expectRefusedOrLoaded(load, path, variant.size() + neighbours);
@@ -260,6 +282,46 @@ TEST(LoaderFuzz, Exr) {
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("exr", {own.path() / "a.exr"})) {
         fuzz(kReadExr, seed, ++number, work.path());
+    }
+}
+
+TEST(LoaderFuzz, Configs) {
+    const test::TemporaryFolder work;
+    std::vector<fs::path> all;
+    for (const char* folder : {"smoke", "sweeps", "zju2005"}) {
+        for (const auto& entry : fs::directory_iterator(fs::path(GFXREPRO_CONFIGS) / folder)) {
+            if (hasExtension(entry.path(), {".yaml"})) all.push_back(entry.path());
+        }
+    }
+    std::sort(all.begin(), all.end());
+    std::uint64_t number = 0;
+    for (const fs::path& seed : all) fuzz(kLoadConfig, seed, ++number, work.path());
+}
+
+TEST(LoaderFuzz, FilesOfRuns) {
+    const test::TemporaryFolder own, work;
+    const fs::path records = own.path() / "records.csv";
+    report::Record row;
+    row.caseId = "0123456789ab";
+    row.table = "zju2005/2.1";
+    row.params = R"({"method":"a, \"b\"","output":{"width":8,"height":8}})";
+    row.metric = "psnr_db";
+    std::vector<report::Record> rows(3, row);
+    rows[1].frame = 1;
+    rows[2].process = 1;
+    rows[2].status = report::Status::Crash;
+    rows[2].message = "about\nto crash";
+    report::RecordWriter(records).append(rows);
+    report::appendImages(own.path(), {{"0123456789ab", "zju2005/2.1", 0, "flat", "images/a/b.png",
+                                       "images/a/b.exr", "a, \"title\"", ""}});
+    const fs::path plan =
+        own.write("plan.json", R"({"a": [1, 2.5e3, "x\u00e9"], "b": {"c": null}})");
+    fs::create_directories(work.path() / "images");
+    std::uint64_t number = 0;
+    for (int round = 0; round < 20; ++round) {
+        fuzz(kReadRecords, records, ++number, work.path());
+        fuzz(kReadImages, own.path() / "images/index.csv", ++number, work.path() / "images");
+        fuzz(kParseJson, plan, ++number, work.path());
     }
 }
 

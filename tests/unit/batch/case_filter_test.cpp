@@ -58,10 +58,11 @@ TEST(CaseFilter, SaysWhatThereIs) {
 
 TEST(CaseFilter, NamesOneCase) {
     const Plan all = plan();
-    EXPECT_EQ(onlyOf(all.cases[0], all), (Ids{"step=1", "view=[0, 1]"}));
-    EXPECT_EQ(onlyOf(all.cases[1], all), (Ids{"case=aa22"}));  // its axes are bb33's, too
-    EXPECT_EQ(onlyOf(all.cases[2], all), (Ids{"step=2.0", "packed=true"}));
-    for (const Case& item : all.cases) EXPECT_EQ(left(onlyOf(item, all)), (Ids{item.id}));
+    CaseNames names(all);
+    EXPECT_EQ(names.onlyOf(all.cases[0]), (Ids{"step=1", "view=[0, 1]"}));
+    EXPECT_EQ(names.onlyOf(all.cases[1]), (Ids{"case=aa22"}));  // its axes are bb33's, too
+    EXPECT_EQ(names.onlyOf(all.cases[2]), (Ids{"step=2.0", "packed=true"}));
+    for (const Case& item : all.cases) EXPECT_EQ(left(names.onlyOf(item)), (Ids{item.id}));
 }
 
 }  // namespace

@@ -336,10 +336,47 @@ TEST_F(ExperimentTest, ParametersOfScenesMergeByKey) {
         << "what the command line sets is of all scenes";
 }
 
+TEST_F(ExperimentTest, FilesThatExtendTheNextOneTwiceAreNotReadForAnHour) {
+    for (int i = 0; i < 20; ++i) {
+        const std::string next = "e" + std::to_string(i + 1) + ".yaml";
+        folder.write("e" + std::to_string(i) + ".yaml", "extends: [" + next + ", " + next + "]\n");
+    }
+    folder.write("e20.yaml", "params: {a: 1}\n");
+    EXPECT_EQ(errorWith("extends: e12.yaml"), "no error");
+    EXPECT_NE(
+        errorWith("extends: e0.yaml")
+            .find("extends: more than 1000 files, those that are extended twice counted twice"),
+        std::string::npos);
+}
+
+TEST_F(ExperimentTest, WhatIsSetToNothingIsNoValue) {
+    EXPECT_EQ(test::errorText([] { parseOverride("a="); }),
+              "'a=' on the command line has no value; null removes the key");
+    ExperimentOptions options;
+    options.sweeps = {parseOverride("a=null")};
+    EXPECT_EQ(loadError("table: p/1\ntitle: t\ntechnique: x\n", options),
+              "command line, a=null: 'a' is not swept; nothing to remove");
+    EXPECT_EQ(expandCases(load("table: p/1\ntitle: t\ntechnique: x\nsweep: {a: [1, 2]}\n", options))
+                  .size(),
+              1U);
+}
+
+TEST_F(ExperimentTest, PictureTolerance) {
+    const std::string head = "table: p/1\ntitle: t\ntechnique: x\n";
+    EXPECT_FALSE(load(head).pictureTolerance.has_value());
+    const auto given = load(head + "picture_tolerance: {flip: 0.25}\n").pictureTolerance;
+    ASSERT_TRUE(given.has_value());
+    EXPECT_EQ(given->flip, 0.25);
+    EXPECT_EQ(given->difference, PictureTolerance{}.difference);
+    EXPECT_EQ(errorWith("picture_tolerance: {flip: 2}"),
+              "DIR/zju/a.yaml:4:27: picture_tolerance: flip is 2; allowed: 0 … 1");
+    EXPECT_NE(errorWith("picture_tolerance: {flap: 2}").find("unknown"), std::string::npos);
+}
+
 TEST_F(ExperimentTest, Overrides) {
     ExperimentOptions options;
     options.sets = {parseOverride("resolution=64"), parseOverride("output.width=100"),
-                    parseOverride("params.voxel="), parseOverride("measure.lane=quality")};
+                    parseOverride("params.voxel=null"), parseOverride("measure.lane=quality")};
     options.sweeps = {parseOverride("scene=models/duck, models/bunny"),
                       parseOverride("slices={log2: [2, 8]}"), parseOverride("params.k=5")};
     const Experiment table = load(kVoxelization, options);

@@ -675,7 +675,13 @@ TEST(Claims, BadOperandsAreErrors) {
         experiment.claims[0].location = {"t.yaml", 4, 2};
         return errorText([&] { evaluateClaims(experiment, table, kSoftware); });
     };
-    EXPECT_EQ(error("a + time"), "t.yaml:4:2: claim 'X': 'time' is no column (columns: a, b, c-c)");
+    EXPECT_EQ(error("a + time"), "no error") << "a profile may have taken it away";
+    const ClaimResult absent = evaluateClaims(experiment, table, kSoftware)[0];
+    EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
+    EXPECT_EQ(absent.reason,
+              "not among what was measured: 'time' is no column (columns: a, b, c-c)");
+    EXPECT_EQ(whatIsAbsent(experiment.claims[0], table),
+              "'time' is no column (columns: a, b, c-c)");
     EXPECT_THAT(error("a +"),
                 testing::StartsWith("t.yaml:4:2: claim 'X': 'a +' is no expression: "));
     EXPECT_EQ(error("max(a, c-c) * 2"), "no error");

@@ -98,7 +98,12 @@ TEST(Writers, ClaimFiles) {
     context.tried[{"zju2005/9.9", "A"}] = {Verdict::Holds, "none of the 5 tried"};
     context.tried[{"zju2005/9.9", "B"}] = {Verdict::Holds, "bias (of 5 tried)"};
     const auto results = evaluateClaims({experiment()}, tables, context);
-    writeClaims(run.folder.path(), results, kContext);
+    using Outcome = CaseResult::Outcome;
+    const std::vector<CaseResult> cases = {
+        {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
+        {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>"},
+        {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"}};
+    writeClaims(run.folder.path(), cases, results, kContext);
     EXPECT_EQ(
         run.read("claims.csv"),
         "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
@@ -123,15 +128,26 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(
         run.read("junit.xml"),
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<testsuites>\n"
+        "<testsuite name=\"cases\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a (2)\">"
+        "<failure message=\"crash: &lt;11&gt;\"/></testcase>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=b\">"
+        "<skipped message=\"missing: too slow\"/></testcase>\n"
+        "</testsuite>\n"
         "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"A\"/>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"B\"><failure message=\"fails: measured "
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 A\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 B\"><failure message=\"fails: "
+        "measured "
         "8 [8, 8], required draw_ms ≤ 1 (by the clock: no CPU time was recorded of these); known: "
         "slow, measured\"/></testcase>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"C\"><skipped message=\"unmeasured: "
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 C\"><skipped "
+        "message=\"unmeasured: "
         "measured nothing, required draw_ms ≤ 1 (draw_ms at scene=models/lost: crash (signal "
         "&lt;11&gt;))\"/></testcase>\n"
-        "</testsuite>\n");
+        "</testsuite>\n"
+        "</testsuites>\n");
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+// The JSON files of a run folder, which may be anybody's: read with their shape checked, so that
+// what is wrong in one is said with its place, and nobody below has to ask.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "runner/batch/protocol.h"
+
+namespace gfxrepro::batch {
+
+/// manifest.json: what is there that others read (machine, invocations, scenes, notes, …) is of its
+/// kind, and all of it is there that a run has from its beginning. Throws Error with the file and
+/// the member.
+Json readManifest(const std::filesystem::path& file);
+
+/// The events of log.jsonl; none where there is no such file. Lines that are no JSON object are
+/// passed over: a killed runner has torn them. Throws Error with file and line for a member of
+/// another kind than the runner writes.
+std::vector<Json> readLog(const std::filesystem::path& file);
+
+}  // namespace gfxrepro::batch

@@ -1,0 +1,44 @@
+// The recorded pictures of two runs, held against each other.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/regression/comparison.h"
+#include "runner/report/records.h"
+
+namespace gfxrepro::regression {
+
+/// The files of a picture; empty where there is none. One of the two is there.
+struct PictureFiles {
+    std::filesystem::path exr;
+    std::filesystem::path png;
+};
+/// By case, as its records name it, and picture: "flat", "flat, frame 3" where there are several.
+using PictureMap = std::map<SeriesKey, PictureFiles>;
+
+/// The pictures of a run that are listed and there. Throws Error as readImages().
+PictureMap picturesOf(const std::filesystem::path& runDir,
+                      const std::vector<report::Record>& records);
+
+struct PictureRules {
+    /// The tables that say themselves how far pictures may be apart.
+    std::map<std::string, config::PictureTolerance> byTable;
+    /// Both sides are of one program: then pictures are equal, where the table does not say else.
+    bool isOneBuild = false;
+    /// Where `pictures/` is made, with what changed.
+    std::filesystem::path folder;
+};
+
+/// Same or Changed for each picture that both sides have, after matchParams; Missing for the
+/// others. Changed is what lies beyond FLIP's or the largest difference's tolerance, and what
+/// cannot be subtracted: a picture that cannot be read, is of another size or other channels, or
+/// holds a value that is not finite (where both are not the same). Values of EXR files are
+/// compared, those of PNG files where a side has no other.
+std::vector<Difference> comparePictures(const PictureMap& before, const PictureMap& after,
+                                        const PictureRules& rules);
+
+}  // namespace gfxrepro::regression

@@ -1,0 +1,121 @@
+"""fetch-assets against a server of its own: TLS alone, a checksum for every file, no wait without a limit."""
+
+import contextlib
+import http.server
+import io
+import os
+import pathlib
+import shutil
+import ssl
+import subprocess
+import sys
+import tarfile
+import tempfile
+import threading
+
+SOURCE = pathlib.Path(sys.argv[1])
+if not all(shutil.which(tool) for tool in ("curl", "openssl")):
+    print("skipped: needs curl and openssl")
+    sys.exit(77)
+
+
+def fetch(*arguments, **environment):
+    result = subprocess.run([SOURCE / "scripts/fetch-assets", *map(str, arguments)], text=True,
+                            env={**os.environ, **environment}, timeout=60,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return result.returncode, result.stdout, result.stderr
+
+
+def archive(member, content):
+    data = io.BytesIO()
+    with tarfile.open(fileobj=data, mode="w:gz") as tar:
+        info = tarfile.TarInfo(member)
+        info.size = len(content)
+        tar.addfile(info, io.BytesIO(content))
+    return data.getvalue()
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    files = {"/bunny.tar.gz": archive("bunny/reconstruction/bun_zipper.ply", b"no bunny"),
+             "/happy/happy_recon.tar.gz": archive("happy_recon/happy_vrip.ply", b"a Buddha")}
+
+    def do_GET(self):
+        if self.path.startswith("/away/"):  # leads to a plain server
+            self.send_response(302)
+            self.send_header("Location", "http://localhost:1/bunny.tar.gz")
+            self.end_headers()
+            return
+        content = self.files.get(self.path)
+        self.send_response(200 if content else 404)
+        self.end_headers()
+        self.wfile.write(content or b"")
+
+    def log_message(self, *_):
+        pass
+
+
+@contextlib.contextmanager
+def server(context):
+    httpd = http.server.ThreadingHTTPServer(("localhost", 0), Handler)
+    if context:
+        httpd.socket = context.wrap_socket(httpd.socket, server_side=True)
+    threading.Thread(target=httpd.serve_forever, daemon=True).start()
+    yield httpd.server_address[1]
+    httpd.shutdown()
+
+
+with tempfile.TemporaryDirectory() as folder:
+    work = pathlib.Path(folder)
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2",
+                    "-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost",
+                    "-keyout", work / "key.pem", "-out", work / "cert.pem"],
+                   check=True, stderr=subprocess.DEVNULL)
+    tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    tls.load_cert_chain(work / "cert.pem", work / "key.pem")
+    trusted = {"CURL_CA_BUNDLE": str(work / "cert.pem")}
+    to = work / "to"
+    bunny, buddha = "bunny/bun_zipper.ply", "buddha/happy_vrip.ply"
+
+    with server(tls) as port:
+        site = f"https://localhost:{port}"
+        ask = ("--to", to, "--site", site)
+        code, out, err = fetch(*ask, bunny, **trusted)
+        assert code == 1 and "should be b1acc63b" in err and "not taken" in err, (code, out, err)
+        assert not (to / bunny).exists()
+        code, out, err = fetch(*ask, buddha, **trusted)
+        assert code == 1 and "none is recorded; compare it" in err, (code, out, err)
+        assert not (to / buddha).exists()
+        code, out, err = fetch(*ask, "--accept-unknown", buddha, **trusted)
+        assert code == 0 and "taken as it is" in out, (code, out, err)
+        assert (to / buddha).read_bytes() == b"a Buddha"
+        code, out, err = fetch(*ask, "--accept-unknown", bunny, **trusted)
+        assert code == 1, "a file that is known to be another is never taken"
+        code, out, err = fetch(*ask, "dragon/dragon_vrip.ply", **trusted)
+        assert code == 1 and "not to be had from" in err and "404" in err, (code, out, err)
+        code, out, err = fetch(*ask, bunny)
+        assert code == 1 and "certificate" in err, "a server that nobody vouches for"
+        code, out, err = fetch("--to", to, "--site", site + "/away", bunny, **trusted)
+        assert code == 1 and "not to be had" in err and not (to / bunny).exists(), (code, out, err)
+    with server(None) as port:
+        code, out, err = fetch("--to", to, "--site", f"http://localhost:{port}", bunny)
+        assert code == 1 and "not to be had" in err, (code, out, err)
+
+    mirror = work / "mirror"
+    (mirror / "lucy").mkdir(parents=True)
+    (mirror / "lucy/lucy_100k.ply").write_bytes(b"no Lucy")
+    code, out, err = fetch("--to", to, "--from", mirror, "lucy/lucy_100k.ply")
+    assert code == 1 and "should be c57a9517" in err, (code, out, err)
+    (mirror / "hand").mkdir()
+    (mirror / "hand/hand.ply").write_bytes(b"a hand")
+    code, out, err = fetch("--to", to, "--from", mirror, "--accept-unknown", "hand/hand.ply")
+    assert code == 0 and (to / "hand/hand.ply").read_bytes() == b"a hand", (code, out, err)
+    code, out, err = fetch("--to", to, "lucy/lucy_100k.ply")
+    assert code == 1 and "has no address; see --from" in err, (code, out, err)
+    assert fetch("--sight")[0] == 2
+
+assets = os.environ.get("GFXREPRO_ASSETS")
+if assets:
+    with tempfile.TemporaryDirectory() as folder:
+        code, out, err = fetch("--to", folder, "--from", assets, "bunny/bun_zipper.ply",
+                               "dragon/dragon_vrip.ply", "dragon/dragon_vrip_res3.ply")
+        assert code == 0 and out.count("fetched") == 3, (code, out, err)
