@@ -62,11 +62,13 @@ struct ClaimResult {
 
     /// A statement of the document itself: what counts.
     bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
-    /// Another verdict than the known one. Ambiguous is none, and tells nothing against one.
+    /// Another verdict than the known one. Ambiguous is none, and tells nothing against one; where
+    /// it is the known one, failing is news.
     bool isNews() const {
         const auto isVerdict = [](Verdict one) {
             return one != Verdict::Ambiguous && one != Verdict::NotApplicable;
         };
+        if (known == Verdict::Ambiguous) return verdict == Verdict::Fails;
         return isVerdict(verdict) && isVerdict(known) && verdict != known;
     }
 

@@ -197,6 +197,9 @@ TEST(Claims, KnownVerdictsAndNews) {
                          records);
     EXPECT_EQ(result.known, Verdict::Holds);
     EXPECT_TRUE(result.isNews());
+    const std::string ambiguous = "because: {verdict: ambiguous, reason: at the bound}";
+    EXPECT_FALSE(judgePowers("bound: a, below: 8, " + ambiguous, records).isNews());
+    EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
 }
 
 std::string provenanceError(const std::string& claim) {
