@@ -21,7 +21,7 @@ namespace {
 class Folder {
   public:
     Folder(const Context& context, const fs::path& path, const std::string& assets)
-        : context_(context), catalog_(openCatalog(assets)) {
+        : context_(context), catalog_(openCatalog(context, assets)) {
         for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
             const fs::path& file = entry.path();
             if (file.extension() != ".yaml" || file.filename().string().starts_with("expect-")) {
