@@ -53,7 +53,8 @@ struct LayoutCases {
 
 /// Which cases a layout asks for: axis → any of these values.
 using Where = std::map<std::string, std::vector<std::string>>;
-/// Whether a case with these values lies there; `isUnknownMatching`: also where a value is not known.
+/// Whether a case with these values lies there; `isUnknownMatching`: also where a value is not
+/// known.
 bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
              bool isUnknownMatching);
 /// Those that were run and lie there.
