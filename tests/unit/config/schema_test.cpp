@@ -229,6 +229,7 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
         {"profiles", head + "profiles:\n", "  ", {}},
         {"output", head + "output:\n", "  ", {}},
         {"measure", head + "measure:\n", "  ", {}},
+        {"picture_tolerance", head + "picture_tolerance:\n", "  ", {}},
         {"sweep", head + "sweep:\n", "  ", {}},
         {"axis", head + "sweep:\n  a:\n", "    ", {}},
         {"layout", table + "layout:\n", "  ", {{"rows", "scene"}, {"columns", "{aa: m}"}}},
