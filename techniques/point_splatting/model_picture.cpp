@@ -21,18 +21,19 @@ ModelPicture::ModelPicture(const image::ImageF& rgba)
 }
 
 std::optional<image::ImageF> ModelPicture::enlarged() const {
-    glm::ivec2 first(color.width(), color.height()), last(-1);
-    for (int y = 0; y < color.height(); ++y) {
-        for (int x = 0; x < color.width(); ++x) {
+    const glm::ivec2 whole(color.width(), color.height());
+    glm::ivec2 needed(0);  // of a part in the middle
+    for (int y = 0; y < whole.y; ++y) {
+        for (int x = 0; x < whole.x; ++x) {
             if (coverage.at(x, y) <= 0.0F) continue;
-            first = glm::min(first, glm::ivec2(x, y));
-            last = glm::max(last, glm::ivec2(x, y));
+            const glm::ivec2 pixel(x, y);
+            needed = glm::max(needed, glm::max(whole - 2 * pixel, 2 * pixel + 2 - whole));
         }
     }
-    if (last.x < 0) return std::nullopt;
-    const glm::ivec2 size = last - first + 1;
-    const int scale = std::min(color.width() / size.x, color.height() / size.y);
+    if (needed.x == 0) return std::nullopt;
+    const int scale = std::min(whole.x / needed.x, whole.y / needed.y);
     if (scale < 2) return std::nullopt;
+    const glm::ivec2 size = whole / scale, first = (whole - size) / 2;
     return image::cropped(color, {first.x, first.y, size.x, size.y}, scale);
 }
 

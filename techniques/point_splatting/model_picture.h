@@ -14,8 +14,8 @@ struct ModelPicture {
     image::ImageF color, coverage;  // of 3 channels and 1
 
     explicit ModelPicture(const image::ImageF& rgba);
-    /// The part where something is, of whole pixels as large as make it fill the picture; none
-    /// where twice as large is too large.
+    /// The middle, as much of it as holds what there is, a whole number of times as large: pictures
+    /// of one view show the same part. None where twice as large is too large.
     std::optional<image::ImageF> enlarged() const;
 };
 

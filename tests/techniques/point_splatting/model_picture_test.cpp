@@ -35,13 +35,17 @@ TEST(ModelPicture, PixelsAreThoseThatEitherCovers) {
 }
 
 TEST(ModelPicture, SmallModelsAreEnlarged) {
-    const auto part = pictureWith({{5, 1}, {6, 2}}, 0.5F).enlarged();
+    const auto part = pictureWith({{3, 1}, {4, 2}}, 0.5F).enlarged();
     ASSERT_TRUE(part);
-    ASSERT_EQ(part->width(), 4);  // 2 × 2 pixels, twice as large
+    ASSERT_EQ(part->width(), 8);  // the middle 4 × 2 pixels, twice as large
     ASSERT_EQ(part->height(), 4);
-    EXPECT_EQ(part->at(1, 1, 1), 0.5F);
-    EXPECT_EQ(part->at(2, 1, 1), 0.0F);
-    EXPECT_EQ(part->at(2, 2, 1), 0.5F);
+    EXPECT_EQ(part->at(2, 0, 1), 0.5F);
+    EXPECT_EQ(part->at(3, 1, 1), 0.5F);
+    EXPECT_EQ(part->at(4, 1, 1), 0.0F);
+    EXPECT_EQ(part->at(4, 2, 1), 0.5F);
+    // One of a pair need not show as much: both show the same part.
+    EXPECT_EQ(pictureWith({{3, 1}}, 0.5F).enlarged()->width(), 8);
+    EXPECT_FALSE(pictureWith({{6, 1}}, 0.5F).enlarged());
     EXPECT_FALSE(pictureWith({{0, 0}, {0, 2}}, 1.0F).enlarged());
     EXPECT_FALSE(pictureWith({}, 1.0F).enlarged());
 }
