@@ -108,7 +108,7 @@ class Turns {
     }
     /// The newer program's rounds, without those that confirm.
     const Measured& newer() const { return newer_; }
-    /// Whether a case of either program failed.
+    /// Whether a case of the newer program failed.
     bool hasFailures() const { return hasFailures_; }
 
   private:
@@ -125,8 +125,7 @@ class Turns {
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
         sides.failuresAfter.merge(measured[1].failures);
-        hasFailures_ =
-            hasFailures_ || !sides.failuresBefore.empty() || !sides.failuresAfter.empty();
+        hasFailures_ = hasFailures_ || !sides.failuresAfter.empty();
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
         measured[1].series = std::move(newer_.series);
@@ -246,7 +245,7 @@ int compare(const CompareOptions& options) {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
-        hasFailures = !older.failures.empty() || !newer.failures.empty();
+        hasFailures = !newer.failures.empty();
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);
