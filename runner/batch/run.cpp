@@ -113,6 +113,7 @@ StoredRun readRun(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
     }
+    requirePlainFiles(runDir);
     StoredRun run;
     run.plan = Plan::fromJsonFile(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");
