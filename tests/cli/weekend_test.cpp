@@ -166,8 +166,8 @@ TEST(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
 
 TEST(Weekend, WhatAStopRuleCutShortWasSurvived) {
     const TemporaryFolder folder;
-    const std::string config = writeMockConfig(
-        folder, "params: {pause_ms: 1000}\nsweep: {behaviour: [throw, hang]}\n");
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000}\nsweep: {behaviour: [throw, hang]}\n");
     const std::string dir = folder.path() / "run";
     const auto stopped = [&](std::vector<std::string> command) {
         command.insert(command.end(), {"--jobs", "2", "--max-failures", "1"});
