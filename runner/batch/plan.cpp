@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runner/batch/ledger.h"
+#include "runner/batch/plan_hash.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
 
@@ -15,36 +16,35 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// The first 12 digits of the hash of everything that the case's results depend on.
-std::string contentId(const Case& item, const std::string& sceneKey, const Plan& plan) {
-    Json content = item.toJson();
-    content["scene"] = sceneKey;
-    content["device_class"] = plan.deviceClass;
-    content["build"] = plan.buildId;
-    return sha256(content.dump()).substr(0, 12);
+std::string hashOf(const Plan& plan) {
+    std::vector<Json> documents;
+    for (const config::Experiment& experiment : plan.experiments) {
+        documents.push_back(experiment.document.toJson());
+    }
+    return planHash(plan, documents);
 }
 
-/// The same of a case of the plan, which has an id.
-std::string idOf(Case item, const Plan& plan) {
-    item.id.clear();
+}  // namespace
+
+std::string caseId(const Case& item, Json written, const Plan& plan) {
     const auto scene =
         item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
-    return contentId(item, scene == plan.sceneKeys.end() ? "" : scene->second, plan);
+    written["id"] = "";
+    written["scene"] = scene == plan.sceneKeys.end() ? "" : scene->second;
+    written["device_class"] = plan.deviceClass;
+    written["build"] = plan.buildId;
+    return sha256(written.dump()).substr(0, 12);
 }
 
-std::string hashOf(const Plan& plan) {
+std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
     Json content = {{"profile", plan.profile},
                     {"device_class", plan.deviceClass},
                     {"build", plan.buildId},
                     {"seed", plan.seed}};
     for (const Case& item : plan.cases) content["cases"].push_back(item.id);
-    for (const config::Experiment& experiment : plan.experiments) {
-        content["documents"].push_back(experiment.document.toJson());
-    }
+    for (const Json& document : documents) content["documents"].push_back(document);
     return sha256(content.dump());
 }
-
-}  // namespace
 
 std::string Case::title() const {
     std::string title = experiment;
@@ -105,13 +105,11 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         bindAssumptions(experiment, cases, catalog, techniques);
         plan.cases.reserve(plan.cases.size() + cases.size());
         for (Case& item : cases) {
-            std::string sceneKey;
             if (!item.scene.isNull()) {
                 std::string& known = plan.sceneKeys[item.scene.text()];
                 if (known.empty()) known = catalog.contentKey(item.scene);
-                sceneKey = known;
             }
-            item.id = contentId(item, sceneKey, plan);
+            item.id = caseId(item, item.toJson(), plan);
             if (!caseIds.insert(item.id).second) {
                 throw Error(experiment.file.string() + ": the sweep gives the case '" +
                             item.title() + "' twice");
@@ -125,7 +123,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
 
 void rebind(Plan& plan, const std::string& deviceClass) {
     plan.deviceClass = deviceClass;
-    for (Case& item : plan.cases) item.id = idOf(item, plan);
+    for (Case& item : plan.cases) item.id = caseId(item, item.toJson(), plan);
     plan.hash = hashOf(plan);
 }
 
@@ -142,12 +140,6 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
     for (const auto& [reference, key] : plan.sceneKeys) {
         if (catalog.contentKey(config::Node::scalar(reference)) != key) {
             return "the scene '" + reference + "' changed";
-        }
-    }
-    for (const Case& item : plan.cases) {
-        if (idOf(item, plan) != item.id) {
-            return "the case " + item.id + ", " + item.title() +
-                   ", is not the one that was planned: plan.json was changed";
         }
     }
     return "";

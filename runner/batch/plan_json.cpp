@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runner/batch/plan.h"
+#include "runner/batch/plan_hash.h"
 #include "runner/report/case_records.h"
 
 namespace gfxrepro::batch {
@@ -124,6 +125,29 @@ void readPaper(const config::Node& node, config::Experiment& experiment) {
     for (const config::Node& item : required(node, "cases").items()) {
         experiment.paperCases.push_back(
             {required(item, "scene").text(), requiredMap(item, "params")});
+    }
+}
+
+/// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
+/// had fewer entries. The hash of a plan with --only is that of all its cases, which it has not.
+void requireAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
+    const auto fail = [&](const std::string& what) {
+        throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
+                    " was changed");
+    };
+    const config::Node::Sequence& cases = required(node, "cases").items();
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Case& item = plan.cases[i];
+        if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
+        fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
+    }
+    if (!plan.request.only.empty()) return;
+    std::vector<Json> documents;
+    for (const config::Node& item : required(node, "experiments").items()) {
+        documents.push_back(required(item, "document").toJson());
+    }
+    if (planHash(plan, documents) != plan.hash) {
+        fail("the experiments, their cases or the profile are not those that were");
     }
 }
 
@@ -257,6 +281,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
             plan.shard->caseIds.insert(id);
         }
     }
+    requireAsPlanned(path, node, plan);
     return plan;
 }
 

@@ -61,7 +61,7 @@ std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
     std::map<UnitKey, int> begun;  // since its last end
     for (const Json& event : readLog(directory.path() / "log.jsonl")) {
         const std::string name = event.value("event", "");
-        if (name == "interrupted") begun.clear();
+        if (name == "interrupted" || name == "end") begun.clear();  // by a stop rule, too
         if (!event.contains("case") || !event.contains("process")) continue;
         const UnitKey unit = {event["case"].get<std::string>(), event["process"].get<int>()};
         if (name == "start") ++begun[unit];
@@ -113,6 +113,7 @@ StoredRun readRun(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
     }
+    requirePlainFiles(runDir);
     StoredRun run;
     run.plan = Plan::fromJsonFile(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");

@@ -45,20 +45,25 @@ void removeTemporaryFiles(const fs::path& folder) {
     for (const fs::path& file : files) fs::remove(file);
 }
 
+bool isBegun(const fs::path& folder) {
+    return fs::exists(folder / "lock") || fs::exists(folder / "plan.json");
+}
+
 /// A folder in which no run ever began keeps what it has: the name of the first file that a run
-/// would write over; empty when there is none.
+/// write over; empty when there is none.
 std::string foreignFile(const fs::path& folder) {
-    if (fs::exists(folder / "lock") || fs::exists(folder / "plan.json")) return "";
+    if (isBegun(folder)) return "";
     for (const char* name :
          {"manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html", "log.jsonl",
           "images", "tables", "plots", "thumbnails", "artifacts"}) {
-        if (fs::exists(folder / name)) return name;
+        if (fs::exists(fs::symlink_status(folder / name))) return name;
     }
     return "";
 }
 
 int openFile(const fs::path& path, int flags) {
-    const int fd = ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC, 0644);
+    const int safe = O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
+    const int fd = ::open(path.c_str(), flags | safe, 0644);
     if (fd < 0) throw Error("cannot write " + path.string() + ": " + std::strerror(errno));
     return fd;
 }
@@ -74,6 +79,20 @@ fs::path defaultRunPath(const std::string& slug) {
     fs::path path = base;
     for (int i = 2; fs::exists(path); ++i) path = base.string() + "-" + std::to_string(i);
     return path;
+}
+
+void requirePlainFiles(const fs::path& runDir) {
+    std::error_code problem;
+    fs::recursive_directory_iterator entry(runDir, problem);
+    for (; !problem && entry != fs::recursive_directory_iterator(); entry.increment(problem)) {
+        std::error_code isGone;  // meanwhile
+        const bool isLink = entry->is_symlink(isGone);
+        if (!isLink && (entry->is_regular_file(isGone) || entry->is_directory(isGone))) continue;
+        if (!isLink && !fs::exists(entry->symlink_status(isGone))) continue;
+        throw Error(entry->path().string() +
+                    ": a link, a pipe or a device, which a run folder does not hold");
+    }
+    if (problem) throw Error("cannot read " + runDir.string() + ": " + problem.message());
 }
 
 RunDirectory::RunDirectory(const fs::path& path) : path_(path) {
@@ -103,6 +122,7 @@ RunDirectory RunDirectory::create(const fs::path& path) {
         throw Error(path.string() + ": has a " + file +
                     " that is of no run and would be written over; give another folder");
     }
+    if (isBegun(path)) requirePlainFiles(path);
     RunDirectory directory(path);
     if (fs::exists(directory.planFile())) {
         throw Error(path.string() + ": holds a run already; continue it with --resume " +
@@ -115,6 +135,7 @@ RunDirectory RunDirectory::open(const fs::path& path) {
     if (!fs::exists(path / "plan.json")) {
         throw Error(path.string() + ": is no run directory (it has no plan.json)");
     }
+    requirePlainFiles(path);
     RunDirectory directory(path);
     removeTemporaryFiles(path);
     return directory;

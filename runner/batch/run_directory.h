@@ -15,7 +15,7 @@ class RunDirectory {
     /// and when it is no run's but has a file that a run writes.
     static RunDirectory create(const std::filesystem::path& path);
     /// A run that was begun; removes the temporary files of processes that were killed. Throws
-    /// Error when there is none or when another run writes to it.
+    /// Error when there is none, when another run writes to it, and as requirePlainFiles().
     static RunDirectory open(const std::filesystem::path& path);
     RunDirectory(RunDirectory&& other) noexcept;
     RunDirectory& operator=(RunDirectory&&) = delete;
@@ -41,6 +41,10 @@ class RunDirectory {
     int lockFd_ = -1;
     int logFd_ = -1;
 };
+
+/// Below a run folder there are files and folders alone: what is written to it goes nowhere else,
+/// and nothing is waited for. The folder itself may be a link. Throws Error naming what is neither.
+void requirePlainFiles(const std::filesystem::path& runDir);
 
 /// "2026-11-21T03:14:00Z", for manifests and logs.
 std::string utcTime();

@@ -73,15 +73,8 @@ void requireSameMachine(const Measured& a, const Measured& b) {
                             a.machine, b.machine));
 }
 
-/// The pictures of two runs. Where one has none (kept results have not), nothing is missing: a note
-/// tells it instead.
 std::vector<Difference> comparePictures(const Measured& older, const Measured& newer,
-                                        const fs::path& folder, std::vector<std::string>& notes) {
-    if (older.pictures.empty() != newer.pictures.empty()) {
-        notes.push_back(fmt::format("the {} run has no pictures: none are compared",
-                                    older.pictures.empty() ? "older" : "newer"));
-        return {};
-    }
+                                        const fs::path& folder) {
     return regression::comparePictures(older.pictures, newer.pictures,
                                        {.byTable = newer.tolerances,
                                         .isOneBuild = older.buildId == newer.buildId,
@@ -115,8 +108,7 @@ class Turns {
     }
     /// The newer program's rounds, without those that confirm.
     const Measured& newer() const { return newer_; }
-    const std::vector<std::string>& notes() const { return notes_; }
-    /// Whether a case of either program failed.
+    /// Whether a case of the newer program failed.
     bool hasFailures() const { return hasFailures_; }
 
   private:
@@ -127,17 +119,13 @@ class Turns {
         for (const std::size_t side : {first, 1 - first}) measured[side] = take(side, tables);
         requireSameMachine(measured[0], measured[1]);
         ++roundCount_;
-        if (comparesPictures) {
-            notes_.clear();  // a second first round says them again
-            sides.pictures = comparePictures(measured[0], measured[1], folder_, notes_);
-        }
+        if (comparesPictures) sides.pictures = comparePictures(measured[0], measured[1], folder_);
         sides.isSoftware = measured[1].isSoftware;
         regression::append(sides.before, measured[0].series);
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
         sides.failuresAfter.merge(measured[1].failures);
-        hasFailures_ =
-            hasFailures_ || !sides.failuresBefore.empty() || !sides.failuresAfter.empty();
+        hasFailures_ = hasFailures_ || !sides.failuresAfter.empty();
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
         measured[1].series = std::move(newer_.series);
@@ -167,7 +155,6 @@ class Turns {
     fs::path folder_;
     int roundCount_ = 0;
     bool hasFailures_ = false;
-    std::vector<std::string> notes_;
     Measured newer_;
 };
 
@@ -179,16 +166,20 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
     return regression::findSteps(regression::readHistory(path, measured.machine));
 }
 
-/// What two runs say that were measured for themselves.
+/// What two runs say that were measured for themselves. Where one has no pictures (kept results
+/// have not), none is lost: a note tells it instead.
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
                                     const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);
     std::vector<Difference> differences = regression::compare(
         older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
     regression::noteFailures(differences, older.failures, newer.failures);
-    std::ranges::move(comparePictures(older, newer, folder, notes),
-                      std::back_inserter(differences));
-    std::ranges::sort(differences, {}, &Difference::key);
+    if (older.pictures.empty() == newer.pictures.empty()) {
+        regression::addPictures(differences, comparePictures(older, newer, folder));
+    } else {
+        notes.push_back(fmt::format("the {} run has no pictures: none are compared",
+                                    older.pictures.empty() ? "older" : "newer"));
+    }
     return differences;
 }
 
@@ -250,12 +241,11 @@ int compare(const CompareOptions& options) {
         comparison.differences = turns.compare();
         newer = turns.newer();
         hasFailures = turns.hasFailures();
-        comparison.notes = turns.notes();
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
-        hasFailures = !older.failures.empty() || !newer.failures.empty();
+        hasFailures = !newer.failures.empty();
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);

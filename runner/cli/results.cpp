@@ -123,10 +123,11 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     fs::remove_all(folder);
     report::writeTables(folder, tables);
     report::writeClaims(folder, batch::caseResults(run), claims, context);
-    const int code = sayClaims(claims);
+    const int verdict = sayClaims(claims);
     sayNotes(run.manifest);
     fmt::print("judged after the run: {}\n", (folder / "claims.csv").string());
-    return code;
+    const int code = completenessCode(run);
+    return code == kExitOk ? verdict : code;
 }
 
 /// How much of the tables was measured as it is printed.
@@ -206,13 +207,22 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
         return completenessCode(run);
     }
     std::vector<html::ReportRun> runs;
-    for (const std::string& dir : runDirs) runs.push_back(batch::reportRun(dir));
+    int code = kExitOk;
+    for (const std::string& dir : runDirs) {
+        if (!fs::exists(fs::path(dir) / "plan.json")) {  // kept results
+            runs.push_back(batch::reportRun(dir));
+            continue;
+        }
+        const batch::StoredRun run = batch::readRun(dir);
+        runs.push_back(batch::reportRun(dir, run));
+        if (completenessCode(run) != kExitOk) code = kExitIncomplete;
+    }
     noteOtherMachines(runs);
     for (const html::ReportRun& run : runs) sayNotes(run.manifest);
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
     html::writeReport(file, runs);
     fmt::print("report: {}\n", file.string());
-    return kExitOk;
+    return code;
 }
 
 }  // namespace gfxrepro::cli

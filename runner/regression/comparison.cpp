@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "runner/core/error.h"
@@ -171,8 +172,7 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         own.isSoftware = sides.isSoftware;
         differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
         noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
-        differences.insert(differences.end(), sides.pictures.begin(), sides.pictures.end());
-        std::ranges::sort(differences, {}, &Difference::key);
+        addPictures(differences, sides.pictures);
         const bool isDecided = std::ranges::none_of(
             differences, [](const Difference& one) { return one.verdict == Verdict::CannotTell; });
         if (isDecided) break;
@@ -256,6 +256,27 @@ void noteFailures(std::vector<Difference>& differences, const Failures& before,
         differences.push_back(
             {.key = failure.key, .verdict = Verdict::Lost, .reason = failure.text});
     }
+    std::ranges::sort(differences, {}, &Difference::key);
+}
+
+void addPictures(std::vector<Difference>& differences, std::vector<Difference> pictures) {
+    std::map<SeriesKey, bool> isLost;  // by case: whether nothing is left of it
+    const auto caseOf = [](SeriesKey key) {
+        key.pass = key.metric = key.unit = "";
+        return key;
+    };
+    for (const Difference& one : differences) {
+        if (one.verdict == Verdict::Missing) continue;
+        const auto [found, isNew] = isLost.try_emplace(caseOf(one.key), true);
+        found->second = found->second && one.verdict == Verdict::Lost;
+    }
+    for (Difference& picture : pictures) {
+        const auto found = isLost.find(caseOf(picture.key));
+        if (picture.verdict == Verdict::Lost && found != isLost.end() && found->second) {
+            picture.verdict = Verdict::Missing;
+        }
+    }
+    std::ranges::move(pictures, std::back_inserter(differences));
     std::ranges::sort(differences, {}, &Difference::key);
 }
 

@@ -85,6 +85,10 @@ std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after,
 void noteFailures(std::vector<Difference>& differences, const Failures& before,
                   const Failures& after);
 
+/// Adds what became of the pictures. Those that are lost with all that was measured of their case
+/// are Missing: the case is an alarm already. In the order of their keys.
+void addPictures(std::vector<Difference>& differences, std::vector<Difference> pictures);
+
 /// An alarm counts when measuring once more in fresh processes gives it again; else it becomes
 /// CannotTell with the reason. Other verdicts stay. Both in the order of their keys.
 void confirm(std::vector<Difference>& differences, const std::vector<Difference>& again);

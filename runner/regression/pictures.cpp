@@ -201,8 +201,8 @@ SeriesMap numbered(const PictureMap& pictures, std::vector<PictureFiles>& files)
     return keys;
 }
 
-Difference onlyOneSide(const SeriesKey& key, const char* reason) {
-    return {.key = key, .verdict = Verdict::Missing, .reason = reason};
+Difference onlyOneSide(const SeriesKey& key, Verdict verdict, const char* reason) {
+    return {.key = key, .verdict = verdict, .reason = reason};
 }
 
 }  // namespace
@@ -250,14 +250,14 @@ std::vector<Difference> comparePictures(const PictureMap& before, const PictureM
     for (const auto& [key, place] : keysBefore) {
         const auto other = keysAfter.find(key);
         if (other == keysAfter.end()) {
-            differences.push_back(onlyOneSide(key, "recorded before only"));
+            differences.push_back(onlyOneSide(key, Verdict::Lost, "recorded before only"));
         } else {
             pairs.push_back({key, filesOf(place), filesOf(other->second)});
         }
     }
     for (const auto& [key, place] : keysAfter) {
         if (!keysBefore.contains(key)) {
-            differences.push_back(onlyOneSide(key, "recorded after only"));
+            differences.push_back(onlyOneSide(key, Verdict::Missing, "recorded after only"));
         }
     }
     std::vector<Difference> compared(pairs.size());

@@ -33,11 +33,11 @@ struct PictureRules {
     std::filesystem::path folder;
 };
 
-/// Same or Changed for each picture that both sides have, after matchParams; Missing for the
-/// others. Changed is what lies beyond FLIP's or the largest difference's tolerance, and what
-/// cannot be subtracted: a picture that cannot be read, is of another size or other channels, or
-/// holds a value that is not finite (where both are not the same). Values of EXR files are
-/// compared, those of PNG files where a side has no other.
+/// Same or Changed for each picture that both sides have, after matchParams; Lost for those that
+/// only `before` has, and Missing for those of `after`. Changed is what lies beyond FLIP's or the
+/// largest difference's tolerance, and what cannot be subtracted: a picture that cannot be read, is
+/// of another size or other channels, or holds a value that is not finite (where both are not the
+/// same). Values of EXR files are compared, those of PNG files where a side has no other.
 std::vector<Difference> comparePictures(const PictureMap& before, const PictureMap& after,
                                         const PictureRules& rules);
 

@@ -60,7 +60,8 @@ ParamNames paramNamesOf(const SeriesMap& series) {
     return names;
 }
 
-/// With the parameters in `known` alone. Null where keys fall together.
+/// With the parameters in `known` alone; as it is where nothing is known of the technique. Null
+/// where keys fall together.
 std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& known) {
     SeriesMap result;
     for (const auto& [key, values] : series) {
@@ -69,7 +70,7 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
         Json params = Json::object();
         const auto found = known.find(key.technique);
         for (const auto& [name, value] : all.items()) {
-            if (found != known.end() && found->second.contains(name)) params[name] = value;
+            if (found == known.end() || found->second.contains(name)) params[name] = value;
         }
         own.params = params.dump();
         if (!result.emplace(own, values).second) return std::nullopt;

@@ -71,7 +71,7 @@ std::string wholeRows(const fs::path& index) {
 /// Adds `rows` to a list that ends with a whole line; false, with nothing done, when it does not.
 /// A list is not written anew for each case: that would take longer with every case of a run.
 bool appendToWhole(const fs::path& index, std::string_view rows) {
-    const int fd = ::open(index.c_str(), O_RDWR | O_APPEND | O_CLOEXEC);
+    const int fd = ::open(index.c_str(), O_RDWR | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (fd < 0) return false;
     const off_t before = ::lseek(fd, 0, SEEK_END);
     char last = 0;

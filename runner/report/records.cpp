@@ -242,7 +242,8 @@ Status statusFromName(std::string_view name) {
 
 RecordWriter::RecordWriter(const fs::path& path) : path_(path) {
     if (path.has_parent_path()) fs::create_directories(path.parent_path());
-    fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+                 0644);
     if (fd_ < 0) failWriting(path, errno);
     try {
         const std::string header = std::string(kHeader) + '\n';

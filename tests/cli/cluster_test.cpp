@@ -336,16 +336,20 @@ TEST(Submit, WhatWasSubmittedIsMeasured) {
     EXPECT_EQ(again.out, submitted.out);
 
     const std::string file = out + "/submitted-plan.json";
-    const std::string plan = readFile(file);
-    std::string changed = plan;
-    changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
-    writeFileAtomic(file, changed);
     fs::remove_all(out + "/shards");
-    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]});
+    folder.write("data/shaders/other.glsl", "");
+    fs::create_directories(folder.path() / "data/configs/scenes");
+    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]},
+                                           {"GFXREPRO_DATA=" + (folder.path() / "data").string()});
     EXPECT_EQ(other.exitCode, 2);
     EXPECT_THAT(other.err, HasSubstr(file + ": cannot be measured: the program or a shader changed "
-                                            "(build 000000000000 then, "));
+                                            "(build "));
     EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
+    std::string changed = readFile(file);
+    changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
+    writeFileAtomic(file, changed);
+    EXPECT_THAT(runProgram({"/bin/sh", "-c", lines[0]}).err,
+                HasSubstr("is not the one that was planned: submitted-plan.json was changed\n"));
     EXPECT_FALSE(fs::exists(out + "/shards/1"));
     EXPECT_EQ(mockGfxrepro({"run", config, "--plan", file}).err,
               "gfxrepro: run: --plan has configs and options of its own; give none\n");

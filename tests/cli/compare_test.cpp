@@ -111,6 +111,17 @@ TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
     EXPECT_NE(readFile(out + "/benchmark.json").find("\"unit\": \"FLIP\""), std::string::npos);
 }
 
+TEST_F(Compare, PicturesThatABuildNoLongerRecordsAreAnAlarm) {
+    const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
+    const ProcessResult result =
+        mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
+                      out, program("old", 0), program("new", 0, "none"), config});
+    EXPECT_EQ(result.exitCode, 1) << result.out << result.err;
+    EXPECT_NE(result.out.find("sweep/mock mock picture/flat: lost: recorded before only\n"),
+              std::string::npos)
+        << result.out;
+}
+
 TEST_F(Compare, PicturesMayDifferByWhatTheTableAllows) {
     const fs::path config =
         writeMockConfig(folder, "picture_tolerance: {flip: 0.5, difference: 0.3}\n");

@@ -10,6 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 TEST(Faults, EveryFailureBecomesARow) {
     const TemporaryFolder folder;
@@ -262,6 +263,23 @@ TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     EXPECT_NE(readFile(dir + "/claims.csv").find("not among what was measured: 'y' is no column"),
               std::string::npos);
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
+}
+
+TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\n");
+    const std::string dir = folder.path() / "run", out = folder.path() / "out.html";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},
+                                                    {"claims", dir},
+                                                    {"report", dir},
+                                                    {"claims", dir, "--config", config},
+                                                    {"report", dir, "--out", out},
+                                                    {"report", dir, dir, "--out", out}}) {
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 4) << command.front() << ' ' << command.back() << result.err;
+        EXPECT_THAT(result.out, HasSubstr("incomplete: 0 not run, 1 failed\n"));
+    }
 }
 
 }  // namespace

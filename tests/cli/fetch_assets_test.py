@@ -112,6 +112,9 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = fetch("--to", to, "lucy/lucy_100k.ply")
     assert code == 1 and "has no address; see --from" in err, (code, out, err)
     assert fetch("--sight")[0] == 2
+    for name in ("dragon", "hand/hand.ply", ""):
+        code, out, err = fetch("--to", to, bunny, name)
+        assert code == 2 and err == f"fetch-assets: unknown name '{name}'; see --list\n", (code, out, err)
 
 assets = os.environ.get("GFXREPRO_ASSETS")
 if assets:

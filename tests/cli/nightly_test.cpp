@@ -20,7 +20,10 @@ class Nightly : public ::testing::Test {
         const fs::path program = folder.write(
             name + "/gfxrepro", "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
                                     " GFXREPRO_MOCK_SHADE=" + shade + " exec " +
-                                    GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
+                                    GFXREPRO_MOCK_PROGRAM + " \"$@\"" +
+                                    (isCrashing ? "$([ $1 != run ] || echo ' --set "
+                                                  "behaviour=crash')\n"
+                                                : "\n"));
         fs::permissions(program, fs::perms::owner_all);
         return program.parent_path();
     }
@@ -53,6 +56,7 @@ class Nightly : public ::testing::Test {
     TemporaryFolder folder;
     std::string state = folder.path() / "state";
     std::string shade = "0.5";
+    bool isCrashing = false;
 };
 
 TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
@@ -99,6 +103,26 @@ TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
         kept += isKept && entry.is_regular_file() ? 1 : 0;
     }
     EXPECT_EQ(kept, 5U) << "two EXR files, two PNG files, and the map of differences";
+}
+
+TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    isCrashing = true;
+    const ProcessResult refused = night(1, false, "it is right");
+    EXPECT_EQ(refused.exitCode, 1) << refused.out << refused.err;
+    EXPECT_NE(refused.err.find("nightly: not accepted: what the last build measured is lost, or a "
+                               "case did not finish\n"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
+    ASSERT_EQ(night(1, true).exitCode, 0) << "--fix asks for nothing";
+    const ProcessResult both = night(2);
+    EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+    isCrashing = false;
+    const ProcessResult sound = night(3);
+    EXPECT_EQ(sound.exitCode, 0) << sound.out << sound.err;
+    EXPECT_NE(landed().find("EXTRA_MS=3 "), std::string::npos);
 }
 
 TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
@@ -151,6 +175,11 @@ TEST_F(Nightly, SaysWhatIsMissing) {
     const ProcessResult result = runProgram({GFXREPRO_SOURCE "/scripts/nightly", "--rounds"});
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_NE(result.err.find("--rounds needs a number"), std::string::npos) << result.err;
+    const ProcessResult unknown = runProgram(
+        {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state, GFXREPRO_SOURCE "/scripts/nightly", "--fxi"});
+    EXPECT_EQ(unknown.exitCode, 2);
+    EXPECT_EQ(unknown.err, "nightly: unknown option '--fxi'\n");
+    EXPECT_FALSE(fs::exists(state));
 }
 
 TEST(NightlyConfigs, EveryTechniqueIsWatched) {

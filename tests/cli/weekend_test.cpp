@@ -164,6 +164,22 @@ TEST(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
     EXPECT_THAT(stopped.out, HasSubstr("0 of 3 finished, 3 failed"));
 }
 
+TEST(Weekend, WhatAStopRuleCutShortWasSurvived) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000}\nsweep: {behaviour: [throw, hang]}\n");
+    const std::string dir = folder.path() / "run";
+    const auto stopped = [&](std::vector<std::string> command) {
+        command.insert(command.end(), {"--jobs", "2", "--max-failures", "1"});
+        EXPECT_THAT(mockGfxrepro(command).err, HasSubstr("stopped: 1 failed; "));
+    };
+    stopped({"run", config, "--device", "software", "--out", dir});
+    stopped({"run", "--resume", dir});
+    waitForStarts(dir, 4);
+    stopped({"run", "--resume", dir});
+    EXPECT_THAT(statusLines(dir), testing::ElementsAre("throw: error (nothing works)"));
+}
+
 TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     const TemporaryFolder folder;
     const std::string config =

@@ -181,9 +181,33 @@ TEST_F(Pictures, ArePairedByCaseNameAndFrameAlsoWithANewParameter) {
     EXPECT_EQ(all[1].key.pass, "flat");
     EXPECT_EQ(all[1].reason, "recorded before only");
     for (const Difference& difference : all) {
-        EXPECT_EQ(difference.verdict, Verdict::Missing);
-        EXPECT_FALSE(difference.isAlarm());
+        const bool isLost = difference.key.pass == "flat";
+        EXPECT_EQ(difference.verdict, isLost ? Verdict::Lost : Verdict::Missing);
+        EXPECT_EQ(difference.isAlarm(), isLost);
     }
+}
+
+TEST_F(Pictures, ALostOneIsAnAlarmUnlessAllOfItsCaseIsLost) {
+    record("a", "flat", kGrey);
+    records["b"] = records["a"];
+    const Difference lost = only();
+    EXPECT_EQ(lost.verdict, Verdict::Lost);
+    EXPECT_EQ(lost.reason, "recorded before only");
+    const auto with = [&](const std::vector<Verdict>& others) {
+        std::vector<Difference> differences;
+        for (const Verdict verdict : others) {
+            SeriesKey key = lost.key;
+            key.pass = "";
+            key.metric = "n" + std::to_string(differences.size());
+            differences.push_back({.key = key, .verdict = verdict});
+        }
+        addPictures(differences, {lost});
+        return std::ranges::find(differences, lost.key, &Difference::key)->verdict;
+    };
+    EXPECT_EQ(with({}), Verdict::Lost);
+    EXPECT_EQ(with({Verdict::Lost, Verdict::Same}), Verdict::Lost);
+    EXPECT_EQ(with({Verdict::Missing}), Verdict::Lost);
+    EXPECT_EQ(with({Verdict::Lost, Verdict::Missing}), Verdict::Missing);
 }
 
 TEST_F(Pictures, ListedOnesThatAreNotThereAreNone) {

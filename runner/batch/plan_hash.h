@@ -1,0 +1,18 @@
+// What identifies a plan and its cases.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "runner/batch/plan.h"
+
+namespace gfxrepro::batch {
+
+/// The first 12 digits of the hash of everything that the case's results depend on: `written` is
+/// the case as plan.json has it, whatever its id.
+std::string caseId(const Case& item, nlohmann::ordered_json written, const Plan& plan);
+
+/// The hash of a plan whose experiments have these documents.
+std::string planHash(const Plan& plan, const std::vector<nlohmann::ordered_json>& documents);
+
+}  // namespace gfxrepro::batch
