@@ -58,13 +58,21 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
 }
 
 std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
-    std::map<UnitKey, int> begun;  // since its last end
+    std::map<UnitKey, int> begun;   // since its last end
+    std::set<UnitKey> startedHere;  // in one invocation
     for (const Json& event : readLog(directory.path() / "log.jsonl")) {
         const std::string name = event.value("event", "");
-        if (name == "interrupted" || name == "end") begun.clear();  // by a stop rule, too
+        if (name == "interrupted") begun.clear();
+        if (name == "begin") startedHere.clear();
+        if (name == "end") {  // by a stop rule, too: what it cut short was survived
+            for (const UnitKey& unit : startedHere) begun.erase(unit);
+        }
         if (!event.contains("case") || !event.contains("process")) continue;
         const UnitKey unit = {event["case"].get<std::string>(), event["process"].get<int>()};
-        if (name == "start") ++begun[unit];
+        if (name == "start") {
+            ++begun[unit];
+            startedHere.insert(unit);
+        }
         if (name == "case" || name == "retry") begun.erase(unit);
     }
     std::map<UnitKey, std::string> units;
