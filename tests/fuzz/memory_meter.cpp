@@ -13,9 +13,9 @@ std::atomic<std::size_t> peakBytes = 0;
 std::atomic<std::size_t> startBytes = 0;
 }  // namespace
 
-void* operator new(std::size_t size) {
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     void* memory = std::malloc(size);
-    if (memory == nullptr) throw std::bad_alloc();
+    if (memory == nullptr) return nullptr;
     const std::size_t used = usedBytes += ::malloc_usable_size(memory);
     std::size_t peak = peakBytes;
     while (used > peak && !peakBytes.compare_exchange_weak(peak, used)) {
@@ -23,8 +23,17 @@ void* operator new(std::size_t size) {
     return memory;
 }
 
+void* operator new(std::size_t size) {
+    if (void* memory = ::operator new(size, std::nothrow)) return memory;
+    throw std::bad_alloc();
+}
+
 void* operator new[](std::size_t size) {
     return ::operator new(size);
+}
+
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+    return ::operator new(size, std::nothrow);
 }
 
 void operator delete(void* memory) noexcept {
@@ -41,6 +50,14 @@ void operator delete(void* memory, std::size_t) noexcept {
 }
 
 void operator delete[](void* memory, std::size_t) noexcept {
+    ::operator delete(memory);
+}
+
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+    ::operator delete(memory);
+}
+
+void operator delete[](void* memory, const std::nothrow_t&) noexcept {
     ::operator delete(memory);
 }
 
