@@ -57,33 +57,6 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
     return units;
 }
 
-std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory) {
-    std::map<UnitKey, int> begun;   // since its last end
-    std::set<UnitKey> startedHere;  // in one invocation
-    for (const Json& event : readLog(directory.path() / "log.jsonl")) {
-        const std::string name = event.value("event", "");
-        if (name == "interrupted") begun.clear();
-        if (name == "begin") startedHere.clear();
-        if (name == "end") {  // by a stop rule, too: what it cut short was survived
-            for (const UnitKey& unit : startedHere) begun.erase(unit);
-        }
-        if (!event.contains("case") || !event.contains("process")) continue;
-        const UnitKey unit = {event["case"].get<std::string>(), event["process"].get<int>()};
-        if (name == "start") {
-            ++begun[unit];
-            startedHere.insert(unit);
-        }
-        if (name == "case" || name == "retry") begun.erase(unit);
-    }
-    std::map<UnitKey, std::string> units;
-    for (const auto& [unit, count] : begun) {
-        if (count < 2) continue;
-        units[unit] = "the runner did not survive it, " + std::to_string(count) +
-                      " times; resume with --retry to try it again";
-    }
-    return units;
-}
-
 Rounds roundsOf(const Plan& plan, const RunDirectory& directory) {
     std::vector<report::Record> records;
     if (fs::exists(directory.recordsFile())) records = report::readRecords(directory.recordsFile());

@@ -22,10 +22,6 @@ namespace gfxrepro::batch {
 /// rows yet. Rows of failed units are taken out of records.csv: they are about to be made again.
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 
-/// The units that were begun twice, or more often, and never ended, with a message that says so:
-/// what took the runner, or the machine, with it. A run that was interrupted had no part in it.
-std::map<UnitKey, std::string> unitsNotSurvived(const RunDirectory& directory);
-
 /// What was decided so far of the rounds of a run's tables.
 Rounds roundsOf(const Plan& plan, const RunDirectory& directory);
 

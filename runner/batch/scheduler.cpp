@@ -158,8 +158,7 @@ class Scheduler {
                 waiting_.pop_front();
                 continue;
             }
-            const auto givenUp =
-                options_.givenUp.find({waiting_.front().item->id, waiting_.front().process});
+            const auto givenUp = options_.givenUp.find(waiting_.front().item->id);
             if (givenUp != options_.givenUp.end()) {
                 finish(waiting_.front(), crashOf(givenUp->second), "", "given_up");
                 waiting_.pop_front();

@@ -35,8 +35,8 @@ struct SchedulerOptions {
     int jobs = 1;  // quality units at once
     Expectations expectations = {};
     std::string command = {};  // as typed: images say what measured them
-    /// Units that are not tried (again), and are recorded as crashes with this message.
-    std::map<UnitKey, std::string> givenUp = {};
+    /// Cases, by id, that are not tried (again), and are recorded as crashes with this message.
+    std::map<std::string, std::string> givenUp = {};
     int failuresAtMost = 0;  // with as many failed units the run stops; 0: never
 };
 

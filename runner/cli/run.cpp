@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "runner/batch/budget.h"
+#include "runner/batch/not_survived.h"
+#include "runner/batch/run_files.h"
 #include "runner/batch/shards.h"
 #include "runner/batch/twins.h"
 #include "runner/cli/annotations.h"
@@ -224,7 +226,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         tell("warning: {}\n", unknown.what());
     }
     run.scheduler.failuresAtMost = options.failuresAtMost;
-    if (!options.triesAgain) run.scheduler.givenUp = batch::unitsNotSurvived(run.directory);
+    if (!options.triesAgain) {
+        run.scheduler.givenUp =
+            batch::casesNotSurvived(run.plan, batch::readLog(run.directory.path() / "log.jsonl"));
+    }
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
     batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});

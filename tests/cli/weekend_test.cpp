@@ -143,6 +143,65 @@ TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     EXPECT_EQ(again.wait().exitCode, 130);
 }
 
+/// Kills a run of these configs twice during its first unit.
+void killTwice(const std::vector<std::string>& configs, const std::string& dir) {
+    for (const std::size_t start : {1U, 2U}) {
+        std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "run", "--jobs", "1"};
+        if (start == 1) {
+            command.insert(command.end(), configs.begin(), configs.end());
+            command.insert(command.end(), {"--device", "software", "--out", dir});
+        } else {
+            command.insert(command.end(), {"--resume", dir});
+        }
+        BackgroundProgram run(command);
+        waitForStarts(dir, start);
+        run.signal(SIGKILL);
+        run.wait();
+    }
+}
+
+constexpr const char* kHangs = "sweep: {behaviour: [hang, ok]}\nmeasure: {time_limit_s: 20}\n";
+
+TEST(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "sweep: {behaviour: [hang, ok]}\nmeasure: {time_limit_s: 20, processes: 3}\n");
+    const std::string dir = folder.path() / "run";
+    killTwice({config}, dir);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
+    EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
+    EXPECT_THAT(resumed.out, HasSubstr("3 of 6 finished, 3 failed; "));
+    for (const report::Record& row : report::readRecords(dir + "/records.csv")) {
+        if (row.status == report::Status::Ok) continue;
+        EXPECT_EQ(row.status, report::Status::Crash) << "process " << row.process;
+    }
+    const std::string log = readFile(dir + "/log.jsonl");
+    EXPECT_EQ(log.find("\"process\":2,\"status\":\"timeout\""), std::string::npos);
+}
+
+TEST(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
+    const TemporaryFolder folder;
+    std::vector<std::string> configs;
+    for (const char* table : {"1", "2"}) {
+        configs.push_back(folder.write(std::string("table-") + table + ".yaml",
+                                       std::string("table: demo2026/") + table +
+                                           "\ntitle: T\ntechnique: mock\n"
+                                           "output: {width: 8, height: 8}\n" +
+                                           kHangs));
+    }
+    const std::string dir = folder.path() / "run";
+    killTwice(configs, dir);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
+    EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
+    const std::string end = ", 2 times; resume with --retry to try it again)";
+    EXPECT_THAT(
+        statusLines(dir),
+        testing::UnorderedElementsAre(
+            "hang: crash (the runner did not survive it" + end,
+            "hang: crash (the runner did not survive its twin demo2026/1 behaviour=hang" + end,
+            "ok: ok", "ok: ok"));
+}
+
 TEST(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(
