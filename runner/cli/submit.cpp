@@ -208,18 +208,41 @@ int printStatus(const fs::path& out) {
                                                                          : kExitIncomplete;
 }
 
-/// The job's number, which --parsable prints last: "123" or "123;cluster".
-std::string sbatch(std::vector<std::string> arguments) {
+/// What sbatch said: a job's number, or why it refused it.
+struct SbatchAnswer {
+    std::string job;
+    std::string refusal;
+};
+
+/// The number is what --parsable prints last: "123" or "123;cluster". Throws Error where sbatch
+/// took something and gave none.
+SbatchAnswer sbatch(std::vector<std::string> arguments) {
+    constexpr int kNotFound = 127;  // env's
     arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
     const batch::ProgramEnd end = batch::runToEnd(arguments, kSlurmLimit);
     const std::string text(trimmed(end.output));
+    if (end.exitCode != 0) {
+        return {"",
+                fmt::format("sbatch did not take the job (exit code {}): {}{}", end.exitCode, text,
+                            end.exitCode == kNotFound
+                                ? "; where there is no Slurm, --engine commands prints commands"
+                                : "")};
+    }
     const std::string last = text.substr(text.rfind('\n') + 1);
     const std::string job = last.substr(0, last.find(';'));
-    if (end.exitCode != 0 || !parseInteger(job)) {
-        throw Error(
-            fmt::format("sbatch did not take the job (exit code {}): {}", end.exitCode, text));
+    if (parseInteger(job)) return {job, ""};
+    throw Error(
+        "sbatch gave no number of a job, so what is queued is not known; squeue shows it: " + text);
+}
+
+/// Of a submission that was refused nothing stays that could be taken for queued.
+void removeRefused(const fs::path& out) {
+    for (const fs::path& file :
+         {frozenPlan(out), out / "predictions.csv", out / "task.sh", out / "merge.sh"}) {
+        fs::remove(file);
     }
-    return job;
+    std::error_code isNotEmpty;
+    fs::remove(out, isNotEmpty);
 }
 
 /// The array job's and the merge job's arguments; `arrayJob` is known when the second is asked for.
@@ -266,9 +289,22 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before, bool isDr
     writeFileAtomic(s.out / "task.sh", batch::taskScript(s));
     writeFileAtomic(s.out / "merge.sh", batch::mergeScript(s));
     Stored stored{cut.asked, cut.unitCounts, "", ""};
-    if (!pending.empty()) stored.arrayJob = sbatch(arrayArguments(s, indices));
+    if (!pending.empty()) {
+        const SbatchAnswer array = sbatch(arrayArguments(s, indices));
+        if (!array.refusal.empty()) {
+            if (!before) removeRefused(s.out);
+            throw Error(array.refusal + "; nothing was queued");
+        }
+        stored.arrayJob = array.job;
+    }
     writeStored(s.out, stored);  // known even if the merge is refused
-    stored.mergeJob = sbatch(mergeArguments(s, stored.arrayJob));
+    const SbatchAnswer merge = sbatch(mergeArguments(s, stored.arrayJob));
+    if (!merge.refusal.empty()) {
+        throw Error(fmt::format(
+            "the merge: {}; {}; submit again when the shards are complete", merge.refusal,
+            pending.empty() ? "nothing was queued" : "array " + stored.arrayJob + " is queued"));
+    }
+    stored.mergeJob = merge.job;
     writeStored(s.out, stored);
     fmt::print("array {} (shards {}), merge {}; gfxrepro submit --status {}\n",
                pending.empty() ? "none" : stored.arrayJob, pending.empty() ? "none" : indices,
@@ -307,10 +343,11 @@ int submit(const Context& context, const SubmitOptions& options) {
     if (before && (before->asked != cut.asked || before->unitCounts != cut.unitCounts)) {
         throw Error(s.out.string() + ": holds another submission; give another folder");
     }
+    // What lies in a folder without a submission was never queued: a killed submit left it.
     if (!options.isDryRun && !before) {
         batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
     }
-    if (!options.isDryRun && !fs::exists(frozenPlan(s.out))) {
+    if (!options.isDryRun && (!before || !fs::exists(frozenPlan(s.out)))) {
         writeFileAtomic(frozenPlan(s.out), cut.plan.toText());
     }
     if (options.engine == "commands") return writeCommands(cut, options.isDryRun);

@@ -403,7 +403,7 @@ TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
         command, {fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n", "exit 1\n")});
     EXPECT_EQ(refused.exitCode, 2);
     EXPECT_THAT(refused.err, HasSubstr("gfxrepro: sbatch did not take the job (exit code 1): "
-                                       "invalid partition\n"));
+                                       "invalid partition; nothing was queued\n"));
     // Numbers may come with a cluster's name; the second job waits for the first.
     const std::string log = folder.path() / "log";
     const std::string path = fakeSlurm(folder, "echo \"$@\" >>'" + log + "'\necho '41;here'\n",
@@ -432,6 +432,62 @@ TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
     // Once more: what is complete is left out.
     EXPECT_EQ(runProgram(command, {mute}).out,
               "array 42 (shards 2), merge 42; gfxrepro submit --status " + out + "\n");
+}
+
+TEST(Submit, WhatWasRefusedIsNotQueued) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path() / "out";
+    const auto submitted = [&](const fs::path& config, const std::string& path) {
+        return runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device", "software", "--out",
+                           out, "--shards", "1"},
+                          {path});
+    };
+    const ProcessResult refused =
+        submitted(writeNumbers(folder, 2),
+                  fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n", "exit 1\n"));
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_FALSE(fs::exists(out)) << "nothing else was there";
+    EXPECT_EQ(mockGfxrepro({"submit", "--status", out}).err,
+              "gfxrepro: " + out + ": holds no submission\n");
+    fs::create_directories(folder.path() / "none");
+    const ProcessResult missing =
+        submitted(writeNumbers(folder, 2), "PATH=" + (folder.path() / "none").string());
+    EXPECT_EQ(missing.exitCode, 2);
+    EXPECT_THAT(missing.err, HasSubstr("sbatch did not take the job (exit code 127): "));
+    EXPECT_THAT(missing.err, HasSubstr("; where there is no Slurm, --engine commands prints "
+                                       "commands; nothing was queued\n"));
+    EXPECT_FALSE(fs::exists(out));
+    // What is queued then is what the config says then; so it is where a submit was killed.
+    folder.write("out/submitted-plan.json", "of another day");
+    const ProcessResult taken =
+        submitted(writeNumbers(folder, 3), fakeSlurm(folder, "echo 7\n", "exit 1\n"));
+    EXPECT_EQ(taken.exitCode, 0) << taken.err;
+    const ProcessResult task =
+        runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"});
+    EXPECT_EQ(task.exitCode, 0) << task.err;
+    EXPECT_EQ(rowsOf(out + "/shards/1", "number").size(), 3U);
+}
+
+TEST(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const auto submitted = [&](const std::string& out, const std::string& sbatch) {
+        return runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device", "software", "--out",
+                           folder.path() / out, "--shards", "1"},
+                          {fakeSlurm(folder, sbatch, "exit 1\n")});
+    };
+    const ProcessResult merge = submitted(
+        "a", "case \"$*\" in *afterany*) echo 'no such dependency' >&2; exit 1;; esac\necho 41\n");
+    EXPECT_EQ(merge.exitCode, 2);
+    EXPECT_THAT(merge.err, HasSubstr("gfxrepro: the merge: sbatch did not take the job (exit code "
+                                     "1): no such dependency; array 41 is queued; submit again "
+                                     "when the shards are complete\n"));
+    EXPECT_TRUE(fs::exists(folder.path() / "a/submitted-plan.json")) << "the array measures it";
+    const ProcessResult mute = submitted("b", "echo 'Submitted batch job'\n");
+    EXPECT_EQ(mute.exitCode, 2);
+    EXPECT_THAT(mute.err, HasSubstr("gfxrepro: sbatch gave no number of a job, so what is queued "
+                                    "is not known; squeue shows it: Submitted batch job\n"));
+    EXPECT_TRUE(fs::exists(folder.path() / "b/submitted-plan.json"));
 }
 
 TEST(Submit, SaysWhatItNeeds) {
