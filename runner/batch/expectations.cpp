@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "runner/config/params.h"
+#include "runner/config/schema.h"
+#include "runner/core/files.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::batch {
@@ -18,6 +21,10 @@ constexpr std::pair<std::string_view, Expectation::Kind> kLists[] = {
     {"fails", Expectation::Kind::Fails},
     {"flakes", Expectation::Kind::Flakes},
     {"skips", Expectation::Kind::Skips}};
+
+std::string listName(std::string_view deviceClass) {
+    return fmt::format("expect-{}.yaml", deviceClass);
+}
 
 bool isOneOf(const config::Node& value, const config::Node& allowed) {
     if (!allowed.isSequence()) return value.sameContent(allowed);
@@ -96,18 +103,54 @@ bool Expectation::matches(const Case& item) const {
     return true;
 }
 
-std::vector<Expectation> readExpectations(const fs::path& file) {
-    const config::Node document = config::parseYamlFile(file);
+std::vector<ExpectationList> findExpectations(const std::vector<fs::path>& configs) {
+    std::set<fs::path> files;
+    for (const fs::path& config : configs) {
+        const fs::path folder = fs::absolute(config).lexically_normal().parent_path();
+        for (const std::string_view deviceClass : config::kDeviceClasses) {
+            files.insert(folder / listName(deviceClass));
+        }
+    }
+    std::vector<ExpectationList> lists;
+    for (const fs::path& file : files) {
+        if (fs::exists(file)) lists.push_back({file, readFile(file)});
+    }
+    return lists;
+}
+
+std::vector<std::string> changedExpectations(const Plan& plan) {
+    std::vector<fs::path> configs;
+    for (const config::Experiment& experiment : plan.experiments) {
+        if (fs::is_directory(experiment.file.parent_path())) configs.push_back(experiment.file);
+    }
+    std::map<std::string, std::string> then, now;
+    for (const ExpectationList& list : plan.expectations) {
+        if (fs::is_directory(fs::path(list.file).parent_path())) then[list.file] = list.text;
+    }
+    for (const ExpectationList& list : findExpectations(configs)) now[list.file] = list.text;
+    std::vector<std::string> changed;
+    for (const auto& [file, text] : then) {
+        const auto found = now.find(file);
+        if (found == now.end() || found->second != text) changed.push_back(file);
+    }
+    for (const auto& [file, text] : now) {
+        if (!then.contains(file)) changed.push_back(file);
+    }
+    return changed;
+}
+
+std::vector<Expectation> readExpectations(const ExpectationList& list) {
+    const config::Node document = config::parseYaml(list.text, list.file);
     std::vector<Expectation> entries;
     if (document.isNull()) return entries;
-    for (const auto& [name, list] : document.entries()) {
+    for (const auto& [name, items] : document.entries()) {
         const auto* found = std::find_if(std::begin(kLists), std::end(kLists),
                                          [&key = name](const auto& l) { return l.first == key; });
         if (found == std::end(kLists)) {
             throw Error(document.keyLocation(name),
                         fmt::format("unknown list '{}'; allowed: fails, flakes, skips", name));
         }
-        for (const config::Node& node : list.items()) {
+        for (const config::Node& node : items.items()) {
             entries.push_back(readEntry(node, found->second, name));
         }
     }
@@ -144,15 +187,11 @@ void requireKnown(const Expectation& entry, const std::vector<Case>& cases) {
     }
 }
 
-Expectations::Expectations(const std::vector<std::string>& configs, const std::string& deviceClass,
-                           std::string_view today) {
-    std::set<fs::path> files;
-    for (const std::string& config : configs) {
-        files.insert(fs::path(config).parent_path() / ("expect-" + deviceClass + ".yaml"));
-    }
-    for (const fs::path& file : files) {
-        if (!fs::exists(file)) continue;
-        for (Expectation& entry : readExpectations(file)) {
+Expectations::Expectations(const std::vector<ExpectationList>& lists,
+                           const std::string& deviceClass, std::string_view today) {
+    for (const ExpectationList& list : lists) {
+        if (fs::path(list.file).filename() != listName(deviceClass)) continue;
+        for (Expectation& entry : readExpectations(list)) {
             const bool isExpired = entry.until < today;
             entries_.push_back({std::move(entry), isExpired});
         }

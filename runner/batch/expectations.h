@@ -28,22 +28,29 @@ struct Expectation {
     bool matches(const Case& item) const;
 };
 
+/// The lists in the folders of `configs`, of every class of device, ordered by path; a folder may
+/// have none.
+std::vector<ExpectationList> findExpectations(const std::vector<std::filesystem::path>& configs);
+
 /// The entries of a list, in its order. Throws Error with file:line:column.
-std::vector<Expectation> readExpectations(const std::filesystem::path& file);
+std::vector<Expectation> readExpectations(const ExpectationList& list);
+
+/// The lists beside the configs of a plan that are not what the plan froze: changed, gone, or new.
+/// None of a folder that is not there.
+std::vector<std::string> changedExpectations(const Plan& plan);
 
 /// Throws Error where the entry names an axis or parameter that none of `cases`, all cases of its
 /// table in every profile, has, or a value that none has there.
 void requireKnown(const Expectation& entry, const std::vector<Case>& cases);
 
-/// Those of the configs of a run.
+/// Those of a run.
 class Expectations {
   public:
     /// Nothing is expected.
     Expectations() = default;
-    /// Reads `expect-<deviceClass>.yaml` of each folder that holds one of `configs`; a folder may
-    /// have none. Entries whose day is before `today` ("2026-11-21") do not count. Throws Error
-    /// with file:line:column.
-    Expectations(const std::vector<std::string>& configs, const std::string& deviceClass,
+    /// Of `lists` those of the class of device. Entries whose day is before `today` ("2026-11-21")
+    /// do not count. Throws Error with file:line:column.
+    Expectations(const std::vector<ExpectationList>& lists, const std::string& deviceClass,
                  std::string_view today);
 
     /// The entry by which the case is not to be run; null when there is none.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "runner/batch/expectations.h"
 #include "runner/batch/ledger.h"
 #include "runner/batch/plan_hash.h"
 #include "runner/core/files.h"
@@ -43,6 +44,9 @@ std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
                     {"seed", plan.seed}};
     for (const Case& item : plan.cases) content["cases"].push_back(item.id);
     for (const Json& document : documents) content["documents"].push_back(document);
+    for (const ExpectationList& list : plan.expectations) {  // plans of older versions have none
+        content["expectations"].push_back({fs::path(list.file).filename().string(), list.text});
+    }
     return sha256(content.dump());
 }
 
@@ -117,6 +121,10 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
             plan.cases.push_back(std::move(item));
         }
     }
+    std::vector<fs::path> files;
+    for (const config::Experiment& experiment : experiments) files.push_back(experiment.file);
+    plan.expectations = findExpectations(files);
+    for (const ExpectationList& list : plan.expectations) readExpectations(list);  // or throws
     plan.hash = hashOf(plan);
     return plan;
 }
@@ -167,6 +175,13 @@ std::string planDifference(const Plan& then, const Plan& now) {
             return "the config " + before.file.string() + " changed";
         }
     }
+    const auto textsOf = [](const Plan& plan) {
+        std::vector<std::string> texts;
+        for (const ExpectationList& list : plan.expectations) texts.push_back(list.text);
+        return texts;
+    };
+    if (textsOf(then) != textsOf(now))
+        return "the lists of expectations beside the configs changed";
     return "the experiments are not the same";
 }
 

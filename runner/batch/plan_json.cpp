@@ -227,6 +227,9 @@ std::string Plan::toText() const {
             json["experiments"].back()["paper"] = paperToJson(experiment);
         }
     }
+    for (const ExpectationList& list : expectations) {
+        json["expectations"].push_back({{"file", list.file}, {"text", list.text}});
+    }
     if (shard) {
         json["shard"] = {
             {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
@@ -270,6 +273,12 @@ Plan Plan::fromJsonFile(const fs::path& path) {
         }
         if (const config::Node* paper = item.find("paper")) {  // older plans have none
             readPaper(*paper, plan.experiments.back());
+        }
+    }
+    if (const config::Node* lists = node.find("expectations")) {
+        for (const config::Node& item : lists->items()) {
+            plan.expectations.push_back(
+                {required(item, "file").text(), required(item, "text").text()});
         }
     }
     for (const config::Node& item : required(node, "cases").items()) {

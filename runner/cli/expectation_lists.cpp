@@ -90,7 +90,8 @@ std::vector<Error> unknownExpectations(const Context& context,
         for (const std::string& deviceClass : deviceClasses) {
             const fs::path list = path / ("expect-" + deviceClass + ".yaml");
             if (!fs::exists(list)) continue;
-            std::ranges::move(batch::readExpectations(list), std::back_inserter(entries));
+            std::ranges::move(batch::readExpectations({list, readFile(list)}),
+                              std::back_inserter(entries));
         }
         if (entries.empty()) continue;
         Folder folder(context, path, assets);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runner/batch/case_filter.h"
+#include "runner/batch/expectations.h"
 #include "runner/batch/scheduler.h"
 #include "runner/cli/console.h"
 #include "runner/core/files.h"
@@ -168,6 +169,9 @@ void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequenc
         problem = planned.file.string() + " changed";
     }
     if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
+    for (const std::string& list : batch::changedExpectations(plan)) {
+        tell("warning: {} changed; {}\n", list, consequence);
+    }
 }
 
 batch::Plan submittedPlan(const Context& context, const std::string& file,

@@ -90,6 +90,12 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
     batch::Plan plan = submitted ? std::move(*submitted)
                                  : planFor(context, request, selection.profile,
                                            scheduler.assetsFolder, deviceClassOf(device));
+    if (!submitted) {
+        for (const Error& unknown : unknownExpectations(context, plan.request.configs,
+                                                        {plan.deviceClass}, selection.assets)) {
+            tell("warning: {}\n", unknown.what());
+        }
+    }
     if (plan.deviceClass != deviceClassOf(device)) batch::rebind(plan, deviceClassOf(device));
     if (!options.budget.empty()) {
         const batch::Request affordable =
@@ -219,12 +225,8 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
     Prepared run = isNew ? prepareNew(context, options, request, std::move(submitted), phases)
                          : prepareResumed(context, options, request, phases);
-    run.scheduler.expectations = batch::Expectations(run.plan.request.configs, run.plan.deviceClass,
+    run.scheduler.expectations = batch::Expectations(run.plan.expectations, run.plan.deviceClass,
                                                      batch::utcTime().substr(0, 10));
-    for (const Error& unknown : unknownExpectations(
-             context, run.plan.request.configs, {run.plan.deviceClass}, options.selection.assets)) {
-        tell("warning: {}\n", unknown.what());
-    }
     run.scheduler.failuresAtMost = options.failuresAtMost;
     if (!options.triesAgain) {
         run.scheduler.givenUp =

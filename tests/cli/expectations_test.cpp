@@ -5,21 +5,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "runner/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kDay = "2026-11-21";
+
+/// By the lists beside a config of the folder.
+batch::Expectations expected(const TemporaryFolder& folder, const std::string& deviceClass) {
+    return {batch::findExpectations({folder.path() / "table-1.yaml"}), deviceClass, kDay};
+}
 
 /// The message about a file with this text, its folder as DIR.
 std::string refusal(const std::string& text) {
     const TemporaryFolder folder;
     folder.write("expect-software.yaml", text);
-    std::string message =
-        errorText([&] { batch::Expectations({folder.path() / "table-1.yaml"}, "software", kDay); });
+    std::string message = errorText([&] { expected(folder, "software"); });
     const std::string prefix = folder.path().string();
     if (message.starts_with(prefix)) message.replace(0, prefix.size(), "DIR");
     return message;
@@ -56,7 +63,7 @@ TEST(Expectations, MatchByTableAndAxesUntilTheirDay) {
                  "fails:\n"
                  "  - {table: p/1, at: {n: [1, 2]}, status: crash, reason: a, until: 2026-11-21}\n"
                  "  - {table: p/1, at: {n: 9}, reason: b, until: 2026-11-20}\n");
-    batch::Expectations list({folder.path() / "x.yaml"}, "gpu", kDay);
+    batch::Expectations list = expected(folder, "gpu");
     EXPECT_TRUE(list.isExpected(caseWith("p/1", "{n: 2}"), report::Status::Crash));
     EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 2}"), report::Status::Timeout));
     EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 3}"), report::Status::Crash));
@@ -68,8 +75,8 @@ TEST(Expectations, MatchByTableAndAxesUntilTheirDay) {
                 ElementsAre(file + ":2:5: the expectation is not needed: every case that it names "
                                    "passed (a)",
                             file + ":3:5: the expectation expired on 2026-11-20 (b)"));
-    batch::Expectations other({folder.path() / "x.yaml"}, "software", kDay);
-    EXPECT_FALSE(other.isExpected(caseWith("p/1", "{n: 2}"), report::Status::Crash));
+    EXPECT_FALSE(
+        expected(folder, "software").isExpected(caseWith("p/1", "{n: 2}"), report::Status::Crash));
 }
 
 TEST(Expectations, WhatTheyNameHasToBeThere) {
@@ -128,6 +135,75 @@ TEST(Expectations, RunFollowsThem) {
                            "that it names passed (was bad)\n"),
               std::string::npos)
         << run.err;
+}
+
+class FrozenExpectations : public ::testing::Test {
+  protected:
+    void SetUp() override { expect("crash"); }
+    /// That the case of this behaviour fails.
+    void expect(const std::string& behaviour) const {
+        folder.write("expect-software.yaml",
+                     "fails:\n  - {table: sweep/mock, at: {behaviour: " + behaviour +
+                         "}, reason: it must, until: 9999-12-31}\n");
+    }
+
+    TemporaryFolder folder;
+    std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok, crash]}\n");
+    std::string list = folder.path() / "expect-software.yaml";
+    std::string dir = folder.path() / "run";
+};
+
+TEST_F(FrozenExpectations, ARunThatGoesOnKnowsTheListAsItWas) {
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    expect("ok");
+    const std::string warning = "warning: " + list +
+                                " changed; the run goes on with its configs as they were when it "
+                                "began\n";
+    const ProcessResult changed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(changed.exitCode, 0) << changed.out;
+    EXPECT_THAT(changed.err, HasSubstr(warning));
+    std::filesystem::remove(list);
+    const ProcessResult gone = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(gone.exitCode, 0) << gone.out;
+    EXPECT_THAT(gone.err, HasSubstr(warning));
+    folder.write("expect-software.yaml", "fails: [");  // whatever it says
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+}
+
+TEST_F(FrozenExpectations, AListThatIsNewIsNotFollowed) {
+    std::filesystem::remove(list);
+    const auto resumed = [&] { return mockGfxrepro({"run", "--resume", dir}); };
+    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    EXPECT_THAT(resumed().err, Not(HasSubstr("changed")));
+    expect("crash");
+    const ProcessResult result = resumed();
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, HasSubstr("warning: " + list + " changed; the run goes on with"));
+}
+
+TEST_F(FrozenExpectations, WhatIsSubmittedHasItsList) {
+    const std::string out = folder.path() / "out";
+    ASSERT_EQ(mockGfxrepro({"submit", config, "--device", "software", "--out", out, "--engine",
+                            "commands", "--shards", "1"})
+                  .exitCode,
+              0);
+    expect("ok");
+    const ProcessResult shard = runProgram({"/bin/sh", out + "/commands.txt"});
+    EXPECT_EQ(shard.exitCode, 0) << shard.err;
+    EXPECT_THAT(shard.err,
+                HasSubstr("warning: " + list + " changed; what was submitted is measured\n"));
+}
+
+TEST_F(FrozenExpectations, ThoseOfAPlanAreNotEdited) {
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    std::string plan = readFile(dir + "/plan.json");
+    const std::size_t at = plan.find("behaviour: crash}");
+    ASSERT_NE(at, std::string::npos);
+    writeFileAtomic(dir + "/plan.json", plan.replace(at, 17, "behaviour: throw}"));
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_EQ(table.exitCode, 2);
+    EXPECT_THAT(table.err, HasSubstr("planned: plan.json was changed\n"));
 }
 
 }  // namespace
