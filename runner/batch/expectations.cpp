@@ -223,11 +223,20 @@ bool allows(const Expectation& expectation, report::Status status) {
 
 }  // namespace
 
-bool Expectations::isExpected(const Case& item, report::Status status) const {
-    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-        return !entry.isExpired && allows(entry.expectation, status) &&
-               entry.expectation.matches(item);
-    });
+const Expectation* Expectations::excuseOf(const Case& item, report::Status status) const {
+    for (const Entry& entry : entries_) {
+        if (entry.isExpired || !allows(entry.expectation, status)) continue;
+        if (entry.expectation.matches(item)) return &entry.expectation;
+    }
+    return nullptr;
+}
+
+const Expectation* Expectations::failureOf(const Case& item) const {
+    for (const Entry& entry : entries_) {
+        if (entry.isExpired || entry.expectation.kind != Expectation::Kind::Fails) continue;
+        if (entry.expectation.matches(item)) return &entry.expectation;
+    }
+    return nullptr;
 }
 
 void Expectations::note(const Case& item, report::Status status) {

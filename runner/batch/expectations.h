@@ -55,8 +55,14 @@ class Expectations {
 
     /// The entry by which the case is not to be run; null when there is none.
     const Expectation* skipOf(const Case& item) const;
-    /// Whether the case may end like this: not tried again, not held against the run.
-    bool isExpected(const Case& item, report::Status status) const;
+    /// The entry by which the case may end like this, not tried again and not held against the run;
+    /// null when there is none.
+    const Expectation* excuseOf(const Case& item, report::Status status) const;
+    bool isExpected(const Case& item, report::Status status) const {
+        return excuseOf(item, status) != nullptr;
+    }
+    /// The entry by which the case fails; null when there is none.
+    const Expectation* failureOf(const Case& item) const;
     /// Remembers how a case ended.
     void note(const Case& item, report::Status status);
     /// Expired entries, and those that no longer tell the truth: every case that ran passed.

@@ -1,10 +1,13 @@
 #include "runner/batch/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "runner/batch/merge.h"
 #include "runner/batch/report_runs.h"
 #include "runner/batch/run_files.h"
 #include "runner/batch/sensitivity.h"
@@ -19,15 +22,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Every unit that has rows, and whether all have values.
-std::map<UnitKey, bool> recordedUnits(const std::vector<report::Record>& records) {
-    std::map<UnitKey, bool> units;
+bool hasValues(report::Status status) {
+    return status == report::Status::Ok || status == report::Status::Flaky;
+}
+
+/// The first row of each unit that has no value; else the first that is not `ok`; else its first.
+using WorstRows = std::map<UnitKey, const report::Record*>;
+WorstRows worstRows(const std::vector<report::Record>& records) {
+    const auto weight = [](const report::Record& row) {
+        return hasValues(row.status) ? (row.status == report::Status::Ok ? 0 : 1) : 2;
+    };
+    WorstRows worst;
     for (const report::Record& row : records) {
-        const auto [unit, isNew] = units.try_emplace({row.caseId, row.process}, true);
-        unit->second = unit->second &&
-                       (row.status == report::Status::Ok || row.status == report::Status::Flaky);
+        const auto [unit, isNew] = worst.try_emplace({row.caseId, row.process}, &row);
+        if (!isNew && weight(row) > weight(*unit->second)) unit->second = &row;
     }
-    return units;
+    return worst;
 }
 
 void rewriteRecords(const RunDirectory& directory, const std::vector<report::Record>& rows) {
@@ -43,16 +53,16 @@ void rewriteRecords(const RunDirectory& directory, const std::vector<report::Rec
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
     if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
     const std::vector<report::Record> records = report::readRecords(directory.recordsFile());
-    const std::map<UnitKey, bool> recorded = recordedUnits(records);
+    const WorstRows worst = worstRows(records);
     std::vector<report::Record> kept;
     for (const report::Record& row : records) {
-        if (recorded.at({row.caseId, row.process})) kept.push_back(row);
+        if (hasValues(worst.at({row.caseId, row.process})->status)) kept.push_back(row);
     }
     if (kept.size() != records.size()) rewriteRecords(directory, kept);
     std::vector<Unit> units = unitsOf(plan, records);
     std::erase_if(units, [&](const Unit& unit) {
-        const auto found = recorded.find({unit.item->id, unit.process});
-        return found != recorded.end() && found->second;
+        const auto found = worst.find({unit.item->id, unit.process});
+        return found != worst.end() && hasValues(found->second->status);
     });
     return units;
 }
@@ -106,54 +116,112 @@ StoredRun readRun(const fs::path& runDir) {
     return run;
 }
 
+Expectations expectationsOf(const Plan& plan, const Json& manifest) {
+    const auto startOf = [](const Json& json) {
+        const auto found = json.find("started");
+        return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    const auto dayOf = [&](const Json& run) {
+        const Json& invocations = run.at("invocations");
+        std::string start = invocations.empty() ? "" : startOf(invocations.back());
+        return (start.empty() ? startOf(manifest) : start).substr(0, 10);
+    };
+    std::string day = dayOf(manifest);
+    if (isOnlyMerged(manifest)) {  // that of the shards, not of the merge
+        day.clear();
+        for (const Json& shard : manifest.at("merged")) day = std::max(day, dayOf(shard));
+    }
+    return {plan.expectations, plan.deviceClass, day};
+}
+
 Completeness completeness(const StoredRun& run) {
-    const std::map<UnitKey, bool> recorded = recordedUnits(run.records);
+    const WorstRows worst = worstRows(run.records);
+    Expectations expectations = expectationsOf(run.plan, run.manifest);
     Completeness counts;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         ++counts.units;
-        const auto found = recorded.find({unit.item->id, unit.process});
-        if (found == recorded.end()) {
+        const auto found = worst.find({unit.item->id, unit.process});
+        if (found == worst.end()) {
             ++counts.missing;
-        } else if (!found->second) {
+            continue;
+        }
+        const report::Status status = found->second->status;
+        expectations.note(*unit.item, status);
+        if (hasValues(status)) continue;
+        if (expectations.isExpected(*unit.item, status)) {
+            ++counts.expected;
+        } else {
             ++counts.failed;
+            ++counts.failures[status];
         }
     }
+    counts.complaints = expectations.complaints();
     return counts;
 }
 
+namespace {
+
+/// How one unit of a case ended; nothing more than that where it has values.
+report::CaseResult resultOf(const Case& item, const report::Record* row,
+                            const Expectations& expectations) {
+    using Ended = report::CaseResult::Outcome;
+    report::CaseResult result{item.experiment, item.title()};
+    if (!row) {
+        result.outcome = Ended::Failed;
+        result.text = "not run";
+        return result;
+    }
+    if (hasValues(row->status)) {
+        const Expectation* unmet = expectations.failureOf(item);
+        if (!unmet || row->status != report::Status::Ok) return result;
+        result.outcome = Ended::Failed;
+        result.text = fmt::format("ended well, but was expected to fail until {}: {} ({})",
+                                  unmet->until, unmet->reason, toString(unmet->location));
+        return result;
+    }
+    result.text = report::statusName(row->status);
+    if (!row->message.empty()) result.text += ": " + row->message;
+    const Expectation* excuse = expectations.excuseOf(item, row->status);
+    const bool isSkipped =
+        row->status == report::Status::Missing || row->status == report::Status::Unsupported;
+    result.outcome = excuse || isSkipped ? Ended::Skipped : Ended::Failed;
+    if (excuse && excuse->kind == Expectation::Kind::Fails) {
+        result.text += fmt::format("; expected until {}: {}", excuse->until, excuse->reason);
+    }
+    return result;
+}
+
+}  // namespace
+
 std::vector<report::CaseResult> caseResults(const StoredRun& run) {
     using Ended = report::CaseResult::Outcome;
+    const Expectations expectations = expectationsOf(run.plan, run.manifest);
+    const WorstRows worst = worstRows(run.records);
     std::map<std::string, SourceLocation> files;
     for (const config::Experiment& experiment : run.plan.experiments) {
         files[experiment.id] = {experiment.file.string(), 0, 0};
     }
-    std::map<UnitKey, const report::Record*> worst;
-    for (const report::Record& row : run.records) {
-        const auto [unit, isNew] = worst.try_emplace({row.caseId, row.process}, &row);
-        if (!isNew && unit->second->status == report::Status::Ok) unit->second = &row;
-    }
-    std::map<std::string, report::CaseResult> results;
+    // Of the processes of a case what failed weighs most, then what was left out; a case that was
+    // to fail does so in all of them.
+    const auto weight = [](const report::CaseResult& result, bool isUnmet) {
+        return result.outcome == Ended::Failed ? (isUnmet ? 1 : 3)
+                                               : (result.outcome == Ended::Skipped ? 2 : 0);
+    };
+    std::map<std::string, std::pair<int, report::CaseResult>> results;
     std::vector<std::string> order;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         const Case& item = *unit.item;
-        const auto [result, isNew] = results.try_emplace(
-            item.id, report::CaseResult{item.experiment, item.title(), Ended::Measured, "",
-                                        files[item.experiment]});
-        if (isNew) order.push_back(item.id);
-        if (result->second.outcome == Ended::Failed) continue;
         const auto found = worst.find({item.id, unit.process});
         const report::Record* row = found == worst.end() ? nullptr : found->second;
-        if (row && (row->status == report::Status::Ok || row->status == report::Status::Flaky)) {
-            continue;
-        }
-        const bool isSkipped = row && (row->status == report::Status::Missing ||
-                                       row->status == report::Status::Unsupported);
-        result->second.outcome = isSkipped ? Ended::Skipped : Ended::Failed;
-        result->second.text = row ? std::string(report::statusName(row->status)) : "not run";
-        if (row && !row->message.empty()) result->second.text += ": " + row->message;
+        report::CaseResult result = resultOf(item, row, expectations);
+        result.where = files[item.experiment];
+        const int own = weight(result, row && hasValues(row->status));
+        const auto [known, isNew] = results.try_emplace(item.id, own, result);
+        if (isNew) order.push_back(item.id);
+        if (own > known->second.first) known->second = {own, std::move(result)};
     }
     std::vector<report::CaseResult> ordered;
-    for (const std::string& id : order) ordered.push_back(std::move(results.at(id)));
+    for (const std::string& id : order) ordered.push_back(std::move(results.at(id).second));
     return ordered;
 }
 

@@ -45,15 +45,26 @@ StoredRun readRun(const std::filesystem::path& runDir);
 /// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
 report::ReportContext reportContext(const StoredRun& run);
 
-/// Units, those without a row of any kind, and those that did not end `ok`.
+/// What the lists of expectations that the run's plan froze say, on the day of the run.
+Expectations expectationsOf(const Plan& plan, const Json& manifest);
+
+/// What became of the units of the run's plan, or of its shard. Every exit code that says whether a
+/// run is complete is of this.
 struct Completeness {
     int units = 0;
-    int missing = 0;
-    int failed = 0;
+    int missing = 0;   // without a row of any kind
+    int failed = 0;    // did not end `ok` or `flaky`, and nobody expected it
+    int expected = 0;  // likewise, as a list of expectations says
+    std::map<report::Status, int> failures = {};  // the failed ones
+    std::vector<std::string> complaints = {};     // about expectations
+
+    bool isComplete() const { return missing + failed == 0; }
+    int measured() const { return units - missing - failed - expected; }
 };
 Completeness completeness(const StoredRun& run);
 
-/// How every case of the run's plan, or of its shard, ended: by its worst process.
+/// How every case of the run's plan, or of its shard, ended: by its worst process. What was
+/// expected to fail and did is skipped, with the reason; what was and did not is a failure.
 std::vector<report::CaseResult> caseResults(const StoredRun& run);
 
 /// Which of the derived files writeResults makes.

@@ -48,10 +48,9 @@ struct RunOutcome {
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others, but for those that were expected
     int expected = 0;  // that failed or were skipped as a list of expectations says
-    std::vector<std::string> complaints;  // about expectations
-    std::vector<std::string> warnings;    // about times
-    bool isInterrupted = false;           // by SIGINT or SIGTERM
-    std::string stopReason;               // of a stop before the end that nobody asked for then
+    std::vector<std::string> warnings;  // about times
+    bool isInterrupted = false;         // by SIGINT or SIGTERM
+    std::string stopReason;             // of a stop before the end that nobody asked for then
     std::vector<SceneUse> scenes;
 };
 

@@ -34,6 +34,7 @@ constexpr std::chrono::hours kRunLimit{24};
 struct Measured {
     regression::SeriesMap series;
     regression::Failures failures;
+    bool hasFailures = false;  // that nobody expected
     std::string machine;
     std::string commit;
     bool isSoftware = false;
@@ -44,10 +45,25 @@ struct Measured {
     std::string buildId;
 };
 
+/// Of flaky cases, too.
+bool hasUnexpectedFailures(const batch::StoredRun& run) {
+    const batch::Expectations expectations = batch::expectationsOf(run.plan, run.manifest);
+    std::map<std::string, const batch::Case*> cases;
+    for (const batch::Case& item : run.plan.cases) cases[item.id] = &item;
+    return std::ranges::any_of(run.records, [&](const report::Record& row) {
+        if (row.status == report::Status::Ok || row.status == report::Status::Ambiguous) {
+            return false;
+        }
+        const auto item = cases.find(row.caseId);
+        return item == cases.end() || !expectations.isExpected(*item->second, row.status);
+    });
+}
+
 Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
     Measured measured{regression::seriesOf(run.records),
                       regression::failuresOf(run.records),
+                      hasUnexpectedFailures(run),
                       batch::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       run.plan.deviceClass == "software",
@@ -125,7 +141,7 @@ class Turns {
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
         sides.failuresAfter.merge(measured[1].failures);
-        hasFailures_ = hasFailures_ || !sides.failuresAfter.empty();
+        hasFailures_ = hasFailures_ || measured[1].hasFailures;
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
         measured[1].series = std::move(newer_.series);
@@ -245,7 +261,7 @@ int compare(const CompareOptions& options) {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
-        hasFailures = !newer.failures.empty();
+        hasFailures = newer.hasFailures;
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);

@@ -68,11 +68,14 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
     const std::vector<std::string> missing = batch::missingUnits(merged);
     const batch::Completeness counts = batch::completeness(merged);
     printMissing(runs, missing);
-    fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing\n", runs.size(),
-               runs.size() == 1 ? "" : "s", out, counts.units - counts.missing - counts.failed,
-               counts.units, counts.failed, counts.missing);
+    fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing{}\n",
+               runs.size(), runs.size() == 1 ? "" : "s", out, counts.measured(), counts.units,
+               counts.failed, counts.missing,
+               counts.expected > 0
+                   ? fmt::format(", {} failed or skipped as expected", counts.expected)
+                   : "");
     const int verdict = conclude(out);
-    if (counts.missing + counts.failed == 0) return verdict;
+    if (counts.isComplete()) return verdict;
     fmt::print("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);
     return kExitIncomplete;
 }

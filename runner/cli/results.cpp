@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 
+#include "runner/batch/expectations.h"
 #include "runner/batch/report_runs.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
 #include "runner/core/text.h"
@@ -23,12 +26,34 @@ namespace {
 /// More names of failing claims than these bury the summary.
 constexpr std::size_t kSaidFailing = 20;
 
+/// "2 crash, 1 timeout"; the most frequent first.
+std::string failuresText(const batch::Completeness& counts) {
+    std::vector<std::pair<report::Status, int>> failures(counts.failures.begin(),
+                                                         counts.failures.end());
+    std::ranges::stable_sort(failures, std::greater<>{}, &std::pair<report::Status, int>::second);
+    std::vector<std::string> texts;
+    for (const auto& [status, count] : failures) {
+        texts.push_back(fmt::format("{} {}", count, report::statusName(status)));
+    }
+    return joined(texts);
+}
+
 /// Says what is missing; the exit code of a command that has nothing worse to report.
 int completenessCode(const batch::StoredRun& run) {
     const batch::Completeness counts = batch::completeness(run);
-    if (counts.missing + counts.failed == 0) return kExitOk;
+    for (const std::string& line : counts.complaints) tell("{}\n", line);
+    for (const std::string& list : batch::changedExpectations(run.plan)) {
+        tell("warning: {} changed; the run is judged by what it said when the run was planned\n",
+             list);
+    }
+    if (counts.expected > 0) {
+        fmt::print("{} of {} failed or skipped as expected\n", counts.expected, counts.units);
+    }
+    if (counts.isComplete()) return kExitOk;
     if (areAnnotationsWanted()) annotate(batch::caseResults(run));
-    fmt::print("incomplete: {} not run, {} failed\n", counts.missing, counts.failed);
+    fmt::print("incomplete: {} not run, {} failed{}{}\n", counts.missing, counts.failed,
+               counts.failed > 0 ? fmt::format(" ({})", failuresText(counts)) : "",
+               counts.measured() == 0 ? "; no case has a result" : "");
     return kExitIncomplete;
 }
 

@@ -225,8 +225,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
     Prepared run = isNew ? prepareNew(context, options, request, std::move(submitted), phases)
                          : prepareResumed(context, options, request, phases);
-    run.scheduler.expectations = batch::Expectations(run.plan.expectations, run.plan.deviceClass,
-                                                     batch::utcTime().substr(0, 10));
+    run.scheduler.expectations = batch::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
     if (!options.triesAgain) {
         run.scheduler.givenUp =
@@ -255,15 +254,17 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         tell("stopped: {}; continue with: gfxrepro {} --resume {}\n", outcome.stopReason,
              results ? "reproduce" : "run", path);
     }
-    for (const std::string& line : outcome.complaints) tell("{}\n", line);
+    const batch::StoredRun stored = batch::readRun(path);
+    const batch::Completeness counts = batch::completeness(stored);
+    for (const std::string& line : counts.complaints) tell("{}\n", line);
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
     fmt::print("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
                countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
                countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
                countText(outcome.expected, "failed or skipped as expected"),
                run.directory.recordsFile().string());
-    const bool isComplete = outcome.failed + outcome.voided == 0 && outcome.stopReason.empty();
-    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(batch::readRun(path)));
+    const bool isComplete = counts.isComplete() && outcome.stopReason.empty();
+    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(stored));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;
 
     const int verdict = conclude(path);

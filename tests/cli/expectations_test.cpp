@@ -206,5 +206,70 @@ TEST_F(FrozenExpectations, ThoseOfAPlanAreNotEdited) {
     EXPECT_THAT(table.err, HasSubstr("planned: plan.json was changed\n"));
 }
 
+TEST_F(FrozenExpectations, EveryCommandThatReadsARunGoesByThem) {
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    const std::string shard = folder.path() / "shard", merged = folder.path() / "merged",
+                      out = folder.path() / "out";
+    ASSERT_EQ(
+        mockGfxrepro({"run", config, "--device", "software", "--shard", "1/1", "--out", shard})
+            .exitCode,
+        0);
+    expect("ok");
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},
+                                                    {"claims", dir},
+                                                    {"claims", dir, "--config", config},
+                                                    {"report", dir},
+                                                    {"report", dir, dir, "--out", out + ".html"}}) {
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 0) << command.front() << result.out;
+        EXPECT_THAT(result.out, HasSubstr("1 of 2 failed or skipped as expected\n"));
+        EXPECT_THAT(result.out, Not(HasSubstr("incomplete")));
+        EXPECT_THAT(result.err, HasSubstr("warning: " + list +
+                                          " changed; the run is judged by what it said "
+                                          "when the run was planned\n"));
+    }
+    EXPECT_EQ(mockGfxrepro({"compare", dir, dir, "--out", out}).exitCode, 0);
+    const ProcessResult merge = mockGfxrepro({"merge", merged, shard});
+    EXPECT_EQ(merge.exitCode, 0);
+    EXPECT_THAT(merge.out, HasSubstr(": 1 of 2 measured, 0 failed, 0 missing, 1 failed or skipped "
+                                     "as expected\n"));
+    const std::string junit = readFile(dir + "/junit.xml");
+    EXPECT_THAT(junit, HasSubstr("name=\"cases\" tests=\"2\" failures=\"0\" skipped=\"1\""));
+    EXPECT_THAT(junit,
+                HasSubstr("<skipped message=\"crash: SIGSEGV: about to crash; expected until "
+                          "9999-12-31: it must\"/>"));
+}
+
+TEST_F(FrozenExpectations, WhatDidNotFailIsAFailureInJunit) {
+    expect("ok");
+    config = writeMockConfig(folder, "params: {behaviour: ok}\nsweep: {number: [1, 2]}\n");
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    const std::string complaint =
+        list + ":2:5: the expectation is not needed: every case that it names passed (it must)\n";
+    EXPECT_EQ(run.exitCode, 0) << "every case finished";
+    EXPECT_THAT(run.err, HasSubstr(complaint));
+    const ProcessResult claims = mockGfxrepro({"claims", dir});
+    EXPECT_EQ(claims.exitCode, 0);
+    EXPECT_THAT(claims.err, HasSubstr(complaint));
+    const std::string junit = readFile(dir + "/junit.xml");
+    EXPECT_THAT(junit, HasSubstr("name=\"cases\" tests=\"2\" failures=\"2\" skipped=\"0\""));
+    EXPECT_THAT(junit, HasSubstr("<failure message=\"ended well, but was expected to fail until "
+                                 "9999-12-31: it must (" +
+                                 list + ":2:5)\"/>"));
+}
+
+TEST_F(FrozenExpectations, TheDayIsThatOfTheRun) {
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    std::string manifest = readFile(dir + "/manifest.json");
+    const std::string started = "\"started\": \"";
+    const std::size_t last = manifest.rfind(started);
+    ASSERT_NE(last, std::string::npos);
+    manifest.replace(last + started.size(), 4, "99999");  // a run of the year 99999
+    writeFileAtomic(dir + "/manifest.json", manifest);
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_EQ(table.exitCode, 4);
+    EXPECT_THAT(table.err, HasSubstr("the expectation expired on 9999-12-31 (it must)\n"));
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

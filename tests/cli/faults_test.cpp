@@ -278,8 +278,14 @@ TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
                                                     {"report", dir, dir, "--out", out}}) {
         const ProcessResult result = mockGfxrepro(command);
         EXPECT_EQ(result.exitCode, 4) << command.front() << ' ' << command.back() << result.err;
-        EXPECT_THAT(result.out, HasSubstr("incomplete: 0 not run, 1 failed\n"));
+        EXPECT_THAT(result.out, HasSubstr("incomplete: 0 not run, 1 failed (1 error)\n"));
     }
+    const std::string crashing =
+        writeMockConfig(folder, "params: {behaviour: crash}\nsweep: {number: [1, 2]}\n");
+    ASSERT_EQ(mockGfxrepro({"run", crashing, "--device", "software", "--out", dir + "2"}).exitCode,
+              4);
+    EXPECT_THAT(mockGfxrepro({"table", dir + "2"}).out,
+                HasSubstr("incomplete: 0 not run, 2 failed (2 crash); no case has a result\n"));
 }
 
 }  // namespace
