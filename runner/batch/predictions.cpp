@@ -66,6 +66,9 @@ std::map<std::string, std::vector<Cost>> loggedCosts(const fs::path& runDir) {
     return costs;
 }
 
+/// Of a run that is looked at without being asked for.
+constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;
+
 std::map<std::string, Prediction> readPredictions(const fs::path& file) {
     const std::string text = readFile(file);
     report::CsvReader reader(text, file.string());
@@ -95,6 +98,7 @@ std::vector<PastCase> readPastCases(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
     }
+    requireModestFiles(runDir);
     const std::map<std::string, std::vector<Cost>> costs = loggedCosts(runDir);
     std::vector<PastCase> past;
     if (costs.empty()) return past;
@@ -114,6 +118,7 @@ std::vector<fs::path> newestRuns(const fs::path& folder, const std::string& devi
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const fs::path manifestFile = entry.path() / "manifest.json";
         if (!fs::exists(entry.path() / "plan.json") || !fs::exists(manifestFile)) continue;
+        if (fs::file_size(manifestFile) > kMostManifestBytes) continue;
         const Json manifest = Json::parse(readFile(manifestFile), nullptr, false);
         if (!manifest.is_object() || manifest.value("device_class", "") != deviceClass) continue;
         runs.emplace_back(fs::last_write_time(manifestFile), entry.path());

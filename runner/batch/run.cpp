@@ -105,6 +105,7 @@ StoredRun readRun(const fs::path& runDir) {
         throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
     }
     requirePlainFiles(runDir);
+    requireModestFiles(runDir);
     StoredRun run;
     run.plan = Plan::fromJsonFile(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");

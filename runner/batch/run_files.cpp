@@ -4,18 +4,28 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::batch {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::uintmax_t kMiB = std::uintmax_t{1} << 20;
+constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {{"plan.json", 512 * kMiB},
+                                                                 {"manifest.json", 64 * kMiB},
+                                                                 {"records.csv", 1024 * kMiB},
+                                                                 {"log.jsonl", 512 * kMiB},
+                                                                 {"images/index.csv", 256 * kMiB}};
+constexpr std::size_t kMostLineBytes = kMiB;  // an output of 64 KiB, each byte escaped, and more
+constexpr std::size_t kMostEvents = 4'000'000;
 
 enum class Kind { Text, Whole, Number, Object, List, Texts, Objects };
 
@@ -118,6 +128,16 @@ void requireEach(const Json& object, const char* place, std::span<const Member> 
 
 }  // namespace
 
+void requireModestFiles(const fs::path& runDir) {
+    for (const auto& [name, mostBytes] : kMostBytes) {
+        std::error_code isAbsent;
+        const std::uintmax_t size = fs::file_size(runDir / name, isAbsent);
+        if (isAbsent || size <= mostBytes) continue;
+        throw Error({(runDir / name).string(), 0, 0},
+                    fmt::format("{} bytes; at most {} are read", size, mostBytes));
+    }
+}
+
 Json readManifest(const fs::path& file) {
     Json manifest = Json::parse(readFile(file), nullptr, false);
     const SourceLocation where{file.string(), 0, 0};
@@ -134,9 +154,20 @@ std::vector<Json> readLog(const fs::path& file) {
     std::vector<Json> events;
     if (!fs::exists(file)) return events;
     const std::string name = file.string();
-    int line = 0;
-    for (const std::string& text : split(readFile(file), '\n')) {
-        ++line;
+    const MappedFile mapped(file);
+    std::string_view rest = mapped.text();
+    for (int line = 1; !rest.empty(); ++line) {
+        const std::string_view text = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(text.size() + 1, rest.size()));
+        if (text.empty()) continue;
+        if (text.size() > kMostLineBytes) {
+            throw Error({name, line, 0}, fmt::format("a line of {} bytes; at most {} are read",
+                                                     text.size(), kMostLineBytes));
+        }
+        if (events.size() == kMostEvents) {
+            throw Error({name, line, 0},
+                        fmt::format("more than {} events, which are not read", kMostEvents));
+        }
         Json event = Json::parse(text, nullptr, false);
         if (!event.is_object()) continue;
         requireMembers(event, kEvent, {name, line, 0});

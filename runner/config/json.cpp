@@ -12,6 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr std::size_t kDeepest = 200;
+/// A value takes many times its bytes in memory; 100,000 cases have 15 million.
+constexpr std::size_t kMostValues = 30'000'000;
 
 /// Builds the tree while the parser walks the text: a tree of the parser's own would be as large as
 /// the plan once more, and search each object for every key that it adds.
@@ -86,6 +88,9 @@ class Builder : public nlohmann::json_sax<Json> {
         return done;
     }
     bool add(Node node) {
+        if (++count_ > kMostValues) {
+            throw Error(where_, "more than " + std::to_string(kMostValues) + " values");
+        }
         if (open_.empty()) {
             root_ = std::move(node);
         } else {
@@ -95,6 +100,7 @@ class Builder : public nlohmann::json_sax<Json> {
     }
 
     SourceLocation where_;
+    std::size_t count_ = 0;
     std::vector<Open> open_;
     Node root_;
     std::size_t errorByte_ = 0;

@@ -45,18 +45,25 @@ std::string shortestText(double value) {
     return {buffer, end};
 }
 
-CsvReader::CsvReader(std::string_view text, std::string fileName)
-    : text_(text), fileName_(std::move(fileName)) {}
+CsvReader::CsvReader(std::string_view text, std::string fileName, std::size_t mostRows)
+    : text_(text), fileName_(std::move(fileName)), mostRows_(mostRows) {}
 
 bool CsvReader::next(std::vector<std::string>& fields) {
     rowLine_ = line_;
     for (std::size_t count = 0;; ++count) {
+        if (count == kMostColumns) {
+            throw Error(location(), "more than " + std::to_string(kMostColumns) + " columns");
+        }
         if (count == fields.size()) fields.emplace_back();
         readField(fields[count]);
         const bool isTorn = at_ >= text_.size();
         if (!isTorn && text_[at_++] == ',') continue;
         fields.resize(count + 1);
         if (isTorn) return false;
+        if (++rowCount_ > mostRows_) {
+            throw Error(location(),
+                        "more than " + std::to_string(mostRows_) + " rows, which are not read");
+        }
         ++line_;
         rowEnd_ = at_;
         return true;

@@ -35,11 +35,17 @@ std::string shortestText(double value);
 /// crash; it is not read as a row.
 class CsvReader {
   public:
+    /// More rows, and columns of one, are refused: a file may be anybody's, and a row takes many
+    /// times its bytes in memory.
+    static constexpr std::size_t kMostRows = 4'000'000;
+    static constexpr std::size_t kMostColumns = 4096;
+
     /// `text` must outlive the reader; `fileName` stands in messages.
-    CsvReader(std::string_view text, std::string fileName);
+    CsvReader(std::string_view text, std::string fileName, std::size_t mostRows = kMostRows);
 
     /// Fills `fields` with the next row. False at the end: then `fields` holds what there is of a
-    /// torn row. Throws Error with file and line for a quote inside of a field.
+    /// torn row. Throws Error with file and line for a quote inside of a field, and beyond the
+    /// most rows and columns.
     bool next(std::vector<std::string>& fields);
     /// Where the row that was read last begins, and one past its end in bytes.
     SourceLocation location() const { return {fileName_, rowLine_, 0}; }
@@ -50,6 +56,8 @@ class CsvReader {
 
     std::string_view text_;
     std::string fileName_;
+    std::size_t mostRows_;
+    std::size_t rowCount_ = 0;
     std::size_t at_ = 0;
     std::size_t rowEnd_ = 0;
     int line_ = 1;

@@ -95,6 +95,36 @@ TEST_F(Untrusted, PipesAreNotWaitedFor) {
     }
 }
 
+TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
+    for (const auto& [name, mostMib] : {std::pair{"plan.json", 512},
+                                        {"manifest.json", 64},
+                                        {"records.csv", 1024},
+                                        {"log.jsonl", 512},
+                                        {"images/index.csv", 256}}) {
+        const fs::path path = fs::path(dir) / name;
+        const std::uintmax_t size = fs::file_size(path), most = std::uintmax_t(mostMib) << 20;
+        fs::resize_file(path, most + 1);  // of which the disk has the beginning alone
+        const std::string why = path.string() + ": " + std::to_string(most + 1) +
+                                " bytes; at most " + std::to_string(most) + " are read\n";
+        expectRefused({"report", dir}, why);
+        expectRefused({"run", "--resume", dir}, why);
+        expectRefused({"plan", (folder.path() / "mock.yaml").string(), "--from", dir}, why);
+        fs::resize_file(path, size);
+    }
+    EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+}
+
+TEST_F(Untrusted, LinesOfALogTakeLittleMemory) {
+    const std::string log = readFile(dir + "/log.jsonl");
+    folder.write("run/log.jsonl", log + std::string(60'000'000, '\n'));
+    const ProcessResult report = runProgram(
+        {"/bin/sh", "-c", "ulimit -v 1500000; exec " GFXREPRO_MOCK_PROGRAM " report " + dir});
+    EXPECT_EQ(report.exitCode, 0) << report.err;
+    folder.write("run/log.jsonl", "{}\n" + std::string((1 << 20) + 1, 'x') + "\n");
+    expectRefused({"report", dir},
+                  dir + "/log.jsonl:2: a line of 1048577 bytes; at most 1048576 are read\n");
+}
+
 TEST_F(Untrusted, APlanNamesConfigsAndCases) {
     const std::string file = "\"file\": \"" + (folder.path() / "mock.yaml").string();
     const std::string other = folder.write("secret.yaml", "password: 1\n");

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "runner/core/files.h"
+#include "runner/report/csv.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::report {
@@ -21,6 +22,18 @@ using test::TemporaryFolder;
 constexpr const char* kHeader =
     "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
     "value,status,message,rows\n";
+
+TEST(Csv, RowsAndColumnsHaveTheirLimits) {
+    std::vector<std::string> fields;
+    CsvReader rows("a\nb\nc\n", "f.csv", 2);
+    EXPECT_TRUE(rows.next(fields) && rows.next(fields));
+    EXPECT_EQ(errorText([&] { rows.next(fields); }),
+              "f.csv:3: more than 2 rows, which are not read");
+    const std::string commas = "a\n" + std::string(CsvReader::kMostColumns, ',') + "\n";
+    CsvReader columns(commas, "f.csv");
+    EXPECT_TRUE(columns.next(fields));
+    EXPECT_EQ(errorText([&] { columns.next(fields); }), "f.csv:2: more than 4096 columns");
+}
 
 Record sample(const std::string& caseId, double value) {
     Record record;
