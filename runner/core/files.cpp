@@ -37,6 +37,14 @@ class Descriptor {
     throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
 }
 
+/// A name that is a device, a pipe or a link would be one no more: a rename takes its place.
+void requireReplaceable(const fs::path& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0) return;
+    if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) return;  // a folder refuses by itself
+    throw Error("cannot write " + path.string() + ": a link, a pipe or a device, not a file");
+}
+
 std::string environment(const char* name) {
     const char* value = std::getenv(name);
     return value ? value : "";
@@ -56,11 +64,13 @@ void writeFileAtomic(const fs::path& path, std::string_view content) {
             throw Error("cannot create " + path.parent_path().string() + ": " + failure.message());
         }
     }
+    requireReplaceable(path);
     fs::path temporary = path;
     temporary += ".tmp" + std::to_string(::getpid());
     {
+        constexpr int kSafe = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
         const Descriptor file(
-            ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+            ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | kSafe, 0644));
         if (file.get() < 0) fail("write", temporary);
         while (!content.empty()) {
             const ssize_t written = ::write(file.get(), content.data(), content.size());

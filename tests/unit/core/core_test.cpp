@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
@@ -77,6 +79,24 @@ TEST(Random, UniformIsInItsRange) {
     }
     EXPECT_NEAR(sum / 10000, 0.5, 0.02);
     EXPECT_LT(random.index(3), 3U);
+}
+
+TEST(Files, NothingButAFileIsReplaced) {
+    const test::TemporaryFolder folder;
+    const auto kept = folder.write("kept", "mine");
+    std::filesystem::create_symlink(kept, folder.path() / "link");
+    std::filesystem::create_symlink("/nonexistent", folder.path() / "nowhere");
+    ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+    for (const char* name : {"link", "nowhere", "pipe"}) {
+        EXPECT_EQ(
+            test::errorText([&] { writeFileAtomic(folder.path() / name, "x"); }, folder.path()),
+            std::string("cannot write DIR/") + name + ": a link, a pipe or a device, not a file");
+    }
+    EXPECT_EQ(test::errorText([] { writeFileAtomic("/dev/null", "x"); }),
+              "cannot write /dev/null: a link, a pipe or a device, not a file");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    EXPECT_EQ(readFile(kept), "mine");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link"));
 }
 
 TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
