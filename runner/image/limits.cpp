@@ -14,8 +14,8 @@ void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t byte
     if (width < 1 || height < 1 || width > kMaxSidePx || height > kMaxSidePx) {
         throw Error(declared + " pixels; 1 to 32768 a side are allowed");
     }
-    constexpr std::size_t kAlwaysAllowedBytes = std::size_t{16} << 20;
-    constexpr std::size_t kMaxExpansion = 2000;
+    constexpr std::size_t kAlwaysAllowedBytes = std::size_t{128} << 20;
+    constexpr std::size_t kMaxExpansion = 500;
     const std::size_t bytes = static_cast<std::size_t>(width * height) * bytesPerPixel;
     if (bytes > std::max(kAlwaysAllowedBytes, kMaxExpansion * fileBytes)) {
         throw Error(declared + " pixels of " + std::to_string(bytesPerPixel) +

@@ -8,8 +8,9 @@
 namespace gfxrepro::image {
 
 /// Throws Error when a header declares more than 32768 pixels a side, none at all, or an image of
-/// more than 16 MiB that is also more than 2,000 times the file's size. `name` stands in the
-/// message.
+/// more than 128 MiB that is also more than 500 times the file's size: an even picture of 4096²
+/// takes a thousandth of its size in a file, and so does one of 16,000² that is there to fill the
+/// memory. `name` stands in the message.
 void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
                        std::size_t fileBytes, const std::string& name);
 

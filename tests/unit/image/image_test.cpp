@@ -98,6 +98,20 @@ TEST(Png, RefusesHeadersThatDeclareTooMuch) {
               "of 41 bytes");
 }
 
+TEST(Png, RefusesTinyFilesThatFillTheMemory) {
+    const TemporaryFolder folder;
+    // 16000 x 16000 grey pixels in a file of a thousandth of their bytes, as of an even picture.
+    std::string content("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x3e\x80\x08\0\0\0\0", 29);
+    content += std::string("\x64\x15\x80\x02\0\0\0\0IDAT", 12);
+    content.resize(1 << 20);
+    const auto path = folder.write("a.png", content);
+    EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()),
+              "DIR/a.png: the header declares 16000 x 16000 pixels of 4 bytes, too many for a file "
+              "of 1048576 bytes");
+    writePng(folder.path() / "even.png", Image8(4096, 4096, 1));
+    EXPECT_EQ(readPng8(folder.path() / "even.png").width(), 4096);
+}
+
 TEST(Png, RefusesImagesThatPngCannotHold) {
     const TemporaryFolder folder;
     EXPECT_EQ(errorText([&] { writePng(folder.path() / "a.png", Image8(1, 1, 5)); }, folder.path()),
