@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "runner/batch/image_attributes.h"
+#include "runner/core/hash.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
 
@@ -28,6 +29,15 @@ void checkFileName(std::string_view name) {
     if (!isPlain) {
         throw Error("'" + std::string(name) + "' is no file name: letters, digits, '_', '-', '.'");
     }
+}
+
+/// `name`, or the beginning and the end of a longer one with digits of its hash between: with the
+/// case's id and further suffixes no file system takes more.
+std::string shortName(std::string_view name) {
+    constexpr std::size_t kLongest = 100, kBegin = 60, kEnd = 20;
+    if (name.size() <= kLongest) return std::string(name);
+    return std::string(name.substr(0, kBegin)) + '-' + sha256(name).substr(0, 12) + '-' +
+           std::string(name.substr(name.size() - kEnd));
 }
 
 }  // namespace
@@ -60,7 +70,7 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
                     " channels; 1, 3 or 4 are allowed");
     }
     checkFileName(name);
-    std::string stem = "images/" + item_.slug() + "/" + item_.id + "-" + std::string(name);
+    std::string stem = "images/" + item_.slug() + "/" + item_.id + "-" + shortName(name);
     if (item_.measure.frames > 1) {
         char frame[16];
         std::snprintf(frame, sizeof(frame), "-f%04d", frame_);
@@ -94,7 +104,7 @@ fs::path RunRecorder::artifact(std::string_view fileName) {
     checkFileName(fileName);
     const fs::path folder = runDir_ / "artifacts" / item_.slug();
     fs::create_directories(folder);
-    return folder / (item_.id + "-" + std::string(fileName));
+    return folder / (item_.id + "-" + shortName(fileName));
 }
 
 }  // namespace gfxrepro::batch

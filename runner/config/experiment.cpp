@@ -32,6 +32,8 @@ constexpr Identity kIdentities[] = {{"table", Kind::Table, "Table"},
                                     {"section", Kind::Section, "Section"},
                                     {"sweep_of", Kind::Sweep, "Sweep"}};
 
+constexpr std::size_t kLongestName = 80;  // two, a suffix and a date fit into the name of a file
+
 bool isName(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
         return std::isalnum(c) || c == '-' || c == '_' || c == '.';
@@ -57,6 +59,13 @@ void readIdentity(const Node& document, Experiment& experiment) {
     const Node& name = *document.find(found->key);
     const std::string& text = lineOf(name, found->key);
     const Names parts = split(text, '/');
+    for (const std::string& part : parts) {
+        if (part.size() <= kLongestName) continue;
+        throw Error(name.location(), std::string(found->key) + ": a name of " +
+                                         std::to_string(part.size()) + " letters; at most " +
+                                         std::to_string(kLongestName) +
+                                         ", for files are named after it");
+    }
     experiment.kind = found->kind;
     if (found->kind == Kind::Sweep) {
         if (!isName(text)) throwNotAllowed(name, found->key, "letters, digits, - _ .");

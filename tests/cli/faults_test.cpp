@@ -288,5 +288,32 @@ TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
                 HasSubstr("incomplete: 0 not run, 2 failed (2 crash); no case has a result\n"));
 }
 
+TEST(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const std::string dir = folder.path() / "run", name(300, 'n');
+    const ProcessResult run =
+        runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir},
+                   {"GFXREPRO_MOCK_PICTURE=" + name});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const std::string index = readFile(dir + "/images/index.csv");
+    EXPECT_THAT(index, HasSubstr(",0," + name + ",images/sweep-mock/")) << "its name stays";
+    ASSERT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(dir + "/artifacts/sweep-mock")) {
+        EXPECT_EQ(entry.path().extension(), ".txt");
+        EXPECT_LE(entry.path().filename().string().size(), 120U);
+        ++count;
+    }
+    EXPECT_EQ(count, 1U);
+    const std::string named =
+        folder.write("long.yaml", "sweep_of: " + name + "\ntitle: t\ntechnique: mock\n");
+    const ProcessResult check = mockGfxrepro({"check", named});
+    EXPECT_EQ(check.exitCode, 2);
+    EXPECT_EQ(check.err, "gfxrepro: " + named +
+                             ":1:11: sweep_of: a name of 300 letters; at most 80, for files are "
+                             "named after it\n");
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

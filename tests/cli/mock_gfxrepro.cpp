@@ -135,6 +135,11 @@ class Mock : public technique::Technique {
         if (shade && std::string_view(shade) == "none") return;
         const float value = shade ? std::strtof(shade, nullptr) : 0.5F;
         recorder.image("flat", image::ImageF(4, 4, 3, value));
+        // One of a long name, as where a technique makes it of what a config says.
+        if (const char* name = std::getenv("GFXREPRO_MOCK_PICTURE")) {
+            recorder.image(name, image::ImageF(4, 4, 3, value));
+            std::ofstream(recorder.artifact(std::string(name) + ".txt")) << "made\n";
+        }
         recorder.image("truth", image::ImageF(4, 4, 3, 0.25F), {.truthOf = "flat"});
     }
 

@@ -277,6 +277,9 @@ TEST_F(ExperimentTest, NamesOfExperiments) {
               "DIR/zju/a.yaml:1:8: table is \"10\"; allowed: PAPER/NUMBER, such as zju2005/2.1");
     EXPECT_EQ(loadError("table: ../1/2\ntitle: t\n"),
               "DIR/zju/a.yaml:1:8: table is ../1/2; allowed: PAPER/NUMBER, such as zju2005/2.1");
+    EXPECT_EQ(loadError("table: zju/" + std::string(300, '1') + "\ntitle: t\n"),
+              "DIR/zju/a.yaml:1:8: table: a name of 300 letters; at most 80, for files are named "
+              "after it");
     EXPECT_EQ(loadError("sweep_of: a/b\ntitle: t\n"),
               "DIR/zju/a.yaml:1:11: sweep_of is a/b; allowed: letters, digits, - _ .");
     EXPECT_EQ(loadError("table: p/1\ntechnique: x\n"), "DIR/zju/a.yaml:1:1: 'title' is missing");
