@@ -103,9 +103,13 @@ void noteChanges(Json& manifest, const std::filesystem::path& runDir) {
             fmt::format("{} was {} after the run (SHA-256 {} at its end{})", file,
                         isThere ? "changed" : "removed", then.substr(0, 12),
                         isThere ? ", now " + now.substr(0, 12) : "");
-        Json& notes = manifest["notes"];
-        if (std::ranges::find(notes, Json(note)) == notes.end()) notes.push_back(note);
+        addNote(manifest, note);
     }
+}
+
+void addNote(Json& manifest, const std::string& note) {
+    Json& notes = manifest["notes"];
+    if (std::ranges::find(notes, Json(note)) == notes.end()) notes.push_back(note);
 }
 
 std::vector<std::string> machinesOf(const Json& manifest) {

@@ -27,6 +27,8 @@ void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
 void sealRecords(Json& manifest, const std::filesystem::path& runDir);
 /// Before a run goes on, which changes them: the seal goes. What was noted of them stays.
 void breakSeal(Json& manifest);
+/// Adds a note that every reader of the run's results is told; once.
+void addNote(Json& manifest, const std::string& note);
 /// Adds to the manifest's `notes` which of the sealed files are others than at the end of the run.
 /// Nothing for a run that is under way, was killed, or comes from a program that sealed none.
 void noteChanges(Json& manifest, const std::filesystem::path& runDir);

@@ -50,6 +50,12 @@ std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
     return sha256(content.dump());
 }
 
+std::string keptHash(const Plan& plan, const std::vector<Json>& documents) {
+    Json content = {{"plan", plan.hash}, {"kept", planHash(plan, documents)}};
+    for (const std::string& only : plan.request.only) content["only"].push_back(only);
+    return sha256(content.dump());
+}
+
 std::string Case::title() const {
     std::string title = experiment;
     if (!axes.isMap()) return title;

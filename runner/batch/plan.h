@@ -74,7 +74,11 @@ struct Plan {
     std::string profile;
     std::string deviceClass;  // "software" | "gpu"
     std::uint64_t seed = 1;
-    std::string hash;                              // of everything that a result depends on
+    /// Of everything that a result depends on; with --only that of the plan before.
+    std::string hash;
+    /// Whether hash and documents were found to belong together: of older versions' plans with
+    /// --only that is not known.
+    bool isVerified = true;
     std::string buildId;                           // of the program and its shaders
     std::map<std::string, std::string> sceneKeys;  // scene reference → identity of its content
     std::vector<Case> cases;

@@ -15,4 +15,7 @@ std::string caseId(const Case& item, nlohmann::ordered_json written, const Plan&
 /// The hash of a plan whose experiments have these documents.
 std::string planHash(const Plan& plan, const std::vector<nlohmann::ordered_json>& documents);
 
+/// The hash of what `--only` leaves of a plan, whose own hash is that of all its cases.
+std::string keptHash(const Plan& plan, const std::vector<nlohmann::ordered_json>& documents);
+
 }  // namespace gfxrepro::batch

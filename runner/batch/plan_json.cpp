@@ -129,8 +129,9 @@ void readPaper(const config::Node& node, config::Experiment& experiment) {
 }
 
 /// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
-/// had fewer entries. The hash of a plan with --only is that of all its cases, which it has not.
-void requireAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
+/// had fewer entries. The hash of a plan with --only is that of all its cases, which it has not:
+/// it has another, of those that it kept. Gives whether all could be verified.
+bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
     const auto fail = [&](const std::string& what) {
         throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
                     " was changed");
@@ -141,14 +142,17 @@ void requireAsPlanned(const fs::path& path, const config::Node& node, const Plan
         if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
         fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
-    if (!plan.request.only.empty()) return;
     std::vector<Json> documents;
     for (const config::Node& item : required(node, "experiments").items()) {
         documents.push_back(required(item, "document").toJson());
     }
-    if (planHash(plan, documents) != plan.hash) {
-        fail("the experiments, their cases or the profile are not those that were");
-    }
+    const config::Node* kept = node.find("kept_hash");
+    const bool isWhole = plan.request.only.empty();
+    if (!isWhole && !kept) return false;  // of an older version
+    const bool isSame = isWhole ? planHash(plan, documents) == plan.hash
+                                : keptHash(plan, documents) == kept->text();
+    if (!isSame) fail("the experiments, their cases or the profile are not those that were");
+    return true;
 }
 
 std::vector<std::string> textsFrom(const config::Node& list) {
@@ -218,6 +222,13 @@ std::string Plan::toText() const {
                    {"device", request.device}}},
                  {"scenes", Json::object()},
                  {"experiments", Json::array()}};
+    if (!request.only.empty()) {
+        std::vector<Json> documents;
+        for (const config::Experiment& experiment : experiments) {
+            documents.push_back(experiment.document.toJson());
+        }
+        json["kept_hash"] = keptHash(*this, documents);
+    }
     for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
     for (const config::Experiment& experiment : experiments) {
         json["experiments"].push_back({{"file", experiment.file.string()},
@@ -290,7 +301,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
             plan.shard->caseIds.insert(id);
         }
     }
-    requireAsPlanned(path, node, plan);
+    plan.isVerified = isAsPlanned(path, node, plan);
     return plan;
 }
 

@@ -111,6 +111,11 @@ StoredRun readRun(const fs::path& runDir) {
     run.manifest = readManifest(runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
+    if (!run.plan.isVerified) {
+        addNote(run.manifest,
+                "plan.json does not say what --only kept, as those of older versions do not: that "
+                "its experiments are those that were measured cannot be verified");
+    }
     if (fs::exists(runDir / "records.csv")) {
         run.records = report::readRecords(runDir / "records.csv");
     }

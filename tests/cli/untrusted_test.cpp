@@ -165,6 +165,41 @@ TEST_F(Untrusted, APlanIsWhatItsHashesSay) {
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
 }
 
+TEST_F(Untrusted, APlanWithOnlyIsWhatItsHashesSay) {
+    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3]}\n");
+    dir = folder.path() / "only";
+    ASSERT_EQ(
+        mockGfxrepro({"run", config, "--only", "number=2", "--device", "software", "--out", dir})
+            .exitCode,
+        0);
+    const std::string file = dir + "/plan.json", whole = readFile(file);
+    const auto refused = [&](const std::string& from, const std::string& to,
+                             const std::string& why) {
+        replaceInPlan(from, to);
+        expectRefused({"table", dir}, why + " planned: plan.json was changed\n");
+        expectRefused({"run", "--resume", dir}, why + " planned: plan.json was changed\n");
+        writeFileAtomic(file, whole);
+    };
+    const std::string id = rowsOf(dir, "number")[0].caseId;
+    refused("\"number\":2", "\"number\":77",
+            "the case " + id + ", sweep/mock number=2, is not the one that was");
+    const std::string others =
+        "the experiments, their cases or the profile are not those that were";
+    refused("\"title\": \"A mock\"", "\"title\": \"Another\"", others);
+    refused("\"profile\": \"", "\"profile\": \"quick", others);
+    refused("\"hash\": \"", "\"hash\": \"0", others);
+    refused("\"number=2\"", "\"number=3\"", others);
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_EQ(table.exitCode, 0);
+    EXPECT_EQ(table.out.find("warning"), std::string::npos);
+    // Those of older versions have no hash of what was kept.
+    const std::size_t at = whole.find(" \"kept_hash\"");
+    ASSERT_NE(at, std::string::npos);
+    writeFileAtomic(file, whole.substr(0, at) + whole.substr(whole.find('\n', at) + 1));
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out,
+                HasSubstr("warning: plan.json does not say what --only kept"));
+}
+
 TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
     replaceInPlan("\"device\": \"", "\"device\": \"$(touch y)");
     const ProcessResult result = mockGfxrepro({"export", dir, "--out", out});
