@@ -315,5 +315,34 @@ TEST(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
                              "named after it\n");
 }
 
+TEST(Faults, WhatAConfigMayNameARunMayReadAgain) {
+    // The character DEL, escaped, and a path longer than a key of YAML may be.
+    const TemporaryFolder folder;
+    fs::path deep = folder.path();
+    for (int i = 0; i < 6; ++i) deep /= std::string(200, 'd');
+    fs::create_directories(deep);
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+        "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    writeFileAtomic(deep / "a.ply", ply);
+    const std::string config =
+        folder.write("mock.yaml",
+                     "sweep_of: mock\ntitle: \"A \\x7f mock\"\ntechnique: mock\n"
+                     "output: {width: 8, height: 8}\nparams: {marker: \"/a\\x7fb\"}\n"
+                     "scene: " +
+                         (deep / "a.ply").string() + "\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},
+                                                    {"claims", dir},
+                                                    {"report", dir},
+                                                    {"run", "--resume", dir}}) {
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 0) << command.front() << result.err;
+    }
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

@@ -147,6 +147,7 @@ TEST_F(Untrusted, APlanIsWhatItsHashesSay) {
                                                         {"report", dir},
                                                         {"compare", dir, dir, "--out", out},
                                                         {"merge", out, dir},
+                                                        {"run", "--resume", dir},
                                                         {"export", dir, "--out", out}}) {
             expectRefused(command, file + ": " + why + " planned: plan.json was changed\n");
         }

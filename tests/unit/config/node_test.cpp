@@ -96,6 +96,7 @@ TEST(Node, ParseErrorsSayWhere) {
     EXPECT_EQ(parseError("a: &b [*b]"), "a.yaml:1:8: an alias inside of its own anchor");
     EXPECT_EQ(parseError("a:\n\tb: 1\n"), "a.yaml:2:1: a tab in the indentation; use spaces");
     EXPECT_EQ(parseError("a: x\ny\x04: 1"), "a.yaml:2:2: control character 4 in the text");
+    EXPECT_EQ(parseError("a: x\x7f"), "a.yaml:1:5: control character 127 in the text");
     EXPECT_EQ(parseError("a: \xff"), "a.yaml:1:4: not UTF-8 text");
     EXPECT_EQ(parseError("a: \xed\xa0\x80"), "a.yaml:1:4: not UTF-8 text");
     EXPECT_EQ(parseError("a: \xc3"), "a.yaml:1:4: not UTF-8 text");
