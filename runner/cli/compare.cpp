@@ -33,7 +33,8 @@ constexpr std::chrono::hours kRunLimit{24};
 /// A run's series with what they were measured on.
 struct Measured {
     regression::SeriesMap series;
-    regression::Failures failures;
+    regression::CaseTexts failures, voidTimes;
+    std::size_t untimedCases = 0;
     std::string machine;
     std::string commit;
     bool isSoftware = false;
@@ -48,6 +49,8 @@ Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
     Measured measured{regression::seriesOf(run.records),
                       regression::failuresOf(run.records),
+                      regression::voidTimesOf(run.records),
+                      regression::untimedCases(run.records),
                       batch::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       run.plan.deviceClass == "software",
@@ -125,6 +128,8 @@ class Turns {
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
         sides.failuresAfter.merge(measured[1].failures);
+        sides.voidBefore.merge(measured[0].voidTimes);
+        sides.voidAfter.merge(measured[1].voidTimes);
         hasFailures_ = hasFailures_ || !sides.failuresAfter.empty();
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
@@ -174,6 +179,7 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
     std::vector<Difference> differences = regression::compare(
         older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
     regression::noteFailures(differences, older.failures, newer.failures);
+    regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     if (older.pictures.empty() == newer.pictures.empty()) {
         regression::addPictures(differences, comparePictures(older, newer, folder));
     } else {
@@ -206,8 +212,9 @@ void annotate(const regression::Comparison& comparison,
 void say(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
     for (const Difference& difference : comparison.differences) {
-        if (!difference.isAlarm()) continue;
-        if (difference.verdict == regression::Verdict::Lost || difference.isPicture()) {
+        const bool isOfNone = difference.isOfNone();
+        if (!difference.isAlarm() && !isOfNone) continue;
+        if (difference.verdict == regression::Verdict::Lost || isOfNone || difference.isPicture()) {
             fmt::print("{}: {}: {}\n", difference.key.title(),
                        regression::verdictName(difference.verdict), difference.reason);
             continue;
@@ -251,6 +258,12 @@ int compare(const CompareOptions& options) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);
             }
         }
+    }
+    if (newer.untimedCases > 0) {
+        comparison.notes.push_back(
+            fmt::format("{} of the quality lane: times that are not compared",
+                        newer.untimedCases == 1 ? "one case is"
+                                                : fmt::format("{} cases are", newer.untimedCases)));
     }
     if (!options.history.empty()) comparison.steps = keepHistory(options.history, newer);
     writeFileAtomic(folder / "comparison.md", regression::markdown(comparison));

@@ -237,21 +237,83 @@ TEST(Comparison, AParameterThatOneBuildDoesNotKnowIsNoDifference) {
 TEST(Comparison, WhatFailsAfterwardsAloneIsAnAlarm) {
     const SeriesKey a = test::timeOf("a"), b = test::timeOf("b"), c = test::timeOf("c");
     const Series values = {10, 10, 10, 10, 10, 10};
-    const auto failed = [](const SeriesKey& key) {
-        return std::pair{key.caseTitle(), Failure{key, "crash: SIGSEGV"}};
+    const auto failed = [](SeriesKey key) {
+        key.metric = "status";
+        key.unit = "";
+        return std::pair{key, std::string("crash: SIGSEGV")};
     };
     std::vector<Difference> differences =
         compare({{a, values}, {b, values}}, {{b, values}, {c, values}}, Pairing::ByTurns);
     EXPECT_EQ(std::ranges::count_if(differences, &Difference::isAlarm), 1);
     EXPECT_EQ(differences[0].reason, "measured before only");
     noteFailures(differences, {failed(c)}, {failed(a), failed(b), failed(c)});
-    ASSERT_EQ(differences.size(), 4U) << "that of b had some rounds only";
+    ASSERT_EQ(differences.size(), 5U) << "that of b had some rounds only";
     for (const Difference& difference : differences) {
         const bool isLost = difference.verdict == Verdict::Lost;
         EXPECT_EQ(difference.isAlarm(), isLost);
         if (isLost) EXPECT_EQ(difference.reason, "crash: SIGSEGV");
     }
     EXPECT_EQ(std::ranges::count_if(differences, &Difference::isAlarm), 2);
+    EXPECT_EQ(differences[3].verdict, Verdict::Failed);
+    EXPECT_EQ(differences[4].reason, "measured after only: crash: SIGSEGV") << "c";
+}
+
+TEST(Comparison, WhatFailedOnBothSidesIsNamed) {
+    SeriesKey a = test::timeOf("a"), b = a;
+    a.metric = b.metric = "status";
+    a.unit = b.unit = "";
+    a.params = R"({"size":1})";
+    b.params = R"({"size":1,"new":true})";  // of a build that knows more
+    std::vector<Difference> differences;
+    noteFailures(differences, {{a, "timeout"}}, {{b, "crash: SIGSEGV"}});
+    ASSERT_EQ(differences.size(), 1U);
+    EXPECT_EQ(differences[0].verdict, Verdict::Failed);
+    EXPECT_EQ(differences[0].reason, "before timeout; after crash: SIGSEGV");
+    EXPECT_FALSE(differences[0].isAlarm());
+    // Another case of the same title is no excuse.
+    SeriesKey other = a;
+    other.params = R"({"size":2})";
+    differences.clear();
+    noteFailures(differences, {{a, "timeout"}}, {{a, "timeout"}, {other, "timeout"}});
+    ASSERT_EQ(differences.size(), 2U);
+    EXPECT_EQ(differences[0].reason, "timeout");
+    EXPECT_EQ(differences[1].verdict, Verdict::Lost);
+}
+
+TEST(Comparison, ATimeThatIsVoidOnBothSidesIsNoTime) {
+    const SeriesKey key = test::timeOf("m");
+    SeriesKey status = key;
+    status.metric = "status";
+    status.unit = "";
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const Series voided(6, none), stands(6, 10.0);
+    const CaseTexts why = {{status, "frame 0: blank"}};
+    const auto compared = [&](const Series& before, const Series& after, Pairing pairing) {
+        std::vector<Difference> all = compare({{key, before}}, {{key, after}}, pairing);
+        const auto isVoid = [](const Series& side) { return standing(side).size() < side.size(); };
+        noteVoidTimes(all, isVoid(before) ? why : CaseTexts(), isVoid(after) ? why : CaseTexts());
+        EXPECT_EQ(all.size(), 1U);
+        return all.front();
+    };
+    for (const Pairing pairing : {Pairing::ByTurns, Pairing::Apart}) {
+        const Difference both = compared(voided, voided, pairing);
+        EXPECT_EQ(both.verdict, Verdict::Void);
+        EXPECT_EQ(both.reason, "frame 0: blank");
+        EXPECT_FALSE(both.isAlarm());
+        const Difference after = compared(stands, voided, pairing);
+        EXPECT_EQ(after.verdict, Verdict::Lost);
+        EXPECT_EQ(after.reason, "its times are void: frame 0: blank");
+        const Difference before = compared(voided, stands, pairing);
+        EXPECT_EQ(before.verdict, Verdict::Missing);
+        EXPECT_EQ(before.reason, "measured after only: void before: frame 0: blank");
+    }
+    // Rounds in which one side is void are left out: the others are the pairs that they were.
+    const Series a = {10, none, 20, 10, 20, 10, 20, 10}, b = {10, 20, none, 10, 20, 10, 20, 10};
+    EXPECT_EQ(compared(a, b, Pairing::ByTurns).verdict, Verdict::Same);
+    const Difference apart = compared({10, none}, {none, 10}, Pairing::ByTurns);
+    EXPECT_EQ(apart.verdict, Verdict::CannotTell);
+    EXPECT_EQ(apart.reason,
+              "no round in which both sides' times stand (void in some rounds: frame 0: blank)");
 }
 
 TEST(Comparison, QualityIsTheSameOrChanged) {
@@ -342,6 +404,25 @@ TEST(SeriesOf, TakesFramesTimesOfTheTimingLaneOnly) {
     ASSERT_EQ(series.size(), 1U);
     EXPECT_EQ(series.begin()->second, (Series{2.0, 4.0}));
     EXPECT_EQ(series.begin()->first.title(), "p/1  wall_time_ms");
+}
+
+TEST(SeriesOf, ATimeWithAFrameThatIsVoidIsVoid) {
+    std::vector<report::Record> records(2, recordOf("wall_time_ms", "ms", 3.0));
+    records[1].frame = 1;
+    records[1].status = report::Status::Ambiguous;
+    records[1].message = "frame 1: blank";
+    SeriesMap series = seriesOf(records);
+    ASSERT_EQ(series.size(), 1U);
+    ASSERT_EQ(series.begin()->second.size(), 1U);
+    EXPECT_TRUE(standing(series.begin()->second).empty()) << "the other frames are another time";
+    const CaseTexts texts = voidTimesOf(records);
+    ASSERT_EQ(texts.size(), 1U);
+    EXPECT_EQ(texts.begin()->second, "frame 1: blank");
+    EXPECT_TRUE(failuresOf(records).empty());
+    EXPECT_EQ(untimedCases(records), 0U);
+    records[1].lane = "quality";
+    EXPECT_EQ(untimedCases(records), 1U);
+    EXPECT_EQ(seriesOf(records).begin()->second, Series{3.0});
 }
 
 TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
