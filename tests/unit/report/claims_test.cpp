@@ -694,6 +694,33 @@ TEST(Claims, BadOperandsAreErrors) {
               "axes: n)");
 }
 
+TEST(Claims, ANumberThatIsAColumnIsNoNumber) {
+    const auto table = [](const char* sizes) {
+        return std::string("sweep: {size: ") + sizes +
+               "}\nlayout: {columns: size, cell: {metric: triangles}}\n";
+    };
+    RecordMaker maker;
+    maker.beginCase("s", R"({"size":8})").add("triangles", {3.0});
+    maker.beginCase("s", R"({"size":16})").add("triangles", {2.0});
+    const auto judged = [&](const char* sizes, const std::string& operand) {
+        config::Experiment experiment =
+            experimentFrom(table(sizes) + "claims: {X: {says: so, bound: 1 + 1, below: 5}}\n");
+        experiment.claims[0].operands = {operand};
+        return evaluateClaims(experiment, buildTable(experiment, maker.records()), kSoftware)[0];
+    };
+    EXPECT_EQ(judged("[8, 16]", "8").measured, "3");
+    EXPECT_EQ(judged("[8, 16]", "'8' + 8.0").measured, "11");
+    EXPECT_EQ(judged("[8, 16]", "8 + 1").reason,
+              "not among what was measured: '8' may be the column or the number (quoted it is the "
+              "column; written otherwise, as 8.0, the number)");
+    // A sweep took the columns away for which the numbers stood.
+    maker.beginCase("s", R"({"size":32})").add("triangles", {2.0});
+    const ClaimResult absent = judged("[32, 64]", "4");
+    EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
+    EXPECT_THAT(absent.reason,
+                testing::StartsWith("not among what was measured: '4' is no column"));
+}
+
 TEST(Claims, Summary) {
     EXPECT_EQ(claimSummaryLine({}), "no claims");
     std::vector<ClaimResult> results(4);
