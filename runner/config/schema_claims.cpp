@@ -52,8 +52,7 @@ SchemaSection common() {
               choice(kBoundSources)},
              {"kind", "algorithmic | architectural | absolute", "none",
               "of a claim about time: counts of work decide; a GPU's units do; or times as such, "
-              "at the printed parameters. The last two are judged on a GPU only; without it, as a "
-              "sweep may be, the first",
+              "at the printed parameters. The last two are judged on a GPU only",
               choice(kTimeKinds)},
              {"because", "known | [known]", "none",
               "where it is known not to hold, and why; any other verdict than the known is news",

@@ -320,12 +320,11 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
         const ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
-        if (isOfDocument && reader.readsTime() && !claim.timeKind) {
+        if (reader.readsTime() && !claim.timeKind) {
             complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
         }
         if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
-        if (isOfDocument && claim.timeKind == ClaimSpec::TimeKind::Algorithmic &&
-            asksForATimeAsSuch(claim, read)) {
+        if (claim.timeKind == ClaimSpec::TimeKind::Algorithmic && asksForATimeAsSuch(claim, read)) {
             complain(
                 "holds a time against a number, which no count of work decides; its 'kind' "
                 "is architectural | absolute");

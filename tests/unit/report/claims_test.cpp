@@ -202,11 +202,12 @@ TEST(Claims, KnownVerdictsAndNews) {
     EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
 }
 
-std::string provenanceError(const std::string& claim) {
-    const config::Experiment experiment = experimentFrom(
+std::string provenanceError(const std::string& claim, bool isSweep = false) {
+    config::Experiment experiment = experimentFrom(
         "sweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: {metric: "
         "bytes}}}, rows: [scene, e], columns: {a: {pass: p}}}\nclaims:\n  C: {says: s, " +
         claim + "}\n");
+    if (isSweep) experiment.kind = config::Experiment::Kind::Sweep;
     try {
         requireProvenance(experiment, buildTable(experiment, {}));
         return "no error";
@@ -239,6 +240,15 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(provenanceError("bound: a, below: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime), "no error");
+    // A sweep's are ours, and its times no others.
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}", true), "no error");
+    EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}", true),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
+    EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}, kind: algorithmic", true),
+              isAbsolute);
+    EXPECT_EQ(
+        provenanceError("across: scene, order: s < t, at: {e: slow}, kind: algorithmic", true),
+        "no error");
 }
 
 TEST(Claims, ATimeAsSuchIsJudgedAtThePrintedParametersAlone) {
