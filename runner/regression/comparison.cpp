@@ -181,10 +181,10 @@ void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& ru
     }
 }
 
-/// Measures until every time is told, or the looks are used up.
+/// Measures until every time is told, or the looks are used up; after the first look the tables
+/// with times that are not, alone.
 std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
-                                            const std::set<std::string>& tables,
-                                            const Rules& rules) {
+                                            std::set<std::string> tables, const Rules& rules) {
     Sides sides;
     std::vector<Difference> differences;
     for (std::size_t look = 0; look < rules.looks; ++look) {
@@ -195,9 +195,11 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
         noteVoidTimes(differences, sides.voidBefore, sides.voidAfter);
         addPictures(differences, sides.pictures);
-        const bool isDecided = std::ranges::none_of(
-            differences, [](const Difference& one) { return one.verdict == Verdict::CannotTell; });
-        if (isDecided) break;
+        tables.clear();
+        for (const Difference& one : differences) {
+            if (one.verdict == Verdict::CannotTell) tables.insert(one.key.table);
+        }
+        if (tables.empty()) break;
     }
     return differences;
 }

@@ -27,7 +27,9 @@ enum class Pairing { ByTurns, Apart };
 
 struct Rules {
     double effectFloor = 0.02;  // a change of time below it is none, however sure
-    double sameWithin = 0.1;    // `same` needs the 95 % interval inside of ± this
+    /// `same` needs the 95 % interval inside of ± this: less than the 10 % that are to be found, or
+    /// one look in forty would take these for the same.
+    double sameWithin = 0.08;
     double familyError = 0.05;  // chance of one false alarm among all series and looks
     /// Runs that were measured apart differ by what the machine does over hours, which no number of
     /// processes tells from a change of the build: only what is larger can be.
@@ -37,7 +39,7 @@ struct Rules {
     /// of pictures by 1e-5, and no table prints a fifth digit.
     double valueTolerance = 1e-4;
     bool isSoftware = false;  // the device: see chooseTimes
-    std::size_t looks = 3;    // at most, each after as many further rounds
+    std::size_t looks = 5;    // at most, each after as many further rounds
 };
 
 /// How far two pictures are apart.
@@ -113,7 +115,8 @@ struct Sides {
 using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;
 
 /// Measures and compares, up to `rules.looks` times, until every time is slower, faster or the
-/// same; then measures the tables with alarms in the same way once more, and confirms.
+/// same: first all, then the tables of which a time is none of these; then measures the tables with
+/// alarms in the same way once more, and confirms.
 std::vector<Difference> compareByTurns(const MeasureRounds& measure, const Rules& rules = {});
 
 }  // namespace gfxrepro::regression
