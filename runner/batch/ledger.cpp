@@ -74,15 +74,30 @@ std::string unitOf(const std::string& name, const config::ParamInfo* info) {
     return info && info->unit != "1" ? info->unit : "";
 }
 
+bool isNumber(const Node& node) {
+    return node.isScalar() && parseDouble(node.text()).has_value();
+}
+
+/// Numbers are what parameters take: a number whose name is nearly a parameter's is that one
+/// misspelt, and a range of numbers is of one.
 void requireFreeText(const Assumption& assumption, const config::Experiment& experiment,
                      const std::vector<config::ParamInfo>& declared) {
-    if (!assumption.value.isNull()) return;
-    std::vector<std::string> names;
+    std::vector<std::string> names = {config::kOutputAssumption, config::kSceneAssumption,
+                                      config::kSceneSeedAssumption};
     for (const config::ParamInfo& info : declared) names.push_back(info.name);
-    throw Error(
-        assumption.location,
-        fmt::format("assumption '{}' needs 'value': it is no parameter of technique '{}'{}",
-                    assumption.name, experiment.technique, suggestion(assumption.name, names)));
+    const std::string near = suggestion(assumption.name, names);
+    const auto refuse = [&](const SourceLocation& where, const std::string& what) {
+        throw Error(where, fmt::format("assumption '{}' {}: it is no parameter of technique '{}'{}",
+                                       assumption.name, what, experiment.technique, near));
+    };
+    if (assumption.value.isNull()) refuse(assumption.location, "needs 'value'");
+    const Node& range = assumption.range;
+    const bool isOfNumbers =
+        isNumber(range) || (range.isSequence() && std::ranges::any_of(range.items(), isNumber));
+    if (isOfNumbers) refuse(range.location(), "has a range of numbers");
+    if (isNumber(assumption.value) && !near.empty()) {
+        refuse(assumption.value.location(), "is a number");
+    }
 }
 
 [[noreturn]] void refuseRange(const Assumption& assumption, const Node& value,

@@ -11,7 +11,8 @@ namespace gfxrepro::batch {
 
 /// Fills in value and unit of every assumption that names a parameter of the technique, `output`,
 /// `scene` or `scene_seed`: what `cases`, which are the experiment's, take. Throws Error, at its
-/// place, for a bound one that gives them itself, and for free text without a value.
+/// place, for a bound one that gives them itself, and for free text without a value, with a range
+/// of numbers, or which is a number under nearly a parameter's name.
 void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& cases,
                      const scene::Catalog& catalog,
                      std::span<const technique::TechniqueInfo> techniques);

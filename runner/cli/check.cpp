@@ -8,13 +8,14 @@
 #include "runner/cli/experiments.h"
 #include "runner/config/schema.h"
 #include "runner/report/claims.h"
+#include "runner/report/figure.h"
 
 namespace gfxrepro::cli {
 
 namespace {
 
-/// Says which claims the profile or an override leaves without what they read in the file as it
-/// stands: they will be unmeasured.
+/// Says which claims and plots the profile or an override leaves without what they read in the file
+/// as it stands: they will be unmeasured, or left out.
 void sayUnread(const std::string& file, const config::Experiment& experiment,
                const report::Table& table) {
     const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
@@ -26,6 +27,13 @@ void sayUnread(const std::string& file, const config::Experiment& experiment,
             then == whole.claims.end() || report::whatIsAbsent(*then, wholeTable).empty();
         if (absent.empty() || !isOurs) continue;
         fmt::print("{}: claim '{}' will be unmeasured: {}\n", file, claim.id, absent);
+    }
+    for (std::size_t i = 0; i < experiment.plots.size(); ++i) {
+        const std::string absent = report::whatIsAbsent(experiment.plots[i], table);
+        const bool isOurs =
+            i >= whole.plots.size() || report::whatIsAbsent(whole.plots[i], wholeTable).empty();
+        if (absent.empty() || !isOurs) continue;
+        fmt::print("{}: plot {} will be left out: {}\n", file, i + 1, absent);
     }
 }
 

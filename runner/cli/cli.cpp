@@ -253,7 +253,7 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
                          "OLD and NEW are programs; they measure the configs by turns");
     compareApp
         ->add_option("--rounds", options.rounds,
-                     "of each program, up to three times while undecided (default 20)")
+                     "of each program, up to five times while undecided (default 20)")
         ->check(CLI::Range(2, 1000))
         ->option_text("N");
     addProfile(compareApp, options.profile);

@@ -86,7 +86,7 @@ struct DescribeOptions {
 struct CompareOptions {
     std::vector<std::string> inputs;
     bool areBinaries = false;
-    int rounds = 20;  // of each program a look; up to three looks
+    int rounds = 20;  // of each program a look; up to five looks
     std::string profile = "quick";
     std::string device = "auto";
     std::string assets;

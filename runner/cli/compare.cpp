@@ -33,7 +33,8 @@ constexpr std::chrono::hours kRunLimit{24};
 /// A run's series with what they were measured on.
 struct Measured {
     regression::SeriesMap series;
-    regression::Failures failures;
+    regression::CaseTexts failures, voidTimes;
+    std::size_t untimedCases = 0;
     bool hasFailures = false;  // that nobody expected
     std::string machine;
     std::string commit;
@@ -63,6 +64,8 @@ Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
     Measured measured{regression::seriesOf(run.records),
                       regression::failuresOf(run.records),
+                      regression::voidTimesOf(run.records),
+                      regression::untimedCases(run.records),
                       hasUnexpectedFailures(run),
                       batch::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
@@ -141,6 +144,8 @@ class Turns {
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
         sides.failuresAfter.merge(measured[1].failures);
+        sides.voidBefore.merge(measured[0].voidTimes);
+        sides.voidAfter.merge(measured[1].voidTimes);
         hasFailures_ = hasFailures_ || measured[1].hasFailures;
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
@@ -190,6 +195,7 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
     std::vector<Difference> differences = regression::compare(
         older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
     regression::noteFailures(differences, older.failures, newer.failures);
+    regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     if (older.pictures.empty() == newer.pictures.empty()) {
         regression::addPictures(differences, comparePictures(older, newer, folder));
     } else {
@@ -222,8 +228,9 @@ void annotate(const regression::Comparison& comparison,
 void say(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
     for (const Difference& difference : comparison.differences) {
-        if (!difference.isAlarm()) continue;
-        if (difference.verdict == regression::Verdict::Lost || difference.isPicture()) {
+        const bool isOfNone = difference.isOfNone();
+        if (!difference.isAlarm() && !isOfNone) continue;
+        if (difference.verdict == regression::Verdict::Lost || isOfNone || difference.isPicture()) {
             fmt::print("{}: {}: {}\n", difference.key.title(),
                        regression::verdictName(difference.verdict), difference.reason);
             continue;
@@ -267,6 +274,12 @@ int compare(const CompareOptions& options) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);
             }
         }
+    }
+    if (newer.untimedCases > 0) {
+        comparison.notes.push_back(
+            fmt::format("{} of the quality lane: times that are not compared",
+                        newer.untimedCases == 1 ? "one case is"
+                                                : fmt::format("{} cases are", newer.untimedCases)));
     }
     if (!options.history.empty()) comparison.steps = keepHistory(options.history, newer);
     writeFileAtomic(folder / "comparison.md", regression::markdown(comparison));

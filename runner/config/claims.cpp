@@ -179,40 +179,8 @@ class ClaimReader {
         for (const std::string& text : texts) {
             const std::string operand(trimmed(text));
             if (operand.empty()) throwNotAllowed(node, what_, "an expression over columns");
-            requireColumns(operand, node);
+            requireOperand(operand, node, names_, what_);
             claim_.operands.push_back(operand);
-        }
-    }
-
-    bool isColumn(const std::string& name) const {
-        return std::find(names_.columns.begin(), names_.columns.end(), name) !=
-               names_.columns.end();
-    }
-
-    /// Every name in an expression is a column, unless it is called: "max(a, b)".
-    void requireColumns(const std::string& operand, const Node& node) const {
-        if (!names_.hasAllColumns || isColumn(operand)) return;
-        const auto isStart = [](char c) {
-            return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-        };
-        const auto isPart = [&](char c) { return isStart(c) || (c >= '0' && c <= '9'); };
-        for (std::size_t i = 0; i < operand.size();) {
-            if (!isPart(operand[i])) {
-                ++i;
-                continue;
-            }
-            std::size_t end = i;
-            while (end < operand.size() && isPart(operand[end])) ++end;
-            const std::string name = operand.substr(i, end - i);
-            const std::size_t next = operand.find_first_not_of(' ', end);
-            const bool isCall = next != std::string::npos && operand[next] == '(';
-            if (isStart(name[0]) && !isCall && !isColumn(name)) {
-                const std::string near = suggestion(name, names_.columns);
-                throw Error(node.location(),
-                            what_ + ": unknown column '" + name + "'" +
-                                (near.empty() ? "; allowed: " + joined(names_.columns) : near));
-            }
-            i = end;
         }
     }
 

@@ -38,8 +38,7 @@ Measure readMeasure(Params& params) {
     measure.relativeError = params.getDouble(
         "relative_error", measure.relativeError,
         {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
-         "to 8, 11, 14, 16 or 19 (not if the first look finds half of it); with 6 "
-         "processes or more in the timing lane; 0: they do not",
+         "to 14, 16 or 19; with 6 processes or more in the timing lane; 0: they do not",
          "", 0, 1});
     measure.processesAtMost = params.getInt("processes_at_most", measure.processesAtMost,
                                             {"rounds, where they go on", "", 1, kMax});

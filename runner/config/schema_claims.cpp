@@ -34,7 +34,8 @@ SchemaSection common() {
     return {"claim",
             "claims.ID.",
             "Every claim has these, and exactly one of the keys in the tables below with what "
-            "belongs to it; a, b and c are expressions over columns.",
+            "belongs to it; a, b and c are expressions over columns. Where columns are numbers, a "
+            "number alone is a column, and within an expression '8' in quotes is.",
             {{"says", "line", "required", "the claim in the paper's sense", text()},
              {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
              {"across", "row axis", "none",
@@ -52,8 +53,7 @@ SchemaSection common() {
               choice(kBoundSources)},
              {"kind", "algorithmic | architectural | absolute", "none",
               "of a claim about time: counts of work decide; a GPU's units do; or times as such, "
-              "at the printed parameters. The last two are judged on a GPU only; without it, as a "
-              "sweep may be, the first",
+              "at the printed parameters. The last two are judged on a GPU only",
               choice(kTimeKinds)},
              {"because", "known | [known]", "none",
               "where it is known not to hold, and why; any other verdict than the known is news",

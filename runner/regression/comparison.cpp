@@ -24,13 +24,13 @@ Series logarithms(const Series& values) {
     return logs;
 }
 
-/// log(time after / time before) for each pair of rounds.
+/// log(time after / time before) for each pair of rounds in which both stand.
 Series logRatios(const Series& before, const Series& after) {
     Series ratios;
     for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
         ratios.push_back(std::log(after[i] / before[i]));
     }
-    return ratios;
+    return standing(ratios);
 }
 
 bool arePositive(const Series& values) {
@@ -58,10 +58,26 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
 }
 
 Difference missing(const SeriesKey& key, const Series& values, bool isBefore) {
+    const Series own = key.isTime() ? standing(values) : values;
+    if (own.empty()) {
+        return {
+            .key = key,
+            .verdict = Verdict::Missing,
+            .reason = isBefore ? "void before, not there after" : "void after, not there before"};
+    }
     Difference result{.key = key, .verdict = isBefore ? Verdict::Lost : Verdict::Missing};
-    (isBefore ? result.before : result.after) = medianOf(values);
+    (isBefore ? result.before : result.after) = medianOf(own);
     result.reason = isBefore ? "measured before only" : "measured after only";
     return result;
+}
+
+/// What becomes of a time that is void in all processes of a side; null where some stand on both.
+std::optional<Difference> voidTime(const SeriesKey& key, const Series& before,
+                                   const Series& after) {
+    const bool isBefore = !standing(before).empty(), isAfter = !standing(after).empty();
+    if (isBefore && isAfter) return std::nullopt;
+    if (isBefore || isAfter) return missing(key, isBefore ? before : after, isBefore);
+    return Difference{.key = key, .verdict = Verdict::Void};
 }
 
 /// A time of both sides, and how it was tested.
@@ -71,21 +87,26 @@ struct TestedTime {
     std::size_t rounds[2] = {0, 0};  // by turns: of pairs, twice the same
 };
 
-TestedTime testTime(const SeriesKey& key, const Series& before, const Series& after,
+TestedTime testTime(const SeriesKey& key, const Series& allBefore, const Series& allAfter,
                     Pairing pairing, const Rules& rules) {
+    const Series before = standing(allBefore), after = standing(allAfter);
     TestedTime time{{.key = key, .before = medianOf(before), .after = medianOf(after)}, {}};
     Difference& difference = time.difference;
     if (!arePositive(before) || !arePositive(after)) {
         difference.reason = "a time of zero or less";
         return time;
     }
-    if (pairing == Pairing::ByTurns && before.size() != after.size()) {
-        difference.reason =
-            fmt::format("measured in {} and {} rounds: no pairs", before.size(), after.size());
+    if (pairing == Pairing::ByTurns && allBefore.size() != allAfter.size()) {
+        difference.reason = fmt::format("measured in {} and {} rounds: no pairs", allBefore.size(),
+                                        allAfter.size());
         return time;
     }
     if (pairing == Pairing::ByTurns) {
-        const Series ratios = logRatios(before, after);
+        const Series ratios = logRatios(allBefore, allAfter);
+        if (ratios.empty()) {
+            difference.reason = "no round in which both sides' times stand";
+            return time;
+        }
         time.rounds[0] = time.rounds[1] = ratios.size();
         time.test = signedRank(ratios);
         difference.floor = detectableChange(before, rules);
@@ -160,10 +181,10 @@ void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& ru
     }
 }
 
-/// Measures until every time is told, or the looks are used up.
+/// Measures until every time is told, or the looks are used up; after the first look the tables
+/// with times that are not, alone.
 std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
-                                            const std::set<std::string>& tables,
-                                            const Rules& rules) {
+                                            std::set<std::string> tables, const Rules& rules) {
     Sides sides;
     std::vector<Difference> differences;
     for (std::size_t look = 0; look < rules.looks; ++look) {
@@ -172,10 +193,13 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         own.isSoftware = sides.isSoftware;
         differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
         noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
+        noteVoidTimes(differences, sides.voidBefore, sides.voidAfter);
         addPictures(differences, sides.pictures);
-        const bool isDecided = std::ranges::none_of(
-            differences, [](const Difference& one) { return one.verdict == Verdict::CannotTell; });
-        if (isDecided) break;
+        tables.clear();
+        for (const Difference& one : differences) {
+            if (one.verdict == Verdict::CannotTell) tables.insert(one.key.table);
+        }
+        if (tables.empty()) break;
     }
     return differences;
 }
@@ -198,6 +222,10 @@ std::string_view verdictName(Verdict verdict) {
             return "missing";
         case Verdict::Lost:
             return "lost";
+        case Verdict::Void:
+            return "void on both sides";
+        case Verdict::Failed:
+            return "failed on both sides";
     }
     return "cannot tell";
 }
@@ -227,6 +255,8 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
         const auto found = after.find(key);
         if (found == after.end()) {
             differences.push_back(missing(key, values, true));
+        } else if (auto own = key.isTime() ? voidTime(key, values, found->second) : std::nullopt) {
+            differences.push_back(std::move(*own));
         } else if (key.isTime()) {
             times.push_back(testTime(key, values, found->second, pairing, rules));
         } else {
@@ -240,23 +270,6 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
     }
     std::ranges::sort(differences, {}, &Difference::key);
     return differences;
-}
-
-void noteFailures(std::vector<Difference>& differences, const Failures& before,
-                  const Failures& after) {
-    for (const auto& [title, failure] : after) {
-        bool isSaid = before.contains(title);
-        for (Difference& difference : differences) {
-            if (difference.verdict != Verdict::Lost || difference.key.caseTitle() != title)
-                continue;
-            difference.reason = failure.text;
-            isSaid = true;
-        }
-        if (isSaid) continue;
-        differences.push_back(
-            {.key = failure.key, .verdict = Verdict::Lost, .reason = failure.text});
-    }
-    std::ranges::sort(differences, {}, &Difference::key);
 }
 
 void addPictures(std::vector<Difference>& differences, std::vector<Difference> pictures) {

@@ -16,8 +16,9 @@ namespace gfxrepro::regression {
 
 /// Times are faster, slower, same or cannot tell; other metrics same or changed. What the earlier
 /// build measured and the later one did not is Lost, and so is a case that failed in the later one
-/// alone; what only the later one has is Missing.
-enum class Verdict { Faster, Slower, Same, CannotTell, Changed, Missing, Lost };
+/// alone; what only the later one has is Missing. A time that stands on neither side is Void, a
+/// case that failed on both has Failed: nothing is known of them.
+enum class Verdict { Faster, Slower, Same, CannotTell, Changed, Missing, Lost, Void, Failed };
 std::string_view verdictName(Verdict verdict);
 
 /// Whether the sides were measured by turns (round i of one beside round i of the other), so that
@@ -26,7 +27,9 @@ enum class Pairing { ByTurns, Apart };
 
 struct Rules {
     double effectFloor = 0.02;  // a change of time below it is none, however sure
-    double sameWithin = 0.1;    // `same` needs the 95 % interval inside of ± this
+    /// `same` needs the 95 % interval inside of ± this: less than the 10 % that are to be found, or
+    /// one look in forty would take these for the same.
+    double sameWithin = 0.08;
     double familyError = 0.05;  // chance of one false alarm among all series and looks
     /// Runs that were measured apart differ by what the machine does over hours, which no number of
     /// processes tells from a change of the build: only what is larger can be.
@@ -36,7 +39,7 @@ struct Rules {
     /// of pictures by 1e-5, and no table prints a fifth digit.
     double valueTolerance = 1e-4;
     bool isSoftware = false;  // the device: see chooseTimes
-    std::size_t looks = 3;    // at most, each after as many further rounds
+    std::size_t looks = 5;    // at most, each after as many further rounds
 };
 
 /// How far two pictures are apart.
@@ -55,13 +58,15 @@ struct Difference {
     metrics::Interval interval{1.0, 1.0};  // of the ratio, at 95 %
     double floor = 0.0;                    // the smallest change that counts, relative
     Verdict verdict = Verdict::CannotTell;
-    std::string reason{};  // of CannotTell, Missing and Lost, and of a picture that is Changed
+    std::string reason{};  // of all but Faster, Slower and Same, but of no value that is Changed
     std::optional<PictureError> picture{};  // of two that can be subtracted
     /// Of a picture that is Changed: both, and the map of differences if there is one, lie beside
     /// the comparison under this name with -before, -after and -flip.
     std::string evidence{};
 
     bool isPicture() const { return key.metric == kPictureMetric; }
+    /// Neither side has a value.
+    bool isOfNone() const { return verdict == Verdict::Void || verdict == Verdict::Failed; }
     bool isAlarm() const {
         return verdict == Verdict::Slower || verdict == Verdict::Changed ||
                verdict == Verdict::Lost;
@@ -80,10 +85,15 @@ double detectableChange(const Series& values, const Rules& rules);
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
                                 const Rules& rules = {});
 
-/// Says of what was lost how its cases failed, and adds a Lost for each case that failed afterwards
-/// alone and of which nothing else was lost.
-void noteFailures(std::vector<Difference>& differences, const Failures& before,
-                  const Failures& after);
+/// Says of what was lost how its cases failed, and of what is missing how they had; adds a Lost for
+/// each case that failed afterwards alone and of which nothing else was lost, and a Failed for each
+/// that failed on both sides. In the order of their keys.
+void noteFailures(std::vector<Difference>& differences, const CaseTexts& before,
+                  const CaseTexts& after);
+
+/// Says why times are void, where that lost them or leaves them undecided.
+void noteVoidTimes(std::vector<Difference>& differences, const CaseTexts& before,
+                   const CaseTexts& after);
 
 /// Adds what became of the pictures. Those that are lost with all that was measured of their case
 /// are Missing: the case is an alarm already. In the order of their keys.
@@ -96,7 +106,8 @@ void confirm(std::vector<Difference>& differences, const std::vector<Difference>
 /// What both sides have given so far.
 struct Sides {
     SeriesMap before, after;
-    Failures failuresBefore, failuresAfter;
+    CaseTexts failuresBefore, failuresAfter;
+    CaseTexts voidBefore, voidAfter;
     std::vector<Difference> pictures{};  // those of the first round held against each other
     bool isSoftware = false;             // the device, as in Rules
 };
@@ -104,7 +115,8 @@ struct Sides {
 using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;
 
 /// Measures and compares, up to `rules.looks` times, until every time is slower, faster or the
-/// same; then measures the tables with alarms in the same way once more, and confirms.
+/// same: first all, then the tables of which a time is none of these; then measures the tables with
+/// alarms in the same way once more, and confirms.
 std::vector<Difference> compareByTurns(const MeasureRounds& measure, const Rules& rules = {});
 
 }  // namespace gfxrepro::regression

@@ -64,7 +64,9 @@ void appendNight(const std::filesystem::path& path, const Night& night) {
     std::string text = std::filesystem::exists(path) ? readFile(path) : std::string(kHeader);
     // A night that was torn by a crash is cut off.
     text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
-    for (const auto& [key, values] : night.series) {
+    for (const auto& [key, all] : night.series) {
+        const Series values = key.isTime() ? standing(all) : all;
+        if (values.empty()) continue;
         report::CsvRow row(text);
         row.text(night.time).text(night.commit).text(night.machine).text(key.table);
         row.text(key.technique).text(key.method).text(key.scene).text(key.params);

@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 
 #include "runner/metrics/statistics.h"
 
 namespace gfxrepro::regression {
 
 namespace {
+
+constexpr double kVoid = std::numeric_limits<double>::quiet_NaN();
 
 /// Repeats by frame; a later value of a repeat replaces an earlier one.
 using Frames = std::map<int, std::map<int, double>>;
@@ -24,6 +27,7 @@ double meanOfMedians(const Frames& frames) {
         if (frame == report::kSetup && frames.size() > 1) continue;
         Series values;
         for (const auto& [repeat, value] : repeats) values.push_back(value);
+        if (standing(values).size() < values.size()) return kVoid;
         sum += metrics::summarize(values, metrics::Statistic::Median);
         ++count;
     }
@@ -47,16 +51,10 @@ bool isMadeOfTimes(const report::Record& record) {
 }
 
 using Json = nlohmann::ordered_json;
-using ParamNames = std::map<std::string, std::set<std::string>>;  // of each technique
 
 ParamNames paramNamesOf(const SeriesMap& series) {
     ParamNames names;
-    for (const auto& [key, values] : series) {
-        const Json params = Json::parse(key.params);
-        for (const auto& [name, value] : params.items()) {
-            names[key.technique].insert(name);
-        }
-    }
+    for (const auto& [key, values] : series) addParamNames(key, names);
     return names;
 }
 
@@ -66,16 +64,17 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
     SeriesMap result;
     for (const auto& [key, values] : series) {
         SeriesKey own = key;
-        const Json all = Json::parse(key.params);
-        Json params = Json::object();
-        const auto found = known.find(key.technique);
-        for (const auto& [name, value] : all.items()) {
-            if (found == known.end() || found->second.contains(name)) params[name] = value;
-        }
-        own.params = params.dump();
+        own.params = reducedParams(key, known);
         if (!result.emplace(own, values).second) return std::nullopt;
     }
     return result;
+}
+
+SeriesKey caseOf(const report::Record& record) {
+    return {record.table,  record.technique,
+            record.method, record.scene,
+            record.params, "",
+            "status",      ""};
 }
 
 }  // namespace
@@ -94,16 +93,24 @@ std::string SeriesKey::title() const {
     return text;
 }
 
+Series standing(const Series& values) {
+    Series result;
+    std::ranges::copy_if(values, std::back_inserter(result),
+                         [](double value) { return !std::isnan(value); });
+    return result;
+}
+
 SeriesMap seriesOf(const std::vector<report::Record>& records) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
     for (const report::Record& record : records) {
-        if (record.status != report::Status::Ok) continue;
+        const bool isVoid = record.status == report::Status::Ambiguous;
+        if (record.status != report::Status::Ok && !isVoid) continue;
         const SeriesKey key{record.table,  record.technique, record.method, record.scene,
                             record.params, record.pass,      record.metric, record.unit};
         const bool isOfFrame = key.isTime() && key.pass.empty() && record.lane == "timing";
         if (isMadeOfTimes(record) && !isOfFrame) continue;
         if (isOfTheMachine(record.metric)) continue;
-        gathered[key][record.process][record.frame][record.repeat] = record.value;
+        gathered[key][record.process][record.frame][record.repeat] = isVoid ? kVoid : record.value;
     }
     SeriesMap series;
     for (const auto& [key, processes] : gathered) {
@@ -114,21 +121,50 @@ SeriesMap seriesOf(const std::vector<report::Record>& records) {
     return series;
 }
 
-Failures failuresOf(const std::vector<report::Record>& records) {
-    Failures failures;
+CaseTexts failuresOf(const std::vector<report::Record>& records) {
+    CaseTexts failures;
     for (const report::Record& record : records) {
         if (record.status == report::Status::Ok || record.status == report::Status::Ambiguous) {
             continue;
         }
-        const SeriesKey key{record.table,  record.technique,
-                            record.method, record.scene,
-                            record.params, "",
-                            "status",      ""};
         std::string text(report::statusName(record.status));
         if (!record.message.empty()) text += ": " + record.message;
-        failures.insert_or_assign(key.caseTitle(), Failure{key, text});
+        failures.insert_or_assign(caseOf(record), text);
     }
     return failures;
+}
+
+CaseTexts voidTimesOf(const std::vector<report::Record>& records) {
+    CaseTexts texts;
+    for (const report::Record& record : records) {
+        if (record.status != report::Status::Ambiguous) continue;
+        texts.try_emplace(caseOf(record), record.message);
+    }
+    return texts;
+}
+
+std::size_t untimedCases(const std::vector<report::Record>& records) {
+    std::set<std::string> cases;
+    for (const report::Record& record : records) {
+        if (record.lane == "quality") cases.insert(record.table + ' ' + record.caseId);
+    }
+    return cases.size();
+}
+
+void addParamNames(const SeriesKey& key, ParamNames& names) {
+    const Json params = Json::parse(key.params);
+    for (const auto& [name, value] : params.items()) names[key.technique].insert(name);
+}
+
+std::string reducedParams(const SeriesKey& key, const ParamNames& known) {
+    const auto found = known.find(key.technique);
+    if (found == known.end()) return key.params;
+    const Json all = Json::parse(key.params);
+    Json params = Json::object();
+    for (const auto& [name, value] : all.items()) {
+        if (found->second.contains(name)) params[name] = value;
+    }
+    return params.dump();
 }
 
 void append(SeriesMap& series, const SeriesMap& more) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,26 +37,35 @@ struct SeriesKey {
     std::string title() const;
 };
 
-/// A value a process: the mean over frames of the median over repeats.
+/// A value a process: the mean over frames of the median over repeats. Not-a-number where the time
+/// is void: a frame of that process showed nothing, or its repeats did not do the same.
 using Series = std::vector<double>;
 using SeriesMap = std::map<SeriesKey, Series>;
+/// The values that are not void.
+Series standing(const Series& values);
 
-/// The series of `ok` rows; of two rows of one place the last, as tables have it. Of times there is
-/// the frame's of each case in the timing lane, no more: every further series asks for more rounds
-/// of all, a pass that matters shows in its frame, a rate is a reciprocal, and loading and setting
-/// up depend on what the disk has in its cache. Left out, too, are numbers made from times (of a
-/// unit of time or a rate, or "time" in the name) and what is about the machine (memory of the
-/// process, counts that the order of parallel work changes).
+/// The series of `ok` rows, and of times that are void; of two rows of one place the last, as
+/// tables have it. Of times there is the frame's of each case in the timing lane, no more: every
+/// further series asks for more rounds of all, a pass that matters shows in its frame, a rate is a
+/// reciprocal, and loading and setting up depend on what the disk has in its cache. Left out, too,
+/// are numbers made from times (of a unit of time or a rate, or "time" in the name) and what is
+/// about the machine (memory of the process, counts that the order of parallel work changes).
 SeriesMap seriesOf(const std::vector<report::Record>& records);
 
-/// A case that did not end as it should, be it that its second try did.
-struct Failure {
-    SeriesKey key;     // its metric is "status"
-    std::string text;  // "crash: SIGSEGV: …"
-};
-/// By SeriesKey::caseTitle().
-using Failures = std::map<std::string, Failure>;
-Failures failuresOf(const std::vector<report::Record>& records);
+/// What is said of cases, by case: the key's metric is "status", its pass and unit are empty.
+using CaseTexts = std::map<SeriesKey, std::string>;
+/// Cases that did not end as they should, be it that their second try did: "crash: SIGSEGV: …".
+CaseTexts failuresOf(const std::vector<report::Record>& records);
+/// Why times of cases are void: "frame 0: the picture of repeat 0 is blank: …".
+CaseTexts voidTimesOf(const std::vector<report::Record>& records);
+/// How many cases ran side by side in the quality lane, so that their times are not compared.
+std::size_t untimedCases(const std::vector<report::Record>& records);
+
+/// The names of the parameters that keys have, by technique.
+using ParamNames = std::map<std::string, std::set<std::string>>;
+void addParamNames(const SeriesKey& key, ParamNames& names);
+/// The parameters in `known` alone; all where nothing is known of the technique.
+std::string reducedParams(const SeriesKey& key, const ParamNames& known);
 
 /// Puts `more`'s processes behind those of `series`: rounds of alternating runs.
 void append(SeriesMap& series, const SeriesMap& more);

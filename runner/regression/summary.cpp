@@ -18,10 +18,14 @@ std::size_t countOf(const std::vector<Difference>& differences, Verdict verdict)
     return static_cast<std::size_t>(std::ranges::count(differences, verdict, &Difference::verdict));
 }
 
+/// Whether both sides have a value.
+bool isOfTwo(const Difference& difference) {
+    return difference.verdict != Verdict::Missing && difference.verdict != Verdict::Lost &&
+           !difference.isOfNone();
+}
+
 std::string ratioText(const Difference& difference) {
-    const bool isOfTwo =
-        difference.verdict != Verdict::Missing && difference.verdict != Verdict::Lost;
-    if (!isOfTwo || difference.isPicture()) return "";
+    if (!isOfTwo(difference) || difference.isPicture()) return "";
     return fmt::format("{:.3f} [{:.3f}, {:.3f}]", difference.ratio, difference.interval.low,
                        difference.interval.high);
 }
@@ -50,7 +54,9 @@ std::string markdownRow(const Difference& difference) {
     const std::string title = report::escapeMarkdown(difference.key.title());
     const std::string verdict =
         report::escapeMarkdown(verdictText(difference)) + evidenceLinks(difference);
-    if (difference.isPicture()) return fmt::format("| {} | | | | | {} |\n", title, verdict);
+    if (difference.isPicture() || difference.isOfNone()) {
+        return fmt::format("| {} | | | | | {} |\n", title, verdict);
+    }
     return fmt::format("| {} | {:.4g} | {:.4g} {} | {} | {:.2g} | {} |\n", title, difference.before,
                        difference.after, report::escapeMarkdown(difference.key.unit),
                        ratioText(difference), difference.floor, verdict);
@@ -79,8 +85,9 @@ std::vector<std::string> uniqueNamesOf(const Results& results) {
 
 std::string summaryLine(const std::vector<Difference>& differences) {
     std::string text;
-    for (const Verdict verdict : {Verdict::Lost, Verdict::Slower, Verdict::Faster, Verdict::Changed,
-                                  Verdict::Same, Verdict::CannotTell, Verdict::Missing}) {
+    for (const Verdict verdict :
+         {Verdict::Lost, Verdict::Slower, Verdict::Faster, Verdict::Changed, Verdict::Same,
+          Verdict::CannotTell, Verdict::Missing, Verdict::Void, Verdict::Failed}) {
         const std::size_t count = countOf(differences, verdict);
         if (count == 0) continue;
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));
@@ -122,7 +129,8 @@ std::string junitXml(const Comparison& comparison) {
     const auto failures = std::ranges::count_if(differences, &Difference::isAlarm) +
                           std::ranges::count_if(comparison.steps, &SeriesStep::isAlarm);
     const std::size_t skipped =
-        countOf(differences, Verdict::CannotTell) + countOf(differences, Verdict::Missing);
+        countOf(differences, Verdict::CannotTell) + countOf(differences, Verdict::Missing) +
+        countOf(differences, Verdict::Void) + countOf(differences, Verdict::Failed);
     std::string text = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<testsuite name=\"regression\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",

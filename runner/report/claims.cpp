@@ -280,13 +280,15 @@ namespace {
 
 /// Whether a claim about times holds them against a number, so that a faster machine decides it:
 /// quotients of times do not.
-bool asksForATimeAsSuch(const ClaimSpec& claim) {
+bool asksForATimeAsSuch(const ClaimSpec& claim, const Table& table) {
     using Type = ClaimSpec::Type;
     const auto isQuotient = [](const std::string& operand) {
         return operand.find('/') != std::string::npos;
     };
-    const auto isNumber = [](const std::string& operand) {
-        return parseDouble(operand).has_value();
+    const auto isNumber = [&](const std::string& operand) {
+        const bool isColumn =
+            std::ranges::find(table.columns, operand, &TableColumn::label) != table.columns.end();
+        return !isColumn && parseDouble(operand).has_value();
     };
     switch (claim.type) {
         case Type::Bound:
@@ -318,12 +320,11 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
         const ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
-        if (isOfDocument && reader.readsTime() && !claim.timeKind) {
+        if (reader.readsTime() && !claim.timeKind) {
             complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
         }
         if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
-        if (isOfDocument && claim.timeKind == ClaimSpec::TimeKind::Algorithmic &&
-            asksForATimeAsSuch(claim)) {
+        if (claim.timeKind == ClaimSpec::TimeKind::Algorithmic && asksForATimeAsSuch(claim, read)) {
             complain(
                 "holds a time against a number, which no count of work decides; its 'kind' "
                 "is architectural | absolute");

@@ -347,6 +347,17 @@ bool FigurePanel::hasPoints() const {
     });
 }
 
+std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table) {
+    std::vector<std::string> wanted = plot.y, known;
+    if (std::ranges::find(table.rowAxes, plot.x) == table.rowAxes.end()) wanted.push_back(plot.x);
+    for (const TableColumn& column : table.columns) known.push_back(column.label);
+    for (const std::string& name : wanted) {
+        if (std::ranges::find(known, name) != known.end()) continue;
+        return fmt::format("'{}' is no column (columns: {})", name, joined(known));
+    }
+    return "";
+}
+
 Figure makeFigure(const config::PlotSpec& plot, const Table& table) {
     return FigureMaker(plot, table).make();
 }

@@ -49,6 +49,11 @@ struct Figure {
 /// columns that the table has not.
 Figure makeFigure(const config::PlotSpec& plot, const Table& table);
 
+/// The column that the plot names and the table does not have, as one whose profile or override
+/// took it away: "'y' is no column (columns: x)"; empty where it has all. The table may have been
+/// built from no records.
+std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table);
+
 /// A name of a config, as an axis is labelled: "gpu_time_ms" → "gpu time (ms)". `unit` is used
 /// where the name does not carry its own.
 std::string quantityLabel(const std::string& name, const std::string& unit);

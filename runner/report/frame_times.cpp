@@ -18,6 +18,8 @@ using metrics::Statistic;
 
 /// Values that an interval has beyond those by which it was found to be narrow.
 constexpr std::size_t kNewRounds = 2;
+/// Fewer rounds do not end by a relative error.
+constexpr std::size_t kFewestByError = 14;
 
 double medianOf(const std::vector<double>& values) {
     return metrics::summarize(values, Statistic::Median);
@@ -139,18 +141,14 @@ std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
 
 bool FrameTimes::isKnownTo(double relativeError, int asked) const {
     const std::size_t rounds = roundCount();
-    if (rounds < metrics::kFewestForInterval) return false;
+    if (rounds < kFewestByError) return false;
     const std::size_t first = std::max<std::size_t>(asked, metrics::kFewestForInterval);
-    const auto isWithin = [&](std::size_t look, double error) {
-        const std::optional<double> measured = relativeErrorOf(look);
-        return measured && *measured <= error;
-    };
-    if (isWithin(first, relativeError / 2.0)) return true;
     if (metrics::medianIntervalDepth(rounds + 1) == metrics::medianIntervalDepth(rounds)) {
         return false;
     }
     for (std::size_t look = first; look + kNewRounds <= rounds; ++look) {
-        if (isWithin(look, relativeError)) return true;
+        const std::optional<double> measured = relativeErrorOf(look);
+        if (measured && *measured <= relativeError) return true;
     }
     return false;
 }

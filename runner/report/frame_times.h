@@ -47,10 +47,9 @@ class FrameTimes {
     /// To look after each round and to end at the first narrow interval picks the narrow ones: of
     /// times that scatter twice as much as is asked for, 82 % of such intervals hold the truth. So
     /// where some look found the error small enough, rounds go on to the last number of them at
-    /// which the interval ends as far from the ends of the sorted values (8, 11, 14, 16, 19: there
-    /// it is sure by 97.9 to 99.2 %), with two new values in it. At the first look alone, which
-    /// nothing picks, half the error is enough. tests/unit/report/coverage_test.cpp has what this
-    /// comes to.
+    /// which the interval ends as far from the ends of the sorted values (14, 16, 19: there it is
+    /// sure by 97.9 to 98.7 %), with two new values in it. Of those that so would end with 8 or 11
+    /// rounds, 91 % hold the truth. tests/unit/report/coverage_test.cpp has what this comes to.
     bool isKnownTo(double relativeError, int asked) const;
     /// By how much two equal cases of the table would differ, as a share: the half width of the
     /// 95 % interval (centreInterval) of the log ratio of two neighbouring cases, measured in pairs

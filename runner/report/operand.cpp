@@ -32,6 +32,22 @@ std::optional<std::size_t> columnAt(std::string_view text, const Table& table) {
     return best;
 }
 
+/// The column whose label stands in quotes at the head of `text`.
+std::optional<std::size_t> quotedColumnAt(std::string_view text, const Table& table) {
+    if (text.empty() || (text[0] != '\'' && text[0] != '"')) return std::nullopt;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const std::string& label = table.columns[i].label;
+        if (text.substr(1).starts_with(label + text[0])) return i;
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string> labelsOf(const Table& table) {
+    std::vector<std::string> labels;
+    for (const TableColumn& column : table.columns) labels.push_back(column.label);
+    return labels;
+}
+
 }  // namespace
 
 Operand::Operand(const std::string& text, const Table& table, const SourceLocation& where,
@@ -57,6 +73,32 @@ std::string Operand::variableOf(std::size_t column) {
     return fmt::format("v{}", index);
 }
 
+std::string Operand::translatedWord(std::string_view rest, std::size_t length, const Table& table,
+                                    const SourceLocation& where, const std::string& owner) const {
+    const std::string word(rest.substr(0, length));
+    const bool isNumber = parseDouble(word).has_value();
+    const bool isWhole = word.size() == text_.size();
+    const bool isCall = trimmed(rest.substr(length)).starts_with('(');
+    const bool isName = isNameStart(word[0]) && !isCall;
+    const std::vector<std::string> labels = labelsOf(table);
+    if (isNumber && !isWhole && std::ranges::find(labels, word) != labels.end()) {
+        throw AbsentColumnError(
+            where, owner,
+            fmt::format("'{0}' may be the column or the number (quoted it is the column; written "
+                        "otherwise, as {0}.0, the number)",
+                        word));
+    }
+    const bool areNumbers = std::ranges::any_of(
+        labels, [](const std::string& label) { return parseDouble(label).has_value(); });
+    if (isName || (isNumber && isWhole && areNumbers)) {
+        throw AbsentColumnError(where, owner,
+                                "'" + word + "' is no column" +
+                                    (isNumber ? "" : suggestion(word, labels)) +
+                                    " (columns: " + joined(labels) + ")");
+    }
+    return word;
+}
+
 std::string Operand::translated(const Table& table, const SourceLocation& where,
                                 const std::string& owner) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -65,6 +107,11 @@ std::string Operand::translated(const Table& table, const SourceLocation& where,
     std::string expression;
     for (std::size_t i = 0; i < text_.size();) {
         const std::string_view rest = std::string_view(text_).substr(i);
+        if (const auto column = quotedColumnAt(rest, table)) {
+            expression += variableOf(*column);
+            i += table.columns[*column].label.size() + 2;
+            continue;
+        }
         if (const auto column = columnAt(rest, table)) {
             expression += variableOf(*column);
             i += table.columns[*column].label.size();
@@ -74,16 +121,7 @@ std::string Operand::translated(const Table& table, const SourceLocation& where,
         if (isNamePart(text_[i])) {
             while (i + length < text_.size() && isNamePart(text_[i + length])) ++length;
         }
-        const std::string word(rest.substr(0, length));
-        const bool isCall = trimmed(rest.substr(length)).starts_with('(');
-        if (isNameStart(word[0]) && !isCall) {
-            std::vector<std::string> labels;
-            for (const TableColumn& column : table.columns) labels.push_back(column.label);
-            throw AbsentColumnError(where, owner,
-                                    "'" + word + "' is no column" + suggestion(word, labels) +
-                                        " (columns: " + joined(labels) + ")");
-        }
-        expression += word;
+        expression += translatedWord(rest, length, table, where, owner);
         i += length;
     }
     return expression;

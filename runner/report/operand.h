@@ -30,7 +30,8 @@ bool keepRoundsOrDraws(std::span<Sampled* const> values);
 /// The rounds that all of them have but those that are certain.
 std::vector<int> commonRounds(std::span<const Sampled> values);
 
-/// A name that is no column of the table: a profile or an override may have taken it away.
+/// A name that is no column of the table, or may be one: a profile or an override may have taken it
+/// away, or brought a column that looks like a number.
 class AbsentColumnError : public Error {
   public:
     AbsentColumnError(const SourceLocation& where, const std::string& owner,
@@ -45,10 +46,11 @@ class AbsentColumnError : public Error {
 
 class Operand {
   public:
-    /// Columns are written by their labels, whatever characters these have; a label that is a
-    /// number means a column only where it is the whole expression. Throws Error at `where`, its
-    /// message begun with `owner`, for bad syntax, and AbsentColumnError for a name that is no
-    /// column.
+    /// Columns are written by their labels, whatever characters these have, also in quotes. In a
+    /// table with columns that are numbers ("8"), a number that is the whole expression means a
+    /// column, and one within an expression that is a label, too, could mean either: the column is
+    /// written '8', the number 8.0. Throws Error at `where`, its message begun with `owner`, for
+    /// bad syntax, and AbsentColumnError for a name that is no column, or may be one.
     Operand(const std::string& text, const Table& table, const SourceLocation& where,
             const std::string& owner);
     Operand(Operand&&) = default;
@@ -67,6 +69,9 @@ class Operand {
   private:
     std::string translated(const Table& table, const SourceLocation& where,
                            const std::string& owner);
+    /// The head of `rest`, a number or a name, as it stands in the expression.
+    std::string translatedWord(std::string_view rest, std::size_t length, const Table& table,
+                               const SourceLocation& where, const std::string& owner) const;
     std::string variableOf(std::size_t column);
 
     std::string text_;

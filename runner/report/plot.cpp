@@ -24,14 +24,16 @@ std::string idOf(const std::string& stem) {
 
 PlotFile writePlot(const fs::path& runDir, const Table& table, const config::PlotSpec& plot,
                    const std::string& stem) {
-    const Figure figure = makeFigure(plot, table);
     PlotFile file;
     file.table = table.id;
     file.title = plot.title.empty() ? table.title : plot.title;
-    file.notes = figure.notes;
     const std::string svg = fmt::format("plots/{}.svg", stem);
+    const std::string absent = whatIsAbsent(plot, table);
+    const Figure figure = absent.empty() ? makeFigure(plot, table) : Figure();
+    file.notes = figure.notes;
     if (figure.panels.empty()) {
-        file.problem = "no value was measured";
+        file.problem =
+            absent.empty() ? "no value was measured" : "not among what was measured: " + absent;
         fs::remove(runDir / svg);  // of a run before this one
         return file;
     }

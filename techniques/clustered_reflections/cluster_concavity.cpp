@@ -2,9 +2,10 @@
 
 namespace gfxrepro::clustered_reflections {
 
-ConcavityPass::ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex) {
+ConcavityPass::ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex, bool showsBack) {
     gl::Defines defines = imageDefines();
     defines["MARKS_CONVEX"] = marksConvex ? 1 : 0;
+    defines["SHOWS_BACK"] = showsBack ? 1 : 0;
     program_ = gl::Program(shaders, {"clustered_reflections/concavity.comp.glsl"}, defines);
 }
 

@@ -11,7 +11,7 @@ namespace gfxrepro::clustered_reflections {
 /// they point together. The first way: all that are not planar.
 class ConcavityPass {
   public:
-    ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex);
+    ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex, bool showsBack);
     /// Sets kShowsOwn in the flags of cameras.
     void mark(const reflections::GBuffer& gbuffer, const Clusters& clusters,
               const gl::Buffer& cameras) const;

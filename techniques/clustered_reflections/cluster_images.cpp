@@ -43,6 +43,7 @@ gl::Defines imageDefines() {
     define("kClusterOfSampleUnit", kClusterOfSampleUnit);
     define("kMaxClusters", kMaxClusters);
     define("kShowsOwn", kShowsOwn);
+    define("kShowsOwnBack", kShowsOwnBack);
     define("MARCH_LEVELS", kPyramidLevels);
     return defines;
 }

@@ -46,7 +46,8 @@ struct ClusteredTracer::Impl {
             places = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
         }
         if (settings.ownReflector != OwnReflector::LeftOut) {
-            concavity.emplace(shaders, settings.ownReflector == OwnReflector::WholeScene);
+            concavity.emplace(shaders, settings.ownReflector == OwnReflector::WholeScene,
+                              settings.showsOwnBack);
         }
     }
 

@@ -37,6 +37,9 @@ struct ClusteredSettings {
     float levelErrorPx = 0.0F;
     March march = March::Linear;
     OwnReflector ownReflector = OwnReflector::ConcaveDiffuse;
+    /// As the thesis has it: images that show the own reflector show its back, too, which no ray
+    /// meets. Ours leave it out.
+    bool showsOwnBack = false;
 };
 
 /// The texture of the images: 34 MB, so that a frame of 1024² samples holds less than the 87 MB of

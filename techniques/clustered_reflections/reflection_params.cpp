@@ -101,6 +101,10 @@ ClusteredSettings readClustered(config::Params& params) {
     settings.ownReflector =
         params.getEnum("own_reflector", OwnReflector::ConcaveDiffuse, kOwnReflectors,
                        {"what rays of a cluster see of the reflector that they leave"});
+    settings.showsOwnBack = params.getBool(
+        "own_back", false,
+        {"images that show the own reflector show its back, too, as the thesis has it; no ray "
+         "meets it"});
     return settings;
 }
 
@@ -150,10 +154,14 @@ ReflectionParams::ReflectionParams(config::Params& params)
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
     params.finish();
     if (method != Method::Clustered) {
-        params.refuseGiven({"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain",
-                            "least_samples", "depth_images", "march", "depth_image_scale",
-                            "texels_per_sample", "level_error_px", "own_reflector", "errors_of"},
-                           "'method: clustered'");
+        params.refuseGiven(
+            {"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain", "least_samples",
+             "depth_images", "march", "depth_image_scale", "texels_per_sample", "level_error_px",
+             "own_reflector", "own_back", "errors_of"},
+            "'method: clustered'");
+    }
+    if (clustered.ownReflector == OwnReflector::LeftOut) {
+        params.refuseGiven({"own_back"}, "an 'own_reflector' that is not left_out");
     }
     if (!measuresErrors) params.refuseGiven({"converged_rays", "errors_of"}, "'errors: true'");
     if (clustered.clustering != Clustering::NormalBins) {

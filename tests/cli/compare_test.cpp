@@ -84,6 +84,39 @@ TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
               std::string::npos);
     const ProcessResult both = compared(crashing, crashing);
     EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+    EXPECT_NE(both.out.find("sweep/mock mock status: failed on both sides: crash: "),
+              std::string::npos)
+        << both.out;
+    EXPECT_NE(both.out.find("\n1 failed on both sides; "), std::string::npos) << both.out;
+    EXPECT_NE(readFile(out + "/junit.xml").find("<skipped message=\"failed on both sides: crash: "),
+              std::string::npos);
+}
+
+TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
+    const fs::path config = writeMockConfig(
+        folder, "params: {behaviour: blank}\nmeasure: {lane: timing, repeats: 2}\n");
+    const std::string a = folder.path() / "a", b = folder.path() / "b";
+    for (const std::string& dir : {a, b}) {
+        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    }
+    const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    EXPECT_NE(result.out.find("_time_ms: void on both sides: frame 0: the picture of repeat 0 is "
+                              "blank: all its pixels are the same\n"),
+              std::string::npos)
+        << result.out;
+    EXPECT_NE(result.out.find("1 void on both sides; "), std::string::npos) << result.out;
+}
+
+TEST_F(Compare, SaysThatTimesOfTheQualityLaneAreNotCompared) {
+    const fs::path config = writeMockConfig(folder, "measure: {lane: quality}\n");
+    const std::string a = folder.path() / "a";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", a}).exitCode, 0);
+    const ProcessResult result = mockGfxrepro({"compare", a, a, "--out", out});
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    EXPECT_NE(result.out.find("one case is of the quality lane: times that are not compared\n"),
+              std::string::npos)
+        << result.out;
 }
 
 TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {

@@ -265,6 +265,57 @@ TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
 }
 
+TEST(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {marker: [x, y], number: [1, 2]}\n"
+                        "layout:\n  rows: number\n  columns: marker\n"
+                        "  cell: {metric: number, format: \"{median:.0f}\"}\n"
+                        "plots:\n  - {x: number, y: x}\n  - {x: number, y: [x, y], title: Both}\n");
+    EXPECT_EQ(mockGfxrepro({"check", config}).out,
+              config + ": ok, sweep/mock, 4 cases, 0 claims\n");
+    EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "marker=x"}).out,
+              config + ": ok, sweep/mock, 2 cases, 0 claims\n" + config +
+                  ": plot 2 will be left out: 'y' is no column (columns: x)\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
+                                            "software", "--quiet", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
+    EXPECT_TRUE(std::filesystem::exists(dir + "/plots/sweep-mock.gp"));
+    EXPECT_FALSE(std::filesystem::exists(dir + "/plots/sweep-mock-2.gp"));
+    EXPECT_THAT(readFile(dir + "/report.html"),
+                HasSubstr("not among what was measured: &#39;y&#39; is no column (columns: x)"));
+}
+
+TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {number: [1, 2]}\n"
+                        "layout:\n  rows: number\n  columns: {n: {metric: number}}\n"
+                        "  cell: \"{median:.0f}\"\n"
+                        "claims:\n  rises: {says: it does, across: number, order: 1 < 2}\n");
+    EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "number=7,8"}).out,
+              config + ": ok, sweep/mock, 2 cases, 1 claim\n" + config +
+                  ": claim 'rises' will be unmeasured: '1' is no column (columns: 7, 8)\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "number=7,8",
+                                            "--device", "software", "--quiet", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(readFile(dir + "/claims.csv"), HasSubstr("unmeasured"));
+    const std::string unclear =
+        writeMockConfig(folder,
+                        "sweep: {number: [1, 2]}\n"
+                        "layout:\n  rows: number\n  columns: {n: {metric: number}}\n"
+                        "  cell: \"{median:.0f}\"\n"
+                        "claims:\n  rises: {says: it does, across: number, order: 2 * 1 < 2}\n");
+    EXPECT_THAT(mockGfxrepro({"check", unclear}).err,
+                HasSubstr("claim 'rises': '2' may be the column or the number; allowed: '2' in "
+                          "quotes for the column, 2.0 for the number\n"));
+}
+
 TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\n");

@@ -35,7 +35,7 @@ class Nightly : public ::testing::Test {
         const fs::path config = writeMockConfig(folder,
                                                 "params: {busy_ms: 80}\n"
                                                 "measure: {lane: timing, warmup: 0, repeats: 2}\n");
-        arguments.insert(arguments.end(), {"--rounds", "7", "--program", bundle(extraMs), config});
+        arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraMs), config});
         return runProgram(arguments);
     }
     /// The program that later nights are compared with.

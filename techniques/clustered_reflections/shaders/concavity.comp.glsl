@@ -1,7 +1,7 @@
 #version 450 core
 // Marks clusters whose images show their own reflector, a workgroup each: concave ones, whose normals
 // point together, by the sign of Σ (P_i − P_c) · n_i over some of their samples, spread evenly; or,
-// with MARKS_CONVEX, all but planar ones.
+// with MARKS_CONVEX, all but planar ones. With SHOWS_BACK their images have its back, too.
 #include "reflections/gbuffer.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
@@ -43,5 +43,6 @@ void main() {
     }
     bool isPlanar = (cameras[cluster].flags & kPlanarCluster) != 0u;
     bool isMarked = MARKS_CONVEX == 1 || sums[0] < 0.0;
-    if (thread == 0u && isMarked && !isPlanar) cameras[cluster].flags |= kShowsOwn;
+    uint marks = SHOWS_BACK == 1 ? kShowsOwn | kShowsOwnBack : kShowsOwn;
+    if (thread == 0u && isMarked && !isPlanar) cameras[cluster].flags |= marks;
 }

@@ -150,7 +150,8 @@ void listTriangles(uint chunkAndOwn, uint cluster, Frustum f, float perNear, vec
         c = clipped(f, perNear, worldC);
         isShown = mayShow(a, b, c, sizePx);
         // The own reflector where it faces the camera, as cluster_image.frag.glsl has it.
-        if ((chunkAndOwn & kOwnTriangle) != 0u) {
+        bool showsBack = (cameras[cluster].flags & kShowsOwnBack) != 0u;
+        if ((chunkAndOwn & kOwnTriangle) != 0u && !showsBack) {
             float facing = dot(cross(worldB - worldA, worldC - worldA), eyeWorld - worldA);
             isShown = isShown && ((chunkAndOwn & kMirrored) == 0u ? facing >= 0.0 : facing <= 0.0);
         }

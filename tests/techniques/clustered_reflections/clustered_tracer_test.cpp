@@ -307,6 +307,34 @@ TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
     }
 }
 
+TEST_F(ClusteredTracerTest, ABallHidesWhatItsRaysMeetWhereItsBackIsDrawn) {
+    scene::Scene ballRoom = rooms::room();
+    // The ball's own colour is in nothing else, and none of its rays meets it.
+    rooms::add(ballRoom, shapes::sphere({0.0F, -0.4F, 0.0F}, 0.5F, 5), {1.0F, 0.0F, 1.0F},
+               Surface::Mirror);
+    const ReflectiveScene scene(ballRoom);
+    const scene::Camera camera = rooms::cameraAt({0.3F, 0.2F, 1.4F}, {0.0F, -0.4F, 0.0F});
+    for (const ImageDrawing drawing : kDrawings) {
+        const auto seenShare = [&](bool showsOwnBack) {
+            ClusteredSettings settings = settingsFor(scene);
+            settings.drawing = drawing;
+            settings.ownReflector = OwnReflector::WholeScene;
+            settings.showsOwnBack = showsOwnBack;
+            const Traced traced = trace(scene, camera, settings);
+            double marched = 0.0, seen = 0.0;
+            for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
+                if (!traced.gbuffer.isReflective(i)) continue;
+                const glm::vec3& c = traced.radiance[i];
+                marched += 1.0;
+                seen += c.y < 0.02F && c.x > 0.2F && c.z > 0.2F ? 1.0 : 0.0;
+            }
+            return seen / marched;
+        };
+        EXPECT_LT(seenShare(false), 0.06) << "at the edge";
+        EXPECT_GT(seenShare(true), 0.1);
+    }
+}
+
 TEST_F(ClusteredTracerTest, GlossyReflectionsFadeToTheDiffuseColour) {
     ReflectiveScene scene(sphereRoom());
     scene.setGlossiness(0.9F);  // the far plane is at 1e-4 diagonals: no room

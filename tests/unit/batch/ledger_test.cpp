@@ -118,6 +118,17 @@ TEST(Ledger, RefusesWhatIsNotTheParameters) {
     EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {range: [0, 1], why: open}\n"),
               "DIR/t.yaml:5:3: assumption 'biass' needs 'value': it is no parameter of technique "
               "'still'; did you mean 'bias'?");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {value: 0.5, range: [0, 1], why: open}\n"),
+              "DIR/t.yaml:5:30: assumption 'biass' has a range of numbers: it is no parameter of "
+              "technique 'still'; did you mean 'bias'?");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  speed: {value: slow, range: [1, 2], why: open}\n"),
+              "DIR/t.yaml:5:31: assumption 'speed' has a range of numbers: it is no parameter of "
+              "technique 'still'");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {value: 0.5, why: open}\n"),
+              "DIR/t.yaml:5:18: assumption 'biass' is a number: it is no parameter of technique "
+              "'still'; did you mean 'bias'?");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {value: the middle, why: open}\n"), "no error")
+        << "of words the name is anybody's";
 }
 
 TEST(Ledger, RefusesRangesWithoutWhatIsMeasured) {

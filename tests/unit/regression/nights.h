@@ -19,8 +19,8 @@ inline SeriesKey timeOf(const std::string& method) {
     return {"p/1", "mock", method, "", "{}", "", "wall_time_ms", "ms"};
 }
 
-/// Standard deviation of CPU time between processes. Measured on two shared cores, ten neighbours
-/// each: 5 % (terrain_tessellation) and 8 % (shadow_mapping); of a frame by the clock 11 to 20 %.
+/// Standard deviation of CPU time between processes, as of the quietest series of the watch
+/// (recorded_watch.h).
 inline constexpr double kCpuNoise = 0.08;
 
 /// `rounds` processes of each of `methods` methods; all of a night share its machine's factor. One

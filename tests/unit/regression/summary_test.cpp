@@ -41,6 +41,22 @@ TEST(Summary, JUnitFailsOnAlarmsOnly) {
     EXPECT_NE(xml.find("name=\"p/1 mock &lt;a&gt; wall_time_ms\""), std::string::npos) << xml;
 }
 
+TEST(Summary, WhatNeitherSideHasIsCountedAndSkipped) {
+    const Comparison both{
+        {{.key = test::timeOf("a"), .verdict = Verdict::Void, .reason = "blank"},
+         {.key = test::timeOf("b"), .verdict = Verdict::Failed, .reason = "crash: SIGSEGV"}}};
+    EXPECT_FALSE(both.isAlarm());
+    EXPECT_EQ(summaryLine(both.differences), "1 void on both sides, 1 failed on both sides");
+    EXPECT_NE(markdown(both).find("| p/1 mock b wall\\_time\\_ms | | | | | failed on both sides: "
+                                  "crash: SIGSEGV |\n"),
+              std::string::npos)
+        << markdown(both);
+    const std::string xml = junitXml(both);
+    EXPECT_NE(xml.find("tests=\"2\" failures=\"0\" skipped=\"2\""), std::string::npos) << xml;
+    EXPECT_NE(xml.find("<skipped message=\"void on both sides: blank \"/>"), std::string::npos)
+        << xml;
+}
+
 TEST(Summary, AStepToSlowerIsAnAlarm) {
     const SeriesStep slower{test::timeOf("a"), 30, {18, 1.1, 2e-7}};
     SeriesStep faster = slower;

@@ -202,11 +202,12 @@ TEST(Claims, KnownVerdictsAndNews) {
     EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
 }
 
-std::string provenanceError(const std::string& claim) {
-    const config::Experiment experiment = experimentFrom(
+std::string provenanceError(const std::string& claim, bool isSweep = false) {
+    config::Experiment experiment = experimentFrom(
         "sweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: {metric: "
         "bytes}}}, rows: [scene, e], columns: {a: {pass: p}}}\nclaims:\n  C: {says: s, " +
         claim + "}\n");
+    if (isSweep) experiment.kind = config::Experiment::Kind::Sweep;
     try {
         requireProvenance(experiment, buildTable(experiment, {}));
         return "no error";
@@ -239,6 +240,15 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(provenanceError("bound: a, below: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime), "no error");
+    // A sweep's are ours, and its times no others.
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}", true), "no error");
+    EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}", true),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
+    EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}, kind: algorithmic", true),
+              isAbsolute);
+    EXPECT_EQ(
+        provenanceError("across: scene, order: s < t, at: {e: slow}, kind: algorithmic", true),
+        "no error");
 }
 
 TEST(Claims, ATimeAsSuchIsJudgedAtThePrintedParametersAlone) {
@@ -692,6 +702,33 @@ TEST(Claims, BadOperandsAreErrors) {
     EXPECT_EQ(error("a"),
               "t.yaml:4:2: claim 'X': at: 'm' is no row axis; did you mean 'n'? (row "
               "axes: n)");
+}
+
+TEST(Claims, ANumberThatIsAColumnIsNoNumber) {
+    const auto table = [](const char* sizes) {
+        return std::string("sweep: {size: ") + sizes +
+               "}\nlayout: {columns: size, cell: {metric: triangles}}\n";
+    };
+    RecordMaker maker;
+    maker.beginCase("s", R"({"size":8})").add("triangles", {3.0});
+    maker.beginCase("s", R"({"size":16})").add("triangles", {2.0});
+    const auto judged = [&](const char* sizes, const std::string& operand) {
+        config::Experiment experiment =
+            experimentFrom(table(sizes) + "claims: {X: {says: so, bound: 1 + 1, below: 5}}\n");
+        experiment.claims[0].operands = {operand};
+        return evaluateClaims(experiment, buildTable(experiment, maker.records()), kSoftware)[0];
+    };
+    EXPECT_EQ(judged("[8, 16]", "8").measured, "3");
+    EXPECT_EQ(judged("[8, 16]", "'8' + 8.0").measured, "11");
+    EXPECT_EQ(judged("[8, 16]", "8 + 1").reason,
+              "not among what was measured: '8' may be the column or the number (quoted it is the "
+              "column; written otherwise, as 8.0, the number)");
+    // A sweep took the columns away for which the numbers stood.
+    maker.beginCase("s", R"({"size":32})").add("triangles", {2.0});
+    const ClaimResult absent = judged("[32, 64]", "4");
+    EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
+    EXPECT_THAT(absent.reason,
+                testing::StartsWith("not among what was measured: '4' is no column"));
 }
 
 TEST(Claims, Summary) {

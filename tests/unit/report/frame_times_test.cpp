@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/unit/report/fixture.h"
 
 namespace gfxrepro::report {
@@ -25,7 +28,7 @@ config::Measure measureOf(int processes, double relativeError = 0.0) {
 }
 
 /// One case, a process a value; CPU time is half of the time on the wall.
-RecordMaker rounds(std::initializer_list<double> valuesMs) {
+RecordMaker rounds(const std::vector<double>& valuesMs) {
     RecordMaker maker;
     maker.beginCase("models/duck");
     int process = 0;
@@ -68,23 +71,30 @@ TEST(FrameTimes, RelativeErrorNeedsSixRounds) {
 }
 
 TEST(FrameTimes, EndsAtARelativeErrorWithNewValuesInTheInterval) {
-    const auto isKnown = [](std::initializer_list<double> valuesMs, int asked = 6) {
+    const auto isKnown = [](const std::vector<double>& valuesMs, int asked = 6) {
         return timesOf(rounds(valuesMs)).isKnownTo(0.1, asked);
     };
-    EXPECT_FALSE(isKnown({10, 10, 10, 10, 10})) << "no interval";
-    EXPECT_TRUE(isKnown({9.5, 10, 10, 10, 10, 10.5})) << "half of the error at the first look";
-    EXPECT_FALSE(isKnown({9.4, 10, 10, 10, 10, 10.6})) << "small enough, and more follow";
-    EXPECT_FALSE(isKnown({9.4, 10, 10, 10, 10, 10.6, 10}));
-    EXPECT_TRUE(isKnown({9.4, 10, 10, 10, 10, 10.6, 10, 10}));
-    EXPECT_TRUE(isKnown({9.4, 10, 10, 10, 10, 10.6, 20, 10})) << "whatever followed";
-    EXPECT_FALSE(isKnown({8, 10, 10, 10, 10, 12, 10, 10}));
-    EXPECT_FALSE(isKnown({8, 10, 10, 10, 10, 12, 10, 10, 10})) << "small enough from the ninth on";
-    EXPECT_FALSE(isKnown({8, 10, 10, 10, 10, 12, 10, 10, 10, 10}));
-    EXPECT_TRUE(isKnown({8, 10, 10, 10, 10, 12, 10, 10, 10, 10, 10}));
+    // Rounds of 10 ms, but for those that are given: the first, the sixth, and so on.
+    const auto values = [](std::size_t count, std::initializer_list<double> lows,
+                           std::initializer_list<double> highs) {
+        std::vector<double> all(count, 10.0);
+        std::ranges::copy(lows, all.begin());
+        std::ranges::copy(highs, all.end() - static_cast<std::ptrdiff_t>(highs.size()));
+        return all;
+    };
+    EXPECT_FALSE(isKnown(values(5, {}, {}))) << "no interval";
+    for (const std::size_t few : {6U, 8U, 11U, 13U}) EXPECT_FALSE(isKnown(values(few, {}, {})));
+    EXPECT_TRUE(isKnown(values(14, {}, {})));
+    EXPECT_FALSE(isKnown(values(15, {}, {}))) << "sixteen end as far from their ends";
+    EXPECT_TRUE(isKnown(values(16, {}, {})));
+    EXPECT_TRUE(isKnown(values(14, {}, {20, 20}))) << "whatever followed";
+    // Three of either side leave the interval only when a fourth value is left out: from 15 on.
+    EXPECT_FALSE(isKnown(values(14, {8, 8, 8, 12, 12, 12}, {})));
+    EXPECT_FALSE(isKnown(values(16, {8, 8, 8, 12, 12, 12}, {}))) << "found at the fifteenth";
+    EXPECT_TRUE(isKnown(values(19, {8, 8, 8, 12, 12, 12}, {})));
     // The first look is after as many as were asked for.
-    EXPECT_FALSE(isKnown({9.5, 10, 10, 10, 10, 10.5}, 8));
-    EXPECT_FALSE(isKnown({9, 10, 10, 10, 10, 11, 10}, 7));
-    EXPECT_TRUE(isKnown({9.6, 10, 10, 10, 10, 10.4, 10}, 7));
+    EXPECT_FALSE(isKnown(values(14, {}, {}), 13));
+    EXPECT_TRUE(isKnown(values(14, {}, {}), 12));
     EXPECT_FALSE(timesOf(RecordMaker()).isKnownTo(0.1, 6));
 }
 
@@ -134,8 +144,8 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
               "Times of 6 rounds by turns, ended by processes; the CPU time of a frame is known to "
               "±10 % or better.");
     EXPECT_EQ(
-        first({9, 10, 10, 10, 10, 11}, measureOf(6, 0.2)),
-        "Times of 6 rounds by turns, ended by relative_error; the CPU time of a frame is known "
+        first({9, 9, 9, 10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11}, measureOf(6, 0.2)),
+        "Times of 14 rounds by turns, ended by relative_error; the CPU time of a frame is known "
         "to ±10 % or better (asked for: 20 %).");
     config::Measure most = measureOf(6, 0.05);
     EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, most), HasSubstr("ended by time_budget_s"));
