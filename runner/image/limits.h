@@ -7,10 +7,14 @@
 
 namespace gfxrepro::image {
 
-/// Throws Error when a header declares more than 32768 pixels a side, none at all, or an image of
-/// more than 16 MiB that is also more than 2,000 times the file's size. `name` stands in the
-/// message.
+/// Of images that are decoded whole.
+constexpr std::int64_t kMaxSidePx = 32768;
+
+/// Throws Error when a header declares more than `maxSidePx` pixels a side, none at all, or an
+/// image of more than 16 MiB that is also more than 2,000 times the file's size. `name` stands in
+/// the message.
 void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
-                       std::size_t fileBytes, const std::string& name);
+                       std::size_t fileBytes, const std::string& name,
+                       std::int64_t maxSidePx = kMaxSidePx);
 
 }  // namespace gfxrepro::image
