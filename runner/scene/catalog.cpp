@@ -218,6 +218,11 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
         source.file = fs::absolute(fs::path(reference.location().file.text()).parent_path() / name)
                           .lexically_normal();
         source.where = reference.location();
+        try {
+            requireKnownExtension(name);
+        } catch (const Error& error) {
+            throw Error(reference.location(), std::string("scene file ") + error.what());
+        }
         if (fs::is_regular_file(source.file)) return source;
         throw Error(reference.location(),
                     "scene file '" + name + "' is not there; looked at " + source.file);
