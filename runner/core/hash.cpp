@@ -3,10 +3,13 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <memory>
+#include <vector>
 
 #include "runner/core/error.h"
-#include "runner/core/files.h"
 
 namespace gfxrepro {
 
@@ -49,7 +52,17 @@ std::string sha256(std::string_view text) {
 }
 
 std::string sha256OfFile(const std::filesystem::path& path) {
-    return sha256(MappedFile(path).bytes());
+    // Mapped, all of it would count as memory of the process.
+    constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> bytes(kBytesAtOnce);
+    Sha256 hash;
+    while (file) {
+        file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        hash.update(bytes.data(), static_cast<std::size_t>(file.gcount()));
+    }
+    if (!file.eof()) throw Error("cannot read " + path.string() + ": " + std::strerror(errno));
+    return hash.hexDigest();
 }
 
 }  // namespace gfxrepro

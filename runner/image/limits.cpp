@@ -7,12 +7,12 @@
 namespace gfxrepro::image {
 
 void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
-                       std::size_t fileBytes, const std::string& name) {
-    constexpr std::int64_t kMaxSidePx = 32768;
+                       std::size_t fileBytes, const std::string& name, std::int64_t maxSidePx) {
     const std::string declared =
         name + ": the header declares " + std::to_string(width) + " x " + std::to_string(height);
-    if (width < 1 || height < 1 || width > kMaxSidePx || height > kMaxSidePx) {
-        throw Error(declared + " pixels; 1 to 32768 a side are allowed");
+    if (width < 1 || height < 1 || width > maxSidePx || height > maxSidePx) {
+        throw Error(declared + " pixels; 1 to " + std::to_string(maxSidePx) +
+                    " a side are allowed");
     }
     constexpr std::size_t kAlwaysAllowedBytes = std::size_t{128} << 20;
     constexpr std::size_t kMaxExpansion = 500;

@@ -2,9 +2,14 @@
 
 #include <png.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <cerrno>
 #include <csetjmp>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,21 +43,31 @@ class Reader {
   public:
     /// Reads the header. It delegates so that the destructor runs when that throws.
     Reader(std::span<const std::byte> bytes, const std::string& name)
-        : Reader(bytes, name, Unread{}) {
+        : Reader(bytes.first(std::min(bytes.size(), kSignatureBytes)), name, Unread{}) {
+        rest_ = bytes;
         png_set_read_fn(png_, this, take);
-        guarded(png_, name_, message_, [this] { png_read_info(png_, info_); });
-        checkDeclaredSize(png_get_image_width(png_, info_), png_get_image_height(png_, info_),
-                          decodedBytesPerPixel(), bytes.size(), name);
+        readHeader(bytes.size(), kMaxSidePx);
+    }
+    /// The same of a file, which is read as far as its rows are.
+    Reader(std::ifstream& file, std::size_t fileBytes, const std::string& name,
+           std::int64_t maxSidePx)
+        : Reader(signatureOf(file), name, Unread{}) {
+        png_set_read_fn(png_, &file, takeOfFile);
+        readHeader(fileBytes, maxSidePx);
     }
     ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
 
     int bitDepth() const { return png_get_bit_depth(png_, info_); }
+    int width() const { return static_cast<int>(png_get_image_width(png_, info_)); }
+    int height() const { return static_cast<int>(png_get_image_height(png_, info_)); }
+    int channels() const { return png_get_channels(png_, info_); }
+    bool isInterlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
 
-    /// All rows as T, palettes, low depths and transparent colours expanded.
+    /// Rows come as T, palettes, low depths and transparent colours expanded.
     template <class T>
-    Image<T> decoded() {
+    void expandTo() {
         guarded(png_, name_, message_, [this] {
             png_set_expand(png_);
             if (sizeof(T) == 2) {
@@ -62,9 +77,12 @@ class Reader {
             png_set_interlace_handling(png_);
             png_read_update_info(png_, info_);
         });
-        Image<T> image(static_cast<int>(png_get_image_width(png_, info_)),
-                       static_cast<int>(png_get_image_height(png_, info_)),
-                       png_get_channels(png_, info_));
+    }
+
+    /// All rows, after expandTo<T>().
+    template <class T>
+    Image<T> image() {
+        Image<T> image(width(), height(), channels());
         std::vector<png_bytep> rows(static_cast<std::size_t>(image.height()));
         for (int y = 0; y < image.height(); ++y) {
             rows[static_cast<std::size_t>(y)] = reinterpret_cast<png_bytep>(image.row(y).data());
@@ -77,13 +95,28 @@ class Reader {
         return image;
     }
 
+    template <class T>
+    Image<T> decoded() {
+        expandTo<T>();
+        return image<T>();
+    }
+
+    /// The next row, after expandTo<T>() of its T; with the last one, what follows it.
+    void readRow(void* values, bool isLast) {
+        guarded(png_, name_, message_, [&] {
+            png_read_row(png_, static_cast<png_bytep>(values), nullptr);
+            if (isLast) png_read_end(png_, nullptr);
+        });
+    }
+
   private:
+    static constexpr std::size_t kSignatureBytes = 8;
+    using Signature = std::array<std::byte, kSignatureBytes>;
     struct Unread {};
-    Reader(std::span<const std::byte> bytes, const std::string& name, Unread)
-        : rest_(bytes), name_(name) {
-        constexpr std::size_t kSignatureBytes = 8;
-        if (bytes.size() < kSignatureBytes ||
-            png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, kSignatureBytes) != 0) {
+    Reader(std::span<const std::byte> signature, const std::string& name, Unread) : name_(name) {
+        if (signature.size() < kSignatureBytes ||
+            png_sig_cmp(reinterpret_cast<png_const_bytep>(signature.data()), 0, kSignatureBytes) !=
+                0) {
             throw Error(name + ": not a PNG file");
         }
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
@@ -92,6 +125,28 @@ class Reader {
         if (info_ == nullptr) {
             png_destroy_read_struct(&png_, &info_, nullptr);
             throw Error(name + ": libpng cannot be started");
+        }
+    }
+
+    static Signature signatureOf(std::ifstream& file) {
+        Signature signature{};
+        file.read(reinterpret_cast<char*>(signature.data()), kSignatureBytes);
+        file.clear();
+        file.seekg(0);
+        return signature;
+    }
+
+    void readHeader(std::size_t fileBytes, std::int64_t maxSidePx) {
+        guarded(png_, name_, message_, [this] { png_read_info(png_, info_); });
+        checkDeclaredSize(png_get_image_width(png_, info_), png_get_image_height(png_, info_),
+                          decodedBytesPerPixel(), fileBytes, name_, maxSidePx);
+    }
+
+    static void takeOfFile(png_structp png, png_bytep to, std::size_t count) {
+        auto& file = *static_cast<std::ifstream*>(png_get_io_ptr(png));
+        file.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(count));
+        if (static_cast<std::size_t>(file.gcount()) != count) {
+            png_error(png, "the file ends early");
         }
     }
 
@@ -190,6 +245,68 @@ Image8 readPng8(const std::filesystem::path& path) {
 Image16 readPng16(const std::filesystem::path& path) {
     const MappedFile file(path);
     return Reader(file.bytes(), path.string()).decoded<std::uint16_t>();
+}
+
+class PngRows::Decoder {
+  public:
+    Decoder(const std::filesystem::path& path, std::int64_t maxSidePx)
+        : file_(opened(path)),
+          reader_(file_, std::filesystem::file_size(path), path.string(), maxSidePx),
+          bitDepth_(reader_.bitDepth()) {
+        reader_.expandTo<std::uint16_t>();
+    }
+
+    const Reader& reader() const { return reader_; }
+    int bitDepth() const { return bitDepth_; }
+
+    void read(std::uint16_t* values) {
+        GFXREPRO_ASSERT(row_ < reader_.height());
+        if (!reader_.isInterlaced()) {
+            reader_.readRow(values, row_ + 1 == reader_.height());
+        } else {
+            if (row_ == 0) whole_ = reader_.image<std::uint16_t>();
+            const auto row = whole_->row(row_);
+            std::copy(row.begin(), row.end(), values);
+        }
+        ++row_;
+    }
+
+  private:
+    static std::ifstream opened(const std::filesystem::path& path) {
+        std::ifstream file(path, std::ios::binary);
+        if (!file) throw Error("cannot read " + path.string() + ": " + std::strerror(errno));
+        return file;
+    }
+
+    std::ifstream file_;
+    Reader reader_;
+    int bitDepth_;  // of the file: expanded, all are 16
+    std::optional<Image16> whole_;
+    int row_ = 0;
+};
+
+PngRows::PngRows(const std::filesystem::path& path, std::int64_t maxSidePx)
+    : decoder_(std::make_unique<Decoder>(path, maxSidePx)) {}
+PngRows::~PngRows() = default;
+PngRows::PngRows(PngRows&&) noexcept = default;
+
+int PngRows::width() const {
+    return decoder_->reader().width();
+}
+int PngRows::height() const {
+    return decoder_->reader().height();
+}
+int PngRows::channels() const {
+    return decoder_->reader().channels();
+}
+int PngRows::bitDepth() const {
+    return decoder_->bitDepth();
+}
+bool PngRows::isInterlaced() const {
+    return decoder_->reader().isInterlaced();
+}
+void PngRows::read(std::uint16_t* values) {
+    decoder_->read(values);
 }
 
 void writePng(const std::filesystem::path& path, const Image8& image) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -18,6 +20,29 @@ Image8 readPng8(const std::filesystem::path& path);
 Image16 readPng16(const std::filesystem::path& path);
 /// From memory; `name` stands in messages.
 Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name);
+
+/// A PNG file's rows of 16-bit values, one after the other: in memory are a few of them. An
+/// interlaced file has no such order, and is decoded whole with its first row.
+class PngRows {
+  public:
+    /// Reads the header. Throws as readPng16() does, of at most `maxSidePx` a side.
+    PngRows(const std::filesystem::path& path, std::int64_t maxSidePx);
+    ~PngRows();
+    PngRows(PngRows&&) noexcept;
+
+    int width() const;
+    int height() const;
+    /// With the alpha that a transparent colour adds.
+    int channels() const;
+    int bitDepth() const;
+    bool isInterlaced() const;
+    /// width · channels values of the next row; behind the last one the file is read to its end.
+    void read(std::uint16_t* values);
+
+  private:
+    class Decoder;
+    std::unique_ptr<Decoder> decoder_;
+};
 
 void writePng(const std::filesystem::path& path, const Image8& image);
 void writePng(const std::filesystem::path& path, const Image16& image);

@@ -23,6 +23,8 @@ namespace {
 
 /// Goes up when resampled() makes other heights.
 constexpr int kResamplingVersion = 1;
+/// Goes up when loadHeightMap() makes other heights.
+constexpr int kReadingVersion = 1;
 
 /// "the file s.obj", "generator grass".
 std::string kindOf(const SceneSource& source) {
@@ -101,21 +103,31 @@ std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source
     const HeightMapSource& how = *source.heightMap;
     const std::string colours =
         how.colourMap.empty() ? "" : " colours " + sha256OfFile(assetsFolder / how.colourMap);
-    return colours + fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM,
-                                 how.units.heightScaleM, how.units.noData.value_or(0.0F),
-                                 how.resampleTo.value_or(0), how.detailM, source.seed);
+    // A raw file's, which says how its bytes are read.
+    const fs::path sidecar = (assetsFolder / source.file).string() + ".yaml";
+    const std::string reading =
+        (fs::is_regular_file(sidecar) ? " sidecar " + sha256OfFile(sidecar) : "") +
+        (how.units.noData == 0.0F ? " no data 0" : "");
+    return colours + reading +
+           fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM, how.units.heightScaleM,
+                       how.units.noData.value_or(0.0F), how.resampleTo.value_or(0), how.detailM,
+                       source.seed);
 }
 
 Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     const HeightMapSource& how = *source.heightMap;
     Scene scene;
-    scene.heights = loadHeightMap(assetsFolder / source.file, how.units);
+    const fs::path path = assetsFolder / source.file;
+    const std::string content =
+        fmt::format("of file {}{}", sha256OfFile(path), heightMapKey(assetsFolder, source));
+    const fs::path folder = cacheFolder() / "heights";
     if (how.resampleTo) {
-        const std::string key = sha256(fmt::format("resampled {} of file {}{}", kResamplingVersion,
-                                                   sha256OfFile(assetsFolder / source.file),
-                                                   heightMapKey(assetsFolder, source)));
-        scene.heights = resampledInFile(*scene.heights, *how.resampleTo, how.detailM, source.seed,
-                                        cacheFolder() / "heights", key);
+        scene.heights = resampledInFile(
+            loadHeightMap(path, how.units), *how.resampleTo, how.detailM, source.seed, folder,
+            sha256(fmt::format("resampled {} {}", kResamplingVersion, content)));
+    } else {
+        scene.heights = loadHeightMapInFile(
+            path, how.units, folder, sha256(fmt::format("read {} {}", kReadingVersion, content)));
     }
     if (!how.colourMap.empty()) {
         scene.textures.push_back(rgbOf(image::readPng8(assetsFolder / how.colourMap)));
@@ -206,6 +218,11 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
         source.file = fs::absolute(fs::path(reference.location().file.text()).parent_path() / name)
                           .lexically_normal();
         source.where = reference.location();
+        try {
+            requireKnownExtension(name);
+        } catch (const Error& error) {
+            throw Error(reference.location(), std::string("scene file ") + error.what());
+        }
         if (fs::is_regular_file(source.file)) return source;
         throw Error(reference.location(),
                     "scene file '" + name + "' is not there; looked at " + source.file);

@@ -6,6 +6,7 @@
 
 #include "runner/config/schema.h"
 #include "runner/core/text.h"
+#include "runner/scene/load.h"
 
 namespace gfxrepro::scene {
 
@@ -53,6 +54,11 @@ SceneSource readFileSource(const Node& node) {
     if (source.file.empty() || fs::path(source.file).is_absolute()) {
         throw Error(file.location(),
                     "file is '" + source.file + "', but must be a path within the assets folder");
+    }
+    try {
+        requireKnownExtension(source.file);
+    } catch (const Error& error) {
+        throw Error(file.location(), std::string("file ") + error.what());
     }
     source.refineTo = readCount(node, "refine_to", "triangles");
     source.points = readCount(node, "points", "points");

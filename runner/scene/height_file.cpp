@@ -28,7 +28,6 @@ constexpr std::uint32_t kVersion = 1;
 constexpr std::array<char, 8> kMagic{'g', 'f', 'x', 'h', 'e', 'i', 'g', 'h'};
 /// The coarsest level that is kept has sides no longer than this.
 constexpr int kCoarsestSide = 64;
-constexpr int kRowsAtOnce = 64;
 /// The heights begin at a page of memory.
 constexpr std::size_t kHeaderBytes = 4096;
 
@@ -38,6 +37,8 @@ struct Header {
     glm::ivec2 sizeSamples{0};
     float lowestM = 0.0F, highestM = 0.0F;
     glm::ivec2 highestSample{0};
+    std::uint32_t unused = 0;  // where the compiler would leave what was in memory
+    std::uint64_t filledCount = 0;
 };
 
 int levelCountOf(glm::ivec2 sizeSamples) {
@@ -152,7 +153,8 @@ class Writer {
             offset += levelBytes(size_, level);
         }
     }
-    void finish() const {
+    void finish(std::size_t filledCount) {
+        header_.filledCount = filledCount;
         file_.write(0, &header_, sizeof header_);
         file_.flush();
     }
@@ -164,18 +166,20 @@ class Writer {
     std::vector<float> thinned_;
 };
 
-void build(const fs::path& path, glm::ivec2 sizeSamples, const HeightFile::RowMaker& makeRow) {
+void build(const fs::path& path, glm::ivec2 sizeSamples, const HeightFile::RowsMaker& makeRows,
+           std::size_t filledCount) {
     const Temporary temporary(path.string() + ".tmp" + std::to_string(::getpid()));
     Writer writer(temporary.path(), sizeSamples);
     const auto width = static_cast<std::size_t>(sizeSamples.x);
-    std::vector<float> rows(kRowsAtOnce * width);
-    const auto rowAt = [&](int i) { return &rows[static_cast<std::size_t>(i) * width]; };
-    for (int first = 0; first < sizeSamples.y; first += kRowsAtOnce) {
-        const int count = std::min(kRowsAtOnce, sizeSamples.y - first);
-        tbb::parallel_for(0, count, [&](int i) { makeRow(first + i, rowAt(i)); });
-        for (int i = 0; i < count; ++i) writer.writeRow(first + i, rowAt(i));
+    std::vector<float> rows(HeightFile::kRowsAtOnce * width);
+    for (int first = 0; first < sizeSamples.y; first += HeightFile::kRowsAtOnce) {
+        const int count = std::min(HeightFile::kRowsAtOnce, sizeSamples.y - first);
+        makeRows(first, count, rows.data());
+        for (int i = 0; i < count; ++i) {
+            writer.writeRow(first + i, &rows[static_cast<std::size_t>(i) * width]);
+        }
     }
-    writer.finish();
+    writer.finish(filledCount);
     if (::rename(temporary.path().c_str(), path.c_str()) != 0) fail("rename to", path);
 }
 
@@ -224,11 +228,21 @@ HeightFile::HeightFile(const fs::path& path, std::string key, glm::ivec2 sizeSam
     lowestM_ = header.lowestM;
     highestM_ = header.highestM;
     highestSample_ = header.highestSample;
+    filledCount_ = header.filledCount;
+}
+
+HeightFile::RowsMaker HeightFile::inParallel(int width, RowMaker makeRow) {
+    return [width, makeRow = std::move(makeRow)](int first, int count, float* heightsM) {
+        tbb::parallel_for(0, count, [&](int i) {
+            makeRow(first + i,
+                    heightsM + static_cast<std::size_t>(i) * static_cast<std::size_t>(width));
+        });
+    };
 }
 
 std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
-    const fs::path& folder, const std::string& key, glm::ivec2 sizeSamples, const RowMaker& makeRow,
-    const Preparation& prepare, std::uintmax_t mostBytes) {
+    const fs::path& folder, const std::string& key, glm::ivec2 sizeSamples,
+    const RowsMaker& makeRows, const Preparation& prepare, std::uintmax_t mostBytes) {
     GFXREPRO_ASSERT(sizeSamples.x >= 1 && sizeSamples.y >= 1);
     const fs::path path = folder / (key + ".heights");
     std::error_code failure;
@@ -239,8 +253,8 @@ std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
     const OpenFile lock(folder / "lock", O_RDWR | O_CREAT);
     lock.lock();
     if (!isThere(path, sizeSamples)) {
-        prepare();
-        build(path, sizeSamples, makeRow);
+        const std::size_t filledCount = prepare();
+        build(path, sizeSamples, makeRows, filledCount);
         makeRoom(folder, path, mostBytes);
     }
     // Which file was in use last, for makeRoom().

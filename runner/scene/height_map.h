@@ -62,6 +62,8 @@ struct HeightMap {
 
 /// Of heights in memory, and of those in a file.
 constexpr int kMaxHeightMapSide = 16385, kMaxHeightFileSide = 65537;
+/// Maps with longer sides are kept in a file where there is a choice: 64 MiB of heights.
+constexpr int kMostSamplesInMemory = 4097;
 
 /// How a file's values become metres: height = value · heightScaleM.
 struct HeightMapUnits {
@@ -75,6 +77,13 @@ struct HeightMapUnits {
 /// Samples without data are filled (fillHoles). Throws one Error that names the file for all that
 /// it refuses, before it allocates more than the file can hold.
 HeightMap loadHeightMap(const std::filesystem::path& path, const HeightMapUnits& units);
+/// The same in a file of `folder`, where the sides are longer than kMostSamplesInMemory: made there
+/// from a band of rows at a time (and those beside it, where there are holes: some 2 KiB of memory
+/// a column) unless `key`, which stands for the file and the units, is there. In memory where the
+/// folder cannot be written, which throws Error beyond kMaxHeightMapSide.
+HeightMap loadHeightMapInFile(const std::filesystem::path& path, const HeightMapUnits& units,
+                              const std::filesystem::path& folder, const std::string& key,
+                              int mostSamplesInMemory = kMostSamplesInMemory);
 bool isHeightMapFile(const std::filesystem::path& path);
 
 /// Fills samples that are not finite by a push-pull pyramid: each from the finest level that has

@@ -173,7 +173,9 @@ HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, 
     try {
         result.file = HeightFile::openOrBuild(
             folder, key, result.sizeSamples,
-            [&](int row, float* heights) { rows.makeRow(row, heights); }, [] {});
+            HeightFile::inParallel(result.sizeSamples.x,
+                                   [&](int row, float* heights) { rows.makeRow(row, heights); }),
+            [] { return std::size_t{0}; });
     } catch (const Error&) {
         if (sizeSamples > kMaxHeightMapSide) throw;
         return resampled(map, sizeSamples, detailM, seed);

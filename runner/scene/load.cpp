@@ -2,26 +2,46 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <string_view>
 
+#include "runner/core/error.h"
 #include "runner/core/hash.h"
 
 namespace gfxrepro::scene {
 
-Scene loadScene(const std::filesystem::path& path) {
+namespace {
+
+struct Format {
+    std::string_view extension;
+    Scene (*load)(const std::filesystem::path& path);
+};
+
+constexpr Format kFormats[] = {
+    {".ply", &loadPly},
+    {".obj", &loadObj},
+    {".gltf", &loadGltf},
+    {".glb", &loadGltf},
+};
+
+const Format& formatOf(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    Scene scene;
-    if (extension == ".ply") {
-        scene = loadPly(path);
-    } else if (extension == ".obj") {
-        scene = loadObj(path);
-    } else if (extension == ".gltf" || extension == ".glb") {
-        scene = loadGltf(path);
-    } else {
-        throw Error(path.string() + ": unknown extension '" + extension +
-                    "'; .ply, .obj, .gltf and .glb are allowed");
-    }
+    const auto found = std::ranges::find(kFormats, extension, &Format::extension);
+    if (found != std::end(kFormats)) return *found;
+    throw Error(path.string() + ": unknown extension '" + extension +
+                "'; .ply, .obj, .gltf and .glb are allowed");
+}
+
+}  // namespace
+
+void requireKnownExtension(const std::filesystem::path& path) {
+    formatOf(path);
+}
+
+Scene loadScene(const std::filesystem::path& path) {
+    Scene scene = formatOf(path).load(path);
     scene.name = path.stem().string();
     scene.origin = {Origin::Kind::Real, path.filename().string(), sha256OfFile(path)};
     return scene;

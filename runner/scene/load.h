@@ -9,6 +9,9 @@
 
 namespace gfxrepro::scene {
 
+/// Throws Error for a file that loadScene() does not know by its extension.
+void requireKnownExtension(const std::filesystem::path& path);
+
 /// By extension (.ply .obj .gltf .glb, any case); others are an Error that lists these.
 /// `origin` is Real, with the file's sha256.
 Scene loadScene(const std::filesystem::path& path);

@@ -18,7 +18,6 @@ namespace gfxrepro::scene {
 namespace {
 
 /// Maps with longer sides are made once and kept in a file, not by each worker in its memory.
-constexpr int kMostSamplesInMemory = 4097;
 
 std::string keyOf(const FractalTerrain& shape, std::uint64_t seed) {
     return sha256(fmt::format("terrain of generator {}: {} {} {} {} {} {}, seed {}",
@@ -103,9 +102,14 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
         const float scale = ends->y > ends->x ? terrain.reliefM / (ends->y - ends->x) : 0.0F;
         for (int i = 0; i < terrain.sizeSamples; ++i) heights[i] = (heights[i] - ends->x) * scale;
     };
-    const auto prepare = [&] { ends = fractalEnds(terrain, seed); };
+    const auto prepare = [&] {
+        ends = fractalEnds(terrain, seed);
+        return std::size_t{0};
+    };
     try {
-        map.file = HeightFile::openOrBuild(folder, key, map.sizeSamples, makeRow, prepare);
+        map.file =
+            HeightFile::openOrBuild(folder, key, map.sizeSamples,
+                                    HeightFile::inParallel(map.sizeSamples.x, makeRow), prepare);
     } catch (const Error&) {
         if (terrain.sizeSamples > kMaxHeightMapSide) throw;
         return fractalTerrain(terrain, seed);

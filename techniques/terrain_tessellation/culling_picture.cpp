@@ -56,6 +56,7 @@ image::ImageF cullingPicture(const scene::HeightMap& map, std::span<const Tile> 
                 if (x == from.x || y == from.y) colour = kTileBorder;
                 for (int c = 0; c < 3; ++c) picture.at(x, y, c) = colour[c];
             }
+            map.release();
         }
     }
     return picture;

@@ -76,7 +76,7 @@ image::Image8 groundPicture(const scene::HeightMap& map, int sidePx) {
     const scene::HeightMap::Extremes ends = map.extremes();
     const float relief = std::max(ends.highestM - ends.lowestM, 1e-6F);
     const int step = std::max(1, static_cast<int>(samplesPerPx));
-    tbb::parallel_for(0, size.y, [&](int y) {
+    const auto paintRow = [&](int y) {
         for (int x = 0; x < size.x; ++x) {
             const glm::ivec2 at((glm::vec2(x, y) + 0.5F) * samplesPerPx);
             const float east =
@@ -92,8 +92,13 @@ image::Image8 groundPicture(const scene::HeightMap& map, int sidePx) {
                     std::lround(255.0F * std::clamp(colour[c], 0.0F, 1.0F)));
             }
         }
-    });
-    map.release();
+    };
+    // What the rows looked at leaves the memory with every few.
+    constexpr int kRowsAtOnce = 16;
+    for (int first = 0; first < size.y; first += kRowsAtOnce) {
+        tbb::parallel_for(first, std::min(size.y, first + kRowsAtOnce), paintRow);
+        map.release();
+    }
     return picture;
 }
 

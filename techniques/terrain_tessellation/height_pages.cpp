@@ -89,7 +89,10 @@ void HeightPages::fill(int layer, const Tile& tile) {
     std::vector<float> heightsM;
     heightsM.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
     const int step = 1 << tile.level;
+    // Rows of a coarse tile beyond the map's rim repeat samples that are far apart in the file.
+    constexpr int kRowsAtOnce = 16;
     for (int j = 0; j < side; ++j) {
+        if (j % kRowsAtOnce == 0) map_->release();
         for (int i = 0; i < side; ++i) {
             const glm::ivec2 at = tile.originSample + (glm::ivec2(i, j) - kBorder) * step;
             heightsM.push_back(map_->clampedHeightM(at.x, at.y, tile.level));

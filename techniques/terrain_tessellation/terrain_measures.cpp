@@ -24,7 +24,8 @@ bool isInside(const DepthMap& map, glm::ivec2 pixel) {
 }  // namespace
 
 HeightErrors heightErrors(const DepthMap& drawn,
-                          const std::function<float(float x, float z)>& heightAt) {
+                          const std::function<float(float x, float z)>& heightAt,
+                          const std::function<void()>& afterRow) {
     // k of [zhang2012] Eq. (1), in pixels a metre at a depth of one metre.
     const double pixelsPerRadian =
         0.5 * static_cast<double>(drawn.view.clipFromView[1].y) * drawn.view.sizePx.y;
@@ -43,6 +44,7 @@ HeightErrors heightErrors(const DepthMap& drawn,
             errors.maxM = std::max(errors.maxM, errorM);
             errors.maxPx = std::max(errors.maxPx, errorPx);
         }
+        afterRow();
     }
     if (errors.pixels > 0) {
         errors.meanM /= static_cast<double>(errors.pixels);

@@ -31,9 +31,11 @@ struct HeightErrors {
     double meanPx = 0.0, maxPx = 0.0;  // seen from the side at the point's depth: an upper bound
     std::size_t pixels = 0;
 };
-/// `heightAt(x, z)`: of the full-resolution terrain in metres.
-HeightErrors heightErrors(const DepthMap& drawn,
-                          const std::function<float(float x, float z)>& heightAt);
+/// `heightAt(x, z)`: of the full-resolution terrain in metres; `afterRow` is called between rows of
+/// pixels.
+HeightErrors heightErrors(
+    const DepthMap& drawn, const std::function<float(float x, float z)>& heightAt,
+    const std::function<void()>& afterRow = [] {});
 
 /// Marks pixels through which the background shows although the terrain is whole
 /// there: the truth covers the pixel and its eight neighbours, and `drawn` covers one above it in

@@ -157,7 +157,6 @@ void TerrainTessellation::recordCulling(technique::Recorder& recorder) {
     recorder.image("culling", cullingPicture(*scene_->heights, tiles, params_.render.factors.tile,
                                              replay.run(tiles, view_), tileView_.clipFromWorld,
                                              params_.culling != Culling::None, sizePx_.y));
-    scene_->heights->release();
 }
 
 TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
@@ -191,9 +190,9 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     const scene::HeightMap& map = *scene_->heights;
     // As frames are drawn: what shows the underside above may show the background here.
     const Drawn framed = drawnAgain(params_.method, selection_, false);
-    const HeightErrors height =
-        heightErrors(framed.depths, [&](float x, float z) { return heightAt(map, x, z); });
-    map.release();
+    const HeightErrors height = heightErrors(
+        framed.depths, [&](float x, float z) { return heightAt(map, x, z); },
+        [&] { map.release(); });
     recorder.metric("height_error_m", height.meanM, "m", "mean");
     recorder.metric("height_error_m", height.maxM, "m", "max");
     recorder.metric("height_error_px", height.meanPx / params_.supersampling, "pixel", "mean");

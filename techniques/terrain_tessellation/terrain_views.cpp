@@ -47,6 +47,7 @@ float groundAround(const scene::HeightMap& map, glm::vec2 place, float radiusM) 
             highest = std::max(highest, heightAt(map, at.x, at.y));
         }
     }
+    map.release();
     return highest;
 }
 

@@ -1,5 +1,7 @@
 #include "techniques/voxelization/mesh_input.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "runner/core/error.h"
@@ -23,27 +25,40 @@ scene::Scene coloured(scene::Scene scene) {
     return scene;
 }
 
+[[noreturn]] void refuse(const scene::Scene& scene, const std::string& found) {
+    const std::string& from = scene.origin.description;
+    throw Error(fmt::format(
+        "scene '{}'{} has {}; allowed to voxelize: triangles that reach from "
+        "one point to another",
+        scene.name, from.empty() || from == scene.name ? "" : " (" + from + ")", found));
+}
+
 }  // namespace
 
 scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels) {
     const glm::vec3 size = bounds.size();
     const float longest = std::max({size.x, size.y, size.z});
-    const float edge = longest > 0.0F ? longest : 1.0F;  // a single point
-    const float half = 0.5F * edge * static_cast<float>(resolution) /
+    const float half = 0.5F * longest * static_cast<float>(resolution) /
                        static_cast<float>(resolution - 2 * paddingVoxels);
     return {bounds.centre() - half, bounds.centre() + half};
 }
 
 MeshInput::MeshInput(const scene::Scene& scene, VoxelValue value) {
     if (scene.triangleCount() == 0) {
-        throw Error("scene '" + scene.name + "' has no triangles to voxelize");
+        const std::size_t points = scene.points.positions.size();
+        refuse(scene,
+               points == 0 ? "no triangles" : fmt::format("no triangles, but {} points", points));
     }
     const bool needsColors = value == VoxelValue::Color;
-    if (isPlain(scene)) {
+    if (isPlain(scene))
         original_ = &scene.meshes[static_cast<std::size_t>(scene.instances[0].mesh)];
-        if (!needsColors || !original_->colors.empty()) return;
+    if (!original_ || (needsColors && original_->colors.empty())) {
+        original_ = nullptr;
+        copy_ = scene::flattened(needsColors ? coloured(scene) : scene);
     }
-    copy_ = scene::flattened(needsColors ? coloured(scene) : scene);
+    if (mesh().bounds().size() == glm::vec3(0.0F)) {
+        refuse(scene, fmt::format("all its {} vertices at one point", mesh().positions.size()));
+    }
 }
 
 }  // namespace gfxrepro::voxelization

@@ -8,7 +8,7 @@
 namespace gfxrepro::voxelization {
 
 /// Cubic, about the centre of `bounds`, with `paddingVoxels` free voxels at both ends of its
-/// longest side.
+/// longest side, which has a length.
 scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels);
 
 /// All triangles of a scene in world space: the scene's own mesh where it is the only one and lies
@@ -16,7 +16,7 @@ scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels)
 class MeshInput {
   public:
     /// `scene` must outlive this. For VoxelValue::Color, vertices without a colour take their
-    /// material's. Throws Error for a scene without triangles.
+    /// material's. Throws Error for a scene without triangles, or with all of them at one point.
     MeshInput(const scene::Scene& scene, VoxelValue value);
     MeshInput(const MeshInput&) = delete;
     MeshInput& operator=(const MeshInput&) = delete;

@@ -97,9 +97,27 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
     EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 1, 1]}"), "no error");
 }
 
-TEST_F(VoxelizationTest, NeedsTriangles) {
+TEST_F(VoxelizationTest, NeedsTrianglesThatReachSomewhere) {
+    const std::string allowed =
+        "; allowed to voxelize: triangles that reach from one point to another";
     EXPECT_EQ(errorText([&] { run("{}", scene::Scene{.name = "void"}); }),
-              "scene 'void' has no triangles to voxelize");
+              "scene 'void' has no triangles" + allowed);
+    scene::Scene cloud{.name = "cloud.ply"};
+    cloud.points.positions = {{0, 0, 0}, {1, 2, 3}};
+    cloud.origin.description = "/scans/cloud.ply";
+    EXPECT_EQ(errorText([&] { run("{}", cloud); }),
+              "scene 'cloud.ply' (/scans/cloud.ply) has no triangles, but 2 points" + allowed);
+    scene::Mesh mesh;
+    mesh.positions = {{1, 2, 3}, {1, 2, 3}};
+    mesh.triangles = {{0, 1, 0}};
+    scene::Scene point = scene::sceneOf(mesh);
+    point.name = "point.obj";
+    for (const char* value : {"{}", "{value: color, voxel_bits: 32}"}) {
+        EXPECT_EQ(errorText([&] { run(value, point); }),
+                  "scene 'point.obj' has all its 2 vertices at one point" + allowed);
+    }
+    point.meshes[0].positions[1].x = 2.0F;  // a line
+    EXPECT_GT(run("{resolution: 32, rule: conservative}", point).at("voxels"), 0.0);
 }
 
 TEST_F(VoxelizationTest, RecordsTheGrid) {

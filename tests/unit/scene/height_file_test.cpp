@@ -26,11 +26,12 @@ std::shared_ptr<const HeightFile> opened(const fs::path& folder, const std::stri
                                          std::uintmax_t mostBytes = HeightFile::kMostBytes) {
     return HeightFile::openOrBuild(
         folder, key, {200, 130},
-        [&](int row, float* heightsM) {
-            ++rows;
-            for (int i = 0; i < 200; ++i) heightsM[i] = heightAt(i, row);
-        },
-        [] {}, mostBytes);
+        HeightFile::inParallel(200,
+                               [&](int row, float* heightsM) {
+                                   ++rows;
+                                   for (int i = 0; i < 200; ++i) heightsM[i] = heightAt(i, row);
+                               }),
+        [] { return std::size_t{7}; }, mostBytes);
 }
 
 TEST(HeightFile, HasEverySampleAtEveryLevel) {
@@ -38,6 +39,7 @@ TEST(HeightFile, HasEverySampleAtEveryLevel) {
     std::atomic<int> rows = 0;
     const auto file = opened(folder.path(), "a", rows);
     EXPECT_EQ(rows, 130);
+    EXPECT_EQ(file->filledCount(), 7U);
     ASSERT_EQ(file->levelCount(), 3);
     EXPECT_EQ(file->sizeSamples(2), glm::ivec2(50, 33));
     HeightMap map, inMemory;

@@ -145,7 +145,7 @@ TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
     writeFileAtomic(sidecar, "{width: 2000000000, height: 2000000000, type: f32}\n");
     EXPECT_EQ(messageOf(path),
               sidecar.string() +
-                  ": a height map of 2000000000 x 2000000000 samples; allowed: 1 to 16385 a side");
+                  ": a height map of 2000000000 x 2000000000 samples; allowed: 1 to 65537 a side");
     writeFileAtomic(sidecar, "{width: 2, height: 3, type: f64}\n");
     EXPECT_EQ(messageOf(path), sidecar.string() + ":1:29: type is 'f64'; allowed: u16 | i16 | f32");
 }
@@ -187,9 +187,14 @@ TEST(HeightMap, RefusesPngsCutShortAndOfHugeHeaders) {
         return messageOf(path);
     };
     EXPECT_EQ(messageWithSide(0x7FFFFFFF), path.string() + ": Invalid IHDR data");
-    EXPECT_EQ(messageWithSide(60000),
+    EXPECT_EQ(messageWithSide(65538),
               path.string() +
-                  ": the header declares 60000 x 60000 pixels; 1 to 32768 a side are allowed");
+                  ": the header declares 65538 x 65538 pixels; 1 to 65537 a side are allowed");
+    EXPECT_EQ(messageWithSide(65537),
+              path.string() +
+                  ": the header declares 65537 x 65537 pixels of 8 bytes, too many for "
+                  "a file of " +
+                  std::to_string(whole.size()) + " bytes");
 }
 
 TEST(HeightMap, RefusesTiffsOfHugeHeaders) {

@@ -215,6 +215,14 @@ TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
     const auto missing = config::Node::scalar("../no.obj", {config, 2, 3});
     EXPECT_EQ(test::errorText([&] { catalog.load(missing); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file '../no.obj' is not there; looked at DIR/no.obj");
+    // Known before it is looked for, so that a check without a device finds it.
+    const auto unknown = config::Node::scalar("my.STL", {config, 2, 3});
+    EXPECT_EQ(test::errorText([&] { catalog.resolve(unknown); }, folders.folder.path()),
+              "DIR/mine/table.yaml:2:3: scene file my.STL: unknown extension '.stl'; .ply, .obj, "
+              ".gltf and .glb are allowed");
+    EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.stl}]\n"),
+              "DIR/scenes/m/x.yaml:3:18: file a.stl: unknown extension '.stl'; .ply, .obj, "
+              ".gltf and .glb are allowed");
 }
 
 TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {

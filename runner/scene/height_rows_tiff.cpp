@@ -1,4 +1,4 @@
-// Height maps from TIFF files (libtiff).
+// Rows of TIFF files (libtiff).
 #include <fmt/format.h>
 #include <tiffio.h>
 
@@ -11,13 +11,16 @@
 
 #include "runner/core/error.h"
 #include "runner/image/limits.h"
-#include "runner/scene/height_map_values.h"
+#include "runner/scene/height_map.h"
+#include "runner/scene/height_rows.h"
 
 namespace gfxrepro::scene {
 
 namespace {
 
 constexpr std::uint32_t kGdalNoData = 42113;
+/// Tiles of 1,024² of floats across the widest map.
+constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
 
 int keepFirstMessage(TIFF*, void* to, const char*, const char* format, va_list arguments) {
     auto& message = *static_cast<std::string*>(to);
@@ -36,31 +39,40 @@ int keepReadWarning(TIFF* tiff, void* to, const char* module, const char* format
     return keepFirstMessage(tiff, to, module, format, arguments);
 }
 
-class TiffReader {
+class TiffRows : public HeightRows {
   public:
-    explicit TiffReader(const std::filesystem::path& path) : name_(path.string()) {
+    explicit TiffRows(const std::filesystem::path& path) : name_(path.string()) {
         const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(
             TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
         TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keepFirstMessage, &message_);
         TIFFOpenOptionsSetWarningHandlerExtR(options.get(), keepReadWarning, &message_);
-        tiff_.reset(TIFFOpenExt(name_.c_str(), "r", options.get()));
+        // Not mapped ("m"): what is read of a file need not stay.
+        tiff_.reset(TIFFOpenExt(name_.c_str(), "rm", options.get()));
         if (!tiff_ || !message_.empty()) fail();
         fileBytes_ = std::filesystem::file_size(path);
         readHeader();
+        sizeSamples = {static_cast<int>(width_), static_cast<int>(height_)};
+        isEightBit = bits_ == 8;
+        canBeNan = format_ == SAMPLEFORMAT_IEEEFP;
+        if (TIFFIsTiled(tiff_.get()) != 0) {
+            prepareTiles();
+        } else {
+            band_.resize(static_cast<std::size_t>(TIFFScanlineSize(tiff_.get())));
+            if (band_.size() < rowBytes()) fail();
+        }
+        findNoData();
     }
 
-    HeightValues values() {
-        HeightValues result;
-        result.size = {static_cast<int>(width_), static_cast<int>(height_)};
-        result.isEightBit = bits_ == 8;
-        result.values.resize(std::size_t{width_} * height_);
-        if (TIFFIsTiled(tiff_.get()) != 0) {
-            readTiles(result.values);
+    void read(float* values) override {
+        const std::byte* row = band_.data();
+        if (tileHeight_ == 0) {
+            if (TIFFReadScanline(tiff_.get(), band_.data(), row_, 0) != 1) fail();
         } else {
-            readRows(result.values);
+            if (row_ % tileHeight_ == 0) readTiles();
+            row += std::size_t{row_ % tileHeight_} * width_ * (bits_ / 8U);
         }
-        addNoData(result);
-        return result;
+        for (std::uint32_t x = 0; x < width_; ++x) values[x] = valueAt(row + x * (bits_ / 8U));
+        ++row_;
     }
 
   private:
@@ -85,11 +97,13 @@ class TiffReader {
                             name_, channels, bits_, format_));
         }
         checkHeightMapSize(width_, height_, name_);
-        image::checkDeclaredSize(width_, height_, bits_ / 8U, fileBytes_, name_);
+        image::checkDeclaredSize(width_, height_, bits_ / 8U, fileBytes_, name_,
+                                 kMaxHeightFileSide);
     }
 
-    float valueAt(const std::vector<std::byte>& from, std::size_t i) const {
-        const std::byte* at = from.data() + i * (bits_ / 8U);
+    std::size_t rowBytes() const { return std::size_t{width_} * (bits_ / 8U); }
+
+    float valueAt(const std::byte* at) const {
         if (bits_ == 32) {
             float value = 0.0F;
             std::memcpy(&value, at, sizeof value);
@@ -106,47 +120,47 @@ class TiffReader {
                                            : static_cast<float>(value);
     }
 
-    void readRows(std::vector<float>& values) {
-        std::vector<std::byte> line(static_cast<std::size_t>(TIFFScanlineSize(tiff_.get())));
-        if (line.size() < std::size_t{width_} * (bits_ / 8U)) fail();
-        for (std::uint32_t y = 0; y < height_; ++y) {
-            if (TIFFReadScanline(tiff_.get(), line.data(), y, 0) != 1) fail();
-            for (std::uint32_t x = 0; x < width_; ++x) {
-                values[std::size_t{y} * width_ + x] = valueAt(line, x);
+    void prepareTiles() {
+        TIFFGetField(tiff_.get(), TIFFTAG_TILEWIDTH, &tileWidth_);
+        TIFFGetField(tiff_.get(), TIFFTAG_TILELENGTH, &tileHeight_);
+        image::checkDeclaredSize(tileWidth_, tileHeight_, bits_ / 8U, fileBytes_,
+                                 name_ + ": a tile", kMaxHeightFileSide);
+        // The last tile may reach beyond the map.
+        const std::size_t bytes = std::size_t{width_ + tileWidth_} * tileHeight_ * (bits_ / 8U);
+        if (bytes > kMostTileRowBytes) {
+            throw Error(fmt::format(
+                "{}: a row of tiles of {} x {} samples has {} MiB; allowed: at most {}, as it is "
+                "read whole",
+                name_, tileWidth_, tileHeight_, (bytes >> 20) + 1, kMostTileRowBytes >> 20));
+        }
+        band_.resize(rowBytes() * tileHeight_);
+        tile_.resize(static_cast<std::size_t>(TIFFTileSize(tiff_.get())));
+        if (tile_.size() < std::size_t{tileWidth_} * tileHeight_ * (bits_ / 8U)) fail();
+    }
+
+    /// The row of tiles that begins with the next row.
+    void readTiles() {
+        const std::size_t valueBytes = bits_ / 8U;
+        const std::uint32_t rows = std::min(tileHeight_, height_ - row_);
+        for (std::uint32_t left = 0; left < width_; left += tileWidth_) {
+            if (TIFFReadTile(tiff_.get(), tile_.data(), left, row_, 0, 0) < 0) fail();
+            const std::size_t columns = std::min(tileWidth_, width_ - left);
+            for (std::size_t y = 0; y < rows; ++y) {
+                std::memcpy(&band_[y * rowBytes() + left * valueBytes],
+                            &tile_[y * tileWidth_ * valueBytes], columns * valueBytes);
             }
         }
     }
 
-    void readTiles(std::vector<float>& values) {
-        std::uint32_t tileWidth = 0;
-        std::uint32_t tileHeight = 0;
-        TIFFGetField(tiff_.get(), TIFFTAG_TILEWIDTH, &tileWidth);
-        TIFFGetField(tiff_.get(), TIFFTAG_TILELENGTH, &tileHeight);
-        image::checkDeclaredSize(tileWidth, tileHeight, bits_ / 8U, fileBytes_, name_ + ": a tile");
-        std::vector<std::byte> tile(static_cast<std::size_t>(TIFFTileSize(tiff_.get())));
-        if (tile.size() < std::size_t{tileWidth} * tileHeight * (bits_ / 8U)) fail();
-        for (std::uint32_t top = 0; top < height_; top += tileHeight) {
-            for (std::uint32_t left = 0; left < width_; left += tileWidth) {
-                if (TIFFReadTile(tiff_.get(), tile.data(), left, top, 0, 0) < 0) fail();
-                for (std::uint32_t y = top; y < std::min(top + tileHeight, height_); ++y) {
-                    for (std::uint32_t x = left; x < std::min(left + tileWidth, width_); ++x) {
-                        values[std::size_t{y} * width_ + x] =
-                            valueAt(tile, std::size_t{y - top} * tileWidth + (x - left));
-                    }
-                }
-            }
-        }
-    }
-
-    void addNoData(HeightValues& result) {
-        if (format_ != SAMPLEFORMAT_UINT) result.noData.push_back(-32768.0F);
+    void findNoData() {
+        if (format_ != SAMPLEFORMAT_UINT) noData.push_back(-32768.0F);
         std::uint32_t count = 0;
         const char* text = nullptr;
         if (TIFFGetField(tiff_.get(), kGdalNoData, &count, &text) != 1 || text == nullptr) return;
         const std::string number(text, strnlen(text, count));
         char* end = nullptr;
         const float value = std::strtof(number.c_str(), &end);
-        if (end != number.c_str()) result.noData.push_back(value);
+        if (end != number.c_str()) noData.push_back(value);
     }
 
     std::string name_;
@@ -157,12 +171,16 @@ class TiffReader {
     std::uint32_t height_ = 0;
     std::uint16_t bits_ = 1;
     std::uint16_t format_ = SAMPLEFORMAT_UINT;
+    std::uint32_t tileWidth_ = 0, tileHeight_ = 0;  // 0: strips
+    std::vector<std::byte> band_;                   // a row, or a row of tiles
+    std::vector<std::byte> tile_;
+    std::uint32_t row_ = 0;
 };
 
 }  // namespace
 
-HeightValues readTiffValues(const std::filesystem::path& path) {
-    return TiffReader(path).values();
+std::unique_ptr<HeightRows> openTiffRows(const std::filesystem::path& path) {
+    return std::make_unique<TiffRows>(path);
 }
 
 }  // namespace gfxrepro::scene
