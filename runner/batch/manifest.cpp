@@ -16,6 +16,8 @@ namespace gfxrepro::batch {
 namespace {
 
 constexpr int kManifestSchema = 1;
+// What a run's end fixes the sums of.
+constexpr const char* kSealedFiles[] = {"records.csv", "images/index.csv"};
 
 std::string cpuModel() {
     std::ifstream file("/proc/cpuinfo");
@@ -82,7 +84,7 @@ void endInvocation(Json& manifest, const PhaseClock& phases, double wallS) {
 
 void sealRecords(Json& manifest, const std::filesystem::path& runDir) {
     Json& sums = manifest["sha256"] = Json::object();
-    for (const char* file : {"records.csv", "images/index.csv"}) {
+    for (const char* file : kSealedFiles) {
         if (std::filesystem::exists(runDir / file)) sums[file] = sha256OfFile(runDir / file);
     }
 }
@@ -94,8 +96,9 @@ void breakSeal(Json& manifest) {
 void noteChanges(Json& manifest, const std::filesystem::path& runDir) {
     if (!manifest.contains("sha256")) return;
     const Json sums = manifest.at("sha256");  // a note moves what is in the manifest
-    for (const auto& [file, sum] : sums.items()) {
-        const std::string then = sum.get<std::string>();
+    for (const char* file : kSealedFiles) {   // no other file, whatever the manifest names
+        if (!sums.contains(file)) continue;
+        const std::string then = sums.at(file).get<std::string>();
         const bool isThere = std::filesystem::exists(runDir / file);
         const std::string now = isThere ? sha256OfFile(runDir / file) : "";
         if (now == then) continue;

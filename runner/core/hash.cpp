@@ -54,6 +54,9 @@ std::string sha256(std::string_view text) {
 std::string sha256OfFile(const std::filesystem::path& path) {
     // Mapped, all of it would count as memory of the process.
     constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
+    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
+        throw Error("cannot read " + path.string() + ": not a file");
+    }
     std::ifstream file(path, std::ios::binary);
     std::vector<char> bytes(kBytesAtOnce);
     Sha256 hash;
