@@ -11,6 +11,7 @@
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
+#include "runner/core/json_depth.h"
 
 namespace gfxrepro::batch {
 
@@ -126,6 +127,11 @@ void requireEach(const Json& object, const char* place, std::span<const Member> 
     }
 }
 
+void requireShallow(std::string_view json, const SourceLocation& where) {
+    if (!isTooDeepJson(json)) return;
+    throw Error(where, fmt::format("nested deeper than {} levels", kMostJsonLevels));
+}
+
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
@@ -139,8 +145,10 @@ void requireModestFiles(const fs::path& runDir) {
 }
 
 Json readManifest(const fs::path& file) {
-    Json manifest = Json::parse(readFile(file), nullptr, false);
     const SourceLocation where{file.string(), 0, 0};
+    const std::string text = readFile(file);
+    requireShallow(text, where);
+    Json manifest = Json::parse(text, nullptr, false);
     if (!manifest.is_object()) throw Error(where, "is no JSON object");
     requireMembers(manifest, kManifest, where);
     requireEach(manifest, "invocations", kInvocation, where);
@@ -168,6 +176,7 @@ std::vector<Json> readLog(const fs::path& file) {
             throw Error({name, line, 0},
                         fmt::format("more than {} events, which are not read", kMostEvents));
         }
+        requireShallow(text, {name, line, 0});
         Json event = Json::parse(text, nullptr, false);
         if (!event.is_object()) continue;
         requireMembers(event, kEvent, {name, line, 0});

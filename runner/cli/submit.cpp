@@ -18,6 +18,7 @@
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/core/files.h"
+#include "runner/core/json_depth.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::cli {
@@ -46,7 +47,8 @@ fs::path storedFile(const fs::path& out) {
 
 std::optional<Stored> readStored(const fs::path& out) {
     if (!fs::exists(storedFile(out))) return std::nullopt;
-    const Json json = Json::parse(readFile(storedFile(out)), nullptr, false);
+    const std::string text = readFile(storedFile(out));
+    const Json json = isTooDeepJson(text) ? Json() : Json::parse(text, nullptr, false);
     if (!json.is_object()) throw Error(storedFile(out).string() + ": is no JSON object");
     return Stored{json.at("run_arguments"), json.at("units"), json.at("array_job"),
                   json.at("merge_job")};

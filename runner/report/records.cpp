@@ -18,6 +18,7 @@
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
+#include "runner/core/json_depth.h"
 #include "runner/core/text.h"
 #include "runner/report/csv.h"
 
@@ -122,6 +123,10 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
 /// A JSON object, or nothing; its `output`, if it has one, is an object, too.
 void requireParams(const SourceLocation& where, const std::string& params) {
     if (params.empty()) return;
+    if (isTooDeepJson(params)) {
+        throw Error(where, "column 'params': nested deeper than " +
+                               std::to_string(kMostJsonLevels) + " levels");
+    }
     const auto json = nlohmann::json::parse(params, nullptr, false);
     if (json.is_object() && (!json.contains("output") || json["output"].is_object())) return;
     throw Error(where,
@@ -177,16 +182,16 @@ void checkKeys(const fs::path& path, const std::vector<Row>& rows) {
 /// Leaves out the last unit where rows of it are missing: its write was cut. Throws Error where
 /// rows of another one are.
 void requireWholeUnits(const fs::path& path, std::vector<Row>& rows) {
+    if (rows.empty()) return;
     std::map<UnitKey, int> counts;
     for (const Row& row : rows) ++counts[unitOf(row.record)];
-    const std::optional<UnitKey> last =
-        rows.empty() ? std::nullopt : std::optional(unitOf(rows.back().record));
+    const UnitKey last = unitOf(rows.back().record);
     std::size_t whole = rows.size();
     for (std::size_t i = rows.size(); i-- > 0;) {
         const Row& row = rows[i];
         const int count = counts.at(unitOf(row.record));
         if (count == row.unitRows) continue;
-        if (unitOf(row.record) != *last || count > row.unitRows) {
+        if (unitOf(row.record) != last || count > row.unitRows) {
             throw Error({path.string(), row.line, 0}, "case " + row.record.caseId + ", process " +
                                                           std::to_string(row.record.process) +
                                                           " has " + std::to_string(count) + " of " +

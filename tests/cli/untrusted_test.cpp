@@ -95,6 +95,38 @@ TEST_F(Untrusted, PipesAreNotWaitedFor) {
     }
 }
 
+TEST_F(Untrusted, OnlyTheRunsOwnFilesAreHeldAgainstTheirSums) {
+    const std::string pipe = folder.path() / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::string manifest = readFile(dir + "/manifest.json");
+    const std::string sums = "\"sha256\": {";
+    const std::size_t at = manifest.find(sums);
+    ASSERT_NE(at, std::string::npos);
+    manifest.insert(at + sums.size(),
+                    "\"" + pipe + "\": \"0\", \"../../../../etc/passwd\": \"0\", ");
+    writeFileAtomic(dir + "/manifest.json", manifest);
+    for (const char* command : {"table", "claims", "report"}) {
+        const ProcessResult result = mockGfxrepro({command, dir});
+        EXPECT_EQ(result.exitCode, 0) << command << result.err;
+        EXPECT_THAT(result.out, testing::Not(HasSubstr("passwd"))) << command;
+    }
+}
+
+TEST_F(Untrusted, BracketsAloneDoNotTakeTheStack) {
+    constexpr std::size_t kLevels = 400'000;
+    const std::string deep = std::string(kLevels, '[') + std::string(kLevels, ']');
+    std::string manifest = readFile(dir + "/manifest.json");
+    const std::string whole = manifest;
+    manifest.replace(manifest.find('{'), 1, "{\"x\": " + deep + ",");
+    writeFileAtomic(dir + "/manifest.json", manifest);
+    expectRefused({"report", dir}, "/manifest.json: nested deeper than 200 levels");
+    writeFileAtomic(dir + "/manifest.json", whole);
+    std::string records = readFile(dir + "/records.csv");
+    records.replace(records.find("\"{\"\""), 2, "\"{\"\"x\"\":" + deep + ",");
+    writeFileAtomic(dir + "/records.csv", records);
+    expectRefused({"table", dir}, "column 'params': nested deeper than 200 levels");
+}
+
 TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
     for (const auto& [name, mostMib] : {std::pair{"plan.json", 512},
                                         {"manifest.json", 64},

@@ -8,6 +8,7 @@
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "runner/core/json_depth.h"
 #include "runner/core/random.h"
 #include "runner/core/text.h"
 #include "tests/support/support.h"
@@ -58,6 +59,20 @@ TEST(Hash, MatchesFips180) {
     EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     const test::TemporaryFolder folder;
     EXPECT_EQ(sha256OfFile(folder.write("abc", "abc")), sha256("abc"));
+    EXPECT_THROW(sha256OfFile("/dev/zero"), Error);  // which has no end
+    EXPECT_THROW(sha256OfFile(folder.path() / "absent"), Error);
+}
+
+TEST(JsonDepth, CountsBracketsOutsideOfStrings) {
+    const auto nested = [](int levels) {
+        return std::string(static_cast<std::size_t>(levels), '[') + "1";
+    };
+    EXPECT_FALSE(isTooDeepJson(nested(kMostJsonLevels)));
+    EXPECT_TRUE(isTooDeepJson(nested(kMostJsonLevels + 1)));
+    EXPECT_FALSE(isTooDeepJson(R"({"a\"": ")" + nested(kMostJsonLevels + 1) + "\"}"));
+    std::string flat;
+    for (int i = 0; i <= kMostJsonLevels; ++i) flat += "[{}],";
+    EXPECT_FALSE(isTooDeepJson(flat));
 }
 
 TEST(Random, MatchesThePcgReference) {
