@@ -37,10 +37,8 @@ Lost lostUnits(const std::vector<Json>& log, const Works& works) {
         const WorkUnit unit = {work == works.end() ? id : work->second,
                                event["process"].get<int>()};
         if (name == "start") underWay.insert_or_assign(unit, id);
-        if (name == "case" || name == "retry") {
-            underWay.erase(unit);
-            lost.erase(unit);
-        }
+        if (name == "case" || name == "retry") underWay.erase(unit);
+        if (name == "case") lost.erase(unit);
     }
     endUnsaid();
     return lost;

@@ -54,6 +54,17 @@ TEST_F(NotSurvived, ACaseIsOneInWhicheverProcess) {
     EXPECT_THAT(lost(), ElementsAre(Pair(kB, twice)));
 }
 
+TEST_F(NotSurvived, ASecondTryThatIsNotSurvivedCountsLikeTheFirst) {
+    for (int i = 0; i < 2; ++i) {
+        die(kB);
+        say("retry", kB);
+        say("start", kB);
+    }
+    EXPECT_THAT(lost(), ElementsAre(Pair(kB, twice)));
+    say("case", kB);
+    EXPECT_THAT(lost(), IsEmpty()) << "it ended after all";
+}
+
 TEST_F(NotSurvived, OneEndOfTheRunnerIsOneHoweverManyProcessesRan) {
     die(kB, 0);
     say("start", kB, 1);
