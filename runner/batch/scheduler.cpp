@@ -294,7 +294,7 @@ class Scheduler {
     /// Stops the run where the machine cannot be trusted any more, or as often as was asked for.
     void noteFailure(const Unit& unit, report::Status status) {
         lostInARow_ = status == report::Status::DeviceLost ? lostInARow_ + 1 : 0;
-        if (lostInARow_ == 2 && !expectations_.isExpected(*unit.item, status)) {
+        if (lostInARow_ >= 2 && !expectations_.isExpected(*unit.item, status)) {
             outcome_.stopReason = "the device was lost in two cases in a row";
         } else if (options_.failuresAtMost > 0 && outcome_.failed >= options_.failuresAtMost) {
             outcome_.stopReason = std::to_string(outcome_.failed) + " failed";
