@@ -33,7 +33,7 @@ std::vector<Test> testsOf(const std::vector<CaseResult>& cases) {
 std::vector<Test> testsOf(const std::vector<ClaimResult>& claims) {
     std::vector<Test> tests;
     for (const ClaimResult& claim : claims) {
-        Test test{claim.table, fmt::format("{} {}", claim.table, claim.id),
+        Test test{claim.table, fmt::format("{} claim {}", claim.table, claim.id),
                   CaseResult::Outcome::Skipped, ""};
         if (claim.verdict == Verdict::Holds) test.outcome = CaseResult::Outcome::Measured;
         if (claim.verdict == Verdict::Fails) test.outcome = CaseResult::Outcome::Failed;
