@@ -1,6 +1,8 @@
 // More samples for a height map, with detail of noise between those it has.
 #include <fmt/format.h>
+
 #include <tbb/parallel_for.h>
+#include <cstdio>
 
 #include <algorithm>
 #include <cmath>
@@ -176,8 +178,10 @@ HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, 
             HeightFile::inParallel(result.sizeSamples.x,
                                    [&](int row, float* heights) { rows.makeRow(row, heights); }),
             [] { return std::size_t{0}; });
-    } catch (const Error&) {
+    } catch (const Error& error) {
         if (sizeSamples > kMaxHeightMapSide) throw;
+        fmt::print(stderr, "warning: a map of {0} x {0} is held in memory, all of it: {1}\n",
+                   sizeSamples, error.what());
         return resampled(map, sizeSamples, detailM, seed);
     }
     return result;
