@@ -261,6 +261,25 @@ TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
 }
 
+TEST(Weekend, OtherFilesAmongTheRunsStopNoRun) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const fs::path runs = folder.path() / "runs";
+    for (const char* name : {"folder", "pipe", "loop", "number"}) {
+        folder.write(std::string("runs/") + name + "/plan.json", "{}");
+    }
+    fs::create_directory(runs / "folder/manifest.json");
+    ASSERT_EQ(::mkfifo((runs / "pipe/manifest.json").c_str(), 0600), 0);
+    fs::create_symlink("manifest.json", runs / "loop/manifest.json");
+    folder.write("runs/number/manifest.json", "{\"device_class\": 5}");
+    const std::string inside = "cd " + folder.path().string() + " && ";
+    const ProcessResult run = shell(inside + mockRun(config, "mine"));
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult plan =
+        shell(inside + GFXREPRO_MOCK_PROGRAM " plan --device software " + config);
+    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+}
+
 TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
