@@ -88,17 +88,23 @@ ChildProcess::~ChildProcess() {
     for (const int fd : {inputFd_, messageFd_, outputFd_}) ::close(fd);
 }
 
-bool ChildProcess::sendLine(std::string_view line) const {
-    std::string text(line);
-    text += '\n';
-    std::string_view rest = text;
+void ChildProcess::sendLine(std::string_view line) {
+    unsent_ += line;
+    unsent_ += '\n';
+    sendRest();
+}
+
+bool ChildProcess::sendRest() {
+    std::string_view rest = unsent_;
     while (!rest.empty()) {
-        const ssize_t sent = ::send(inputFd_, rest.data(), rest.size(), MSG_NOSIGNAL);
+        const ssize_t sent =
+            ::send(inputFd_, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent < 0 && errno == EINTR) continue;
-        if (sent < 0) return false;
-        rest.remove_prefix(static_cast<std::size_t>(sent));
+        if (sent < 0 && errno == EAGAIN) break;
+        rest.remove_prefix(sent < 0 ? rest.size() : static_cast<std::size_t>(sent));
     }
-    return true;
+    unsent_.erase(0, unsent_.size() - rest.size());
+    return unsent_.empty();
 }
 
 std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {

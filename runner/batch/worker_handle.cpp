@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::chrono::seconds kEndLimit{10};  // for a worker that has closed its answers
 constexpr std::chrono::milliseconds kMemoryCheckInterval{20};
+constexpr std::chrono::milliseconds kSendInterval{2};   // while a unit is not sent to its end
 constexpr std::size_t kOutputTailBytes = 65536;
 
 /// Of a process that waits for a driver or a file system.
@@ -85,9 +86,11 @@ void WorkerHandle::sendUnit() {
     limit_ = Clock::now() + nanoseconds(unit_->item->measure.timeLimitS);
     // A worker that is gone is noticed by receive().
     process_.sendLine(Json{{"case", unit_->item->toJson()}, {"process", unit_->process}}.dump());
+    isSent_ = process_.sendRest();
 }
 
 std::optional<CaseResult> WorkerHandle::receive() {
+    isSent_ = process_.sendRest();
     const bool isOpen = readAvailable(process_.messageFd(), messages_);
     readAvailable(process_.outputFd(), output_);
     if (output_.size() > kOutputTailBytes) output_.erase(0, output_.size() - kOutputTailBytes);
@@ -203,6 +206,7 @@ void WorkerHandle::postpone(Clock::duration gap) {
 
 WorkerHandle::Clock::time_point WorkerHandle::nextCheck(Clock::time_point now) const {
     if (!unit_) return Clock::time_point::max();
+    if (!isSent_) return std::min(limit_, now + kSendInterval);
     if (unit_->item->measure.memoryLimitBytes > 0) {
         return std::min(limit_, now + kMemoryCheckInterval);
     }

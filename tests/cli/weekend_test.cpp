@@ -261,6 +261,33 @@ TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
 }
 
+TEST(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000, marker: " + std::string(600'000, 'x') +
+                                    "}\nsweep: {number: [1, 2]}\n");
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--jobs",
+                           "1", "--out", dir});
+    waitForStarts(dir, 1);
+    run.signal(SIGSTOP);  // until the worker waits for a case, the first or the next
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    const std::vector<pid_t> workers = backgroundWorkers();
+    ASSERT_EQ(workers.size(), 1U);
+    ::kill(workers.front(), SIGSTOP);
+    run.signal(SIGCONT);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const auto begin = std::chrono::steady_clock::now();
+    run.signal(SIGINT);
+    std::thread release([pid = workers.front()] {  // a runner that waits for it does so no longer
+        std::this_thread::sleep_for(std::chrono::seconds(10));
+        ::kill(pid, SIGCONT);
+    });
+    EXPECT_EQ(run.wait().exitCode, 130);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8));
+    release.join();
+}
+
 TEST(Weekend, OtherFilesAmongTheRunsStopNoRun) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
