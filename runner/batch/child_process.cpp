@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 #include "runner/core/error.h"
@@ -105,6 +106,14 @@ bool ChildProcess::sendRest() {
     }
     unsent_.erase(0, unsent_.size() - rest.size());
     return unsent_.empty();
+}
+
+bool ChildProcess::isSuspended() const {
+    std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+    std::string text;
+    std::getline(file, text);
+    const std::size_t name = text.rfind(") ");  // proc(5): the state stands after it
+    return name != text.npos && (text[name + 2] == 'T' || text[name + 2] == 't');
 }
 
 std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {

@@ -35,6 +35,9 @@ class ChildProcess {
     /// forgotten.
     bool sendRest();
 
+    /// Whether a signal or a debugger has stopped it.
+    bool isSuspended() const;
+
     /// Waits for the end, at most `patience`. The status of waitpid; nothing while it runs.
     std::optional<int> wait(std::chrono::milliseconds patience);
     /// SIGKILL to the process group, then wait() for kKillPatience. Nothing for a process that does

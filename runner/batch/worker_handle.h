@@ -77,6 +77,7 @@ class WorkerHandle {
     void begin(const std::string& phase);
     void endPhase();
     void sendUnit();
+    void allowForSuspension(Clock::time_point now);
     CaseResult resultOfDeath() const;
     std::string lastOutputLine() const;
 
@@ -94,6 +95,9 @@ class WorkerHandle {
     bool isStuck_ = false;      // likewise: it could not be killed
     std::chrono::seconds startLimit_;
     Clock::time_point limit_;                    // of the start, then of the unit
+    Clock::time_point lastLook_ = Clock::now();  // of checkLimits()
+    bool isSuspended_ = false;                   // the worker alone, at the last look
+    Clock::duration suspended_{};                // by which the limit has moved for it
     std::string phase_;                          // empty between phases
     Clock::time_point phaseBegin_;
     std::string messages_;

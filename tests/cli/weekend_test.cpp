@@ -261,6 +261,25 @@ TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
 }
 
+TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000}\nmeasure: {time_limit_s: 2}\n");
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram run(
+        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
+    waitForStarts(dir, 1);
+    const std::vector<pid_t> workers = backgroundWorkers();
+    ASSERT_EQ(workers.size(), 1U);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ::kill(workers.front(), SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    ::kill(workers.front(), SIGCONT);
+    EXPECT_EQ(run.wait().exitCode, 0);
+    EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
+    EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
+}
+
 TEST(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
     const TemporaryFolder folder;
     const std::string config =

@@ -90,5 +90,19 @@ TEST(ChildProcess, ALongLineArrivesWhole) {
     EXPECT_TRUE(echo == line + "\nend\n") << echo.size() << " bytes";
 }
 
+TEST(ChildProcess, KnowsThatItIsSuspended) {
+    ChildProcess child({"/bin/sleep", "1000"});
+    EXPECT_FALSE(child.isSuspended());
+    const auto becomes = [&](int signal, bool isSuspended) {
+        ::kill(child.pid(), signal);
+        for (int i = 0; i < 5000 && child.isSuspended() != isSuspended; ++i) {
+            std::this_thread::sleep_for(1ms);
+        }
+        EXPECT_EQ(child.isSuspended(), isSuspended);
+    };
+    becomes(SIGSTOP, true);
+    becomes(SIGCONT, false);
+}
+
 }  // namespace
 }  // namespace gfxrepro::batch
