@@ -326,6 +326,24 @@ TEST(Weekend, OtherFilesAmongTheRunsStopNoRun) {
     EXPECT_EQ(plan.exitCode, 0) << plan.err;
 }
 
+TEST(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "sweep: {behaviour: [throw, bad_alloc, ok]}\n");
+    const std::string dir = folder.path() / "run";
+    const auto stopped = [&](std::vector<std::string> command) {
+        command.insert(command.end(), {"--jobs", "1", "--max-failures", "2"});
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 4);
+        EXPECT_THAT(result.err, HasSubstr("stopped: 2 failed; "));
+    };
+    stopped({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(rowsOf(dir, "number").size(), 0U);
+    stopped({"run", "--resume", dir});
+    EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
+    EXPECT_EQ(statusLines(dir).size(), 3U);
+}
+
 TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
