@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 #include "runner/core/error.h"
@@ -88,17 +89,31 @@ ChildProcess::~ChildProcess() {
     for (const int fd : {inputFd_, messageFd_, outputFd_}) ::close(fd);
 }
 
-bool ChildProcess::sendLine(std::string_view line) const {
-    std::string text(line);
-    text += '\n';
-    std::string_view rest = text;
+void ChildProcess::sendLine(std::string_view line) {
+    unsent_ += line;
+    unsent_ += '\n';
+    sendRest();
+}
+
+bool ChildProcess::sendRest() {
+    std::string_view rest = unsent_;
     while (!rest.empty()) {
-        const ssize_t sent = ::send(inputFd_, rest.data(), rest.size(), MSG_NOSIGNAL);
+        const ssize_t sent =
+            ::send(inputFd_, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent < 0 && errno == EINTR) continue;
-        if (sent < 0) return false;
-        rest.remove_prefix(static_cast<std::size_t>(sent));
+        if (sent < 0 && errno == EAGAIN) break;
+        rest.remove_prefix(sent < 0 ? rest.size() : static_cast<std::size_t>(sent));
     }
-    return true;
+    unsent_.erase(0, unsent_.size() - rest.size());
+    return unsent_.empty();
+}
+
+bool ChildProcess::isSuspended() const {
+    std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+    std::string text;
+    std::getline(file, text);
+    const std::size_t name = text.rfind(") ");  // proc(5): the state stands after it
+    return name != text.npos && (text[name + 2] == 'T' || text[name + 2] == 't');
 }
 
 std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {

@@ -28,8 +28,15 @@ class ChildProcess {
     int messageFd() const { return messageFd_; }  // not blocking
     int outputFd() const { return outputFd_; }    // standard output and error, not blocking
 
-    /// Sends `line` and a newline; false when the child is gone.
-    bool sendLine(std::string_view line) const;
+    /// Sends `line` and a newline after what was sent before, as far as the child has room: it
+    /// waits for none. The rest goes with sendRest().
+    void sendLine(std::string_view line);
+    /// Goes on; false where there is more to send yet. What a child that is gone did not take is
+    /// forgotten.
+    bool sendRest();
+
+    /// Whether a signal or a debugger has stopped it.
+    bool isSuspended() const;
 
     /// Waits for the end, at most `patience`. The status of waitpid; nothing while it runs.
     std::optional<int> wait(std::chrono::milliseconds patience);
@@ -43,6 +50,7 @@ class ChildProcess {
     int inputFd_ = -1;
     int messageFd_ = -1;
     int outputFd_ = -1;
+    std::string unsent_;
     bool isReaped_ = false;
     int waitStatus_ = 0;
 };

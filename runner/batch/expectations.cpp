@@ -103,7 +103,10 @@ bool Expectation::matches(const Case& item) const {
     return true;
 }
 
-std::vector<ExpectationList> findExpectations(const std::vector<fs::path>& configs) {
+namespace {
+
+/// Where the lists of these configs would be.
+std::set<fs::path> listFiles(const std::vector<fs::path>& configs) {
     std::set<fs::path> files;
     for (const fs::path& config : configs) {
         const fs::path folder = fs::absolute(config).lexically_normal().parent_path();
@@ -111,30 +114,44 @@ std::vector<ExpectationList> findExpectations(const std::vector<fs::path>& confi
             files.insert(folder / listName(deviceClass));
         }
     }
+    return files;
+}
+
+}  // namespace
+
+std::vector<ExpectationList> findExpectations(const std::vector<fs::path>& configs) {
     std::vector<ExpectationList> lists;
-    for (const fs::path& file : files) {
+    for (const fs::path& file : listFiles(configs)) {
         if (fs::exists(file)) lists.push_back({file, readFile(file)});
     }
     return lists;
 }
 
 std::vector<std::string> changedExpectations(const Plan& plan) {
+    std::map<std::string, std::string> then;
+    std::set<fs::path> files;
+    for (const ExpectationList& list : plan.expectations) {
+        then[list.file] = list.text;
+        files.insert(list.file);
+    }
     std::vector<fs::path> configs;
     for (const config::Experiment& experiment : plan.experiments) {
-        if (fs::is_directory(experiment.file.parent_path())) configs.push_back(experiment.file);
+        configs.push_back(experiment.file);
     }
-    std::map<std::string, std::string> then, now;
-    for (const ExpectationList& list : plan.expectations) {
-        if (fs::is_directory(fs::path(list.file).parent_path())) then[list.file] = list.text;
-    }
-    for (const ExpectationList& list : findExpectations(configs)) now[list.file] = list.text;
+    files.merge(listFiles(configs));
     std::vector<std::string> changed;
-    for (const auto& [file, text] : then) {
-        const auto found = now.find(file);
-        if (found == now.end() || found->second != text) changed.push_back(file);
-    }
-    for (const auto& [file, text] : now) {
-        if (!then.contains(file)) changed.push_back(file);
+    for (const fs::path& file : files) {
+        try {
+            if (!fs::is_directory(file.parent_path())) continue;
+            const auto frozen = then.find(file);
+            const bool isSame = fs::exists(file)
+                                    ? frozen != then.end() && frozen->second == readFile(file)
+                                    : frozen == then.end();
+            if (!isSame) changed.push_back(file.string() + " changed");
+        } catch (const std::exception& error) {  // another user's, or a file system that is away
+            changed.push_back(
+                fmt::format("{} cannot be compared ({})", file.string(), error.what()));
+        }
     }
     return changed;
 }

@@ -35,8 +35,8 @@ std::vector<ExpectationList> findExpectations(const std::vector<std::filesystem:
 /// The entries of a list, in its order. Throws Error with file:line:column.
 std::vector<Expectation> readExpectations(const ExpectationList& list);
 
-/// The lists beside the configs of a plan that are not what the plan froze: changed, gone, or new.
-/// None of a folder that is not there.
+/// The lists beside the configs of a plan that are not what the plan froze, "FILE changed" (gone
+/// and new ones, too), or "FILE cannot be compared (reason)". None of a folder that is not there.
 std::vector<std::string> changedExpectations(const Plan& plan);
 
 /// Throws Error where the entry names an axis or parameter that none of `cases`, all cases of its

@@ -69,6 +69,14 @@ std::map<std::string, std::vector<Cost>> loggedCosts(const fs::path& runDir) {
 /// Of a run that is looked at without being asked for.
 constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;
 
+bool isRunOf(const fs::path& folder, const std::string& deviceClass) {
+    const fs::path manifestFile = folder / "manifest.json";
+    if (!fs::exists(folder / "plan.json") || !fs::exists(manifestFile)) return false;
+    if (fs::file_size(manifestFile) > kMostManifestBytes) return false;
+    const Json manifest = Json::parse(readFile(manifestFile), nullptr, false);
+    return manifest.is_object() && manifest.value("device_class", "") == deviceClass;
+}
+
 std::map<std::string, Prediction> readPredictions(const fs::path& file) {
     const std::string text = readFile(file);
     report::CsvReader reader(text, file.string());
@@ -114,14 +122,15 @@ std::vector<PastCase> readPastCases(const fs::path& runDir) {
 std::vector<fs::path> newestRuns(const fs::path& folder, const std::string& deviceClass,
                                  std::size_t count) {
     std::vector<std::pair<fs::file_time_type, fs::path>> runs;
-    if (!fs::is_directory(folder)) return {};
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        const fs::path manifestFile = entry.path() / "manifest.json";
-        if (!fs::exists(entry.path() / "plan.json") || !fs::exists(manifestFile)) continue;
-        if (fs::file_size(manifestFile) > kMostManifestBytes) continue;
-        const Json manifest = Json::parse(readFile(manifestFile), nullptr, false);
-        if (!manifest.is_object() || manifest.value("device_class", "") != deviceClass) continue;
-        runs.emplace_back(fs::last_write_time(manifestFile), entry.path());
+    std::error_code problem;
+    fs::directory_iterator entry(folder, problem);
+    for (; !problem && entry != fs::directory_iterator(); entry.increment(problem)) {
+        // Whatever lies there, another user's or broken, stops no run: it is none to learn from.
+        try {
+            if (!isRunOf(entry->path(), deviceClass)) continue;
+            runs.emplace_back(fs::last_write_time(entry->path() / "manifest.json"), entry->path());
+        } catch (const std::exception&) {
+        }
     }
     std::ranges::sort(runs, std::greater());
     std::vector<fs::path> newest;

@@ -38,7 +38,8 @@ struct PastCase {
 std::vector<PastCase> readPastCases(const std::filesystem::path& runDir);
 
 /// The newest run directories under `folder` that were made on this class of device, at most
-/// `count`, the newest first; none when there is no such folder.
+/// `count`, the newest first; none when there is no such folder. What cannot be read is passed
+/// over.
 std::vector<std::filesystem::path> newestRuns(const std::filesystem::path& folder,
                                               const std::string& deviceClass, std::size_t count);
 

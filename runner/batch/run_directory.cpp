@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runner/core/error.h"
+#include "runner/core/temporary.h"
 
 namespace gfxrepro::batch {
 
@@ -27,13 +28,6 @@ std::string utcTime(const char* format) {
     char text[32];
     std::strftime(text, sizeof(text), format, &parts);
     return text;
-}
-
-/// Whether it is a file that was being written: "a.exr.tmp123", "records.csv.tmp".
-bool isTemporary(const fs::path& file) {
-    const std::string name = file.filename();
-    const std::size_t at = name.rfind(".tmp");
-    return at != name.npos && name.find_first_not_of("0123456789", at + 4) == name.npos;
 }
 
 /// What killed processes left of files that they were writing; the folder is locked.

@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::chrono::seconds kEndLimit{10};  // for a worker that has closed its answers
 constexpr std::chrono::milliseconds kMemoryCheckInterval{20};
+constexpr std::chrono::milliseconds kSendInterval{2};   // while a unit is not sent to its end
+constexpr std::chrono::seconds kLongestSuspension{60};  // of a worker alone, beyond its limit
 constexpr std::size_t kOutputTailBytes = 65536;
 
 /// Of a process that waits for a driver or a file system.
@@ -82,12 +84,17 @@ void WorkerHandle::assign(const Unit& unit) {
 }
 
 void WorkerHandle::sendUnit() {
-    limit_ = Clock::now() + nanoseconds(unit_->item->measure.timeLimitS);
+    lastLook_ = Clock::now();
+    isSuspended_ = false;
+    suspended_ = {};
+    limit_ = lastLook_ + nanoseconds(unit_->item->measure.timeLimitS);
     // A worker that is gone is noticed by receive().
     process_.sendLine(Json{{"case", unit_->item->toJson()}, {"process", unit_->process}}.dump());
+    isSent_ = process_.sendRest();
 }
 
 std::optional<CaseResult> WorkerHandle::receive() {
+    isSent_ = process_.sendRest();
     const bool isOpen = readAvailable(process_.messageFd(), messages_);
     readAvailable(process_.outputFd(), output_);
     if (output_.size() > kOutputTailBytes) output_.erase(0, output_.size() - kOutputTailBytes);
@@ -171,11 +178,30 @@ std::string WorkerHandle::lastOutputLine() const {
     return std::string(at == std::string_view::npos ? text : text.substr(at + 1));
 }
 
+/// Moves the limit by the time since the last look, where the worker was suspended at one of the
+/// two; kLongestSuspension in all.
+void WorkerHandle::allowForSuspension(Clock::time_point now) {
+    const bool wasSuspended = std::exchange(isSuspended_, process_.isSuspended());
+    if (isSuspended_ || wasSuspended) {
+        const auto more =
+            std::min<Clock::duration>(now - lastLook_, kLongestSuspension - suspended_);
+        limit_ += more;
+        suspended_ += more;
+    }
+    lastLook_ = now;
+}
+
 std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
     if (!unit_ || !isAlive_) return std::nullopt;
+    allowForSuspension(now);
     const config::Measure& measure = unit_->item->measure;
     std::optional<CaseResult> result;
-    if (now >= limit_) {
+    if (now >= limit_ && isSuspended_) {
+        result = failure(report::Status::Timeout,
+                         "suspended from outside for more than " +
+                             secondsText(static_cast<double>(kLongestSuspension.count())));
+        result->isOutsideKill = true;
+    } else if (now >= limit_) {
         result = failure(report::Status::Timeout,
                          device_ ? "not finished after " + secondsText(measure.timeLimitS) +
                                        (phase_.empty() ? "" : " (in " + phase_ + ")")
@@ -199,10 +225,12 @@ std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
 
 void WorkerHandle::postpone(Clock::duration gap) {
     limit_ += gap;
+    lastLook_ += gap;
 }
 
 WorkerHandle::Clock::time_point WorkerHandle::nextCheck(Clock::time_point now) const {
     if (!unit_) return Clock::time_point::max();
+    if (!isSent_) return std::min(limit_, now + kSendInterval);
     if (unit_->item->measure.memoryLimitBytes > 0) {
         return std::min(limit_, now + kMemoryCheckInterval);
     }

@@ -77,6 +77,7 @@ class WorkerHandle {
     void begin(const std::string& phase);
     void endPhase();
     void sendUnit();
+    void allowForSuspension(Clock::time_point now);
     CaseResult resultOfDeath() const;
     std::string lastOutputLine() const;
 
@@ -88,12 +89,16 @@ class WorkerHandle {
     std::optional<gl::DeviceInfo> device_;
     std::string unavailable_;  // why there is no device
     bool isAlive_ = true;
+    bool isSent_ = true;        // to the end of the unit
     long long oomKillsBefore_;  // of the system, when the process began
     int waitStatus_ = 0;        // once it is not alive
     bool isStuck_ = false;      // likewise: it could not be killed
     std::chrono::seconds startLimit_;
-    Clock::time_point limit_;  // of the start, then of the unit
-    std::string phase_;        // empty between phases
+    Clock::time_point limit_;                    // of the start, then of the unit
+    Clock::time_point lastLook_ = Clock::now();  // of checkLimits()
+    bool isSuspended_ = false;                   // the worker alone, at the last look
+    Clock::duration suspended_{};                // by which the limit has moved for it
+    std::string phase_;                          // empty between phases
     Clock::time_point phaseBegin_;
     std::string messages_;
     std::string output_;

@@ -160,7 +160,7 @@ void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequenc
     std::string problem;
     try {
         now = loadExperiments(plan.request, plan.profile);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         problem = error.what();
     }
     for (std::size_t i = 0; i < plan.experiments.size() && problem.empty(); ++i) {
@@ -170,7 +170,7 @@ void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequenc
     }
     if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
     for (const std::string& list : batch::changedExpectations(plan)) {
-        tell("warning: {} changed; {}\n", list, consequence);
+        tell("warning: {}; {}\n", list, consequence);
     }
 }
 

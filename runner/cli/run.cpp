@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <set>
 #include <thread>
 
 #include "runner/batch/budget.h"
@@ -215,6 +216,23 @@ std::map<const batch::Case*, double> forecast(const RunOptions& options, const P
     return unitTimesS;
 }
 
+/// What failed in an earlier invocation goes last: else --max-failures would end each at the same.
+void putFailedLast(const std::vector<batch::Json>& log, std::vector<batch::Unit>& units) {
+    std::set<batch::UnitKey> failed;
+    for (const batch::Json& event : log) {
+        if (event.value("event", "") != "case") continue;
+        const std::string status = event.value("status", "");
+        if (status == report::statusName(report::Status::Ok) ||
+            status == report::statusName(report::Status::Flaky)) {
+            continue;
+        }
+        failed.emplace(event.value("case", ""), event.value("process", 0));
+    }
+    std::ranges::stable_partition(units, [&](const batch::Unit& unit) {
+        return !failed.contains({unit.item->id, unit.process});
+    });
+}
+
 /// Runs what is left; with `results`, makes tables, claims and report from it.
 int execute(const Context& context, const RunOptions& options, const batch::Request& request,
             bool results, std::optional<batch::Plan> submitted = {}) {
@@ -227,11 +245,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
-    if (!options.triesAgain) {
-        run.scheduler.givenUp =
-            batch::casesNotSurvived(run.plan, batch::readLog(run.directory.path() / "log.jsonl"));
-    }
-    const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
+    const std::vector<batch::Json> log = batch::readLog(run.directory.path() / "log.jsonl");
+    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, log);
+    std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
+    if (options.failuresAtMost > 0) putFailedLast(log, units);
     batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);

@@ -49,6 +49,7 @@ struct Study {
     std::vector<std::string> sets = {};         // of every run
     std::vector<batch::Outcome> outcomes = {};  // of the first runs
     double spentS = 0.0;
+    bool isIncomplete = false;  // something was not measured that should have been
 
     const config::Experiment& experiment() const { return plan.experiments.front(); }
     std::size_t left() const { return variations.runs.size() - outcomes.size(); }
@@ -63,8 +64,9 @@ std::string folderName(std::string title) {
 }
 
 /// Measures in a process of its own; a run that is there already goes on. What goes wrong is the
-/// outcome.
-batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
+/// outcome; cases that failed, or a run that came to no end, leave the study incomplete. A value
+/// that the technique refuses does not.
+batch::Outcome measureNext(Study& study, const Selection& selection) {
     const batch::Variation& variation = study.next();
     const fs::path dir = study.folder / folderName(variation.title());
     std::vector<std::string> arguments = {"/proc/self/exe", "run",      study.file,
@@ -85,6 +87,8 @@ batch::Outcome outcomeOf(const Study& study, const Selection& selection) {
     sets.insert(sets.end(), variation.sets.begin(), variation.sets.end());
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
     const batch::ProgramEnd end = batch::runToEnd(arguments, kRunLimit);
+    const bool isAnswer = end.exitCode == kExitOk || end.exitCode == kExitUsage;
+    if (!isAnswer) study.isIncomplete = true;
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
         const std::string said(trimmed(end.output));
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
@@ -194,7 +198,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         if (secondsSince(begin) >= budgetS) break;
         const Clock::time_point start = Clock::now();
         const batch::Outcome& outcome =
-            study->outcomes.emplace_back(outcomeOf(*study, options.selection));
+            study->outcomes.emplace_back(measureNext(*study, options.selection));
         study->spentS += secondsSince(start);
         write(*study, options.keep);
         tell("[{}/{}] {} {}{}\n", ++made, total, study->experiment().id, outcome.variation.title(),
@@ -202,6 +206,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         // Without verdicts as configured there is nothing to compare with.
         if (outcome.variation.assumption.empty() && !outcome.error.empty()) {
             study->variations.runs.resize(1);
+            study->isIncomplete = true;
         }
     }
     for (const Study& study : studies) print(study);
@@ -209,7 +214,14 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         writeFileAtomic(fs::path(options.keep) / "README.md",
                         batch::sensitivityIndex(options.keep, context.commandLine));
     }
-    return kExitOk;
+    bool isComplete = true;
+    for (const Study& study : studies) {
+        if (!study.isIncomplete) continue;
+        isComplete = false;
+        tell("{}: not all of its cases were measured; the runs are in {}\n", study.experiment().id,
+             study.folder.string());
+    }
+    return isComplete ? kExitOk : kExitIncomplete;
 }
 
 }  // namespace gfxrepro::cli

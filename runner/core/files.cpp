@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runner/core/error.h"
+#include "runner/core/temporary.h"
 
 namespace gfxrepro {
 
@@ -126,8 +127,7 @@ void copyTree(const fs::path& from, const fs::path& to) {
     } else if (fs::is_directory(status)) {
         fs::create_directories(to);
         for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
-            const std::string name = entry.path().filename();
-            if (name.find(".tmp") == std::string::npos) copyTree(entry.path(), to / name);
+            if (!isTemporary(entry.path())) copyTree(entry.path(), to / entry.path().filename());
         }
     } else if (fs::exists(status)) {
         throw Error(from.string() + ": a link, a pipe or a device, which a run has none of");

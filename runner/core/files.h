@@ -34,9 +34,9 @@ class MappedFile {
     std::span<const std::byte> bytes_;
 };
 
-/// Copies a file, or a folder with all that is in it, over what is there. Leaves out temporary
-/// files
-/// (".tmp" in the name) and what goes away meanwhile. Throws Error for a link, a pipe or a device.
+/// Copies a file, or a folder with all that is in it, over what is there. Leaves out what is
+/// temporary (isTemporary() in temporary.h) and what goes away meanwhile. Throws Error for a link,
+/// a pipe or a device.
 void copyTree(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// Where shaders/ and configs/ lie: beside the running program in a build tree, share/gfxrepro in

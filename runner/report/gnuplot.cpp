@@ -1,15 +1,20 @@
 #include "runner/report/gnuplot.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <thread>
 #include <vector>
 
 #include "runner/core/text.h"
@@ -19,6 +24,9 @@ extern char** environ;
 namespace gfxrepro::report {
 
 namespace {
+
+constexpr std::chrono::microseconds kLongestPause{10'000};
+constexpr std::chrono::seconds kKillPatience{5};
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -53,6 +61,22 @@ int start(const std::string& script, std::FILE* output, std::FILE* errors, pid_t
     return reason;
 }
 
+/// Waits for the end, at most `limit`; nothing where there was none, and the process is killed.
+std::optional<int> endOf(pid_t pid, std::chrono::milliseconds limit) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point until = Clock::now() + limit;
+    bool isKilled = false;
+    for (auto pause = std::chrono::microseconds(100);; pause = std::min(2 * pause, kLongestPause)) {
+        int status = 0;
+        const pid_t ended = ::waitpid(pid, &status, WNOHANG);
+        if (ended == pid) return isKilled ? std::nullopt : std::optional(status);
+        if (ended < 0 && errno != EINTR) return std::nullopt;
+        if (Clock::now() >= until + kKillPatience) return std::nullopt;  // it waits for a disk
+        if (!isKilled && Clock::now() >= until) isKilled = ::kill(pid, SIGKILL) == 0;
+        std::this_thread::sleep_for(pause);
+    }
+}
+
 void replaceAll(std::string& text, const std::string& from, const std::string& to) {
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
         text.replace(at, from.size(), to);
@@ -85,7 +109,7 @@ std::string adaptedLine(std::string line, const std::string& name) {
 
 }  // namespace
 
-Drawn runGnuplot(const std::filesystem::path& script) {
+Drawn runGnuplot(const std::filesystem::path& script, std::chrono::milliseconds limit) {
     const File output = temporaryFile();
     const File errors = temporaryFile();
     pid_t pid = 0;
@@ -93,11 +117,13 @@ Drawn runGnuplot(const std::filesystem::path& script) {
         start(std::filesystem::absolute(script).string(), output.get(), errors.get(), pid);
     if (reason == ENOENT) return {"", "gnuplot is not installed"};
     if (reason != 0) return {"", fmt::format("cannot run gnuplot: {}", std::strerror(reason))};
-    int status = 0;
-    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    const std::optional<int> status = endOf(pid, limit);
+    if (!status) {
+        const std::chrono::duration<double> seconds = limit;
+        return {"", fmt::format("gnuplot did not end in {} s", seconds.count())};
     }
     std::string svg = contentOf(output.get());
-    if (status == 0 && std::string_view(svg).find("</svg>") != std::string_view::npos) {
+    if (*status == 0 && std::string_view(svg).find("</svg>") != std::string_view::npos) {
         return {std::move(svg), ""};
     }
     std::string said(trimmed(contentOf(errors.get())));

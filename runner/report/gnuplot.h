@@ -1,6 +1,7 @@
 // Figures as gnuplot scripts, and what gnuplot makes of them.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -20,8 +21,10 @@ struct Drawn {
     std::string svg;
     std::string problem;
 };
-/// Runs the program `gnuplot` of PATH, without anyone's settings.
-Drawn runGnuplot(const std::filesystem::path& script);
+inline constexpr std::chrono::seconds kGnuplotLimit{60};
+/// Runs the program `gnuplot` of PATH, without anyone's settings; kills it at the limit.
+Drawn runGnuplot(const std::filesystem::path& script,
+                 std::chrono::milliseconds limit = kGnuplotLimit);
 
 /// gnuplot's SVG made fit to stand in a page beside others: text and axes in the colour of the
 /// text around, every id begun by `name`, no titles of parts and no XML head.

@@ -11,6 +11,8 @@
 namespace gfxrepro::test {
 namespace {
 
+namespace fs = std::filesystem;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -204,6 +206,31 @@ TEST_F(FrozenExpectations, ThoseOfAPlanAreNotEdited) {
     const ProcessResult table = mockGfxrepro({"table", dir});
     EXPECT_EQ(table.exitCode, 2);
     EXPECT_THAT(table.err, HasSubstr("planned: plan.json was changed\n"));
+}
+
+TEST_F(FrozenExpectations, AListThatCannotBeReadStopsNoCommandOnARun) {
+    const fs::path configs = folder.path() / "configs";
+    const std::string file = folder.write("configs/mock.yaml", readFile(config));
+    const std::string moved = folder.write("configs/expect-software.yaml", readFile(list));
+    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--out", dir}).exitCode, 0);
+    const auto judged = [&](const std::string& reason) {
+        for (const char* command : {"table", "claims", "report"}) {
+            const ProcessResult result = mockGfxrepro({command, dir});
+            EXPECT_EQ(result.exitCode, 0) << command << result.err;
+            EXPECT_THAT(result.err,
+                        HasSubstr("warning: " + moved + " cannot be compared (" + reason));
+        }
+    };
+    fs::remove(moved);
+    fs::create_directory(moved);
+    judged("cannot read " + moved + ": Is a directory); the run is judged by what it said");
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr(moved + " cannot be compared (cannot read "));
+    // A folder that does not even say whether it is there.
+    fs::remove_all(configs);
+    fs::create_symlink("configs", configs);
+    judged("");
 }
 
 TEST_F(FrozenExpectations, EveryCommandThatReadsARunGoesByThem) {

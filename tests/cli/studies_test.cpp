@@ -62,6 +62,23 @@ TEST(Sensitivity, GoesOnAfterAVariationThatCannotBeMeasured) {
                                                        "60000 ms\n");
 }
 
+TEST(Sensitivity, CasesThatFailedLeaveItIncomplete) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder,
+        "sweep: {number: [1, 2]}\n"
+        "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n"
+        "claims:\n  any: {says: the number is there, bound: n, above: -1}\n"
+        "params: {behaviour: ok}\n"
+        "assumptions:\n  behaviour: {range: [throw], why: left open}\n");
+    const std::string out = folder.path() / "out";
+    const ProcessResult run = mockGfxrepro(sensitivityCommand(config, out));
+    EXPECT_EQ(run.exitCode, 4) << run.out;
+    EXPECT_THAT(run.err, HasSubstr("sweep/mock: not all of its cases were measured; the runs are "
+                                   "in " +
+                                   out + "/sweep-mock\n"));
+}
+
 TEST(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, kClaim);

@@ -261,6 +261,89 @@ TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
 }
 
+TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000}\nmeasure: {time_limit_s: 2}\n");
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram run(
+        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
+    waitForStarts(dir, 1);
+    const std::vector<pid_t> workers = backgroundWorkers();
+    ASSERT_EQ(workers.size(), 1U);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ::kill(workers.front(), SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    ::kill(workers.front(), SIGCONT);
+    EXPECT_EQ(run.wait().exitCode, 0);
+    EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
+    EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
+}
+
+TEST(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 1000, marker: " + std::string(600'000, 'x') +
+                                    "}\nsweep: {number: [1, 2]}\n");
+    const std::string dir = folder.path() / "run";
+    BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--jobs",
+                           "1", "--out", dir});
+    waitForStarts(dir, 1);
+    run.signal(SIGSTOP);  // until the worker waits for a case, the first or the next
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    const std::vector<pid_t> workers = backgroundWorkers();
+    ASSERT_EQ(workers.size(), 1U);
+    ::kill(workers.front(), SIGSTOP);
+    run.signal(SIGCONT);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const auto begin = std::chrono::steady_clock::now();
+    run.signal(SIGINT);
+    std::thread release([pid = workers.front()] {  // a runner that waits for it does so no longer
+        std::this_thread::sleep_for(std::chrono::seconds(10));
+        ::kill(pid, SIGCONT);
+    });
+    EXPECT_EQ(run.wait().exitCode, 130);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8));
+    release.join();
+}
+
+TEST(Weekend, OtherFilesAmongTheRunsStopNoRun) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const fs::path runs = folder.path() / "runs";
+    for (const char* name : {"folder", "pipe", "loop", "number"}) {
+        folder.write(std::string("runs/") + name + "/plan.json", "{}");
+    }
+    fs::create_directory(runs / "folder/manifest.json");
+    ASSERT_EQ(::mkfifo((runs / "pipe/manifest.json").c_str(), 0600), 0);
+    fs::create_symlink("manifest.json", runs / "loop/manifest.json");
+    folder.write("runs/number/manifest.json", "{\"device_class\": 5}");
+    const std::string inside = "cd " + folder.path().string() + " && ";
+    const ProcessResult run = shell(inside + mockRun(config, "mine"));
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult plan =
+        shell(inside + GFXREPRO_MOCK_PROGRAM " plan --device software " + config);
+    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+}
+
+TEST(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "sweep: {behaviour: [throw, bad_alloc, ok]}\n");
+    const std::string dir = folder.path() / "run";
+    const auto stopped = [&](std::vector<std::string> command) {
+        command.insert(command.end(), {"--jobs", "1", "--max-failures", "2"});
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 4);
+        EXPECT_THAT(result.err, HasSubstr("stopped: 2 failed; "));
+    };
+    stopped({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(rowsOf(dir, "number").size(), 0U);
+    stopped({"run", "--resume", dir});
+    EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
+    EXPECT_EQ(statusLines(dir).size(), 3U);
+}
+
 TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");

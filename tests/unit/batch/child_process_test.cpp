@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <string>
+#include <thread>
 
 namespace gfxrepro::batch {
 namespace {
@@ -64,6 +66,42 @@ TEST(ChildProcess, AProgramIsNotWaitedForBeyondItsLimit) {
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_THROW(runToEnd({"/bin/sleep", "1000"}, 1s), std::exception);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
+}
+
+TEST(ChildProcess, OneThatReadsNothingIsNotWaitedFor) {
+    ChildProcess child({"/bin/sleep", "1000"});
+    child.sendLine(std::string(2'000'000, 'x'));  // more than a socket holds
+    EXPECT_FALSE(child.sendRest());
+    child.kill();
+    EXPECT_TRUE(child.sendRest()) << "one that is gone takes nothing more";
+}
+
+TEST(ChildProcess, ALongLineArrivesWhole) {
+    ChildProcess child({"/bin/cat"});
+    const std::string line(2'000'000, 'x');
+    child.sendLine(line);
+    child.sendLine("end");
+    std::string echo;
+    for (int i = 0; i < 5000 && echo.size() < line.size() + 5; ++i) {
+        child.sendRest();
+        readAvailable(child.outputFd(), echo);
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_TRUE(echo == line + "\nend\n") << echo.size() << " bytes";
+}
+
+TEST(ChildProcess, KnowsThatItIsSuspended) {
+    ChildProcess child({"/bin/sleep", "1000"});
+    EXPECT_FALSE(child.isSuspended());
+    const auto becomes = [&](int signal, bool isSuspended) {
+        ::kill(child.pid(), signal);
+        for (int i = 0; i < 5000 && child.isSuspended() != isSuspended; ++i) {
+            std::this_thread::sleep_for(1ms);
+        }
+        EXPECT_EQ(child.isSuspended(), isSuspended);
+    };
+    becomes(SIGSTOP, true);
+    becomes(SIGCONT, false);
 }
 
 }  // namespace

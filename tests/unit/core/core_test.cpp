@@ -123,6 +123,22 @@ TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
 }
 
+TEST(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
+    const test::TemporaryFolder folder;
+    for (const char* name :
+         {"a.exr.tmp4711", "b.csv.tmp", "notes.tmpl", "c.tmp-old", "deep/d.tmp.png"}) {
+        folder.write(std::string("from/") + name, "x");
+    }
+    const auto to = folder.path() / "to";
+    copyTree(folder.path() / "from", to);
+    for (const char* name : {"notes.tmpl", "c.tmp-old", "deep/d.tmp.png"}) {
+        EXPECT_EQ(readFile(to / name), "x");
+    }
+    for (const char* name : {"a.exr.tmp4711", "b.csv.tmp"}) {
+        EXPECT_FALSE(std::filesystem::exists(to / name)) << name;
+    }
+}
+
 TEST(Files, MissingFilesAndFoldersAreNamed) {
     const test::TemporaryFolder folder;
     EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "none"); }, folder.path()),

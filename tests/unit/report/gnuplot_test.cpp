@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -60,6 +61,35 @@ Figure hostileFigure() {
     figure.panels[0].title = figure.panels[0].yLabel = figure.panels[0].curves[0].name = kHostile;
     figure.panels.push_back(figure.panels[0]);
     return figure;
+}
+
+/// Puts a program of this name and text in front of PATH, for as long as the object lives.
+class ProgramInFront {
+  public:
+    ProgramInFront(const test::TemporaryFolder& folder, const std::string& name,
+                   const std::string& text)
+        : before_(std::getenv("PATH")) {
+        const std::filesystem::path file = folder.write(name, text);
+        std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+        ::setenv("PATH", (file.parent_path().string() + ":" + before_).c_str(), 1);
+    }
+    ~ProgramInFront() { ::setenv("PATH", before_.c_str(), 1); }
+    ProgramInFront(const ProgramInFront&) = delete;
+    ProgramInFront& operator=(const ProgramInFront&) = delete;
+
+  private:
+    std::string before_;
+};
+
+TEST(Gnuplot, OneThatDoesNotEndIsKilled) {
+    const test::TemporaryFolder folder;
+    const ProgramInFront program(folder, "gnuplot", "#!/bin/sh\nexec sleep 20\n");
+    const auto begin = std::chrono::steady_clock::now();
+    const Drawn drawn =
+        runGnuplot(folder.write("a.gp", "plot 1\n"), std::chrono::milliseconds(500));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+    EXPECT_EQ(drawn.problem, "gnuplot did not end in 0.5 s");
+    EXPECT_EQ(drawn.svg, "");
 }
 
 class Drawing : public testing::Test {
