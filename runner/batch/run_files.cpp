@@ -23,9 +23,9 @@ constexpr std::uintmax_t kMiB = std::uintmax_t{1} << 20;
 constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {{"plan.json", 512 * kMiB},
                                                                  {"manifest.json", 64 * kMiB},
                                                                  {"records.csv", 1024 * kMiB},
-                                                                 {"log.jsonl", 512 * kMiB},
                                                                  {"images/index.csv", 256 * kMiB}};
-constexpr std::size_t kMostLineBytes = kMiB;  // an output of 64 KiB, each byte escaped, and more
+constexpr std::size_t kMostLogBytes = 512 * kMiB;
+constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
 constexpr std::size_t kMostEvents = 4'000'000;
 
 enum class Kind { Text, Whole, Number, Object, List, Texts, Objects };
@@ -132,15 +132,19 @@ void requireShallow(std::string_view json, const SourceLocation& where) {
     throw Error(where, fmt::format("nested deeper than {} levels", kMostJsonLevels));
 }
 
+void requireModest(const fs::path& file, std::uintmax_t size, std::uintmax_t mostBytes) {
+    if (size <= mostBytes) return;
+    throw Error({file.string(), 0, 0},
+                fmt::format("{} bytes; at most {} are read", size, mostBytes));
+}
+
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
     for (const auto& [name, mostBytes] : kMostBytes) {
         std::error_code isAbsent;
         const std::uintmax_t size = fs::file_size(runDir / name, isAbsent);
-        if (isAbsent || size <= mostBytes) continue;
-        throw Error({(runDir / name).string(), 0, 0},
-                    fmt::format("{} bytes; at most {} are read", size, mostBytes));
+        if (!isAbsent) requireModest(runDir / name, size, mostBytes);
     }
 }
 
@@ -164,6 +168,7 @@ std::vector<Json> readLog(const fs::path& file) {
     const std::string name = file.string();
     const MappedFile mapped(file);
     std::string_view rest = mapped.text();
+    requireModest(file, rest.size(), kMostLogBytes);
     for (int line = 1; !rest.empty(); ++line) {
         const std::string_view text = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(text.size() + 1, rest.size()));

@@ -184,6 +184,9 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                          "the run goes on with its configs as they were when it began");
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
+    // Before anything is written: a log that cannot be read leaves the folder as it is.
+    const std::vector<batch::Json> log = batch::readLog(run.directory.path() / "log.jsonl");
+    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, log);
     settleMachine(context.commandLine, device, run);
     return run;
 }
@@ -227,10 +230,6 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
-    if (!options.triesAgain) {
-        run.scheduler.givenUp =
-            batch::casesNotSurvived(run.plan, batch::readLog(run.directory.path() / "log.jsonl"));
-    }
     const std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
     batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
