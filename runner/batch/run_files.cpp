@@ -28,7 +28,7 @@ constexpr std::size_t kMostLogBytes = 512 * kMiB;
 constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
 constexpr std::size_t kMostEvents = 4'000'000;
 
-enum class Kind { Text, Whole, Number, Object, List, Texts, Objects };
+enum class Kind { Text, Line, Whole, Number, Object, List, Texts, Lines, Objects };
 
 bool isOfKind(const Json& value, Kind kind) {
     const auto are = [&](Kind item) {
@@ -37,6 +37,10 @@ bool isOfKind(const Json& value, Kind kind) {
     switch (kind) {
         case Kind::Text:
             return value.is_string();
+        case Kind::Line:  // which people are shown as such
+            return value.is_string() &&
+                   std::ranges::none_of(value.get_ref<const std::string&>(),
+                                        [](unsigned char c) { return c < 0x20 || c == 0x7F; });
         case Kind::Whole:
             return value.is_number_integer();
         case Kind::Number:
@@ -47,6 +51,8 @@ bool isOfKind(const Json& value, Kind kind) {
             return value.is_array();
         case Kind::Texts:
             return (value.is_array() || value.is_object()) && are(Kind::Text);
+        case Kind::Lines:
+            return (value.is_array() || value.is_object()) && are(Kind::Line);
         case Kind::Objects:
             return (value.is_array() || value.is_object()) && are(Kind::Object);
     }
@@ -54,8 +60,9 @@ bool isOfKind(const Json& value, Kind kind) {
 }
 
 std::string_view nameOf(Kind kind) {
-    static constexpr std::array<std::string_view, 7> kNames = {
-        "text", "a whole number", "a number", "an object", "a list", "texts", "objects"};
+    static constexpr std::array<std::string_view, 9> kNames = {
+        "text",   "a line of text", "a whole number", "a number", "an object",
+        "a list", "texts",          "lines of text",  "objects"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -81,31 +88,31 @@ void requireMembers(const Json& object, std::span<const Member> members,
     }
 }
 
-constexpr Member kManifest[] = {{"/commit", Kind::Text},
-                                {"/profile", Kind::Text},
-                                {"/device_class", Kind::Text},
-                                {"/cpu", Kind::Text},
+constexpr Member kManifest[] = {{"/commit", Kind::Line},
+                                {"/profile", Kind::Line},
+                                {"/device_class", Kind::Line},
+                                {"/cpu", Kind::Line},
                                 {"/cores", Kind::Whole},
                                 {"/gl", Kind::Object},
-                                {"/gl/vendor", Kind::Text},
-                                {"/gl/renderer", Kind::Text},
-                                {"/gl/version", Kind::Text},
+                                {"/gl/vendor", Kind::Line},
+                                {"/gl/renderer", Kind::Line},
+                                {"/gl/version", Kind::Line},
                                 {"/invocations", Kind::List},
                                 {"/invocations", Kind::Objects},
                                 {"/scenes", Kind::Objects},
                                 {"/sha256", Kind::Texts, false},
                                 {"/notes", Kind::List, false},
-                                {"/notes", Kind::Texts, false},
+                                {"/notes", Kind::Lines, false},
                                 {"/timing_machines", Kind::Object, false},
-                                {"/timing_machines", Kind::Texts, false},
+                                {"/timing_machines", Kind::Lines, false},
                                 {"/rounds", Kind::Objects, false},
                                 {"/merged", Kind::List, false},
                                 {"/merged", Kind::Objects, false}};
-constexpr Member kInvocation[] = {{"/command", Kind::Text}, {"/machine", Kind::Text, false}};
+constexpr Member kInvocation[] = {{"/command", Kind::Text}, {"/machine", Kind::Line, false}};
 constexpr Member kScene[] = {
     {"/kind", Kind::Text}, {"/description", Kind::Text}, {"/sha256", Kind::Text}};
 constexpr Member kMerged[] = {
-    {"/machine", Kind::Text}, {"/invocations", Kind::List}, {"/invocations", Kind::Objects}};
+    {"/machine", Kind::Line}, {"/invocations", Kind::List}, {"/invocations", Kind::Objects}};
 constexpr Member kEvent[] = {{"/time", Kind::Text, false},     {"/event", Kind::Text, false},
                              {"/case", Kind::Text, false},     {"/table", Kind::Text, false},
                              {"/process", Kind::Whole, false}, {"/status", Kind::Text, false},

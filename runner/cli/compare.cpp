@@ -1,5 +1,4 @@
 // Two runs, or two builds measured by turns: which is faster.
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "runner/batch/run.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/core/files.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/history.h"
@@ -119,7 +119,7 @@ class Turns {
         return regression::compareByTurns(
             [&](regression::Sides& sides, const std::set<std::string>& tables) {
                 const bool isFirst = sides.before.empty() && sides.after.empty();
-                if (!tables.empty() && isFirst) fmt::print("alarm; measuring again\n");
+                if (!tables.empty() && isFirst) say("alarm; measuring again\n");
                 for (int i = 0; i < options_.rounds; ++i) {
                     takeRound(sides, tables, isFirst && i == 0);
                 }
@@ -225,25 +225,25 @@ void annotate(const regression::Comparison& comparison,
     }
 }
 
-void say(const regression::Comparison& comparison, const fs::path& folder) {
-    for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
+void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
+    for (const std::string& note : comparison.notes) say("warning: {}\n", note);
     for (const Difference& difference : comparison.differences) {
         const bool isOfNone = difference.isOfNone();
         if (!difference.isAlarm() && !isOfNone) continue;
         if (difference.verdict == regression::Verdict::Lost || isOfNone || difference.isPicture()) {
-            fmt::print("{}: {}: {}\n", difference.key.title(),
-                       regression::verdictName(difference.verdict), difference.reason);
+            say("{}: {}: {}\n", difference.key.title(), regression::verdictName(difference.verdict),
+                difference.reason);
             continue;
         }
-        fmt::print("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
-                   regression::verdictName(difference.verdict), difference.ratio,
-                   difference.interval.low, difference.interval.high);
+        say("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
+            regression::verdictName(difference.verdict), difference.ratio, difference.interval.low,
+            difference.interval.high);
     }
     for (const regression::SeriesStep& step : comparison.steps) {
-        fmt::print("{}\n", regression::stepLine(step));
+        say("{}\n", regression::stepLine(step));
     }
-    fmt::print("{}; {}\n", regression::summaryLine(comparison.differences),
-               (folder / "comparison.md").string());
+    say("{}; {}\n", regression::summaryLine(comparison.differences),
+        (folder / "comparison.md").string());
 }
 
 }  // namespace
@@ -286,7 +286,7 @@ int compare(const CompareOptions& options) {
     writeFileAtomic(folder / "junit.xml", regression::junitXml(comparison));
     writeFileAtomic(folder / "benchmark.json",
                     regression::smallerIsBetterJson(comparison.differences));
-    say(comparison, folder);
+    sayAll(comparison, folder);
     annotate(comparison, newer.configs);
     if (comparison.isAlarm()) return kExitClaimFailed;
     return hasFailures ? kExitIncomplete : kExitOk;

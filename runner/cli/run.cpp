@@ -257,11 +257,11 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     const batch::Completeness counts = batch::completeness(stored);
     for (const std::string& line : counts.complaints) tell("{}\n", line);
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
-    fmt::print("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
-               countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
-               countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
-               countText(outcome.expected, "failed or skipped as expected"),
-               run.directory.recordsFile().string());
+    say("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
+        countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
+        countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
+        countText(outcome.expected, "failed or skipped as expected"),
+        run.directory.recordsFile().string());
     const bool isComplete = counts.isComplete() && outcome.stopReason.empty();
     if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(stored));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;

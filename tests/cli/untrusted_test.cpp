@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -258,17 +259,18 @@ TEST_F(Untrusted, AllThatAPlanSaysIsHashed) {
               0);
     const std::string file = dir + "/plan.json", whole = readFile(file);
     const std::pair<std::string, std::string> edits[] = {
-        {"\"value\": \"1\"", "\"value\": \"2\""},        // assumed
-        {"\"file\": \"", "\"file\": \"/elsewhere"},      // of the experiment
-        {"\"count\": 1", "\"count\": 2"},                // shard
+        {"\"value\": \"1\"", "\"value\": \"2\""},          // assumed
+        {"\"file\": \"", "\"file\": \"/elsewhere"},        // of the experiment
+        {"\"count\": 1", "\"count\": 2"},                  // shard
         {"\"device\": \"software", "\"device\": \"auto"},  // request
     };
     for (const auto& [from, to] : edits) {
         replaceInPlan(from, to);
         for (const std::vector<std::string>& command :
              {std::vector<std::string>{"table", dir}, {"run", "--resume", dir}}) {
-            expectRefused(command, file + ": the experiments, their cases or the profile are not "
-                                          "those that were planned: plan.json was changed\n");
+            expectRefused(command, file +
+                                       ": the experiments, their cases or the profile are not "
+                                       "those that were planned: plan.json was changed\n");
         }
         writeFileAtomic(file, whole);
     }
@@ -298,9 +300,60 @@ TEST_F(Untrusted, APlanWithoutItsHashIsNotMeasured) {
     plan["cases"].erase(1);
     writeFileAtomic(file, plan.dump());
     expectRefused({"run", "--plan", file, "--out", out},
-                  file + ": cannot be measured: its plan has no frozen_hash: that it is as it was "
-                         "made cannot be verified; submit again, to another folder\n");
+                  file +
+                      ": cannot be measured: its plan has no frozen_hash: that it is as it was "
+                      "made cannot be verified; submit again, to another folder\n");
     EXPECT_FALSE(fs::exists(out));
+}
+
+/// GitHub's runner takes what begins a line with "::", and what has "##[" anywhere, for a command.
+TEST_F(Untrusted, NoTextIsACommandToGitHub) {
+    const std::string stop = "::stop-commands::abc";
+    const auto expectNone = [&](const ProcessResult& result) {
+        for (const std::string& line : split(result.out + result.err, '\n')) {
+            EXPECT_FALSE(trimmed(line).starts_with("::stop")) << line;
+            EXPECT_EQ(line.find("##["), line.npos) << line;
+            EXPECT_EQ(line.find('\x1B'), line.npos) << line;
+        }
+    };
+    const auto row = [&](int process, const std::string& table, const std::string& message) {
+        report::Record row = rowsOf(dir, "number")[0];
+        row.process = process;
+        row.table = table;
+        row.status = report::Status::Crash;
+        row.message = message;
+        return row;
+    };
+    const std::string other = folder.path() / "other";
+    fs::copy(dir, other, fs::copy_options::recursive);
+    report::RecordWriter(other + "/records.csv")
+        .append(
+            {row(1, "sweep/mock", "x\n" + stop), row(2, "\u00A0" + stop, "##[add-mask]y\x1B[2J")});
+    const ProcessResult compared = mockGfxrepro({"compare", dir, other, "--out", out});
+    EXPECT_THAT(compared.out, HasSubstr("crash: x\n| ::stop-commands::abc\n"));
+    EXPECT_THAT(compared.out, HasSubstr("\u00A0: :stop-commands::abc"));
+    EXPECT_THAT(compared.out, HasSubstr("# #[add-mask]y?[2J\n"));
+    expectNone(compared);
+    const std::string config = writeMockConfig(
+        folder, "sweep: {marker: [x, \"y\\n" + stop + "\"]}\nparams: {behaviour: throw}\n");
+    const ProcessResult plan = mockGfxrepro({"plan", config, "--device", "software"});
+    EXPECT_THAT(plan.out, HasSubstr("y\n| ::stop"));
+    expectNone(plan);
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--out", folder.path() / "lines"});
+    EXPECT_THAT(run.err, HasSubstr("y\n| ::stop"));
+    expectNone(run);
+    auto manifest = nlohmann::ordered_json::parse(readFile(dir + "/manifest.json"));
+    manifest["notes"] = {"x\n" + stop};
+    writeFileAtomic(dir + "/manifest.json", manifest.dump());
+    for (const char* command : {"table", "claims", "report"}) {
+        expectRefused({command, dir}, "'/notes' is array; expected lines of text\n");
+    }
+    manifest["notes"] = {stop + " ##[x]"};
+    writeFileAtomic(dir + "/manifest.json", manifest.dump());
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_THAT(table.out, HasSubstr("warning: : :stop-commands::abc # #[x]\n"));
+    expectNone(table);
 }
 
 TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
