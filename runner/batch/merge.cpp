@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "runner/core/files.h"
@@ -152,16 +153,41 @@ void copyImages(const RunDirectory& directory, const std::vector<ShardRun>& shar
     report::appendImages(directory.path(), images);
 }
 
-std::string logsOf(const std::vector<ShardRun>& shards) {
-    std::string text;
-    for (const ShardRun& shard : shards) {
-        if (fs::exists(shard.path / "log.jsonl")) text += readFile(shard.path / "log.jsonl");
-        if (!text.empty() && text.back() != '\n') text += '\n';
+/// A line of a log without what its worker printed.
+std::string withoutOutput(std::string_view line) {
+    if (line.find("\"output\":") == line.npos) return std::string(line);
+    const Json event = Json::parse(line, nullptr, false);
+    if (!event.is_object()) return std::string(line);
+    Json kept = Json::object();
+    for (const auto& [name, value] : event.items()) {  // of anybody's: nothing deep is copied
+        const bool isFlat =
+            std::ranges::all_of(value, [](const Json& v) { return v.is_primitive(); });
+        if (isFlat) kept[name] = value;
     }
-    return text;
+    kept["output"] = "[left out: the logs of the shards are large]";
+    return kept.dump();
 }
 
 }  // namespace
+
+std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytesWithOutput) {
+    const std::size_t part = mostBytesWithOutput / shards.size();
+    std::string text;
+    for (const ShardRun& shard : shards) {
+        const fs::path file = shard.path / "log.jsonl";
+        if (!fs::exists(file)) continue;
+        const MappedFile mapped(file);
+        const std::size_t begin = text.size();
+        for (std::string_view rest = mapped.text(); !rest.empty();) {
+            const std::string_view line = rest.substr(0, rest.find('\n'));
+            rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+            const bool isFull = text.size() - begin + line.size() > part;
+            text += isFull ? withoutOutput(line) : std::string(line);
+            text += '\n';
+        }
+    }
+    return text;
+}
 
 StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine) {
     GFXREPRO_ASSERT(!shards.empty());
@@ -217,7 +243,7 @@ void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& sha
     report::RecordWriter(records).append(merged.records);
     fs::rename(records, directory.recordsFile());
     copyImages(directory, shards, merged.plan);
-    writeFileAtomic(directory.path() / "log.jsonl", logsOf(shards));
+    writeFileAtomic(directory.path() / "log.jsonl", mergedLog(shards));
     Json manifest = merged.manifest;
     sealRecords(manifest, directory.path());
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');

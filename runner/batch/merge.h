@@ -26,6 +26,11 @@ std::vector<std::string> missingUnits(const StoredRun& run);
 /// Which of the cut's shards are not there: "2/4".
 std::vector<std::string> missingShards(const std::vector<ShardRun>& shards);
 
+/// The logs of the shards one after another; each with what workers printed as far as its part of
+/// `mostBytesWithOutput`: all of it may be more than is read again.
+std::string mergedLog(const std::vector<ShardRun>& shards,
+                      std::size_t mostBytesWithOutput = std::size_t{256} << 20);
+
 /// Writes plan, manifest, records, log, images and artifacts into `directory`, the plan last.
 void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& shards,
                  const StoredRun& merged);

@@ -50,9 +50,9 @@ std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
     return sha256(content.dump());
 }
 
-std::string keptHash(const Plan& plan, const std::vector<Json>& documents) {
-    Json content = {{"plan", plan.hash}, {"kept", planHash(plan, documents)}};
-    for (const std::string& only : plan.request.only) content["only"].push_back(only);
+std::string frozenHash(const Json& head, const std::vector<Case>& cases) {
+    Json content = {{"head", head}, {"cases", Json::array()}};
+    for (const Case& item : cases) content["cases"].push_back(item.id);
     return sha256(content.dump());
 }
 
@@ -150,6 +150,9 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
     if (plan.deviceClass != deviceClass) {
         return "the run began on a " + plan.deviceClass + " device, this one is a " + deviceClass +
                " device";
+    }
+    if (!plan.isVerified) {
+        return "its plan has no frozen_hash: that it is as it was made cannot be verified";
     }
     for (const auto& [reference, key] : plan.sceneKeys) {
         if (catalog.contentKey(config::Node::scalar(reference)) != key) {

@@ -15,7 +15,9 @@ std::string caseId(const Case& item, nlohmann::ordered_json written, const Plan&
 /// The hash of a plan whose experiments have these documents.
 std::string planHash(const Plan& plan, const std::vector<nlohmann::ordered_json>& documents);
 
-/// The hash of what `--only` leaves of a plan, whose own hash is that of all its cases.
-std::string keptHash(const Plan& plan, const std::vector<nlohmann::ordered_json>& documents);
+/// The hash of a plan as it is written: `head` is all of plan.json but its cases and this hash. The
+/// plan's own hash is another: that of what results depend on, which shards on several machines
+/// have in common.
+std::string frozenHash(const nlohmann::ordered_json& head, const std::vector<Case>& cases);
 
 }  // namespace gfxrepro::batch

@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int kPlanSchema = 1;
+constexpr const char* kFrozenHash = "frozen_hash";
 
 Json toJson(const config::Measure& measure) {
     return {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
@@ -129,8 +130,9 @@ void readPaper(const config::Node& node, config::Experiment& experiment) {
 }
 
 /// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
-/// had fewer entries. The hash of a plan with --only is that of all its cases, which it has not:
-/// it has another, of those that it kept. Gives whether all could be verified.
+/// had fewer entries and no hash of all of them. (The plan's own hash has neither assumptions nor
+/// published parameters, and with --only it is that of all cases, which the plan has not.) Gives
+/// whether all could be verified.
 bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
     const auto fail = [&](const std::string& what) {
         throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
@@ -142,17 +144,23 @@ bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& pla
         if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
         fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
-    std::vector<Json> documents;
-    for (const config::Node& item : required(node, "experiments").items()) {
-        documents.push_back(required(item, "document").toJson());
+    bool isSame = true;
+    const config::Node* frozen = node.find(kFrozenHash);
+    if (frozen) {
+        Json head = Json::object();
+        for (const auto& [name, value] : node.entries()) {
+            if (name != "cases" && name != kFrozenHash) head[name] = value.toJson();
+        }
+        isSame = frozenHash(head, plan.cases) == frozen->text();
+    } else if (plan.request.only.empty()) {
+        std::vector<Json> documents;
+        for (const config::Node& item : required(node, "experiments").items()) {
+            documents.push_back(required(item, "document").toJson());
+        }
+        isSame = planHash(plan, documents) == plan.hash;
     }
-    const config::Node* kept = node.find("kept_hash");
-    const bool isWhole = plan.request.only.empty();
-    if (!isWhole && !kept) return false;  // of an older version
-    const bool isSame = isWhole ? planHash(plan, documents) == plan.hash
-                                : keptHash(plan, documents) == kept->text();
     if (!isSame) fail("the experiments, their cases or the profile are not those that were");
-    return true;
+    return frozen != nullptr;
 }
 
 std::vector<std::string> textsFrom(const config::Node& list) {
@@ -222,13 +230,6 @@ std::string Plan::toText() const {
                    {"device", request.device}}},
                  {"scenes", Json::object()},
                  {"experiments", Json::array()}};
-    if (!request.only.empty()) {
-        std::vector<Json> documents;
-        for (const config::Experiment& experiment : experiments) {
-            documents.push_back(experiment.document.toJson());
-        }
-        json["kept_hash"] = keptHash(*this, documents);
-    }
     for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
     for (const config::Experiment& experiment : experiments) {
         json["experiments"].push_back({{"file", experiment.file.string()},
@@ -245,6 +246,7 @@ std::string Plan::toText() const {
         json["shard"] = {
             {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
     }
+    if (isVerified) json[kFrozenHash] = frozenHash(json, cases);
     std::string text = json.dump(1);
     text.resize(text.size() - 2);  // "\n}"
     text += ",\n \"cases\": [";

@@ -1,4 +1,6 @@
 // The cases of an experiment, every parameter resolved by the technique that declares it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -49,6 +51,26 @@ void requireDistinct(const config::Experiment& experiment, const std::vector<Cas
     }
 }
 
+/// A title stands in every line of the log, in tables and in pictures. Throws Error with the place
+/// of the longest value of an axis.
+void requireModestTitle(const config::Experiment& experiment, const Case& item) {
+    constexpr std::size_t kMostBytes = 4096;
+    const std::size_t size = item.title().size();
+    if (size <= kMostBytes) return;
+    std::size_t longest = experiment.id.size();
+    std::string what = "the id";
+    SourceLocation where{experiment.file.string(), 0, 0};
+    for (const auto& [axis, value] : item.axes.entries()) {
+        const std::size_t own = value.toFlowText().size();
+        if (own <= longest) continue;
+        longest = own;
+        what = "a value of axis '" + axis + "'";
+        where = value.location();
+    }
+    throw Error(where, fmt::format("{} has {} bytes, its case's title {}; at most {} are allowed",
+                                   what, longest, size, kMostBytes));
+}
+
 }  // namespace
 
 std::vector<Case> resolveParameters(const config::Experiment& experiment,
@@ -81,6 +103,7 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
         }
         item.axes = config::Node::map({});
         for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
+        requireModestTitle(experiment, item);
         item.outputWidthPx = spec.outputWidthPx;
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;

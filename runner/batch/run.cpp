@@ -112,9 +112,12 @@ StoredRun readRun(const fs::path& runDir) {
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
     if (!run.plan.isVerified) {
+        const bool isWhole = run.plan.request.only.empty();
         addNote(run.manifest,
-                "plan.json does not say what --only kept, as those of older versions do not: that "
-                "its experiments are those that were measured cannot be verified");
+                fmt::format("plan.json has no frozen_hash, as those of older versions have none: "
+                            "that its {} are those that were {} cannot be verified",
+                            isWhole ? "assumptions and published parameters" : "experiments",
+                            isWhole ? "planned" : "measured"));
     }
     if (fs::exists(runDir / "records.csv")) {
         run.records = report::readRecords(runDir / "records.csv");

@@ -1,6 +1,7 @@
 #include "runner/batch/run_directory.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -20,6 +21,34 @@ namespace gfxrepro::batch {
 namespace fs = std::filesystem;
 
 namespace {
+
+// A line stays below the 1 MiB that are read again (run_files.h) were each byte of its texts, at
+// most four of them long, escaped with six.
+constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
+// In a log of this size what drivers print is left out: one of 512 MiB is not read again.
+constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
+
+/// The beginning of a long text, or its end.
+std::string shortened(const std::string& text, bool isEndKept) {
+    if (text.size() <= kMostTextBytes) return text;
+    const std::string mark = fmt::format("[{} bytes left out]", text.size() - kMostTextBytes);
+    return isEndKept ? mark + text.substr(text.size() - kMostTextBytes)
+                     : text.substr(0, kMostTextBytes) + mark;
+}
+
+/// The event as a log that has `logBytes` takes it.
+nlohmann::ordered_json logged(nlohmann::ordered_json event, off_t logBytes) {
+    for (const auto& [name, value] : event.items()) {
+        if (!value.is_string()) continue;
+        const std::string& text = value.get_ref<const std::string&>();
+        const bool isOutput = name == "output";
+        value = isOutput && logBytes > kMostBytesWithOutput
+                    ? fmt::format("[{} bytes left out: the log has {} MiB]", text.size(),
+                                  logBytes >> 20)
+                    : shortened(text, isOutput);
+    }
+    return event;
+}
 
 std::string utcTime(const char* format) {
     const std::time_t now = std::time(nullptr);
@@ -150,7 +179,9 @@ void RunDirectory::requireOurs() const {
 void RunDirectory::log(const nlohmann::ordered_json& event) const {
     requireOurs();
     nlohmann::ordered_json line = {{"time", utcTime()}};
-    line.update(event);
+    struct stat now = {};
+    ::fstat(logFd_, &now);
+    line.update(logged(event, now.st_size));
     const std::string text =
         line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
     // One write a line; a log that cannot be written (disk full) does not stop the measurement.

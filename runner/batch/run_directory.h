@@ -26,9 +26,9 @@ class RunDirectory {
     std::filesystem::path manifestFile() const { return path_ / "manifest.json"; }
     std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
 
-    /// Appends one line to log.jsonl: "time" and the members of `event`. Throws Error where the
-    /// folder is no longer this run's: removed, moved, or without the file that locks it, so that
-    /// another one may write to it.
+    /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
+    /// and outputs left out once it has 64 MiB. Throws Error where the folder is no longer this
+    /// run's: removed, moved, or without its lock, so that another one may write to it.
     void log(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
     void logFlushed(const nlohmann::ordered_json& event) const;

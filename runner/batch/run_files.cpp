@@ -23,12 +23,12 @@ constexpr std::uintmax_t kMiB = std::uintmax_t{1} << 20;
 constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {{"plan.json", 512 * kMiB},
                                                                  {"manifest.json", 64 * kMiB},
                                                                  {"records.csv", 1024 * kMiB},
-                                                                 {"log.jsonl", 512 * kMiB},
                                                                  {"images/index.csv", 256 * kMiB}};
-constexpr std::size_t kMostLineBytes = kMiB;  // an output of 64 KiB, each byte escaped, and more
+constexpr std::size_t kMostLogBytes = 512 * kMiB;
+constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
 constexpr std::size_t kMostEvents = 4'000'000;
 
-enum class Kind { Text, Whole, Number, Object, List, Texts, Objects };
+enum class Kind { Text, Line, Whole, Number, Object, List, Texts, Lines, Objects };
 
 bool isOfKind(const Json& value, Kind kind) {
     const auto are = [&](Kind item) {
@@ -37,6 +37,10 @@ bool isOfKind(const Json& value, Kind kind) {
     switch (kind) {
         case Kind::Text:
             return value.is_string();
+        case Kind::Line:  // which people are shown as such
+            return value.is_string() &&
+                   std::ranges::none_of(value.get_ref<const std::string&>(),
+                                        [](unsigned char c) { return c < 0x20 || c == 0x7F; });
         case Kind::Whole:
             return value.is_number_integer();
         case Kind::Number:
@@ -47,6 +51,8 @@ bool isOfKind(const Json& value, Kind kind) {
             return value.is_array();
         case Kind::Texts:
             return (value.is_array() || value.is_object()) && are(Kind::Text);
+        case Kind::Lines:
+            return (value.is_array() || value.is_object()) && are(Kind::Line);
         case Kind::Objects:
             return (value.is_array() || value.is_object()) && are(Kind::Object);
     }
@@ -54,8 +60,9 @@ bool isOfKind(const Json& value, Kind kind) {
 }
 
 std::string_view nameOf(Kind kind) {
-    static constexpr std::array<std::string_view, 7> kNames = {
-        "text", "a whole number", "a number", "an object", "a list", "texts", "objects"};
+    static constexpr std::array<std::string_view, 9> kNames = {
+        "text",   "a line of text", "a whole number", "a number", "an object",
+        "a list", "texts",          "lines of text",  "objects"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -81,31 +88,31 @@ void requireMembers(const Json& object, std::span<const Member> members,
     }
 }
 
-constexpr Member kManifest[] = {{"/commit", Kind::Text},
-                                {"/profile", Kind::Text},
-                                {"/device_class", Kind::Text},
-                                {"/cpu", Kind::Text},
+constexpr Member kManifest[] = {{"/commit", Kind::Line},
+                                {"/profile", Kind::Line},
+                                {"/device_class", Kind::Line},
+                                {"/cpu", Kind::Line},
                                 {"/cores", Kind::Whole},
                                 {"/gl", Kind::Object},
-                                {"/gl/vendor", Kind::Text},
-                                {"/gl/renderer", Kind::Text},
-                                {"/gl/version", Kind::Text},
+                                {"/gl/vendor", Kind::Line},
+                                {"/gl/renderer", Kind::Line},
+                                {"/gl/version", Kind::Line},
                                 {"/invocations", Kind::List},
                                 {"/invocations", Kind::Objects},
                                 {"/scenes", Kind::Objects},
                                 {"/sha256", Kind::Texts, false},
                                 {"/notes", Kind::List, false},
-                                {"/notes", Kind::Texts, false},
+                                {"/notes", Kind::Lines, false},
                                 {"/timing_machines", Kind::Object, false},
-                                {"/timing_machines", Kind::Texts, false},
+                                {"/timing_machines", Kind::Lines, false},
                                 {"/rounds", Kind::Objects, false},
                                 {"/merged", Kind::List, false},
                                 {"/merged", Kind::Objects, false}};
-constexpr Member kInvocation[] = {{"/command", Kind::Text}, {"/machine", Kind::Text, false}};
+constexpr Member kInvocation[] = {{"/command", Kind::Text}, {"/machine", Kind::Line, false}};
 constexpr Member kScene[] = {
     {"/kind", Kind::Text}, {"/description", Kind::Text}, {"/sha256", Kind::Text}};
 constexpr Member kMerged[] = {
-    {"/machine", Kind::Text}, {"/invocations", Kind::List}, {"/invocations", Kind::Objects}};
+    {"/machine", Kind::Line}, {"/invocations", Kind::List}, {"/invocations", Kind::Objects}};
 constexpr Member kEvent[] = {{"/time", Kind::Text, false},     {"/event", Kind::Text, false},
                              {"/case", Kind::Text, false},     {"/table", Kind::Text, false},
                              {"/process", Kind::Whole, false}, {"/status", Kind::Text, false},
@@ -132,15 +139,19 @@ void requireShallow(std::string_view json, const SourceLocation& where) {
     throw Error(where, fmt::format("nested deeper than {} levels", kMostJsonLevels));
 }
 
+void requireModest(const fs::path& file, std::uintmax_t size, std::uintmax_t mostBytes) {
+    if (size <= mostBytes) return;
+    throw Error({file.string(), 0, 0},
+                fmt::format("{} bytes; at most {} are read", size, mostBytes));
+}
+
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
     for (const auto& [name, mostBytes] : kMostBytes) {
         std::error_code isAbsent;
         const std::uintmax_t size = fs::file_size(runDir / name, isAbsent);
-        if (isAbsent || size <= mostBytes) continue;
-        throw Error({(runDir / name).string(), 0, 0},
-                    fmt::format("{} bytes; at most {} are read", size, mostBytes));
+        if (!isAbsent) requireModest(runDir / name, size, mostBytes);
     }
 }
 
@@ -164,6 +175,7 @@ std::vector<Json> readLog(const fs::path& file) {
     const std::string name = file.string();
     const MappedFile mapped(file);
     std::string_view rest = mapped.text();
+    requireModest(file, rest.size(), kMostLogBytes);
     for (int line = 1; !rest.empty(); ++line) {
         const std::string_view text = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(text.size() + 1, rest.size()));

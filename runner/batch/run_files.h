@@ -11,7 +11,7 @@
 namespace gfxrepro::batch {
 
 /// Throws Error, with the limit, where a file of a run's folder that is read at once is larger than
-/// it gets in any run: the largest so far had records of 75 MB and a plan of 15 MB.
+/// it gets in any run (the log is readLog's): the largest had records of 75 MB, a plan of 15 MB.
 void requireModestFiles(const std::filesystem::path& runDir);
 
 /// manifest.json: what is there that others read (machine, invocations, scenes, notes, …) is of its
@@ -21,7 +21,8 @@ Json readManifest(const std::filesystem::path& file);
 
 /// The events of log.jsonl; none where there is no such file. Lines that are no JSON object are
 /// passed over: a killed runner has torn them. Throws Error with file and line for a member of
-/// another kind than the runner writes, for a line over 1 MiB, and beyond 4,000,000 events.
+/// another kind than the runner writes, for a line over 1 MiB, a file over 512 MiB, and beyond
+/// 4,000,000 events.
 std::vector<Json> readLog(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::batch

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
-#include "runner/cli/console.h"
 #include "runner/config/node.h"
 
 namespace gfxrepro::cli {
@@ -52,7 +52,9 @@ SourceLocation placeOf(const report::ClaimResult& claim) {
 
 void write(std::string_view level, const SourceLocation& where, std::string_view title,
            std::string_view message) {
-    if (areAnnotationsWanted()) tell("{}\n", annotation(level, where, title, message));
+    if (!areAnnotationsWanted()) return;
+    const std::string command = annotation(level, where, title, message) + '\n';
+    std::fwrite(command.data(), 1, command.size(), stderr);
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
-#include <fmt/core.h>
-
 #include <algorithm>
 
 #include "runner/batch/ledger.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/schema.h"
@@ -26,14 +25,14 @@ void sayUnread(const std::string& file, const config::Experiment& experiment,
         const bool isOurs =
             then == whole.claims.end() || report::whatIsAbsent(*then, wholeTable).empty();
         if (absent.empty() || !isOurs) continue;
-        fmt::print("{}: claim '{}' will be unmeasured: {}\n", file, claim.id, absent);
+        say("{}: claim '{}' will be unmeasured: {}\n", file, claim.id, absent);
     }
     for (std::size_t i = 0; i < experiment.plots.size(); ++i) {
         const std::string absent = report::whatIsAbsent(experiment.plots[i], table);
         const bool isOurs =
             i >= whole.plots.size() || report::whatIsAbsent(whole.plots[i], wholeTable).empty();
         if (absent.empty() || !isOurs) continue;
-        fmt::print("{}: plot {} will be left out: {}\n", file, i + 1, absent);
+        say("{}: plot {} will be left out: {}\n", file, i + 1, absent);
     }
 }
 
@@ -53,9 +52,9 @@ int check(const Context& context, const Selection& selection) {
         const report::Table table = report::buildTable(experiment, {});
         report::requireProvenance(experiment, table);
         batch::resolvePaperCases(experiment, catalog, context.techniques);
-        fmt::print("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
-                   caseCount == 1 ? "" : "s", experiment.claims.size(),
-                   experiment.claims.size() == 1 ? "" : "s");
+        say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
+            caseCount == 1 ? "" : "s", experiment.claims.size(),
+            experiment.claims.size() == 1 ? "" : "s");
         const bool isReduced =
             !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
         if (isReduced) sayUnread(file, experiment, table);

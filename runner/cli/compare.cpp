@@ -12,6 +12,7 @@
 #include "runner/batch/run.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/core/files.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/history.h"
@@ -35,7 +36,7 @@ struct Measured {
     regression::SeriesMap series;
     regression::CaseTexts failures, voidTimes;
     std::size_t untimedCases = 0;
-    bool hasFailures = false;  // that nobody expected
+    regression::CaseTexts unexpected;  // of the failures, those that nobody expected
     std::string machine;
     std::string commit;
     bool isSoftware = false;
@@ -47,17 +48,16 @@ struct Measured {
 };
 
 /// Of flaky cases, too.
-bool hasUnexpectedFailures(const batch::StoredRun& run) {
+regression::CaseTexts unexpectedFailures(const batch::StoredRun& run) {
     const batch::Expectations expectations = batch::expectationsOf(run.plan, run.manifest);
     std::map<std::string, const batch::Case*> cases;
     for (const batch::Case& item : run.plan.cases) cases[item.id] = &item;
-    return std::ranges::any_of(run.records, [&](const report::Record& row) {
-        if (row.status == report::Status::Ok || row.status == report::Status::Ambiguous) {
-            return false;
-        }
+    std::vector<report::Record> rows;
+    std::ranges::copy_if(run.records, std::back_inserter(rows), [&](const report::Record& row) {
         const auto item = cases.find(row.caseId);
         return item == cases.end() || !expectations.isExpected(*item->second, row.status);
     });
+    return regression::failuresOf(rows);
 }
 
 Measured readMeasured(const fs::path& runDir) {
@@ -66,7 +66,7 @@ Measured readMeasured(const fs::path& runDir) {
                       regression::failuresOf(run.records),
                       regression::voidTimesOf(run.records),
                       regression::untimedCases(run.records),
-                      hasUnexpectedFailures(run),
+                      unexpectedFailures(run),
                       batch::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       run.plan.deviceClass == "software",
@@ -119,7 +119,7 @@ class Turns {
         return regression::compareByTurns(
             [&](regression::Sides& sides, const std::set<std::string>& tables) {
                 const bool isFirst = sides.before.empty() && sides.after.empty();
-                if (!tables.empty() && isFirst) fmt::print("alarm; measuring again\n");
+                if (!tables.empty() && isFirst) say("alarm; measuring again\n");
                 for (int i = 0; i < options_.rounds; ++i) {
                     takeRound(sides, tables, isFirst && i == 0);
                 }
@@ -127,8 +127,8 @@ class Turns {
     }
     /// The newer program's rounds, without those that confirm.
     const Measured& newer() const { return newer_; }
-    /// Whether a case of the newer program failed.
-    bool hasFailures() const { return hasFailures_; }
+    /// Cases of the newer program that failed in any round.
+    const regression::CaseTexts& unexpected() const { return unexpected_; }
 
   private:
     void takeRound(regression::Sides& sides, const std::set<std::string>& tables,
@@ -146,7 +146,7 @@ class Turns {
         sides.failuresAfter.merge(measured[1].failures);
         sides.voidBefore.merge(measured[0].voidTimes);
         sides.voidAfter.merge(measured[1].voidTimes);
-        hasFailures_ = hasFailures_ || measured[1].hasFailures;
+        unexpected_.merge(measured[1].unexpected);
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
         measured[1].series = std::move(newer_.series);
@@ -175,7 +175,7 @@ class Turns {
     const CompareOptions& options_;
     fs::path folder_;
     int roundCount_ = 0;
-    bool hasFailures_ = false;
+    regression::CaseTexts unexpected_;
     Measured newer_;
 };
 
@@ -225,25 +225,39 @@ void annotate(const regression::Comparison& comparison,
     }
 }
 
-void say(const regression::Comparison& comparison, const fs::path& folder) {
-    for (const std::string& note : comparison.notes) fmt::print("warning: {}\n", note);
+void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
+    for (const std::string& note : comparison.notes) say("warning: {}\n", note);
     for (const Difference& difference : comparison.differences) {
         const bool isOfNone = difference.isOfNone();
         if (!difference.isAlarm() && !isOfNone) continue;
         if (difference.verdict == regression::Verdict::Lost || isOfNone || difference.isPicture()) {
-            fmt::print("{}: {}: {}\n", difference.key.title(),
-                       regression::verdictName(difference.verdict), difference.reason);
+            say("{}: {}: {}\n", difference.key.title(), regression::verdictName(difference.verdict),
+                difference.reason);
             continue;
         }
-        fmt::print("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
-                   regression::verdictName(difference.verdict), difference.ratio,
-                   difference.interval.low, difference.interval.high);
+        say("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
+            regression::verdictName(difference.verdict), difference.ratio, difference.interval.low,
+            difference.interval.high);
     }
     for (const regression::SeriesStep& step : comparison.steps) {
-        fmt::print("{}\n", regression::stepLine(step));
+        say("{}\n", regression::stepLine(step));
     }
-    fmt::print("{}; {}\n", regression::summaryLine(comparison.differences),
-               (folder / "comparison.md").string());
+    say("{}; {}\n", regression::summaryLine(comparison.differences),
+        (folder / "comparison.md").string());
+}
+
+/// A case that neither side measured weighs more than what the others say. One that the newer side
+/// alone lost is what they say.
+int exitCodeOf(const regression::Comparison& comparison,
+               const regression::CaseTexts& unexpectedFailures) {
+    const bool isUnmeasured =
+        std::ranges::any_of(comparison.differences, [&](const Difference& one) {
+            return one.verdict == regression::Verdict::Failed &&
+                   unexpectedFailures.contains(one.key);
+        });
+    if (isUnmeasured) return kExitIncomplete;
+    if (comparison.isAlarm()) return kExitClaimFailed;
+    return unexpectedFailures.empty() ? kExitOk : kExitIncomplete;
 }
 
 }  // namespace
@@ -258,17 +272,15 @@ int compare(const CompareOptions& options) {
         options.out.empty() ? batch::defaultRunPath("compare") : fs::path(options.out);
     regression::Comparison comparison;
     Measured newer;
-    bool hasFailures = false;
     if (options.areBinaries) {
         Turns turns(options, folder);
         comparison.differences = turns.compare();
         newer = turns.newer();
-        hasFailures = turns.hasFailures();
+        newer.unexpected = turns.unexpected();
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
-        hasFailures = newer.hasFailures;
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {
                 comparison.notes.push_back(options.inputs[i] + ": " + note);
@@ -286,10 +298,9 @@ int compare(const CompareOptions& options) {
     writeFileAtomic(folder / "junit.xml", regression::junitXml(comparison));
     writeFileAtomic(folder / "benchmark.json",
                     regression::smallerIsBetterJson(comparison.differences));
-    say(comparison, folder);
+    sayAll(comparison, folder);
     annotate(comparison, newer.configs);
-    if (comparison.isAlarm()) return kExitClaimFailed;
-    return hasFailures ? kExitIncomplete : kExitOk;
+    return exitCodeOf(comparison, newer.unexpected);
 }
 
 }  // namespace gfxrepro::cli

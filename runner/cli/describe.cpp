@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/schema.h"
 #include "runner/core/text.h"
@@ -54,58 +55,57 @@ ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
 }
 
 void describeTechnique(const technique::TechniqueInfo& info) {
-    fmt::print("technique {}: {}\n", info.name, info.summary);
+    say("technique {}: {}\n", info.name, info.summary);
     printParams(paramsOf(info));
 }
 
 void describeGenerator(const scene::GeneratorInfo& info) {
-    fmt::print("generator {}: {}\n", info.name, info.summary);
+    say("generator {}: {}\n", info.name, info.summary);
     printParams(scene::declaredParams(info, {}));
 }
 
 void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
-    fmt::print("scene {}: {}\n", entry.name, entry.doc);
-    if (!entry.canonical.empty()) fmt::print("real one  {}\n", entry.canonical);
+    say("scene {}: {}\n", entry.name, entry.doc);
+    if (!entry.canonical.empty()) say("real one  {}\n", entry.canonical);
     for (const scene::SceneSource& source : entry.sources) {
         const char* kind = source.kind == scene::Origin::Kind::Real      ? "real"
                            : source.kind == scene::Origin::Kind::StandIn ? "stand-in"
                                                                          : "generated";
         if (source.file.empty()) {
-            fmt::print("source    {}: generator {}, seed {}\n", kind, source.generator->name,
-                       source.seed);
+            say("source    {}: generator {}, seed {}\n", kind, source.generator->name, source.seed);
             continue;
         }
         const std::filesystem::path path = catalog.assetsFolder() / source.file;
-        fmt::print("source    {}: {}{}\n", kind, path.string(),
-                   std::filesystem::exists(path) ? "" : " (not there)");
+        say("source    {}: {}{}\n", kind, path.string(),
+            std::filesystem::exists(path) ? "" : " (not there)");
     }
 }
 
 void describeExperiment(const config::Experiment& experiment) {
-    fmt::print("{} ({}): {}\n", experiment.id, experiment.label(), experiment.title);
-    fmt::print("file       {}\n", experiment.file.string());
+    say("{} ({}): {}\n", experiment.id, experiment.label(), experiment.title);
+    say("file       {}\n", experiment.file.string());
     const bool isPrinted = experiment.technique.empty();
-    fmt::print("technique  {}\n", isPrinted ? "none, only printed" : experiment.technique);
-    fmt::print("cases      {}\n", config::expandCases(experiment).size());
+    say("technique  {}\n", isPrinted ? "none, only printed" : experiment.technique);
+    say("cases      {}\n", config::expandCases(experiment).size());
     for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
-        fmt::print("of scene   {}: {}\n", scene, params.toFlowText());
+        say("of scene   {}: {}\n", scene, params.toFlowText());
     }
     if (!experiment.sceneParams.entries().empty()) {
-        fmt::print("of scenes  {}\n", experiment.sceneParams.toFlowText());
+        say("of scenes  {}\n", experiment.sceneParams.toFlowText());
     }
-    fmt::print("profiles   full{}\n",
-               experiment.profiles.empty() ? "" : ", " + joined(experiment.profiles));
+    say("profiles   full{}\n",
+        experiment.profiles.empty() ? "" : ", " + joined(experiment.profiles));
     if (!experiment.printed.hardware.empty()) {
-        fmt::print("printed    on {}\n", experiment.printed.hardware);
+        say("printed    on {}\n", experiment.printed.hardware);
     }
     for (const config::ClaimSpec& claim : experiment.claims) {
-        fmt::print("claim      {}: {}\n", claim.id, claim.text);
+        say("claim      {}: {}\n", claim.id, claim.text);
     }
     for (const config::Assumption& assumption : experiment.assumptions) {
         // A parameter's value is the cases'.
         const bool isFreeText = !assumption.value.isNull();
-        fmt::print("assumed    {}{}{}: {}\n", assumption.name, isFreeText ? " = " : "",
-                   isFreeText ? assumption.value.toFlowText() : "", assumption.why);
+        say("assumed    {}{}{}: {}\n", assumption.name, isFreeText ? " = " : "",
+            isFreeText ? assumption.value.toFlowText() : "", assumption.why);
     }
 }
 

@@ -197,7 +197,9 @@ scene::Catalog openCatalog(const Context& context, const std::string& assets) {
     return {dataFolder("configs") / "scenes", assetsFolder(assets), context.generators};
 }
 
-std::string alignedColumns(const std::vector<std::vector<std::string>>& rows) {
+std::string alignedColumns(const std::vector<std::vector<std::string>>& texts) {
+    std::vector<std::vector<std::string>> rows = texts;
+    for (auto& row : rows) std::ranges::transform(row, row.begin(), printable);
     std::vector<std::size_t> widths;
     for (const auto& row : rows) {
         widths.resize(std::max(widths.size(), row.size()));

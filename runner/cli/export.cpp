@@ -1,10 +1,9 @@
 // A run as a folder for others.
-#include <fmt/core.h>
-
 #include <filesystem>
 
 #include "runner/batch/artifact.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
 
@@ -16,7 +15,7 @@ int exportRun(const Context& context, const std::string& runDir, const std::stri
     const batch::StoredRun run = batch::readRun(runDir);
     batch::writeArtifact(runDir, run, openCatalog(context, assets), target);
     sayNotes(run.manifest);
-    fmt::print("{}\n", target);
+    say("{}\n", target);
     return kExitOk;
 }
 

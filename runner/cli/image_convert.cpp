@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"
 #include "runner/core/text.h"
 #include "runner/image/colour_map.h"
@@ -80,7 +81,7 @@ Range rangeOf(const ExrImage::Channel& channel) {
 
 Image8 falseColours(const ExrImage::Channel& channel, const ImageConvertOptions& options) {
     const Range range = options.range.empty() ? rangeOf(channel) : parseRange(options.range);
-    fmt::print("{}: {:g} to {:g} in {}\n", channel.name, range.low, range.high, options.colours);
+    say("{}: {:g} to {:g} in {}\n", channel.name, range.low, range.high, options.colours);
     return image::coloured(channel.values, colourMapOf(options.colours), range.low, range.high);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/image_file.h"
@@ -37,14 +38,14 @@ void printChannel(const image::ExrImage::Channel& channel) {
         low = std::min(low, value);
         high = std::max(high, value);
     }
-    fmt::print("channel {:<10} {:<5}", channel.name, nameOf(channel.type));
+    say("channel {:<10} {:<5}", channel.name, nameOf(channel.type));
     if (finite > 0) {
-        fmt::print(" {:g} to {:g}, mean {:g}", low, high, sum / static_cast<double>(finite));
+        say(" {:g} to {:g}, mean {:g}", low, high, sum / static_cast<double>(finite));
     }
     if (const std::size_t others = channel.values.values().size() - finite; others > 0) {
-        fmt::print(" ({} not finite)", others);
+        say(" ({} not finite)", others);
     }
-    fmt::print("\n");
+    say("\n");
 }
 
 }  // namespace
@@ -52,16 +53,16 @@ void printChannel(const image::ExrImage::Channel& channel) {
 int imageInfo(const std::string& file) {
     if (!image::isExrFile(file)) {
         const image::ImageF image = image::readStored(file);
-        fmt::print("png {}x{}, {} {}\n", image.width(), image.height(), image.channels(),
-                   image.channels() == 1 ? "channel" : "channels");
+        say("png {}x{}, {} {}\n", image.width(), image.height(), image.channels(),
+            image.channels() == 1 ? "channel" : "channels");
         return kExitOk;
     }
     const image::ExrImage exr = image::readExr(file);
-    fmt::print("exr {}x{}\n", exr.width(), exr.height());
+    say("exr {}x{}\n", exr.width(), exr.height());
     for (const image::ExrImage::Channel& channel : exr.channels) printChannel(channel);
-    for (const auto& [name, text] : exr.attributes) fmt::print("{}: {}\n", name, text);
+    for (const auto& [name, text] : exr.attributes) say("{}: {}\n", name, text);
     for (const auto& [name, matrix] : exr.matrices) {
-        fmt::print("{}: {:.6g}\n", name, fmt::join(matrix, " "));
+        say("{}: {}\n", name, fmt::format("{:.6g}", fmt::join(matrix, " ")));
     }
     return kExitOk;
 }

@@ -1,8 +1,7 @@
-#include <fmt/core.h>
-
 #include <algorithm>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"
 #include "runner/image/contact_sheet.h"
 #include "runner/image/image_file.h"
@@ -26,7 +25,7 @@ int imageSheet(const ImageSheetOptions& options) {
     image::writePng(options.out, image::contactSheet(images, layout));
     const auto columns = std::min(static_cast<std::size_t>(options.columns), options.files.size());
     for (std::size_t i = 0; i < options.files.size(); ++i) {
-        fmt::print("row {} column {}  {}\n", i / columns + 1, i % columns + 1, options.files[i]);
+        say("row {} column {}  {}\n", i / columns + 1, i % columns + 1, options.files[i]);
     }
     return kExitOk;
 }

@@ -48,12 +48,12 @@ batch::RunDirectory openTarget(const fs::path& out, const batch::Plan& plan) {
 void printMissing(const std::vector<batch::ShardRun>& shards,
                   const std::vector<std::string>& units) {
     for (const std::string& shard : batch::missingShards(shards)) {
-        fmt::print("missing: shard {}\n", shard);
+        say("missing: shard {}\n", shard);
     }
     for (std::size_t i = 0; i < std::min(units.size(), kMostNamed); ++i) {
-        fmt::print("missing: {}\n", units[i]);
+        say("missing: {}\n", units[i]);
     }
-    if (units.size() > kMostNamed) fmt::print("missing: {} more\n", units.size() - kMostNamed);
+    if (units.size() > kMostNamed) say("missing: {} more\n", units.size() - kMostNamed);
 }
 
 }  // namespace
@@ -68,15 +68,14 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
     const std::vector<std::string> missing = batch::missingUnits(merged);
     const batch::Completeness counts = batch::completeness(merged);
     printMissing(runs, missing);
-    fmt::print("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing{}\n",
-               runs.size(), runs.size() == 1 ? "" : "s", out, counts.measured(), counts.units,
-               counts.failed, counts.missing,
-               counts.expected > 0
-                   ? fmt::format(", {} failed or skipped as expected", counts.expected)
-                   : "");
+    say("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing{}\n", runs.size(),
+        runs.size() == 1 ? "" : "s", out, counts.measured(), counts.units, counts.failed,
+        counts.missing,
+        counts.expected > 0 ? fmt::format(", {} failed or skipped as expected", counts.expected)
+                            : "");
     const int verdict = conclude(out);
     if (counts.isComplete()) return verdict;
-    fmt::print("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);
+    say("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);
     return kExitIncomplete;
 }
 

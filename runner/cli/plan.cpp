@@ -4,6 +4,7 @@
 
 #include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 
@@ -68,8 +69,8 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
         twins > 0 ? fmt::format(" ({} measured as another's twin)", twins) : "", iterations,
         plan.deviceClass);
     const std::string forecast = forecastText(plan, history, 1);
-    fmt::print("{}\n",
-               forecast.empty() ? "no earlier run tells the time; --from RUN names one" : forecast);
+    say("{}\n",
+        forecast.empty() ? "no earlier run tells the time; --from RUN names one" : forecast);
     return kExitOk;
 }
 

@@ -46,13 +46,13 @@ int completenessCode(const batch::StoredRun& run) {
         tell("warning: {}; the run is judged by what it said when the run was planned\n", list);
     }
     if (counts.expected > 0) {
-        fmt::print("{} of {} failed or skipped as expected\n", counts.expected, counts.units);
+        say("{} of {} failed or skipped as expected\n", counts.expected, counts.units);
     }
     if (counts.isComplete()) return kExitOk;
     if (areAnnotationsWanted()) annotate(batch::caseResults(run));
-    fmt::print("incomplete: {} not run, {} failed{}{}\n", counts.missing, counts.failed,
-               counts.failed > 0 ? fmt::format(" ({})", failuresText(counts)) : "",
-               counts.measured() == 0 ? "; no case has a result" : "");
+    say("incomplete: {} not run, {} failed{}{}\n", counts.missing, counts.failed,
+        counts.failed > 0 ? fmt::format(" ({})", failuresText(counts)) : "",
+        counts.measured() == 0 ? "; no case has a result" : "");
     return kExitIncomplete;
 }
 
@@ -61,11 +61,11 @@ std::size_t sayFailing(const std::vector<report::ClaimResult>& claims) {
     std::size_t failing = 0;
     for (const report::ClaimResult& claim : claims) {
         if (claim.verdict != report::Verdict::Fails || ++failing > kSaidFailing) continue;
-        fmt::print("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id,
-                   claim.text, claim.measured, claim.required);
+        say("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id, claim.text,
+            claim.measured, claim.required);
     }
     if (failing > kSaidFailing) {
-        fmt::print("  and {} more that fail, in the report\n", failing - kSaidFailing);
+        say("  and {} more that fail, in the report\n", failing - kSaidFailing);
     }
     return failing;
 }
@@ -80,14 +80,14 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
     }
     if (ofPaper.size() > 1) {
         for (const auto& [paper, own] : ofPaper) {
-            fmt::print("  {:<12}{}\n", paper, report::originSummaryLine(own));
+            say("  {:<12}{}\n", paper, report::originSummaryLine(own));
         }
     }
-    fmt::print("claims: {}\n", report::originSummaryLine(claims));
+    say("claims: {}\n", report::originSummaryLine(claims));
     for (const report::ClaimResult& claim : claims) {
         if (!claim.isNews()) continue;
-        fmt::print("  news: {} {} {}, known: {}\n", claim.table, claim.id,
-                   report::verdictName(claim.verdict), report::verdictName(claim.known));
+        say("  news: {} {} {}, known: {}\n", claim.table, claim.id,
+            report::verdictName(claim.verdict), report::verdictName(claim.known));
     }
     static const std::pair<report::Verdict, const char*> kMeanings[] = {
         {report::Verdict::Ambiguous, "too few rounds or too much noise to tell: more rounds may"},
@@ -96,7 +96,7 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
     };
     for (const auto& [verdict, meaning] : kMeanings) {
         if (verdicts.contains(verdict)) {
-            fmt::print("  {}: {}\n", report::verdictName(verdict), meaning);
+            say("  {}: {}\n", report::verdictName(verdict), meaning);
         }
     }
 }
@@ -104,11 +104,10 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
 /// The verdicts; the exit code when all cases were measured.
 int sayClaims(const std::vector<report::ClaimResult>& claims) {
     for (const report::ClaimResult& claim : claims) {
-        fmt::print("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
-                   claim.isNews() ? " (news)" : "",
-                   claim.reason.empty() ? "" : "; " + claim.reason);
+        say("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
+            claim.isNews() ? " (news)" : "", claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    fmt::print("{}\n", report::originSummaryLine(claims));
+    say("{}\n", report::originSummaryLine(claims));
     annotate(claims);
     const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
         return claim.verdict == report::Verdict::Fails;
@@ -149,7 +148,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     report::writeClaims(folder, batch::caseResults(run), claims, context);
     const int verdict = sayClaims(claims);
     sayNotes(run.manifest);
-    fmt::print("judged after the run: {}\n", (folder / "claims.csv").string());
+    say("judged after the run: {}\n", (folder / "claims.csv").string());
     const int code = completenessCode(run);
     return code == kExitOk ? verdict : code;
 }
@@ -157,7 +156,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
 /// How much of the tables was measured as it is printed.
 void sayPrintedCells(const report::PrintedCells& count) {
     const std::string line = report::printedCellsLine(count);
-    if (!line.empty()) fmt::print("{}\n", line);
+    if (!line.empty()) say("{}\n", line);
 }
 
 /// What differs between runs of several machines may differ by them: a note of the first run.
@@ -173,13 +172,13 @@ void noteOtherMachines(std::vector<html::ReportRun>& runs) {
 }
 
 void sayReport(const fs::path& runDir) {
-    fmt::print("report: {}\n", (runDir / "report.html").string());
+    say("report: {}\n", (runDir / "report.html").string());
 }
 
 }  // namespace
 
 void sayNotes(const batch::Json& manifest) {
-    for (const std::string& note : batch::notesOf(manifest)) fmt::print("warning: {}\n", note);
+    for (const std::string& note : batch::notesOf(manifest)) say("warning: {}\n", note);
 }
 
 int conclude(const fs::path& runDir) {
@@ -190,7 +189,7 @@ int conclude(const fs::path& runDir) {
     sayVerdicts(conclusion.claims);
     annotate(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
-    fmt::print("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
+    say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     sayReport(runDir);
     return failing > 0 ? kExitClaimFailed : kExitOk;
 }
@@ -201,7 +200,7 @@ int table(const std::string& runDir, const std::string& out) {
         runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
     const std::string folder = (fs::path(out) / "tables").string();
     for (const config::Experiment& experiment : run.plan.experiments) {
-        fmt::print("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
+        say("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
     }
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);
@@ -245,7 +244,7 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
     for (const html::ReportRun& run : runs) sayNotes(run.manifest);
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
     html::writeReport(file, runs);
-    fmt::print("report: {}\n", file.string());
+    say("report: {}\n", file.string());
     return code;
 }
 

@@ -185,6 +185,9 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                          "the run goes on with its configs as they were when it began");
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
+    // Before anything is written: a log that cannot be read leaves the folder as it is.
+    const std::vector<batch::Json> log = batch::readLog(run.directory.path() / "log.jsonl");
+    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, log);
     settleMachine(context.commandLine, device, run);
     return run;
 }
@@ -245,10 +248,10 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
                          : prepareResumed(context, options, request, phases);
     run.scheduler.expectations = batch::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
-    const std::vector<batch::Json> log = batch::readLog(run.directory.path() / "log.jsonl");
-    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, log);
     std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
-    if (options.failuresAtMost > 0) putFailedLast(log, units);
+    if (options.failuresAtMost > 0) {
+        putFailedLast(batch::readLog(run.directory.path() / "log.jsonl"), units);
+    }
     batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
@@ -275,11 +278,11 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     const batch::Completeness counts = batch::completeness(stored);
     for (const std::string& line : counts.complaints) tell("{}\n", line);
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
-    fmt::print("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
-               countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
-               countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
-               countText(outcome.expected, "failed or skipped as expected"),
-               run.directory.recordsFile().string());
+    say("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
+        countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
+        countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
+        countText(outcome.expected, "failed or skipped as expected"),
+        run.directory.recordsFile().string());
     const bool isComplete = counts.isComplete() && outcome.stopReason.empty();
     if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(stored));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;

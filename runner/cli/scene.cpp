@@ -1,8 +1,7 @@
-#include <fmt/core.h>
-
 #include <filesystem>
 
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
@@ -25,20 +24,19 @@ scene::Scene loadNamed(const Context& context, const SceneOptions& options) {
 
 void print(const scene::Scene& scene) {
     const scene::Box box = scene.bounds();
-    fmt::print("from       {}\n", scene.origin.description);
-    fmt::print("triangles  {}\nvertices   {}\npoints     {}\n", scene.triangleCount(),
-               scene.vertexCount(), scene.points.positions.size());
-    fmt::print("meshes     {}, instances {}, materials {}, textures {}, cameras {}\n",
-               scene.meshes.size(), scene.instances.size(), scene.materials.size(),
-               scene.textures.size(), scene.cameras.size());
+    say("from       {}\n", scene.origin.description);
+    say("triangles  {}\nvertices   {}\npoints     {}\n", scene.triangleCount(), scene.vertexCount(),
+        scene.points.positions.size());
+    say("meshes     {}, instances {}, materials {}, textures {}, cameras {}\n", scene.meshes.size(),
+        scene.instances.size(), scene.materials.size(), scene.textures.size(),
+        scene.cameras.size());
     if (scene.heights) {
-        fmt::print("heights    {} x {} samples, {:g} m apart, {} filled{}\n",
-                   scene.heights->sizeSamples.x, scene.heights->sizeSamples.y,
-                   scene.heights->spacingM, scene.heights->filledCount,
-                   scene.heights->isEightBit ? ", of 8 bits" : "");
+        say("heights    {} x {} samples, {:g} m apart, {} filled{}\n", scene.heights->sizeSamples.x,
+            scene.heights->sizeSamples.y, scene.heights->spacingM, scene.heights->filledCount,
+            scene.heights->isEightBit ? ", of 8 bits" : "");
     }
-    fmt::print("box        ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", box.min.x, box.min.y,
-               box.min.z, box.max.x, box.max.y, box.max.z);
+    say("box        ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", box.min.x, box.min.y, box.min.z,
+        box.max.x, box.max.y, box.max.z);
 }
 
 void exportTo(const fs::path& path, const scene::Scene& scene) {
@@ -49,7 +47,7 @@ void exportTo(const fs::path& path, const scene::Scene& scene) {
     } else {
         throw UsageError("--export " + path.string() + ": .glb or .ply is allowed");
     }
-    fmt::print("exported   {}\n", path.string());
+    say("exported   {}\n", path.string());
 }
 
 /// f.png rasterized and f-raytraced.png ray traced, and how far they are apart.
@@ -77,11 +75,11 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
     tracedPath.replace_filename(path.stem().string() + "-raytraced.png");
     image::writePng(path, image::toSrgb8(rasterized));
     image::writePng(tracedPath, image::toSrgb8(traced));
-    fmt::print("rendered   {} and {}\n", path.string(), tracedPath.string());
-    fmt::print("difference mse {:.3g}, ssim {:.4g}, max {:.3g}\n",
-               metrics::meanSquaredError(rasterized, traced),
-               metrics::structuralSimilarity(rasterized, traced),
-               metrics::maxAbsoluteError(rasterized, traced));
+    say("rendered   {} and {}\n", path.string(), tracedPath.string());
+    say("difference mse {:.3g}, ssim {:.4g}, max {:.3g}\n",
+        metrics::meanSquaredError(rasterized, traced),
+        metrics::structuralSimilarity(rasterized, traced),
+        metrics::maxAbsoluteError(rasterized, traced));
 }
 
 }  // namespace

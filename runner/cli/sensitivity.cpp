@@ -165,12 +165,12 @@ Study* nextOf(std::vector<Study>& studies) {
 void print(const Study& study) {
     if (study.outcomes.empty()) return;
     const batch::Outcome& base = study.outcomes.front();
-    if (!base.error.empty()) fmt::print("{}: {}\n", study.experiment().id, base.error);
+    if (!base.error.empty()) say("{}: {}\n", study.experiment().id, base.error);
     for (std::size_t i = 0; i < base.claims.size(); ++i) {
-        fmt::print("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
-                   batch::dependence(study.outcomes, i), batch::restsOn(study.outcomes, i));
+        say("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
+            batch::dependence(study.outcomes, i), batch::restsOn(study.outcomes, i));
     }
-    fmt::print("{}\n", (study.folder / "sensitivity.md").string());
+    say("{}\n", (study.folder / "sensitivity.md").string());
 }
 
 }  // namespace

@@ -92,6 +92,26 @@ TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
               std::string::npos);
 }
 
+TEST_F(Compare, ACaseThatNeitherSideMeasuredWeighsMoreThanAnAlarm) {
+    const fs::path config =
+        writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\nmeasure: {lane: quality}\n");
+    const auto compared = [&](const std::string& set) {
+        fs::remove_all(out);
+        return mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software",
+                             "--out", out, program("old", 0), program("new", 0, set), config});
+    };
+    const ProcessResult both = compared("0.75");
+    EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+    EXPECT_NE(both.out.find("picture/flat: changed: "), std::string::npos) << both.out;
+    EXPECT_NE(both.out.find("status: failed on both sides: "), std::string::npos) << both.out;
+    // Where it is expected, the alarm is all there is to say.
+    folder.write("expect-software.yaml",
+                 "fails:\n  - {table: sweep/mock, at: {behaviour: throw}, status: error, reason: "
+                 "r, until: 2099-01-01}\n");
+    const ProcessResult expected = compared("0.75");
+    EXPECT_EQ(expected.exitCode, 1) << expected.out << expected.err;
+}
+
 TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
     const fs::path config = writeMockConfig(
         folder, "params: {behaviour: blank}\nmeasure: {lane: timing, repeats: 2}\n");

@@ -236,6 +236,25 @@ TEST(Faults, NoSuchDevice) {
     EXPECT_EQ(run.err.substr(0, 10), "gfxrepro: ");
 }
 
+/// It would stand in every line of the log, which could not be read any more.
+TEST(Titles, AreRefusedBeforeTheyAreMeasured) {
+    const TemporaryFolder folder;
+    const fs::path config = writeMockConfig(
+        folder, "sweep: {number: [1, 2], marker: [x, " + std::string(1'100'000, 'y') + "]}\n");
+    const std::string why =
+        "gfxrepro: " + config.string() +
+        ":5:37: a value of axis 'marker' has 1100000 bytes, its case's title 1100027; at most 4096 "
+        "are allowed\n";
+    EXPECT_EQ(mockGfxrepro({"check", config}).err, why);
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_EQ(run.err, why);
+    EXPECT_FALSE(fs::exists(dir));
+    writeMockConfig(folder, "sweep: {marker: [x, " + std::string(4000, 'y') + "]}\n");
+    EXPECT_EQ(mockGfxrepro({"check", config}).exitCode, 0);
+}
+
 TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(

@@ -145,11 +145,15 @@ TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
     parametersOf(printedConfig(folder), dir, {});
     auto plan = nlohmann::ordered_json::parse(readFile(dir + "/plan.json"));
     ASSERT_EQ(plan["experiments"][0].erase("paper"), 1U);
+    ASSERT_EQ(plan.erase("frozen_hash"), 1U);
     EXPECT_FALSE(plan["cases"][0].contains("paper")) << "what workers are told";
     writeFileAtomic(dir + "/plan.json", plan.dump());
     EXPECT_EQ(gfxrepro({"table", dir}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "cells measured at the printed parameters: 0 of 2, beside a measurement: 2 of 2\n");
+              "cells measured at the printed parameters: 0 of 2, beside a measurement: 2 of 2\n"
+              "warning: plan.json has no frozen_hash, as those of older versions have none: that "
+              "its assumptions and published parameters are those that were planned cannot be "
+              "verified\n");
     EXPECT_NE(readFile(dir + "/tables/demo2026-2.md")
                   .find("Whether it was measured at the printed parameters is not known"),
               std::string::npos);

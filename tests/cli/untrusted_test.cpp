@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -27,6 +29,14 @@ class Untrusted : public ::testing::Test {
         ASSERT_NE(at, std::string::npos);
         plan.replace(at, from.size(), to);
         writeFileAtomic(dir + "/plan.json", plan);
+    }
+    /// As older versions wrote it: its entries are not all hashed.
+    void dropFrozenHash() const {
+        const std::string plan = readFile(dir + "/plan.json");
+        const std::size_t at = plan.find(" \"frozen_hash\"");
+        ASSERT_NE(at, std::string::npos);
+        writeFileAtomic(dir + "/plan.json",
+                        plan.substr(0, at) + plan.substr(plan.find('\n', at) + 1));
     }
     void expectRefused(const std::vector<std::string>& command, const std::string& why) const {
         const ProcessResult result = mockGfxrepro(command);
@@ -141,6 +151,11 @@ TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
         expectRefused({"report", dir}, why);
         expectRefused({"run", "--resume", dir}, why);
         expectRefused({"plan", (folder.path() / "mock.yaml").string(), "--from", dir}, why);
+        // Nor need what does not read the log be without its tables.
+        const bool isLog = name == std::string_view("log.jsonl");
+        for (const char* command : {"table", "claims"}) {
+            EXPECT_EQ(mockGfxrepro({command, dir}).exitCode, isLog ? 0 : 2) << name;
+        }
         fs::resize_file(path, size);
     }
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
@@ -163,6 +178,7 @@ TEST_F(Untrusted, APlanNamesConfigsAndCases) {
     if (readFile(dir + "/plan.json").find(file) == std::string::npos) {
         GTEST_FAIL() << readFile(dir + "/plan.json");
     }
+    dropFrozenHash();
     replaceInPlan(file, "\"file\": \"" + other);
     expectRefused({"export", dir, "--out", out}, other + ": is no config");
     replaceInPlan("\"id\":\"", "\"id\":\"../../");
@@ -225,15 +241,123 @@ TEST_F(Untrusted, APlanWithOnlyIsWhatItsHashesSay) {
     const ProcessResult table = mockGfxrepro({"table", dir});
     EXPECT_EQ(table.exitCode, 0);
     EXPECT_EQ(table.out.find("warning"), std::string::npos);
-    // Those of older versions have no hash of what was kept.
-    const std::size_t at = whole.find(" \"kept_hash\"");
-    ASSERT_NE(at, std::string::npos);
-    writeFileAtomic(file, whole.substr(0, at) + whole.substr(whole.find('\n', at) + 1));
+    dropFrozenHash();
     EXPECT_THAT(mockGfxrepro({"table", dir}).out,
-                HasSubstr("warning: plan.json does not say what --only kept"));
+                HasSubstr("warning: plan.json has no frozen_hash, as those of older versions have "
+                          "none: that its experiments are those that were measured cannot be "
+                          "verified\n"));
+    expectRefused({"run", "--resume", dir}, "cannot be resumed: its plan has no frozen_hash: ");
+}
+
+/// Its own hash has cases and documents alone.
+TEST_F(Untrusted, AllThatAPlanSaysIsHashed) {
+    const std::string config = writeMockConfig(
+        folder, "params: {number: 1}\nassumptions: {number: {range: [1, 2], why: open}}\n");
+    fs::remove_all(dir);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--shard", "1/1", "--device", "software", "--out", dir})
+                  .exitCode,
+              0);
+    const std::string file = dir + "/plan.json", whole = readFile(file);
+    const std::pair<std::string, std::string> edits[] = {
+        {"\"value\": \"1\"", "\"value\": \"2\""},          // assumed
+        {"\"file\": \"", "\"file\": \"/elsewhere"},        // of the experiment
+        {"\"count\": 1", "\"count\": 2"},                  // shard
+        {"\"device\": \"software", "\"device\": \"auto"},  // request
+    };
+    for (const auto& [from, to] : edits) {
+        replaceInPlan(from, to);
+        for (const std::vector<std::string>& command :
+             {std::vector<std::string>{"table", dir}, {"run", "--resume", dir}}) {
+            expectRefused(command, file +
+                                       ": the experiments, their cases or the profile are not "
+                                       "those that were planned: plan.json was changed\n");
+        }
+        writeFileAtomic(file, whole);
+    }
+    dropFrozenHash();
+    replaceInPlan("\"value\": \"1\"", "\"value\": \"2\"");
+    EXPECT_THAT(mockGfxrepro({"table", dir}).out,
+                HasSubstr("that its assumptions and published parameters are those that were "
+                          "planned cannot be verified\n"));
+    // A merge does not make it whole again.
+    EXPECT_EQ(mockGfxrepro({"merge", out, dir}).exitCode, 0);
+    expectRefused({"run", "--resume", out}, "cannot be resumed: its plan has no frozen_hash: ");
+}
+
+/// The hash of all is what tells it: an edit that says that the plan was cut by --only took a case
+/// away, and the run that measured the rest hashed it anew.
+TEST_F(Untrusted, APlanWithoutItsHashIsNotMeasured) {
+    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
+    const std::string submitted = folder.path() / "submitted";
+    ASSERT_EQ(mockGfxrepro({"submit", config, "--engine", "commands", "--shards", "1", "--device",
+                            "software", "--out", submitted})
+                  .exitCode,
+              0);
+    const std::string file = submitted + "/submitted-plan.json";
+    auto plan = nlohmann::ordered_json::parse(readFile(file));
+    plan.erase("frozen_hash");
+    plan["request"]["only"] = {"number=1"};
+    plan["cases"].erase(1);
+    writeFileAtomic(file, plan.dump());
+    expectRefused({"run", "--plan", file, "--out", out},
+                  file +
+                      ": cannot be measured: its plan has no frozen_hash: that it is as it was "
+                      "made cannot be verified; submit again, to another folder\n");
+    EXPECT_FALSE(fs::exists(out));
+}
+
+/// GitHub's runner takes what begins a line with "::", and what has "##[" anywhere, for a command.
+TEST_F(Untrusted, NoTextIsACommandToGitHub) {
+    const std::string stop = "::stop-commands::abc";
+    const auto expectNone = [&](const ProcessResult& result) {
+        for (const std::string& line : split(result.out + result.err, '\n')) {
+            EXPECT_FALSE(trimmed(line).starts_with("::stop")) << line;
+            EXPECT_EQ(line.find("##["), line.npos) << line;
+            EXPECT_EQ(line.find('\x1B'), line.npos) << line;
+        }
+    };
+    const auto row = [&](int process, const std::string& table, const std::string& message) {
+        report::Record row = rowsOf(dir, "number")[0];
+        row.process = process;
+        row.table = table;
+        row.status = report::Status::Crash;
+        row.message = message;
+        return row;
+    };
+    const std::string other = folder.path() / "other";
+    fs::copy(dir, other, fs::copy_options::recursive);
+    report::RecordWriter(other + "/records.csv")
+        .append(
+            {row(1, "sweep/mock", "x\n" + stop), row(2, "\u00A0" + stop, "##[add-mask]y\x1B[2J")});
+    const ProcessResult compared = mockGfxrepro({"compare", dir, other, "--out", out});
+    EXPECT_THAT(compared.out, HasSubstr("crash: x\n| ::stop-commands::abc\n"));
+    EXPECT_THAT(compared.out, HasSubstr("\u00A0: :stop-commands::abc"));
+    EXPECT_THAT(compared.out, HasSubstr("# #[add-mask]y?[2J\n"));
+    expectNone(compared);
+    const std::string config = writeMockConfig(
+        folder, "sweep: {marker: [x, \"y\\n" + stop + "\"]}\nparams: {behaviour: throw}\n");
+    const ProcessResult plan = mockGfxrepro({"plan", config, "--device", "software"});
+    EXPECT_THAT(plan.out, HasSubstr("y\n| ::stop"));
+    expectNone(plan);
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--out", folder.path() / "lines"});
+    EXPECT_THAT(run.err, HasSubstr("y\n| ::stop"));
+    expectNone(run);
+    auto manifest = nlohmann::ordered_json::parse(readFile(dir + "/manifest.json"));
+    manifest["notes"] = {"x\n" + stop};
+    writeFileAtomic(dir + "/manifest.json", manifest.dump());
+    for (const char* command : {"table", "claims", "report"}) {
+        expectRefused({command, dir}, "'/notes' is array; expected lines of text\n");
+    }
+    manifest["notes"] = {stop + " ##[x]"};
+    writeFileAtomic(dir + "/manifest.json", manifest.dump());
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_THAT(table.out, HasSubstr("warning: : :stop-commands::abc # #[x]\n"));
+    expectNone(table);
 }
 
 TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
+    dropFrozenHash();
     replaceInPlan("\"device\": \"", "\"device\": \"$(touch y)");
     const ProcessResult result = mockGfxrepro({"export", dir, "--out", out});
     ASSERT_EQ(result.exitCode, 0) << result.err;

@@ -147,6 +147,23 @@ TEST(Merge, AShardThatMovedTellsTheMachineOfItsTimes) {
               "on another node");
 }
 
+TEST(Merge, LogsAreNotLargerThanWhatIsRead) {
+    const TemporaryFolder folder;
+    std::vector<batch::ShardRun> shards;
+    std::string expected;
+    for (const char* name : {"a", "b"}) {
+        const std::string line = R"({"event":"case","cost":{"load_s":1.5},"deep":[[1]],"output":")";
+        const std::string whole = line + std::string(100, name[0]) + "\"}\n";
+        const std::string cut = R"({"event":"case","cost":{"load_s":1.5},"output":")"
+                                "[left out: the logs of the shards are large]\"}\n";
+        folder.write(std::string(name) + "/log.jsonl", whole + "{\"event\":\"x\"}\n" + whole);
+        shards.push_back({folder.path() / name, {}});
+        expected += whole + "{\"event\":\"x\"}\n" + cut;
+    }
+    EXPECT_EQ(batch::mergedLog(shards, 600), expected);
+    EXPECT_EQ(batch::mergedLog(shards).size(), expected.size() + 2 * (100 - 44 + 13));
+}
+
 /// A run directory with these rows.
 batch::RunDirectory directoryWith(const TemporaryFolder& folder, const batch::ShardRun& shard) {
     batch::RunDirectory directory = batch::RunDirectory::create(folder.path());
