@@ -239,29 +239,8 @@ TEST(Weekend, WhatAStopRuleCutShortWasSurvived) {
     EXPECT_THAT(statusLines(dir), testing::ElementsAre("throw: error (nothing works)"));
 }
 
-TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
-    const TemporaryFolder folder;
-    const std::string config =
-        writeMockConfig(folder, "params: {pause_ms: 1000}\nmeasure: {time_limit_s: 2}\n");
-    const std::string dir = folder.path() / "run";
-    BackgroundProgram run(
-        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
-    waitForStarts(dir, 1);
-    const std::vector<pid_t> workers = backgroundWorkers();
-    EXPECT_EQ(workers.size(), 1U);
-    const auto signalAll = [&](int number) {
-        run.signal(number);
-        for (const pid_t worker : workers) ::kill(worker, number);
-    };
-    signalAll(SIGSTOP);
-    std::this_thread::sleep_for(std::chrono::seconds(3));
-    signalAll(SIGCONT);
-    EXPECT_EQ(run.wait().exitCode, 0);
-    EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
-    EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
-}
-
-TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
+/// Runs a case of a second, with a limit of two, whose first worker `suspend` holds up for longer.
+void expectNoTimeout(const std::function<void(BackgroundProgram&, pid_t)>& suspend) {
     const TemporaryFolder folder;
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 1000}\nmeasure: {time_limit_s: 2}\n");
@@ -271,13 +250,29 @@ TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
     waitForStarts(dir, 1);
     const std::vector<pid_t> workers = backgroundWorkers();
     ASSERT_EQ(workers.size(), 1U);
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    ::kill(workers.front(), SIGSTOP);
-    std::this_thread::sleep_for(std::chrono::seconds(4));
-    ::kill(workers.front(), SIGCONT);
+    suspend(run, workers.front());
     EXPECT_EQ(run.wait().exitCode, 0);
     EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
     EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
+}
+
+TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
+    expectNoTimeout([](BackgroundProgram& run, pid_t worker) {
+        for (const int number : {SIGSTOP, SIGCONT}) {
+            run.signal(number);
+            ::kill(worker, number);
+            if (number == SIGSTOP) std::this_thread::sleep_for(std::chrono::seconds(3));
+        }
+    });
+}
+
+TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
+    expectNoTimeout([](BackgroundProgram&, pid_t worker) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        ::kill(worker, SIGSTOP);
+        std::this_thread::sleep_for(std::chrono::seconds(4));
+        ::kill(worker, SIGCONT);
+    });
 }
 
 TEST(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
