@@ -93,7 +93,8 @@ std::vector<Variation> variationsOf(const config::Assumption& assumption,
     std::vector<Json> values(range.begin(), range.end());
     if (range.size() == 2 && range[0].is_number() && range[1].is_number()) {
         values.clear();
-        const bool isInteger = !current || current->tryInteger().has_value();
+        const bool isInteger = range[0].is_number_integer() && range[1].is_number_integer() &&
+                               (!current || current->tryInteger().has_value());
         for (const double value :
              pointsOf(range[0].get<double>(), range[1].get<double>(), points, isInteger)) {
             values.emplace_back(value);
