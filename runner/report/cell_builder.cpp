@@ -281,9 +281,15 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
 
 }  // namespace
 
+int timePower(std::string_view metric) {
+    if (metric.ends_with("frame_rate") || metric.ends_with("_per_second")) return -1;
+    const bool isTime =
+        metric.ends_with("_ms") || metric.find("_us_per_") != std::string_view::npos;
+    return isTime ? 1 : 0;
+}
+
 bool isTimeMetric(std::string_view metric) {
-    return metric.ends_with("_ms") || metric.ends_with("frame_rate") ||
-           metric.ends_with("_per_second") || metric.find("_us_per_") != std::string_view::npos;
+    return timePower(metric) != 0;
 }
 
 Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
@@ -311,6 +317,8 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
     cell.isTime =
         isTimeMetric(query.metric) || (query.shareOf && isTimeMetric(query.shareOf->metric));
+    cell.timePower =
+        timePower(query.metric) - (query.shareOf ? timePower(query.shareOf->metric) : 0);
     Gathered gathered = gather(query, cases);
     const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();

@@ -1,6 +1,7 @@
 #include "runner/report/claim_reader.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "runner/core/text.h"
@@ -115,6 +116,47 @@ bool ClaimReader::readsTime() const {
         });
     };
     return std::ranges::any_of(operands_, isTime);
+}
+
+/// By which factor the operand grows as all times double, where its cells are `base` and above; a
+/// zero by any.
+std::optional<double> ClaimReader::growthAsTimesDouble(Operand& operand, std::size_t row,
+                                                       double base) {
+    std::vector<double> before, after;
+    for (const std::size_t column : operand.columns()) {
+        base *= 1.7;  // no two alike: their difference is no 0
+        before.push_back(base);
+        after.push_back(std::ldexp(base, table_.rows[row].cells[column].timePower));
+    }
+    const double first = operand.evaluate(before), second = operand.evaluate(after);
+    if (first == 0.0 && second == 0.0) return std::nullopt;
+    return second / first;
+}
+
+bool ClaimReader::asksForATimeAsSuch() {
+    using Type = ClaimSpec::Type;
+    const bool isOfValues =
+        claim_.type == Type::Bound || claim_.type == Type::Exact || claim_.type == Type::Tolerance;
+    const bool isOfEach = claim_.type == Type::Trend || claim_.type == Type::Independent;
+    const auto areAlike = [](const std::vector<double>& growths) {
+        constexpr double kTolerance = 1e-9;
+        return std::ranges::all_of(growths, [&](double growth) {
+            return std::abs(growth - growths.front()) < kTolerance;
+        });
+    };
+    for (const std::size_t row : rows()) {
+        std::vector<double> growths;
+        if (isOfValues) growths.push_back(1.0);
+        for (Operand& operand : operands_) {
+            if (isOfEach) growths.clear();
+            for (const double base : {1.0, 100.0}) {  // a sum with a number grows by less
+                const std::optional<double> growth = growthAsTimesDouble(operand, row, base);
+                if (growth) growths.push_back(*growth);
+            }
+            if (!areAlike(growths)) return true;
+        }
+    }
+    return false;
 }
 
 std::vector<const Cell*> ClaimReader::timeCells() const {

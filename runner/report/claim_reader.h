@@ -48,6 +48,9 @@ class ClaimReader {
     bool isAtPrintedParameters() const;
     /// Whether some cell that it may read is a time or a rate of time.
     bool readsTime() const;
+    /// Whether what it asks could come out otherwise on a machine on which every time is twice as
+    /// long: a time held against a number, or compared with what is no time.
+    bool asksForATimeAsSuch();
 
   private:
     [[noreturn]] void fail(const std::string& message) const {
@@ -57,6 +60,7 @@ class ClaimReader {
     std::size_t rowAxis(const std::string& name, const char* key) const;
     std::vector<bool> axesAlongX();
     std::optional<double> expected(std::size_t operand, std::size_t row);
+    std::optional<double> growthAsTimesDouble(Operand& operand, std::size_t row, double base);
     /// Empty if the operand can be read; else why not.
     std::string problemOf(const Operand& operand, std::size_t row) const;
     bool isPlanned(const ClaimPart& part, std::size_t row) const;

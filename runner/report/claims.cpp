@@ -276,34 +276,6 @@ bool isReadable(const ClaimSpec& claim, const Table& table) {
 
 }  // namespace
 
-namespace {
-
-/// Whether a claim about times holds them against a number, so that a faster machine decides it:
-/// quotients of times do not.
-bool asksForATimeAsSuch(const ClaimSpec& claim, const Table& table) {
-    using Type = ClaimSpec::Type;
-    const auto isQuotient = [](const std::string& operand) {
-        return operand.find('/') != std::string::npos;
-    };
-    const auto isNumber = [&](const std::string& operand) {
-        const bool isColumn =
-            std::ranges::find(table.columns, operand, &TableColumn::label) != table.columns.end();
-        return !isColumn && parseDouble(operand).has_value();
-    };
-    switch (claim.type) {
-        case Type::Bound:
-        case Type::Exact:
-        case Type::Tolerance:
-            return !std::ranges::all_of(claim.operands, isQuotient);
-        case Type::Order:
-            return std::ranges::any_of(claim.operands, isNumber);
-        default:
-            return false;
-    }
-}
-
-}  // namespace
-
 void requireProvenance(const config::Experiment& experiment, const Table& table) {
     const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
     Table read;  // outlives its reader
@@ -318,13 +290,13 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
             complain("requires a number and needs 'bound_from': print | text | ours");
         }
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
-        const ClaimReader reader(claim, read);
+        ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
         if (reader.readsTime() && !claim.timeKind) {
             complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
         }
         if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
-        if (claim.timeKind == ClaimSpec::TimeKind::Algorithmic && asksForATimeAsSuch(claim, read)) {
+        if (claim.timeKind == ClaimSpec::TimeKind::Algorithmic && reader.asksForATimeAsSuch()) {
             complain(
                 "holds a time against a number, which no count of work decides; its 'kind' "
                 "is architectural | absolute");

@@ -19,6 +19,8 @@ struct Measured : Summary {
     std::string low, high;  // and the ends of its bounds; empty without any
 };
 
+/// What a metric does as all times double: 1 doubles, -1 halves (a rate), 0 stays.
+int timePower(std::string_view metric);
 /// Whether a metric is a time or a number per time: what claims of a `kind` are about.
 bool isTimeMetric(std::string_view metric);
 
@@ -52,6 +54,7 @@ struct Cell {
     std::vector<std::string> caseIds;                  // whose records it takes
     std::string metric;   // what it shows; empty of a share, and, as its unit, where it is scaled
     bool isTime = false;  // a time, a rate of time, or a share of one
+    int timePower = 0;    // of its metric; a share of times stays as they double
     std::string unit;     // of the records, if they agree; "%" of a share
     /// It was measured at what the paper measured at (printed_parameters.h). Never without a
     /// measurement, nor in a run whose plan does not know the printed parameters.

@@ -205,7 +205,8 @@ TEST(Claims, KnownVerdictsAndNews) {
 std::string provenanceError(const std::string& claim, bool isSweep = false) {
     config::Experiment experiment = experimentFrom(
         "sweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: {metric: "
-        "bytes}}}, rows: [scene, e], columns: {a: {pass: p}}}\nclaims:\n  C: {says: s, " +
+        "bytes}, often: {metric: frame_rate}}}, rows: [scene, e], columns: {a: {pass: p}, n: "
+        "{metric: bytes}}}\nclaims:\n  C: {says: s, " +
         claim + "}\n");
     if (isSweep) experiment.kind = config::Experiment::Kind::Sweep;
     try {
@@ -240,6 +241,16 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(provenanceError("bound: a, below: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime), "no error");
+    // What would come out otherwise if all times were twice as long.
+    EXPECT_EQ(provenanceError("bound: a / n, below: 100, bound_from: text" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < n" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < a + 5" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a / n < 2 * a / n" + ofTime), "no error");
+    EXPECT_EQ(provenanceError("order: 0 < a - a / 2" + ofTime), "no error");
+    EXPECT_EQ(provenanceError("trend: a - 5, over: n, direction: increasing" + ofTime), isAbsolute);
+    EXPECT_EQ(
+        provenanceError("across: e, order: slow < often, origin: document, kind: algorithmic"),
+        isAbsolute);
     // A sweep's are ours, and its times no others.
     EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}", true), "no error");
     EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}", true),
