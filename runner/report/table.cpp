@@ -73,19 +73,20 @@ PrintedColumns findColumns(const config::Printed& printed, const Table& table) {
     };
     for (const std::string& axis : table.rowAxes) found.axes.push_back(find(axis));
     for (const TableColumn& column : table.columns) found.columns.push_back(find(column.label));
-    for (const std::string& name : printed.header) {
-        const bool isColumn = std::any_of(table.columns.begin(), table.columns.end(),
-                                          [&](const auto& column) { return column.label == name; });
-        const bool isAxis =
-            std::find(table.rowAxes.begin(), table.rowAxes.end(), name) != table.rowAxes.end();
-        if (isColumn || isAxis) continue;
-        std::vector<std::string> known = table.rowAxes;
-        for (const TableColumn& column : table.columns) known.push_back(column.label);
-        throw Error(printed.location, "printed column '" + name +
-                                          "' is neither a row axis nor a column" +
-                                          suggestion(name, known) + " (" + joined(known) + ")");
-    }
     return found;
+}
+
+/// The columns of `printed` that the table has not: a profile or a sweep took them away.
+std::vector<std::string> absentColumns(const config::Printed& printed, const Table& table) {
+    std::vector<std::string> absent;
+    for (const std::string& name : printed.header) {
+        if (std::ranges::find(table.rowAxes, name) != table.rowAxes.end()) continue;
+        if (std::ranges::find(table.columns, name, &TableColumn::label) != table.columns.end()) {
+            continue;
+        }
+        absent.push_back(name);
+    }
+    return absent;
 }
 
 bool isRowOf(const std::vector<std::string>& printedRow, const PrintedColumns& found,
@@ -103,6 +104,10 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
     const config::Printed& printed = experiment.printed;
     if (printed.rows.empty()) return;
     const PrintedColumns found = findColumns(printed, table);
+    const std::vector<std::string> absent = absentColumns(printed, table);
+    if (!absent.empty()) {
+        table.notes.push_back("printed columns that are not part of this run: " + joined(absent));
+    }
     const auto layInto = [&](TableRow& row, const std::vector<std::string>& printedRow) {
         for (std::size_t i = 0; i < columns.size(); ++i) {
             if (!found.columns[i] || printedRow[*found.columns[i]].empty()) continue;

@@ -148,6 +148,15 @@ TEST(Table, PrintedStandsBesideMeasured) {
                 ElementsAre("printed, but not part of this run: models/hugo, 16928, 9.7"));
 }
 
+TEST(Table, PrintedColumnsThatASweepTookAwayAreNoted) {
+    config::Experiment experiment = experimentFrom(withPrinted());
+    experiment.printed.header.push_back("clear_ms");
+    for (auto& row : experiment.printed.rows) row.push_back("1");
+    const Table table = buildTable(experiment, duckAndBunny().records());
+    EXPECT_EQ(table.rows[0].cells[0].printed, "1254");
+    EXPECT_EQ(table.notes.at(0), "printed columns that are not part of this run: clear_ms");
+}
+
 TEST(Table, CasesNotRunAreMissing) {
     RecordMaker maker;
     maker.beginCase("models/bunny").add("gpu_time_ms", {4.0}, "draw");
