@@ -60,6 +60,8 @@ struct HeightMap {
     Box bounds() const;
 };
 
+/// Of files: fewer samples span no ground.
+constexpr int kMinHeightMapSide = 2;
 /// Of heights in memory, and of those in a file.
 constexpr int kMaxHeightMapSide = 16385, kMaxHeightFileSide = 65537;
 /// Maps with longer sides are kept in a file where there is a choice: 64 MiB of heights.

@@ -133,9 +133,10 @@ HeightMap loadHeightMap(const fs::path& path, const HeightMapUnits& units) {
     HeightMap map = withoutHeights(rows.source(), units);
     if (std::max(map.sizeSamples.x, map.sizeSamples.y) > kMaxHeightMapSide) {
         throw Error(
-            fmt::format("{}: a height map of {} x {} samples; allowed in memory: 1 to {} a "
+            fmt::format("{}: a height map of {} x {} samples; allowed in memory: {} to {} a "
                         "side",
-                        path.string(), map.sizeSamples.x, map.sizeSamples.y, kMaxHeightMapSide));
+                        path.string(), map.sizeSamples.x, map.sizeSamples.y, kMinHeightMapSide,
+                        kMaxHeightMapSide));
     }
     map.heightsM.resize(static_cast<std::size_t>(map.sizeSamples.x) *
                         static_cast<std::size_t>(map.sizeSamples.y));

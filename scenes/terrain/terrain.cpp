@@ -119,8 +119,9 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
 
 Scene terrain(config::Params& params, std::uint64_t seed) {
     FractalTerrain shape;
-    shape.sizeSamples = params.getInt("size_samples", shape.sizeSamples,
-                                      {"samples a side", "", 1, kMaxHeightFileSide});
+    shape.sizeSamples =
+        params.getInt("size_samples", shape.sizeSamples,
+                      {"samples a side", "", kMinHeightMapSide, kMaxHeightFileSide});
     shape.spacingM = static_cast<float>(params.getDouble(
         "spacing_m", static_cast<double>(shape.spacingM), {"between samples", "m", 1e-3, 1e5}));
     shape.reliefM =
