@@ -75,6 +75,13 @@ void refine(Scene& scene, const SceneSource& source) {
 /// The wanted number of complete points instead of meshes.
 void turnIntoPoints(Scene& scene, const SceneSource& source) {
     const auto count = static_cast<std::size_t>(*source.points);
+    const std::size_t all = scene.points.positions.size();
+    if (all > 0 && count > all) {
+        throw Error(
+            source.where,
+            fmt::format("{} points wanted of {}, a cloud of {}; allowed: no more than it has",
+                        count, source.file, all));
+    }
     try {
         scene.points = scene.points.positions.empty() ? sampledPoints(scene, count)
                                                       : thinnedPoints(scene.points, count);

@@ -67,7 +67,8 @@ std::size_t fileBytes(glm::ivec2 sizeSamples) {
 }
 
 [[noreturn]] void fail(const char* what, const fs::path& path) {
-    throw Error(fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
+    throw UnwritableError(
+        fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
 }
 
 /// An open file, closed when it goes out of scope.
@@ -248,7 +249,8 @@ std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
     std::error_code failure;
     fs::create_directories(folder, failure);
     if (failure) {
-        throw Error(fmt::format("cannot create {}: {}", folder.string(), failure.message()));
+        throw UnwritableError(
+            fmt::format("cannot create {}: {}", folder.string(), failure.message()));
     }
     const OpenFile lock(folder / "lock", O_RDWR | O_CREAT);
     lock.lock();

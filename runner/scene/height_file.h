@@ -10,9 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "runner/core/error.h"
 #include "runner/core/files.h"
 
 namespace gfxrepro::scene {
+
+/// The folder of a height file cannot be written.
+class UnwritableError : public Error {
+    using Error::Error;
+};
 
 /// The whole map and, for the tiles of coarser levels, every 2nd, 4th, … sample of it once more,
 /// each level row by row. The file is mapped: what is looked at becomes resident until release(),
@@ -36,7 +42,8 @@ class HeightFile {
 
     /// Maps `folder`/<key>.heights, made first where it is not there, is cut off, or is another
     /// version's: a few rows at a time, under a temporary name that is renamed when it is whole, by
-    /// one process while others wait. Throws Error where the folder cannot be written.
+    /// one process while others wait. Throws UnwritableError where the folder cannot be written,
+    /// and what the makers throw.
     static std::shared_ptr<const HeightFile> openOrBuild(const std::filesystem::path& folder,
                                                          const std::string& key,
                                                          glm::ivec2 sizeSamples,

@@ -1,6 +1,9 @@
 #include "runner/scene/height_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "runner/core/error.h"
@@ -50,6 +53,16 @@ Box HeightMap::bounds() const {
     box.add(glm::vec3(static_cast<float>(sizeSamples.x - 1) * spacingM, ends.highestM,
                       static_cast<float>(sizeSamples.y - 1) * spacingM));
     return box;
+}
+
+void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const UnwritableError& why) {
+    if (std::max(sizeSamples.x, sizeSamples.y) > kMaxHeightMapSide) {
+        throw Error(
+            fmt::format("{}: {} x {} samples have no file: {}; allowed without one, in memory: at "
+                        "most {} a side (1 GiB)",
+                        name, sizeSamples.x, sizeSamples.y, why.what(), kMaxHeightMapSide));
+    }
+    fmt::print(stderr, "warning: {} is held in memory, all of it: {}\n", name, why.what());
 }
 
 Mesh heightMapMesh(const HeightMap& map, int maxSamples) {

@@ -60,6 +60,8 @@ struct HeightMap {
     Box bounds() const;
 };
 
+/// Of files: fewer samples span no ground.
+constexpr int kMinHeightMapSide = 2;
 /// Of heights in memory, and of those in a file.
 constexpr int kMaxHeightMapSide = 16385, kMaxHeightFileSide = 65537;
 /// Maps with longer sides are kept in a file where there is a choice: 64 MiB of heights.
@@ -80,7 +82,7 @@ HeightMap loadHeightMap(const std::filesystem::path& path, const HeightMapUnits&
 /// The same in a file of `folder`, where the sides are longer than kMostSamplesInMemory: made there
 /// from a band of rows at a time (and those beside it, where there are holes: some 2 KiB of memory
 /// a column) unless `key`, which stands for the file and the units, is there. In memory where the
-/// folder cannot be written, which throws Error beyond kMaxHeightMapSide.
+/// folder cannot be written (settleForMemory).
 HeightMap loadHeightMapInFile(const std::filesystem::path& path, const HeightMapUnits& units,
                               const std::filesystem::path& folder, const std::string& key,
                               int mostSamplesInMemory = kMostSamplesInMemory);
@@ -94,10 +96,13 @@ void fillHoles(HeightMap& map);
 /// between the old samples, at most `detailM` up or down: a stand-in for a finer survey.
 HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed);
 /// The same in a file of `folder`, made there a few rows at a time unless `key`, which stands for
-/// all of these, is there. In memory where the folder cannot be written, which throws Error beyond
-/// kMaxHeightMapSide.
+/// all of these, is there. In memory where the folder cannot be written (settleForMemory).
 HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
                           const std::filesystem::path& folder, const std::string& key);
+
+/// Where the file of a map cannot be written: says in the log that the map is held in memory
+/// instead, or throws Error where its sides are longer than kMaxHeightMapSide.
+void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const UnwritableError& why);
 
 /// Triangles over every n-th sample (and the last), at most `maxSamples` a side, for previews.
 Mesh heightMapMesh(const HeightMap& map, int maxSamples = 513);

@@ -1,8 +1,6 @@
 // Height maps from files: in memory, and larger ones by bands of rows into a file of the cache.
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -133,9 +131,10 @@ HeightMap loadHeightMap(const fs::path& path, const HeightMapUnits& units) {
     HeightMap map = withoutHeights(rows.source(), units);
     if (std::max(map.sizeSamples.x, map.sizeSamples.y) > kMaxHeightMapSide) {
         throw Error(
-            fmt::format("{}: a height map of {} x {} samples; allowed in memory: 1 to {} a "
+            fmt::format("{}: a height map of {} x {} samples; allowed in memory: {} to {} a "
                         "side",
-                        path.string(), map.sizeSamples.x, map.sizeSamples.y, kMaxHeightMapSide));
+                        path.string(), map.sizeSamples.x, map.sizeSamples.y, kMinHeightMapSide,
+                        kMaxHeightMapSide));
     }
     map.heightsM.resize(static_cast<std::size_t>(map.sizeSamples.x) *
                         static_cast<std::size_t>(map.sizeSamples.y));
@@ -157,10 +156,8 @@ HeightMap loadHeightMapInFile(const fs::path& path, const HeightMapUnits& units,
             folder, key, map.sizeSamples,
             [&](int, int count, float* heightsM) { conversion.makeRows(count, heightsM); },
             [&] { return conversion.prepare(); });
-    } catch (const Error& error) {
-        if (std::max(map.sizeSamples.x, map.sizeSamples.y) > kMaxHeightMapSide) throw;
-        fmt::print(stderr, "warning: {} is held in memory, all of it: {}\n", path.string(),
-                   error.what());
+    } catch (const UnwritableError& error) {
+        settleForMemory(path.string(), map.sizeSamples, error);
         return loadHeightMap(path, units);
     }
     map.filledCount = map.file->filledCount();

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <tbb/parallel_for.h>
-#include <cstdio>
 
 #include <algorithm>
 #include <cmath>
@@ -178,10 +177,8 @@ HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, 
             HeightFile::inParallel(result.sizeSamples.x,
                                    [&](int row, float* heights) { rows.makeRow(row, heights); }),
             [] { return std::size_t{0}; });
-    } catch (const Error& error) {
-        if (sizeSamples > kMaxHeightMapSide) throw;
-        fmt::print(stderr, "warning: a map of {0} x {0} is held in memory, all of it: {1}\n",
-                   sizeSamples, error.what());
+    } catch (const UnwritableError& error) {
+        settleForMemory("a resampled height map", result.sizeSamples, error);
         return resampled(map, sizeSamples, detailM, seed);
     }
     return result;

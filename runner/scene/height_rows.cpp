@@ -23,11 +23,10 @@ namespace gfxrepro::scene {
 namespace fs = std::filesystem;
 
 void checkHeightMapSize(std::int64_t width, std::int64_t height, const std::string& name) {
-    if (width >= 1 && height >= 1 && width <= kMaxHeightFileSide && height <= kMaxHeightFileSide) {
-        return;
-    }
-    throw Error(fmt::format("{}: a height map of {} x {} samples; allowed: 1 to {} a side", name,
-                            width, height, kMaxHeightFileSide));
+    const auto [least, most] = std::minmax(width, height);
+    if (least >= kMinHeightMapSide && most <= kMaxHeightFileSide) return;
+    throw Error(fmt::format("{}: a height map of {} x {} samples; allowed: {} to {} a side", name,
+                            width, height, kMinHeightMapSide, kMaxHeightFileSide));
 }
 
 namespace {
@@ -41,13 +40,14 @@ class PngHeightRows : public HeightRows {
             throw Error(fmt::format("{}: {} channels; a height map is grey, with or without alpha",
                                     path.string(), rows_.channels()));
         }
+        checkHeightMapSize(rows_.width(), rows_.height(), path.string());
         sizeSamples = {rows_.width(), rows_.height()};
         if (rows_.isInterlaced() && std::max(rows_.width(), rows_.height()) > kMaxHeightMapSide) {
             throw Error(
-                fmt::format("{}: interlaced, {} x {} samples; allowed: 1 to {} a side, as "
-                            "it is decoded whole, and 1 to {} where it is not interlaced",
-                            path.string(), rows_.width(), rows_.height(), kMaxHeightMapSide,
-                            kMaxHeightFileSide));
+                fmt::format("{0}: interlaced, {1} x {2} samples; allowed: {3} to {4} a side, as "
+                            "it is decoded whole, and {3} to {5} where it is not interlaced",
+                            path.string(), rows_.width(), rows_.height(), kMinHeightMapSide,
+                            kMaxHeightMapSide, kMaxHeightFileSide));
         }
         isEightBit = rows_.bitDepth() != 16;
         canBeNan = rows_.channels() == 2;

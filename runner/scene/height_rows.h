@@ -24,7 +24,8 @@ class HeightRows {
     bool isEightBit = false;
 };
 
-/// Throws Error for sides that are not 1 … kMaxHeightFileSide; `name` stands in the message.
+/// Throws Error for sides that are not kMinHeightMapSide … kMaxHeightFileSide; `name` stands in the
+/// message.
 void checkHeightMapSize(std::int64_t width, std::int64_t height, const std::string& name);
 
 /// By extension (loadHeightMap()). Reads what stands before the first row, and throws Error for

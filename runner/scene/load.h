@@ -9,6 +9,10 @@
 
 namespace gfxrepro::scene {
 
+/// No coordinate of a file's vertices and points, where they stand in the world, is farther from 0:
+/// the fourth power of a length, which the square of an area is, is still a float.
+constexpr float kMaxCoordinate = 1e9F;
+
 /// Throws Error for a file that loadScene() does not know by its extension.
 void requireKnownExtension(const std::filesystem::path& path);
 

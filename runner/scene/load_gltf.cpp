@@ -22,6 +22,7 @@ namespace {
 struct Parts {
     std::vector<int> meshes;  // into Scene::meshes
     std::vector<PointCloud> clouds;
+    Box bounds;
 };
 
 std::vector<glm::uvec3> trianglesOf(const std::vector<std::uint32_t>& indices, int mode) {
@@ -80,6 +81,9 @@ class SceneBuilder {
             if (primitive.attributes.count("POSITION") == 0 || !(isPoints || isTriangles)) continue;
             const std::string where = fmt::format("mesh {} primitive {}", meshIndex, i);
             Mesh mesh = meshOf(primitive, where);
+            const Box bounds = mesh.bounds();
+            checkReach(glm::mat4(1.0F), bounds, where);
+            parts.bounds.add(bounds);
             if (isPoints) {
                 parts.clouds.push_back({std::move(mesh.positions),
                                         std::move(mesh.normals),
@@ -217,6 +221,17 @@ class SceneBuilder {
         }
     }
 
+    /// No corner of the box of a node's or a primitive's coordinates may lie too far away.
+    void checkReach(const glm::mat4& matrix, const Box& box, const std::string& where) const {
+        for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
+            const glm::bvec3 isMax(corner & 1, corner & 2, corner & 4);
+            const glm::vec3 at(matrix * glm::vec4(glm::mix(box.min, box.max, isMax), 1.0F));
+            if (glm::all(glm::lessThanEqual(glm::abs(at), glm::vec3(kMaxCoordinate)))) continue;
+            fail(fmt::format("{}: its box reaches to ({}, {}, {}); {:g} to {:g} are allowed", where,
+                             at.x, at.y, at.z, -kMaxCoordinate, kMaxCoordinate));
+        }
+    }
+
     glm::mat4 localMatrix(const tinygltf::Node& node, int index) const {
         const auto has = [&](const std::vector<double>& values, std::size_t count) {
             if (!values.empty() && values.size() != count) {
@@ -252,6 +267,7 @@ class SceneBuilder {
         for (const glm::mat4& nodeFromInstance : instanceMatrices(node)) {
             const glm::mat4 worldFromMesh = worldFromNode * nodeFromInstance;
             checkFinite(worldFromMesh, index);
+            checkReach(worldFromMesh, parts.bounds, fmt::format("node {}", index));
             accessors_.charge(parts.meshes.size(), sizeof(Instance));
             for (const int mesh : parts.meshes) scene_.instances.push_back({mesh, worldFromMesh});
             for (const PointCloud& cloud : parts.clouds) addPoints(cloud, worldFromMesh);

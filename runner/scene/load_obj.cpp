@@ -2,6 +2,7 @@
 // corners become a mesh whose vertices are the different (position, texcoord, normal) triples.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 
@@ -84,13 +85,22 @@ class ObjParser {
   private:
     /// "v x y z", "v x y z w", "v x y z r g b".
     void parseVertex() {
-        const float x = lines_.number();
-        const float y = lines_.number();
-        content_.positions.emplace_back(x, y, lines_.number());
+        const float x = coordinate();
+        const float y = coordinate();
+        content_.positions.emplace_back(x, y, coordinate());
         const auto red = lines_.optionalNumber();
         const auto green = red ? lines_.optionalNumber() : std::nullopt;
         const auto blue = green ? lines_.optionalNumber() : std::nullopt;
         if (blue) content_.colors.emplace_back(*red, *green, *blue);
+    }
+
+    float coordinate() {
+        const float value = lines_.number();
+        if (std::abs(value) > kMaxCoordinate) {
+            lines_.fail(fmt::format("a coordinate is {}; {:g} to {:g} are allowed", value,
+                                    -kMaxCoordinate, kMaxCoordinate));
+        }
+        return value;
     }
 
     void parseFace() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -169,6 +170,11 @@ class VertexParser {
         if (!std::isfinite(value) && !isNormal) {
             reader_.fail(property.name + " is " + std::to_string(number) +
                          "; finite numbers in the range of float are allowed");
+        }
+        const bool isLength = slot == kX || slot == kY || slot == kZ || slot == kRadius;
+        if (isLength && std::abs(value) > kMaxCoordinate) {
+            reader_.fail(fmt::format("{} is {}; {:g} to {:g} are allowed", property.name, value,
+                                     -kMaxCoordinate, kMaxCoordinate));
         }
         return value;
     }

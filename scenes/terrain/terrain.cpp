@@ -17,8 +17,6 @@ namespace gfxrepro::scene {
 
 namespace {
 
-/// Maps with longer sides are made once and kept in a file, not by each worker in its memory.
-
 std::string keyOf(const FractalTerrain& shape, std::uint64_t seed) {
     return sha256(fmt::format("terrain of generator {}: {} {} {} {} {} {}, seed {}",
                               kGeneratorVersion, shape.sizeSamples, shape.spacingM, shape.reliefM,
@@ -110,8 +108,8 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
         map.file =
             HeightFile::openOrBuild(folder, key, map.sizeSamples,
                                     HeightFile::inParallel(map.sizeSamples.x, makeRow), prepare);
-    } catch (const Error&) {
-        if (terrain.sizeSamples > kMaxHeightMapSide) throw;
+    } catch (const UnwritableError& error) {
+        settleForMemory("a generated terrain", map.sizeSamples, error);
         return fractalTerrain(terrain, seed);
     }
     return map;
@@ -119,8 +117,9 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
 
 Scene terrain(config::Params& params, std::uint64_t seed) {
     FractalTerrain shape;
-    shape.sizeSamples = params.getInt("size_samples", shape.sizeSamples,
-                                      {"samples a side", "", 1, kMaxHeightFileSide});
+    shape.sizeSamples =
+        params.getInt("size_samples", shape.sizeSamples,
+                      {"samples a side", "", kMinHeightMapSide, kMaxHeightFileSide});
     shape.spacingM = static_cast<float>(params.getDouble(
         "spacing_m", static_cast<double>(shape.spacingM), {"between samples", "m", 1e-3, 1e5}));
     shape.reliefM =

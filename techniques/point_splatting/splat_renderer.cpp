@@ -14,9 +14,9 @@ constexpr std::uint32_t kMaxRange = 1U << 14;
 /// llvmpipe keeps every primitive of a draw in memory until it is flushed.
 constexpr std::uint32_t kMaxBatch = 1U << 16;
 
-/// Of the low-pass filter's radius, in the visibility pass. With all of it, surfaces would grow by
-/// the filter over what lies behind and end there at a hard edge, where their faint rims should
-/// blend; with none, discs less than a pixel wide would hide nothing.
+/// Of the low-pass filter's radius, in the visibility pass, as the least. With all of it, surfaces
+/// would grow by the filter over what lies behind and end there at a hard edge, where their faint
+/// rims should blend; with none, discs less than a pixel wide would hide nothing.
 constexpr float kVisibleShare = 0.5F;
 
 enum VertexLocation : GLuint { kBoxMinLocation = 0, kBoxSizeLocation = 1 };
@@ -313,6 +313,7 @@ void SplatRenderer::setUp(const gl::Program& program, const PatchView& view) con
         if (program.isActive(name)) program.set(name, value);
     };
     set("lowPassRadiusPx", settings_.lowPassRadiusPx);
+    set("splatRadiusPx", settings_.lowPassRadiusPx);
     set("cutoff", settings_.cutoff);
     set("visibilityOffset", settings_.visibilityOffset);
     set("lightDirectionView", settings_.lightDirectionView);

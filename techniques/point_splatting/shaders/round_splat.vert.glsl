@@ -1,6 +1,6 @@
 #version 450 core
 // The low-pass filter alone, H = V^h: every splat is the same circle on the screen, and a GL point.
-// One vertex a point, no axes. With VISIBILITY the square within the circle, at the centre's depth
+// One vertex a point, no axes. With VISIBILITY a square within the circle, at the centre's depth
 // plus ε.
 #include "point_splatting/decode_point.glsl"
 #include "point_splatting/splat_shape.glsl"
@@ -10,7 +10,9 @@ layout(location = BOX_MIN_LOCATION) in vec4 boxMinScale;  // of the drawn patch;
 layout(location = BOX_SIZE_LOCATION) in vec3 boxSize;
 
 uniform float cutoff;
-#ifndef VISIBILITY
+#ifdef VISIBILITY
+uniform float splatRadiusPx;  // r_h, of which lowPassRadiusPx is the share that hides in any case
+#else
 uniform vec2 sizePx;
 
 flat out vec2 centrePx;
@@ -39,8 +41,11 @@ void main() {
 #ifdef VISIBILITY
     float footprint = lowPassRadiusPx * centre.z / focalPx;
     gl_Position = vec4(ndc, visibilityDepth(1.0 / centre.z, centre, radius, footprint), 1.0);
-    // At least one pixel's centre.
-    gl_PointSize = max(2.0 * kInscribed * cutoff * lowPassRadiusPx, 1.0);
+    // Half as wide as the disc: neighbours are nearer than that, and where they are farther apart than
+    // the least square, points behind would shine through. At most the square within the circle; at
+    // least a pixel's centre.
+    vec2 sides = 2.0 * kInscribed * cutoff * vec2(lowPassRadiusPx, splatRadiusPx);
+    gl_PointSize = max(clamp(cutoff * radiusPxOf(radius, centre.z), sides.x, sides.y), 1.0);
 #else
     gl_Position = vec4(ndc, depthNdc(1.0 / centre.z), 1.0);
     gl_PointSize = 2.0 * cutoff * lowPassRadiusPx;

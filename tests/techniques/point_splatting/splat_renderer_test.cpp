@@ -164,6 +164,24 @@ TEST_F(SplatTest, FarSheetsDoNotShineThroughAndNearOnesBlend) {
     }
 }
 
+/// Of points 1.9 pixels apart, squares of half the filter leave rows and columns open.
+TEST_F(SplatTest, LowPassSplatsHideWhereTheyCloseTheSurface) {
+    scene::PointCloud points = sheet(33, 0.6F, 0.0F, 0.0F, {1.0F, 0.0F, 0.0F});
+    append(points, sheet(60, 0.6F, -0.3F, 0.0F, {0.0F, 1.0F, 0.0F}));
+    const SplatSettings settings{.storage = PointStorage::Uncompressed,
+                                 .lowPassRadiusPx = 1.0F,
+                                 .cutoff = 1.5F,
+                                 .lightDirectionView = {0.0F, 0.0F, -1.0F}};
+    const Picture picture =
+        renderModel(modelOf(points), SplatMode::LowPass, viewFrom(3.0F, kSize), settings);
+    for (int y = 36; y < 60; ++y) {
+        for (int x = 36; x < 60; ++x) {
+            ASSERT_EQ(picture.at(x, y).a, 255) << x << ", " << y;
+            ASSERT_EQ(picture.at(x, y).g, 0) << x << ", " << y;
+        }
+    }
+}
+
 double psnr(const Picture& a, const Picture& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {

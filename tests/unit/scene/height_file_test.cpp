@@ -123,9 +123,12 @@ TEST(HeightFile, ResamplesAsInMemoryAndStaysThereWithoutAFolder) {
     const HeightMap kept = resampledInFile(coarse, 257, 30.0F, 3, folder.path() / "file", "key");
     EXPECT_EQ(kept.file, nullptr);
     EXPECT_EQ(kept.heightsM, expected.heightsM);
-    EXPECT_EQ(test::errorText(
-                  [&] { resampledInFile(coarse, 32769, 0.0F, 3, folder.path() / "file", "key"); }),
-              "cannot create " + (folder.path() / "file").string() + ": Not a directory");
+    EXPECT_EQ(
+        test::errorText(
+            [&] { resampledInFile(coarse, 32769, 0.0F, 3, folder.path() / "file", "key"); }),
+        "a resampled height map: 32769 x 32769 samples have no file: cannot create " +
+            (folder.path() / "file").string() +
+            ": Not a directory; allowed without one, in memory: at most 16385 a side (1 GiB)");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "runner/scene/height_map.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,12 +39,11 @@ std::string bigEndian(const std::vector<int>& values) {
     return bytes;
 }
 
-/// A TIFF of 3 × 2 values.
 void writeTiff(const fs::path& path, const void* values, int bits, int format,
-               const char* noData = nullptr) {
+               const char* noData = nullptr, glm::ivec2 size = {3, 2}) {
     TIFF* tiff = TIFFOpen(path.c_str(), "w");
-    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 3);
-    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 2);
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, size.x);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, size.y);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, format);
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
@@ -55,8 +55,8 @@ void writeTiff(const fs::path& path, const void* values, int bits, int format,
         TIFFMergeFieldInfo(tiff, kInfo, 1);
         TIFFSetField(tiff, 42113, noData);
     }
-    for (int y = 0; y < 2; ++y) {
-        const auto* row = static_cast<const char*>(values) + y * 3 * bits / 8;
+    for (int y = 0; y < size.y; ++y) {
+        const auto* row = static_cast<const char*>(values) + y * size.x * bits / 8;
         TIFFWriteScanline(tiff, const_cast<char*>(row), static_cast<std::uint32_t>(y), 0);
     }
     TIFFClose(tiff);
@@ -74,7 +74,7 @@ TEST(HeightMap, ReadsPngOf16And8Bits) {
     EXPECT_EQ(map.bounds().max, glm::vec3(10, 25000, 5));
     EXPECT_FALSE(map.isEightBit);
 
-    image::Image8 shallow(2, 1, 1);
+    image::Image8 shallow(2, 2, 1);
     shallow.values()[1] = 255;
     image::writePng(folder.path() / "shallow.png", shallow);
     const HeightMap eight = loadHeightMap(folder.path() / "shallow.png", {});
@@ -145,7 +145,7 @@ TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
     writeFileAtomic(sidecar, "{width: 2000000000, height: 2000000000, type: f32}\n");
     EXPECT_EQ(messageOf(path),
               sidecar.string() +
-                  ": a height map of 2000000000 x 2000000000 samples; allowed: 1 to 65537 a side");
+                  ": a height map of 2000000000 x 2000000000 samples; allowed: 2 to 65537 a side");
     writeFileAtomic(sidecar, "{width: 2, height: 3, type: f64}\n");
     EXPECT_EQ(messageOf(path), sidecar.string() + ":1:29: type is 'f64'; allowed: u16 | i16 | f32");
 }
@@ -215,10 +215,33 @@ TEST(HeightMap, RefusesTiffsOfHugeHeaders) {
     EXPECT_EQ(messageOf(path), path.string() + ": Incorrect count for \"StripOffsets\"");
 }
 
-TEST(HeightMap, OneSampleAndNonSquareFilesAreServed) {
+TEST(HeightMap, RefusesFilesOfOneSampleASide) {
+    const test::TemporaryFolder folder;
+    const fs::path png = folder.path() / "a.png", raw = folder.path() / "a.raw",
+                   tiff = folder.path() / "a.tif";
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), {1, 7}, {7, 1}}) {
+        const auto values = std::vector<std::uint16_t>(static_cast<std::size_t>(size.x * size.y));
+        const std::string expected = fmt::format(
+            ": a height map of {} x {} samples; allowed: 2 to 65537 a side", size.x, size.y);
+        image::writePng(png, image::Image16(size.x, size.y, 1));
+        EXPECT_EQ(messageOf(png), png.string() + expected);
+        writeTiff(tiff, values.data(), 16, SAMPLEFORMAT_UINT, nullptr, size);
+        EXPECT_EQ(messageOf(tiff), tiff.string() + expected);
+        writeFileAtomic(raw.string() + ".yaml",
+                        fmt::format("{{width: {}, height: {}, type: u16}}", size.x, size.y));
+        EXPECT_EQ(messageOf(raw), raw.string() + ".yaml" + expected);
+    }
+    const fs::path srtm = folder.path() / "a.hgt";
+    writeFileAtomic(srtm, "12");
+    EXPECT_EQ(messageOf(srtm), srtm.string() +
+                                   ": 2 bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 "
+                                   "(3601 x 3601)");
+}
+
+TEST(HeightMap, NonSquareFilesAreServed) {
     const test::TemporaryFolder folder;
     const fs::path path = folder.path() / "a.png";
-    for (const glm::ivec2 size : {glm::ivec2(1, 1), {1, 7}, {9, 2}}) {
+    for (const glm::ivec2 size : {glm::ivec2(2, 2), {2, 7}, {9, 2}}) {
         image::Image16 image(size.x, size.y, 1);
         for (std::size_t i = 0; i < image.values().size(); ++i) {
             image.values()[i] = static_cast<std::uint16_t>(300 + i);

@@ -215,13 +215,13 @@ TEST(HeightRows, BrokenFilesLeaveNothingBehind) {
 TEST(HeightRows, RefusesWhatCannotBeReadInPieces) {
     const test::TemporaryFolder folder;
     folder.write("wide.raw", "");
-    folder.write("wide.raw.yaml", "{width: 65538, height: 1, type: u16}");
+    folder.write("wide.raw.yaml", "{width: 65538, height: 2, type: u16}");
     EXPECT_EQ(errorText([&] { openHeightRows(folder.path() / "wide.raw"); }, folder.path()),
-              "DIR/wide.raw.yaml: a height map of 65538 x 1 samples; allowed: 1 to 65537 a side");
-    folder.write("long.raw", std::string(2 * 20000, '\0'));
-    folder.write("long.raw.yaml", "{width: 1, height: 20000, type: u16}");
+              "DIR/wide.raw.yaml: a height map of 65538 x 2 samples; allowed: 2 to 65537 a side");
+    folder.write("long.raw", std::string(4 * 20000, '\0'));
+    folder.write("long.raw.yaml", "{width: 2, height: 20000, type: u16}");
     EXPECT_EQ(errorText([&] { loadHeightMap(folder.path() / "long.raw", {}); }, folder.path()),
-              "DIR/long.raw: a height map of 1 x 20000 samples; allowed in memory: 1 to 16385 a "
+              "DIR/long.raw: a height map of 2 x 20000 samples; allowed in memory: 2 to 16385 a "
               "side");
     folder.write("file", "no folder");
     EXPECT_EQ(errorText(
@@ -230,7 +230,8 @@ TEST(HeightRows, RefusesWhatCannotBeReadInPieces) {
                                           "key");
                   },
                   folder.path()),
-              "cannot create DIR/file: Not a directory");
+              "DIR/long.raw: 2 x 20000 samples have no file: cannot create DIR/file: Not a "
+              "directory; allowed without one, in memory: at most 16385 a side (1 GiB)");
 
     const fs::path tiled = folder.path() / "tiled.tif";
     TIFF* tiff = TIFFOpen(tiled.c_str(), "w");

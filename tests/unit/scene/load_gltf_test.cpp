@@ -335,6 +335,15 @@ TEST_F(LoadGltf, RefusesRangesThatAreNotThere) {
         "DIR/a.gltf: mesh 0 primitive 0: material 2 does not exist; there are 0");
 }
 
+TEST_F(LoadGltf, RefusesCoordinatesTooFarAway) {
+    const float x = 3e38F;  // of vertex 2
+    folder_.write("square.bin", squareBytes().replace(24, 4, reinterpret_cast<const char*>(&x), 4));
+    EXPECT_EQ(
+        error(text(square())),
+        "DIR/a.gltf: mesh 0 primitive 0: its box reaches to (3e+38, 0, 0); -1e+09 to 1e+09 are "
+        "allowed");
+}
+
 TEST_F(LoadGltf, RefusesNodesThatAreNoTree) {
     EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"children":[1]},{"children":[0]}])"),
               "DIR/a.gltf: node 0 has two parents or is its own ancestor");
@@ -344,6 +353,9 @@ TEST_F(LoadGltf, RefusesNodesThatAreNoTree) {
               "DIR/a.gltf: node 0: mesh 3 does not exist; there are 1");
     EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"scale":[1e30,1e30,1e300]}])"),
               "DIR/a.gltf: node 0: the transform is not finite");
+    EXPECT_EQ(
+        errorWith("nodes", R"([{"mesh":0,"translation":[0,-2e9,0]}])"),
+        "DIR/a.gltf: node 0: its box reaches to (0, -2000000000, 0); -1e+09 to 1e+09 are allowed");
     EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"translation":[1,2]}])"),
               "DIR/a.gltf: node 0: 2 numbers where 3 are needed");
     EXPECT_EQ(errorWith("scene", "4"), "DIR/a.gltf: scene 4 does not exist; there are 1");

@@ -104,6 +104,8 @@ TEST_F(LoadObj, SaysWhereItIsWrong) {
     EXPECT_EQ(error("v 0 \\\n0\n\nv 0 zero 0\n"), "DIR/a.obj:1: the line lacks a number");
     EXPECT_EQ(error("\nv 0 zero 0\n"), "DIR/a.obj:2: 'zero' is not a finite number");
     EXPECT_EQ(error("v 0 inf 0\n"), "DIR/a.obj:1: 'inf' is not a finite number");
+    EXPECT_EQ(error("v 0 0 1e9\nv 0 -3e38 0\n"),
+              "DIR/a.obj:2: a coordinate is -3e+38; -1e+09 to 1e+09 are allowed");
     EXPECT_EQ(error(kSquare + "f 1 2 5\n"),
               "DIR/a.obj:5: index 5 is not one of the 4 'v' lines so far");
     EXPECT_EQ(error(kSquare + "f 1 2 -5\n"),

@@ -122,9 +122,9 @@ TEST_F(LoadPly, ReadsStrips) {
               (std::vector<glm::uvec3>{{0, 1, 2}, {1, 3, 2}, {3, 2, 1}}));
 }
 
-TEST_F(LoadPly, ReadsNumbersAtTheEdgesOfFloat) {
-    const Mesh mesh = load(replaced(kAscii, "0 0 0\n", "1e-60 +0.5 -3.4e38\n")).meshes.at(0);
-    EXPECT_EQ(mesh.positions[0], glm::vec3(0, 0.5F, -3.4e38F));
+TEST_F(LoadPly, ReadsNumbersAtTheEdgesOfTheirRange) {
+    const Mesh mesh = load(replaced(kAscii, "0 0 0\n", "1e-60 +0.5 -1e9\n")).meshes.at(0);
+    EXPECT_EQ(mesh.positions[0], glm::vec3(0, 0.5F, -1e9F));
 }
 
 TEST_F(LoadPly, SaysWhereAHeaderIsWrong) {
@@ -169,6 +169,8 @@ TEST_F(LoadPly, SaysWhereARowIsWrong) {
               "DIR/a.ply:13: vertex 2: y is nan; finite numbers in the range of float are allowed");
     EXPECT_EQ(error(replaced(kAscii, "1 1 0", "1 1e39 0")),
               "DIR/a.ply:13: vertex 2: y is inf; finite numbers in the range of float are allowed");
+    EXPECT_EQ(error(replaced(kAscii, "1 1 0", "1 -3e38 0")),
+              "DIR/a.ply:13: vertex 2: y is -3e+38; -1e+09 to 1e+09 are allowed");
     EXPECT_EQ(error(replaced(kAscii, "1 1 0", "1 one 0")),
               "DIR/a.ply:13: vertex 2: 'one' is not a number of type float");
     EXPECT_EQ(error(replaced(kAscii, "4 0 1 2 3", "300 0 1 2 3")),
@@ -191,6 +193,9 @@ TEST_F(LoadPly, GivesTheByteOfBinaryErrors) {
     EXPECT_EQ(error(header + x + bytes(std::numeric_limits<float>::infinity(), false) + x),
               "DIR/a.ply: byte " + std::to_string(header.size() + 8) +
                   ": vertex 0: y is inf; finite numbers in the range of float are allowed");
+    EXPECT_EQ(error(header + x + x + bytes(3e38F, false)),
+              "DIR/a.ply: byte " + std::to_string(header.size() + 12) +
+                  ": vertex 0: z is 3e+38; -1e+09 to 1e+09 are allowed");
     EXPECT_EQ(error(header + x + x),
               "DIR/a.ply:3: 1 rows of element 'vertex' do not fit into the file");
 }

@@ -249,7 +249,7 @@ TEST(Catalog, TurnsFilesWhoseUpIsZ) {
     ASSERT_EQ(mesh.positions.size(), 3U);
     EXPECT_EQ(mesh.positions[2], glm::vec3(0, 3, -2));
 
-    folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: z, points: 5}]\n");
+    folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: z, points: 1}]\n");
     folders.folder.write("assets/a.ply",
                          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                          "property float y\nproperty float z\nproperty float nx\n"
@@ -258,6 +258,11 @@ TEST(Catalog, TurnsFilesWhoseUpIsZ) {
     ASSERT_EQ(points.positions.size(), 1U);
     EXPECT_EQ(points.positions[0], glm::vec3(1, 3, -2));
     EXPECT_EQ(points.normals[0], glm::vec3(0, 1, 0));
+    folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.ply, points: 2}]\n");
+    EXPECT_EQ(
+        test::errorText([&] { folders.catalog().load(reference("m/x")); }, folders.folder.path()),
+        "DIR/scenes/m/x.yaml:3:11: 2 points wanted of a.ply, a cloud of 1; allowed: no more "
+        "than it has");
     EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: x}]\n"),
               "DIR/scenes/m/x.yaml:3:29: up is 'x'; allowed: y | z");
 }
