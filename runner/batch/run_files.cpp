@@ -99,6 +99,12 @@ Json readManifest(const fs::path& file) {
     return manifest;
 }
 
+Json lastLogEvent() {
+    return {{"event", "full"},
+            {"message", fmt::format("the log has {} MiB: what follows is left out",
+                                    kMostWrittenLogBytes >> 20)}};
+}
+
 std::vector<Json> readLog(const fs::path& file) {
     std::vector<Json> events;
     if (!fs::exists(file)) return events;
