@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "runner/batch/run_files.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/report/images.h"
@@ -181,6 +182,9 @@ std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytes
         for (std::string_view rest = mapped.text(); !rest.empty();) {
             const std::string_view line = rest.substr(0, rest.find('\n'));
             rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+            if (text.size() + line.size() > kMostWrittenLogBytes) {
+                return text + lastLogEvent().dump() + '\n';
+            }
             const bool isFull = text.size() - begin + line.size() > part;
             text += isFull ? withoutOutput(line) : std::string(line);
             text += '\n';

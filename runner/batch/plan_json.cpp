@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <climits>
 #include <nlohmann/json.hpp>
 
 #include "runner/batch/plan.h"
@@ -69,14 +70,28 @@ std::string requiredId(const config::Node& map) {
     return id;
 }
 
+int intFrom(const config::Node& node, const char* what, int most = INT_MAX) {
+    const auto value = node.tryInteger();
+    if (value && *value >= 0 && *value <= most) return static_cast<int>(*value);
+    throw Error(node.location(),
+                fmt::format("'{}' is {}; expected a whole number from 0 to {}", what,
+                            node.isScalar() ? node.text() : node.kindName(), most));
+}
+
 int requiredInt(const config::Node& map, const char* key) {
-    return static_cast<int>(required(map, key).asInteger());
+    return intFrom(required(map, key), key);
+}
+
+const std::string& requiredText(const config::Node& map, const char* key) {
+    const config::Node& node = required(map, key);
+    if (node.isScalar()) return node.text();
+    throw Error(node.location(), fmt::format("'{}' is {}; expected text", key, node.kindName()));
 }
 
 config::Measure measureFrom(const config::Node& node) {
     config::Measure measure;
-    measure.lane = required(node, "lane").text() == "timing" ? config::Measure::Lane::Timing
-                                                             : config::Measure::Lane::Quality;
+    measure.lane = requiredText(node, "lane") == "timing" ? config::Measure::Lane::Timing
+                                                          : config::Measure::Lane::Quality;
     measure.warmup = requiredInt(node, "warmup");
     measure.repeats = requiredInt(node, "repeats");
     measure.processes = requiredInt(node, "processes");
@@ -109,7 +124,7 @@ void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
         if (!bound) continue;
         assumption.isBound = true;
         assumption.value = required(*bound, "value");
-        assumption.unit = required(*bound, "unit").text();
+        assumption.unit = requiredText(*bound, "unit");
     }
 }
 
@@ -124,8 +139,7 @@ Json paperToJson(const config::Experiment& experiment) {
 void readPaper(const config::Node& node, config::Experiment& experiment) {
     experiment.paperDocument = requiredMap(node, "document");
     for (const config::Node& item : required(node, "cases").items()) {
-        experiment.paperCases.push_back(
-            {required(item, "scene").text(), requiredMap(item, "params")});
+        experiment.paperCases.push_back({requiredText(item, "scene"), requiredMap(item, "params")});
     }
 }
 
@@ -197,20 +211,20 @@ Case Case::fromJson(const config::Node& node) {
     if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
     Case item;
     item.id = requiredId(node);
-    item.experiment = required(node, "experiment").text();
-    item.technique = required(node, "technique").text();
+    item.experiment = requiredText(node, "experiment");
+    item.technique = requiredText(node, "technique");
     item.scene = required(node, "scene");
     item.given = requiredMap(node, "given");
     item.params = requiredMap(node, "params");
     item.axes = requiredMap(node, "axes");
-    item.outputWidthPx = static_cast<int>(output[0].asInteger());
-    item.outputHeightPx = static_cast<int>(output[1].asInteger());
+    item.outputWidthPx = intFrom(output[0], "output");
+    item.outputHeightPx = intFrom(output[1], "output");
     item.measure = measureFrom(required(node, "measure"));
     item.seed = requiredSeed(node);
     if (const config::Node* offered = node.find("offered")) item.offered = *offered;
     if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
     if (const config::Node* sample = node.find(report::kSceneSample)) {
-        item.sceneSample = static_cast<int>(sample->asInteger());
+        item.sceneSample = intFrom(*sample, report::kSceneSample, report::kMostSceneSample);
     }
     return item;
 }
@@ -259,28 +273,28 @@ std::string Plan::toText() const {
 Plan Plan::fromJsonFile(const fs::path& path) {
     const config::Node node = config::parseJsonFile(path);
     if (required(node, "schema").asInteger() != kPlanSchema) {
-        throw Error(path.string() + ": schema " + required(node, "schema").text() +
+        throw Error(path.string() + ": schema " + requiredText(node, "schema") +
                     "; this program reads schema " + std::to_string(kPlanSchema));
     }
     Plan plan;
-    plan.hash = required(node, "hash").text();
-    plan.buildId = required(node, "build").text();
-    plan.profile = required(node, "profile").text();
-    plan.deviceClass = required(node, "device_class").text();
+    plan.hash = requiredText(node, "hash");
+    plan.buildId = requiredText(node, "build");
+    plan.profile = requiredText(node, "profile");
+    plan.deviceClass = requiredText(node, "device_class");
     plan.seed = requiredSeed(node);
     const config::Node& request = required(node, "request");
     plan.request = {textsFrom(required(request, "configs")),
                     textsFrom(required(request, "sets")),
                     textsFrom(required(request, "sweeps")),
                     {},
-                    required(request, "device").text()};
+                    requiredText(request, "device")};
     if (const config::Node* only = request.find("only")) plan.request.only = textsFrom(*only);
     for (const auto& [reference, key] : required(node, "scenes").entries()) {
         plan.sceneKeys[reference] = key.text();
     }
     for (const config::Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
-            requiredMap(item, "document"), fs::path(required(item, "file").text())));
+            requiredMap(item, "document"), fs::path(requiredText(item, "file"))));
         if (const config::Node* assumed = item.find("assumed")) {
             takeAssumed(*assumed, plan.experiments.back());
         }
@@ -290,8 +304,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     }
     if (const config::Node* lists = node.find("expectations")) {
         for (const config::Node& item : lists->items()) {
-            plan.expectations.push_back(
-                {required(item, "file").text(), required(item, "text").text()});
+            plan.expectations.push_back({requiredText(item, "file"), requiredText(item, "text")});
         }
     }
     for (const config::Node& item : required(node, "cases").items()) {

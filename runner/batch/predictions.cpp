@@ -73,8 +73,7 @@ bool isRunOf(const fs::path& folder, const std::string& deviceClass) {
     const fs::path manifestFile = folder / "manifest.json";
     if (!fs::exists(folder / "plan.json") || !fs::exists(manifestFile)) return false;
     if (fs::file_size(manifestFile) > kMostManifestBytes) return false;
-    const Json manifest = Json::parse(readFile(manifestFile), nullptr, false);
-    return manifest.is_object() && manifest.value("device_class", "") == deviceClass;
+    return readManifest(manifestFile).at("device_class") == deviceClass;
 }
 
 std::map<std::string, Prediction> readPredictions(const fs::path& file) {

@@ -3,9 +3,38 @@
 #include <cmath>
 #include <limits>
 
+#include "runner/config/json_shape.h"
+
 namespace gfxrepro::batch {
 
 namespace {
+
+using config::JsonKind;
+using config::JsonMember;
+
+constexpr JsonMember kDevice[] = {
+    {"/index", JsonKind::Int},           {"/platform", JsonKind::Text},
+    {"/vendor", JsonKind::Text},         {"/renderer", JsonKind::Text},
+    {"/version", JsonKind::Text},        {"/mesa_version", JsonKind::Text},
+    {"/is_software", JsonKind::Boolean}, {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kResult[] = {{"/status", JsonKind::Text},
+                                  {"/message", JsonKind::Text},
+                                  {"/void", JsonKind::Text},
+                                  {"/cost", JsonKind::Object},
+                                  {"/cost/load_s", JsonKind::Number},
+                                  {"/cost/setup_s", JsonKind::Number},
+                                  {"/cost/render_s", JsonKind::Number},
+                                  {"/cost/record_s", JsonKind::Number},
+                                  {"/cost/peak_bytes", JsonKind::Whole}};
+constexpr JsonKind kSample[] = {JsonKind::Int,    JsonKind::Int,  JsonKind::Text,
+                                JsonKind::Text,   JsonKind::Text, JsonKind::Infinite,
+                                JsonKind::Boolean};
+constexpr JsonKind kImage[] = {JsonKind::Text, JsonKind::Text, JsonKind::Int,  JsonKind::Text,
+                               JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
+constexpr JsonKind kScene[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
+
+/// What a worker says stands in no file.
+const SourceLocation kAnswer{"the worker's answer", 0, 0};
 
 /// JSON has no infinity.
 Json numberJson(double value) {
@@ -32,6 +61,7 @@ Json toJson(const gl::DeviceInfo& info) {
 }
 
 gl::DeviceInfo deviceInfoFromJson(const Json& json) {
+    config::requireMembers(json, kDevice, kAnswer);
     gl::DeviceInfo info;
     json.at("index").get_to(info.index);
     json.at("platform").get_to(info.platform);
@@ -85,6 +115,10 @@ Json toJson(const CaseResult& result) {
 }
 
 CaseResult caseResultFromJson(const Json& json) {
+    config::requireMembers(json, kResult, kAnswer);
+    config::requireRows(json, "/samples", kSample, kAnswer);
+    config::requireRows(json, "/images", kImage, kAnswer);
+    config::requireRows(json, "/scenes", kScene, kAnswer);
     CaseResult result;
     result.status = report::statusFromName(json.at("status").get<std::string>());
     json.at("message").get_to(result.message);

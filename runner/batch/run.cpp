@@ -67,10 +67,10 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
     return units;
 }
 
-Rounds roundsOf(const Plan& plan, const RunDirectory& directory) {
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& log) {
     std::vector<report::Record> records;
     if (fs::exists(directory.recordsFile())) records = report::readRecords(directory.recordsFile());
-    return {plan, records, readLog(directory.path() / "log.jsonl")};
+    return {plan, records, log};
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,

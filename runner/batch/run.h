@@ -23,7 +23,7 @@ namespace gfxrepro::batch {
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 
 /// What was decided so far of the rounds of a run's tables.
-Rounds roundsOf(const Plan& plan, const RunDirectory& directory);
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& log);
 
 /// A run that goes on on another machine: the times of an experiment are of one machine, so where
 /// some of them are still to be measured, all are measured again. The rows so far go from

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "runner/batch/run_files.h"
 #include "runner/core/error.h"
 #include "runner/core/temporary.h"
 
@@ -27,6 +28,13 @@ namespace {
 constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
 // In a log of this size what drivers print is left out: one of 512 MiB is not read again.
 constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
+constexpr auto kMostLogBytes = static_cast<off_t>(kMostWrittenLogBytes);
+
+off_t sizeOf(int fd) {
+    struct stat now = {};
+    ::fstat(fd, &now);
+    return now.st_size;
+}
 
 /// The beginning of a long text, or its end.
 std::string shortened(const std::string& text, bool isEndKept) {
@@ -178,10 +186,14 @@ void RunDirectory::requireOurs() const {
 
 void RunDirectory::log(const nlohmann::ordered_json& event) const {
     requireOurs();
+    if (sizeOf(logFd_) > kMostLogBytes) return;
+    appendToLog(event);
+    if (sizeOf(logFd_) > kMostLogBytes) appendToLog(lastLogEvent());
+}
+
+void RunDirectory::appendToLog(const nlohmann::ordered_json& event) const {
     nlohmann::ordered_json line = {{"time", utcTime()}};
-    struct stat now = {};
-    ::fstat(logFd_, &now);
-    line.update(logged(event, now.st_size));
+    line.update(logged(event, sizeOf(logFd_)));
     const std::string text =
         line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
     // One write a line; a log that cannot be written (disk full) does not stop the measurement.

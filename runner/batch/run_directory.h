@@ -27,7 +27,8 @@ class RunDirectory {
     std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
 
     /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
-    /// and outputs left out once it has 64 MiB. Throws Error where the folder is no longer this
+    /// and outputs left out once it has 64 MiB; beyond kMostWrittenLogBytes nothing is written, but
+    /// for one line that says so. Throws Error where the folder is no longer this
     /// run's: removed, moved, or without its lock, so that another one may write to it.
     void log(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
@@ -36,6 +37,7 @@ class RunDirectory {
   private:
     explicit RunDirectory(const std::filesystem::path& path);
     void requireOurs() const;
+    void appendToLog(const nlohmann::ordered_json& event) const;
 
     std::filesystem::path path_;
     int lockFd_ = -1;

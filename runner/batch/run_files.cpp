@@ -3,19 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <utility>
 
+#include "runner/config/json_shape.h"
 #include "runner/core/error.h"
 #include "runner/core/files.h"
-#include "runner/core/json_depth.h"
 
 namespace gfxrepro::batch {
 
 namespace fs = std::filesystem;
+using config::JsonKind;
+using config::JsonMember;
+using config::requireEach;
+using config::requireMembers;
 
 namespace {
 
@@ -28,116 +30,47 @@ constexpr std::size_t kMostLogBytes = 512 * kMiB;
 constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
 constexpr std::size_t kMostEvents = 4'000'000;
 
-enum class Kind { Text, Line, Whole, Number, Object, List, Texts, Lines, Objects };
-
-bool isOfKind(const Json& value, Kind kind) {
-    const auto are = [&](Kind item) {
-        return std::ranges::all_of(value, [&](const Json& one) { return isOfKind(one, item); });
-    };
-    switch (kind) {
-        case Kind::Text:
-            return value.is_string();
-        case Kind::Line:  // which people are shown as such
-            return value.is_string() &&
-                   std::ranges::none_of(value.get_ref<const std::string&>(),
-                                        [](unsigned char c) { return c < 0x20 || c == 0x7F; });
-        case Kind::Whole:
-            return value.is_number_integer();
-        case Kind::Number:
-            return value.is_number();
-        case Kind::Object:
-            return value.is_object();
-        case Kind::List:
-            return value.is_array();
-        case Kind::Texts:
-            return (value.is_array() || value.is_object()) && are(Kind::Text);
-        case Kind::Lines:
-            return (value.is_array() || value.is_object()) && are(Kind::Line);
-        case Kind::Objects:
-            return (value.is_array() || value.is_object()) && are(Kind::Object);
-    }
-    return false;
-}
-
-std::string_view nameOf(Kind kind) {
-    static constexpr std::array<std::string_view, 9> kNames = {
-        "text",   "a line of text", "a whole number", "a number", "an object",
-        "a list", "texts",          "lines of text",  "objects"};
-    return kNames[static_cast<std::size_t>(kind)];
-}
-
-struct Member {
-    const char* place;  // a JSON pointer
-    Kind kind;
-    bool isRequired = true;
-};
-
-/// `prefix` stands before the places in messages.
-void requireMembers(const Json& object, std::span<const Member> members,
-                    const SourceLocation& where, const std::string& prefix = "") {
-    for (const Member& member : members) {
-        const Json::json_pointer place(member.place);
-        if (!object.contains(place)) {
-            if (!member.isRequired) continue;
-            throw Error(where, fmt::format("'{}{}' is missing", prefix, member.place));
-        }
-        const Json& value = object.at(place);
-        if (isOfKind(value, member.kind)) continue;
-        throw Error(where, fmt::format("'{}{}' is {}; expected {}", prefix, member.place,
-                                       value.type_name(), nameOf(member.kind)));
-    }
-}
-
-constexpr Member kManifest[] = {{"/commit", Kind::Line},
-                                {"/profile", Kind::Line},
-                                {"/device_class", Kind::Line},
-                                {"/cpu", Kind::Line},
-                                {"/cores", Kind::Whole},
-                                {"/gl", Kind::Object},
-                                {"/gl/vendor", Kind::Line},
-                                {"/gl/renderer", Kind::Line},
-                                {"/gl/version", Kind::Line},
-                                {"/invocations", Kind::List},
-                                {"/invocations", Kind::Objects},
-                                {"/scenes", Kind::Objects},
-                                {"/sha256", Kind::Texts, false},
-                                {"/notes", Kind::List, false},
-                                {"/notes", Kind::Lines, false},
-                                {"/timing_machines", Kind::Object, false},
-                                {"/timing_machines", Kind::Lines, false},
-                                {"/rounds", Kind::Objects, false},
-                                {"/merged", Kind::List, false},
-                                {"/merged", Kind::Objects, false}};
-constexpr Member kInvocation[] = {{"/command", Kind::Text}, {"/machine", Kind::Line, false}};
-constexpr Member kScene[] = {
-    {"/kind", Kind::Text}, {"/description", Kind::Text}, {"/sha256", Kind::Text}};
-constexpr Member kMerged[] = {
-    {"/machine", Kind::Line}, {"/invocations", Kind::List}, {"/invocations", Kind::Objects}};
-constexpr Member kEvent[] = {{"/time", Kind::Text, false},     {"/event", Kind::Text, false},
-                             {"/case", Kind::Text, false},     {"/table", Kind::Text, false},
-                             {"/process", Kind::Whole, false}, {"/status", Kind::Text, false},
-                             {"/as", Kind::Text, false},       {"/message", Kind::Text, false},
-                             {"/output", Kind::Text, false},   {"/cost", Kind::Object, false}};
-constexpr Member kCost[] = {{"/load_s", Kind::Number},
-                            {"/setup_s", Kind::Number},
-                            {"/render_s", Kind::Number},
-                            {"/record_s", Kind::Number},
-                            {"/peak_bytes", Kind::Number}};
-
-/// Each of the list or object at `place`, where it is there.
-void requireEach(const Json& object, const char* place, std::span<const Member> members,
-                 const SourceLocation& where) {
-    const auto found = object.find(place);
-    if (found == object.end()) return;
-    for (const auto& [name, value] : found->items()) {
-        requireMembers(value, members, where, fmt::format("/{}/{}", place, name));
-    }
-}
-
-void requireShallow(std::string_view json, const SourceLocation& where) {
-    if (!isTooDeepJson(json)) return;
-    throw Error(where, fmt::format("nested deeper than {} levels", kMostJsonLevels));
-}
+constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
+                                    {"/plan", JsonKind::Line, false},
+                                    {"/profile", JsonKind::Line},
+                                    {"/started", JsonKind::Line, false},
+                                    {"/device_class", JsonKind::Line},
+                                    {"/cpu", JsonKind::Line},
+                                    {"/cores", JsonKind::Int},
+                                    {"/gl", JsonKind::Object},
+                                    {"/gl/vendor", JsonKind::Line},
+                                    {"/gl/renderer", JsonKind::Line},
+                                    {"/gl/version", JsonKind::Line},
+                                    {"/invocations", JsonKind::List},
+                                    {"/invocations", JsonKind::Objects},
+                                    {"/scenes", JsonKind::Objects},
+                                    {"/sha256", JsonKind::Texts, false},
+                                    {"/notes", JsonKind::List, false},
+                                    {"/notes", JsonKind::Lines, false},
+                                    {"/timing_machines", JsonKind::Object, false},
+                                    {"/timing_machines", JsonKind::Lines, false},
+                                    {"/rounds", JsonKind::Objects, false},
+                                    {"/merged", JsonKind::List, false},
+                                    {"/merged", JsonKind::Objects, false}};
+constexpr JsonMember kInvocation[] = {{"/command", JsonKind::Text},
+                                      {"/started", JsonKind::Line, false},
+                                      {"/machine", JsonKind::Line, false}};
+constexpr JsonMember kScene[] = {
+    {"/kind", JsonKind::Text}, {"/description", JsonKind::Text}, {"/sha256", JsonKind::Text}};
+constexpr JsonMember kMerged[] = {{"/machine", JsonKind::Line},
+                                  {"/invocations", JsonKind::List},
+                                  {"/invocations", JsonKind::Objects}};
+constexpr JsonMember kEvent[] = {
+    {"/time", JsonKind::Text, false},   {"/event", JsonKind::Text, false},
+    {"/case", JsonKind::Text, false},   {"/table", JsonKind::Text, false},
+    {"/process", JsonKind::Int, false}, {"/status", JsonKind::Text, false},
+    {"/as", JsonKind::Text, false},     {"/message", JsonKind::Text, false},
+    {"/output", JsonKind::Text, false}, {"/cost", JsonKind::Object, false}};
+constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
+                                {"/setup_s", JsonKind::Number},
+                                {"/render_s", JsonKind::Number},
+                                {"/record_s", JsonKind::Number},
+                                {"/peak_bytes", JsonKind::Whole}};
 
 void requireModest(const fs::path& file, std::uintmax_t size, std::uintmax_t mostBytes) {
     if (size <= mostBytes) return;
@@ -157,16 +90,19 @@ void requireModestFiles(const fs::path& runDir) {
 
 Json readManifest(const fs::path& file) {
     const SourceLocation where{file.string(), 0, 0};
-    const std::string text = readFile(file);
-    requireShallow(text, where);
-    Json manifest = Json::parse(text, nullptr, false);
-    if (!manifest.is_object()) throw Error(where, "is no JSON object");
+    Json manifest = config::parseJsonObject(MappedFile(file).text(), where);
     requireMembers(manifest, kManifest, where);
-    requireEach(manifest, "invocations", kInvocation, where);
-    requireEach(manifest, "scenes", kScene, where);
-    requireEach(manifest, "merged", kMerged, where);
+    requireEach(manifest, "/invocations", kInvocation, where);
+    requireEach(manifest, "/scenes", kScene, where);
+    requireEach(manifest, "/merged", kMerged, where);
     if (manifest["invocations"].empty()) throw Error(where, "'/invocations' is empty");
     return manifest;
+}
+
+Json lastLogEvent() {
+    return {{"event", "full"},
+            {"message", fmt::format("the log has {} MiB: what follows is left out",
+                                    kMostWrittenLogBytes >> 20)}};
 }
 
 std::vector<Json> readLog(const fs::path& file) {
@@ -188,7 +124,7 @@ std::vector<Json> readLog(const fs::path& file) {
             throw Error({name, line, 0},
                         fmt::format("more than {} events, which are not read", kMostEvents));
         }
-        requireShallow(text, {name, line, 0});
+        config::requireShallowJson(text, {name, line, 0});
         Json event = Json::parse(text, nullptr, false);
         if (!event.is_object()) continue;
         requireMembers(event, kEvent, {name, line, 0});

@@ -2,6 +2,7 @@
 // what is wrong in one is said with its place, and nobody below has to ask.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -13,6 +14,10 @@ namespace gfxrepro::batch {
 /// Throws Error, with the limit, where a file of a run's folder that is read at once is larger than
 /// it gets in any run (the log is readLog's): the largest had records of 75 MB, a plan of 15 MB.
 void requireModestFiles(const std::filesystem::path& runDir);
+
+/// A log gets no larger than this and a line, so that it is read again; its last line says so.
+inline constexpr std::size_t kMostWrittenLogBytes = std::size_t{384} << 20;
+Json lastLogEvent();
 
 /// manifest.json: what is there that others read (machine, invocations, scenes, notes, …) is of its
 /// kind, and all of it is there that a run has from its beginning. Throws Error with the file and

@@ -78,8 +78,10 @@ void serve(gl::Device& device, const WorkerOptions& options,
     send({{"ready", toJson(device.info())}});
     std::string line;
     while (std::getline(std::cin, line)) {
-        const config::Node request = config::parseJson(line, "case");
-        const Case item = Case::fromJson(*request.find("case"));
+        const config::Node request = config::parseJson(line, "what the runner sent");
+        const config::Node* asked = request.isMap() ? request.find("case") : nullptr;
+        if (!asked) throw Error("what the runner sent: '/case' is missing");
+        const Case item = Case::fromJson(*asked);
         const CaseResult result = resultOf(item, context);
         std::cout.flush();
         std::cerr.flush();

@@ -123,17 +123,25 @@ std::optional<CaseResult> WorkerHandle::receive() {
 }
 
 std::optional<CaseResult> WorkerHandle::handle(const Json& message) {
-    if (message.contains("begin")) {
-        begin(message["begin"].get<std::string>());
+    const auto textOf = [&](const char* name) {
+        const auto found = message.find(name);
+        return found != message.end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    if (const std::string phase = textOf("begin"); !phase.empty()) {
+        begin(phase);
     } else if (message.contains("end")) {
         endPhase();
     } else if (message.contains("ready")) {
         device_ = deviceInfoFromJson(message["ready"]);
         if (unit_) sendUnit();
-    } else if (message.contains("unavailable")) {
-        unavailable_ = message["unavailable"].get<std::string>();
+    } else if (const std::string reason = textOf("unavailable"); !reason.empty()) {
+        unavailable_ = reason;
     } else if (message.contains("done")) {
-        return caseResultFromJson(message["done"]);
+        try {
+            return caseResultFromJson(message["done"]);
+        } catch (const Error& error) {  // of this case, not of the run
+            return failure(report::Status::Error, error.what());
+        }
     }
     return std::nullopt;
 }

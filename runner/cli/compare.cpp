@@ -187,8 +187,8 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
     return regression::findSteps(regression::readHistory(path, measured.machine));
 }
 
-/// What two runs say that were measured for themselves. Where one has no pictures (kept results
-/// have not), none is lost: a note tells it instead.
+/// What two runs say that were measured for themselves. Where the older has no pictures (kept
+/// results have not), none is compared: a note tells it instead.
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
                                     const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);
@@ -196,11 +196,10 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
         older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
-    if (older.pictures.empty() == newer.pictures.empty()) {
-        regression::addPictures(differences, comparePictures(older, newer, folder));
+    if (older.pictures.empty() && !newer.pictures.empty()) {
+        notes.emplace_back("the older run has no pictures: none are compared");
     } else {
-        notes.push_back(fmt::format("the {} run has no pictures: none are compared",
-                                    older.pictures.empty() ? "older" : "newer"));
+        regression::addPictures(differences, comparePictures(older, newer, folder));
     }
     return differences;
 }

@@ -41,6 +41,7 @@ struct Prepared {
     batch::RunDirectory directory;
     batch::Json manifest;
     batch::SchedulerOptions scheduler;
+    std::vector<batch::Json> log{};  // of a run that goes on
 };
 
 std::string deviceClassOf(const gl::DeviceInfo& device) {
@@ -158,7 +159,8 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     batch::noteMachines(run.manifest);
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
-        run.directory.log({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
+        run.log.push_back({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
+        run.directory.log(run.log.back());
         tell("{}: begun on another machine; its times are measured again on {}\n", experiment,
              machine);
     }
@@ -186,8 +188,8 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
     // Before anything is written: a log that cannot be read leaves the folder as it is.
-    const std::vector<batch::Json> log = batch::readLog(run.directory.path() / "log.jsonl");
-    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, log);
+    run.log = batch::readLog(run.directory.path() / "log.jsonl");
+    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, run.log);
     settleMachine(context.commandLine, device, run);
     return run;
 }
@@ -249,10 +251,9 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     run.scheduler.expectations = batch::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
     std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
-    if (options.failuresAtMost > 0) {
-        putFailedLast(batch::readLog(run.directory.path() / "log.jsonl"), units);
-    }
-    batch::Rounds rounds = batch::roundsOf(run.plan, run.directory);
+    if (options.failuresAtMost > 0) putFailedLast(run.log, units);
+    batch::Rounds rounds = batch::roundsOf(run.plan, run.directory, run.log);
+    run.log.clear();
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
     const batch::RunOutcome outcome =

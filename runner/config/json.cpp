@@ -12,6 +12,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr std::size_t kDeepest = 200;
+/// Counts the lines that the parser has read: a plan has a case a line.
+struct Reader {
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    reference operator*() const { return *at; }
+    Reader& operator++() {
+        if (*at++ == '\n') ++*line;
+        return *this;
+    }
+    bool operator==(const Reader& other) const { return at == other.at; }
+
+    const char* at;
+    int* line;
+};
+
 /// A value takes many times its bytes in memory; 100,000 cases have 15 million.
 constexpr std::size_t kMostValues = 30'000'000;
 
@@ -21,6 +40,7 @@ class Builder : public nlohmann::json_sax<Json> {
   public:
     explicit Builder(SourceLocation where) : where_(std::move(where)) {}
 
+    int* line() { return &where_.line; }
     Node takeRoot() { return std::move(root_); }
     std::size_t errorByte() const { return errorByte_; }
 
@@ -116,8 +136,10 @@ SourceLocation placeOf(std::string_view text, std::size_t byte, const std::strin
 }  // namespace
 
 Node parseJson(std::string_view text, const std::string& fileName) {
-    Builder builder({fileName, 0, 0});
-    if (!Json::sax_parse(text, &builder)) {
+    Builder builder({fileName, 1, 0});
+    const Reader begin{text.data(), builder.line()};
+    const Reader end{text.data() + text.size(), builder.line()};
+    if (!Json::sax_parse(begin, end, &builder)) {
         throw Error(placeOf(text, builder.errorByte(), fileName), "this is no JSON");
     }
     return builder.takeRoot();

@@ -6,6 +6,7 @@
 
 #include "runner/core/files.h"
 #include "runner/report/fit.h"
+#include "runner/report/gnuplot.h"
 #include "runner/report/plot.h"
 #include "runner/report/report.h"
 
@@ -81,12 +82,14 @@ std::string shownFrom(const fs::path& page, const fs::path& file) {
     return fs::relative(fs::absolute(file), fs::absolute(page).parent_path()).generic_string();
 }
 
-void addRun(std::size_t index, const fs::path& file, bool embeds, Model& model) {
+void addRun(std::size_t index, const fs::path& file, bool embeds,
+            std::chrono::milliseconds& patience, Model& model) {
     const ReportRun& run = model.runs[index];
     std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
     report::addCalibrations(run.context.calibrations, tables);
     const fs::path made = madeFolder(run.folder, index, file);
-    const std::vector<report::PlotFile> plots = report::writePlots(made, tables, run.experiments);
+    const std::vector<report::PlotFile> plots =
+        report::writePlots(made, tables, run.experiments, patience);
     const std::vector<Shot> shots = gatherShots(run.folder, made, file, embeds);
     for (std::size_t i = 0; i < run.experiments.size(); ++i) {
         const config::Experiment& experiment = run.experiments[i];
@@ -129,10 +132,11 @@ std::string Model::letter(std::size_t run) {
 
 Model buildModel(std::span<const ReportRun> runs, const fs::path& file) {
     Model model{runs, {}};
+    std::chrono::milliseconds patience = report::kGnuplotPatience;
     std::uintmax_t bytes = 0;
     for (const ReportRun& run : runs) bytes += imagesBytes(run);
     for (std::size_t i = 0; i < runs.size(); ++i) {
-        addRun(i, file, bytes <= kEmbeddedImagesBytes, model);
+        addRun(i, file, bytes <= kEmbeddedImagesBytes, patience, model);
     }
     return model;
 }

@@ -1,6 +1,8 @@
 #include "runner/image/image_file.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
@@ -16,11 +18,15 @@ bool isExrFile(const std::filesystem::path& path) {
 
 ImageF readStored(const std::filesystem::path& path) {
     if (isExrFile(path)) return readExr(path).colour();
-    const Image16 stored = readPng16(path);
+    PngRows stored(path, kMaxSidePx, ImageUse::Picture);
     ImageF result(stored.width(), stored.height(), stored.channels());
-    const auto from = stored.values();
-    const auto to = result.values();
-    for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<float>(from[i]) / 65535.0F;
+    std::vector<std::uint16_t> row(result.row(0).size());
+    for (int y = 0; y < result.height(); ++y) {
+        stored.read(row.data());
+        std::ranges::transform(row, result.row(y).begin(), [](std::uint16_t value) {
+            return static_cast<float>(value) / 65535.0F;
+        });
+    }
     return result;
 }
 

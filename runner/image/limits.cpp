@@ -7,7 +7,8 @@
 namespace gfxrepro::image {
 
 void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
-                       std::size_t fileBytes, const std::string& name, std::int64_t maxSidePx) {
+                       std::size_t fileBytes, const std::string& name, std::int64_t maxSidePx,
+                       ImageUse use) {
     const std::string declared =
         name + ": the header declares " + std::to_string(width) + " x " + std::to_string(height);
     if (width < 1 || height < 1 || width > maxSidePx || height > maxSidePx) {
@@ -16,8 +17,12 @@ void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t byte
     }
     constexpr std::size_t kAlwaysAllowedBytes = std::size_t{128} << 20;
     constexpr std::size_t kMaxExpansion = 500;
+    constexpr std::size_t kMaxPictureBytes = std::size_t{1} << 30;
+    constexpr std::size_t kMaxPictureExpansion = 4200;  // deflate: 1,030, grey counted as RGBA
     const std::size_t bytes = static_cast<std::size_t>(width * height) * bytesPerPixel;
-    if (bytes > std::max(kAlwaysAllowedBytes, kMaxExpansion * fileBytes)) {
+    const bool isEvenPicture = use == ImageUse::Picture && bytes <= kMaxPictureBytes &&
+                               bytes <= kMaxPictureExpansion * fileBytes;
+    if (!isEvenPicture && bytes > std::max(kAlwaysAllowedBytes, kMaxExpansion * fileBytes)) {
         throw Error(declared + " pixels of " + std::to_string(bytesPerPixel) +
                     " bytes, too many for a file of " + std::to_string(fileBytes) + " bytes");
     }

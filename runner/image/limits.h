@@ -10,12 +10,15 @@ namespace gfxrepro::image {
 /// Of images that are decoded whole.
 constexpr std::int64_t kMaxSidePx = 32768;
 
+/// What a file is for: a picture, which a run may have recorded, or a texture or map of somebody's.
+enum class ImageUse { Picture, Texture };
+
 /// Throws Error when a header declares more than `maxSidePx` pixels a side, none at all, or an
-/// image of more than 128 MiB that is also more than 500 times the file's size: an even picture of
-/// 4096² takes a thousandth of its size in a file, and so does one of 16,000² that is there to fill
-/// the memory. `name` stands in the message.
+/// image of more than 128 MiB that is also more than 500 times the file's size. Of a picture
+/// 4,200 times pass up to 1 GiB (16,384²): an even one, black, is as small as deflate makes it, and
+/// what was recorded is read again. `name` stands in the message.
 void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t bytesPerPixel,
                        std::size_t fileBytes, const std::string& name,
-                       std::int64_t maxSidePx = kMaxSidePx);
+                       std::int64_t maxSidePx = kMaxSidePx, ImageUse use = ImageUse::Texture);
 
 }  // namespace gfxrepro::image

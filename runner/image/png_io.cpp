@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "runner/core/files.h"
-#include "runner/image/limits.h"
 
 namespace gfxrepro::image {
 
@@ -42,18 +41,18 @@ void guarded(png_structp png, const std::string& place, const std::string& messa
 class Reader {
   public:
     /// Reads the header. It delegates so that the destructor runs when that throws.
-    Reader(std::span<const std::byte> bytes, const std::string& name)
+    Reader(std::span<const std::byte> bytes, const std::string& name, ImageUse use)
         : Reader(bytes.first(std::min(bytes.size(), kSignatureBytes)), name, Unread{}) {
         rest_ = bytes;
         png_set_read_fn(png_, this, take);
-        readHeader(bytes.size(), kMaxSidePx);
+        readHeader(bytes.size(), kMaxSidePx, use);
     }
     /// The same of a file, which is read as far as its rows are.
     Reader(std::ifstream& file, std::size_t fileBytes, const std::string& name,
-           std::int64_t maxSidePx)
+           std::int64_t maxSidePx, ImageUse use)
         : Reader(signatureOf(file), name, Unread{}) {
         png_set_read_fn(png_, &file, takeOfFile);
-        readHeader(fileBytes, maxSidePx);
+        readHeader(fileBytes, maxSidePx, use);
     }
     ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
     Reader(const Reader&) = delete;
@@ -136,10 +135,10 @@ class Reader {
         return signature;
     }
 
-    void readHeader(std::size_t fileBytes, std::int64_t maxSidePx) {
+    void readHeader(std::size_t fileBytes, std::int64_t maxSidePx, ImageUse use) {
         guarded(png_, name_, message_, [this] { png_read_info(png_, info_); });
         checkDeclaredSize(png_get_image_width(png_, info_), png_get_image_height(png_, info_),
-                          decodedBytesPerPixel(), fileBytes, name_, maxSidePx);
+                          decodedBytesPerPixel(), fileBytes, name_, maxSidePx, use);
     }
 
     static void takeOfFile(png_structp png, png_bytep to, std::size_t count) {
@@ -225,6 +224,12 @@ class Writer {
     png_infop info_ = nullptr;
 };
 
+Image8 decoded8(std::span<const std::byte> bytes, const std::string& name, ImageUse use) {
+    Reader reader(bytes, name, use);
+    if (reader.bitDepth() == 16) throw Error(name + ": 16 bits a channel; at most 8 are allowed");
+    return reader.decoded<std::uint8_t>();
+}
+
 template <class T>
 void writeEncoded(const std::filesystem::path& path, const Image<T>& image) {
     writeFileAtomic(path, Writer().encoded(image, "cannot write " + path.string()));
@@ -233,25 +238,23 @@ void writeEncoded(const std::filesystem::path& path, const Image<T>& image) {
 }  // namespace
 
 Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name) {
-    Reader reader(bytes, name);
-    if (reader.bitDepth() == 16) throw Error(name + ": 16 bits a channel; at most 8 are allowed");
-    return reader.decoded<std::uint8_t>();
+    return decoded8(bytes, name, ImageUse::Texture);
 }
 
 Image8 readPng8(const std::filesystem::path& path) {
-    return decodePng8(MappedFile(path).bytes(), path.string());
+    return decoded8(MappedFile(path).bytes(), path.string(), ImageUse::Picture);
 }
 
 Image16 readPng16(const std::filesystem::path& path) {
     const MappedFile file(path);
-    return Reader(file.bytes(), path.string()).decoded<std::uint16_t>();
+    return Reader(file.bytes(), path.string(), ImageUse::Picture).decoded<std::uint16_t>();
 }
 
 class PngRows::Decoder {
   public:
-    Decoder(const std::filesystem::path& path, std::int64_t maxSidePx)
+    Decoder(const std::filesystem::path& path, std::int64_t maxSidePx, ImageUse use)
         : file_(opened(path)),
-          reader_(file_, std::filesystem::file_size(path), path.string(), maxSidePx),
+          reader_(file_, std::filesystem::file_size(path), path.string(), maxSidePx, use),
           bitDepth_(reader_.bitDepth()) {
         reader_.expandTo<std::uint16_t>();
     }
@@ -273,6 +276,11 @@ class PngRows::Decoder {
 
   private:
     static std::ifstream opened(const std::filesystem::path& path) {
+        std::error_code isAbsent;
+        const auto status = std::filesystem::status(path, isAbsent);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+            throw Error("cannot read " + path.string() + ": a folder, a pipe or a device");
+        }
         std::ifstream file(path, std::ios::binary);
         if (!file) throw Error("cannot read " + path.string() + ": " + std::strerror(errno));
         return file;
@@ -285,8 +293,8 @@ class PngRows::Decoder {
     int row_ = 0;
 };
 
-PngRows::PngRows(const std::filesystem::path& path, std::int64_t maxSidePx)
-    : decoder_(std::make_unique<Decoder>(path, maxSidePx)) {}
+PngRows::PngRows(const std::filesystem::path& path, std::int64_t maxSidePx, ImageUse use)
+    : decoder_(std::make_unique<Decoder>(path, maxSidePx, use)) {}
 PngRows::~PngRows() = default;
 PngRows::PngRows(PngRows&&) noexcept = default;
 

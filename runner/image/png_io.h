@@ -9,16 +9,17 @@
 #include <string>
 
 #include "runner/image/image.h"
+#include "runner/image/limits.h"
 
 namespace gfxrepro::image {
 
 /// 8-bit values, 1 to 4 channels; palettes and lower depths are expanded, 16-bit is an Error.
 /// Throws Error with the path and the decoder's reason; the memory stays bounded by what the header
-/// declares, which may be at most 32768² pixels, and by 2,000 times the file's size.
+/// declares, and that as limits.h says of pictures.
 Image8 readPng8(const std::filesystem::path& path);
 /// 16-bit values; 8-bit files are widened (v·257).
 Image16 readPng16(const std::filesystem::path& path);
-/// From memory; `name` stands in messages.
+/// Of a texture, from memory; `name` stands in messages.
 Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name);
 
 /// A PNG file's rows of 16-bit values, one after the other: in memory are a few of them. An
@@ -26,7 +27,8 @@ Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name);
 class PngRows {
   public:
     /// Reads the header. Throws as readPng16() does, of at most `maxSidePx` a side.
-    PngRows(const std::filesystem::path& path, std::int64_t maxSidePx);
+    PngRows(const std::filesystem::path& path, std::int64_t maxSidePx,
+            ImageUse use = ImageUse::Texture);
     ~PngRows();
     PngRows(PngRows&&) noexcept;
 

@@ -152,13 +152,14 @@ std::size_t untimedCases(const std::vector<report::Record>& records) {
 }
 
 void addParamNames(const SeriesKey& key, ParamNames& names) {
+    if (key.params.empty()) return;
     const Json params = Json::parse(key.params);
     for (const auto& [name, value] : params.items()) names[key.technique].insert(name);
 }
 
 std::string reducedParams(const SeriesKey& key, const ParamNames& known) {
     const auto found = known.find(key.technique);
-    if (found == known.end()) return key.params;
+    if (found == known.end() || key.params.empty()) return key.params;
     const Json all = Json::parse(key.params);
     Json params = Json::object();
     for (const auto& [name, value] : all.items()) {

@@ -115,7 +115,6 @@ std::vector<const Record*> CaseRecords::Attempt::values(std::string_view metric,
 
 std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,
                                      const std::vector<std::string>& axes) {
-    constexpr int kMostProcesses = 1'000'000;  // of a case: config::readMeasure
     struct Place {
         std::size_t index;  // in `cases`
         int firstProcess;

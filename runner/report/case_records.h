@@ -18,6 +18,8 @@ namespace gfxrepro::report {
 /// the seeds of a generated scene it has, from 0.
 inline constexpr const char* kStandsFor = "stands_for";
 inline constexpr const char* kSceneSample = "scene_sample";
+inline constexpr int kMostSceneSample = 999;      // of `measure.scene_seeds`
+inline constexpr int kMostProcesses = 1'000'000;  // of a case: config::readMeasure
 
 /// One text for one value, however it is spelt: 64 and 64.0, or a scene as text or as a map.
 std::string canonicalText(const config::Node& value);

@@ -21,10 +21,12 @@ struct Drawn {
     std::string svg;
     std::string problem;
 };
-inline constexpr std::chrono::seconds kGnuplotLimit{60};
+inline constexpr std::chrono::seconds kGnuplotLimit{1};
+/// For all plots of a report together, beyond each one's limit.
+inline constexpr std::chrono::seconds kGnuplotPatience{60};
 /// Runs the program `gnuplot` of PATH, without anyone's settings; kills it at the limit.
 Drawn runGnuplot(const std::filesystem::path& script,
-                 std::chrono::milliseconds limit = kGnuplotLimit);
+                 std::chrono::milliseconds limit = kGnuplotPatience);
 
 /// gnuplot's SVG made fit to stand in a page beside others: text and axes in the colour of the
 /// text around, every id begun by `name`, no titles of parts and no XML head.

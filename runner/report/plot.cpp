@@ -22,8 +22,19 @@ std::string idOf(const std::string& stem) {
     return id;
 }
 
+/// All plots of a report wait for gnuplots that sleep no longer than for one.
+Drawn runPatiently(const fs::path& script, std::chrono::milliseconds& patience) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begin = Clock::now();
+    Drawn drawn = runGnuplot(script, kGnuplotLimit + patience);
+    const auto taken = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin);
+    const auto beyond = std::max<std::chrono::milliseconds>(taken - kGnuplotLimit, {});
+    patience -= std::min(patience, beyond);
+    return drawn;
+}
+
 PlotFile writePlot(const fs::path& runDir, const Table& table, const config::PlotSpec& plot,
-                   const std::string& stem) {
+                   const std::string& stem, std::chrono::milliseconds& patience) {
     PlotFile file;
     file.table = table.id;
     file.title = plot.title.empty() ? table.title : plot.title;
@@ -40,7 +51,7 @@ PlotFile writePlot(const fs::path& runDir, const Table& table, const config::Plo
     file.script = fmt::format("plots/{}.gp", stem);
     const std::string source = fmt::format("{}: {}", table.label, file.title);
     writeFileAtomic(runDir / file.script, gnuplotScript(figure, idOf(stem), source));
-    const Drawn drawn = runGnuplot(runDir / file.script);
+    const Drawn drawn = runPatiently(runDir / file.script, patience);
     file.problem = drawn.problem;
     if (drawn.problem.empty()) {
         file.svg = svg;
@@ -54,14 +65,16 @@ PlotFile writePlot(const fs::path& runDir, const Table& table, const config::Plo
 }  // namespace
 
 std::vector<PlotFile> writePlots(const fs::path& runDir, const std::vector<Table>& tables,
-                                 const std::vector<config::Experiment>& experiments) {
+                                 const std::vector<config::Experiment>& experiments,
+                                 std::chrono::milliseconds& patience) {
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<PlotFile> files;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
         const std::vector<config::PlotSpec>& plots = experiments[i].plots;
         for (std::size_t n = 0; n < plots.size(); ++n) {
             const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
-            files.push_back(writePlot(runDir, tables[i], plots[n], tables[i].slug + suffix));
+            files.push_back(
+                writePlot(runDir, tables[i], plots[n], tables[i].slug + suffix, patience));
         }
     }
     return files;

@@ -1,6 +1,7 @@
 // The curves of a run's tables as files: scripts for gnuplot, and the SVGs that it makes of them.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,9 +24,11 @@ struct PlotFile {
 /// Writes the plots of all experiments, in order; `tables` lies beside `experiments`. The SVGs may
 /// stand in one page: ids are unique, nothing is fetched, text takes the colour of the page's. A
 /// run without gnuplot gets its scripts only; a plot of a column that a profile or an override took
-/// away has its problem alone. Throws Error for files.
+/// away has its problem alone. What gnuplot takes beyond kGnuplotLimit a plot is taken off
+/// `patience`. Throws Error for files.
 std::vector<PlotFile> writePlots(const std::filesystem::path& runDir,
                                  const std::vector<Table>& tables,
-                                 const std::vector<config::Experiment>& experiments);
+                                 const std::vector<config::Experiment>& experiments,
+                                 std::chrono::milliseconds& patience);
 
 }  // namespace gfxrepro::report

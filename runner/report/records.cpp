@@ -20,6 +20,7 @@
 #include "runner/core/files.h"
 #include "runner/core/json_depth.h"
 #include "runner/core/text.h"
+#include "runner/report/case_records.h"
 #include "runner/report/csv.h"
 
 namespace gfxrepro::report {
@@ -102,8 +103,9 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
     record.frame = integerField(where, "frame", fields[7]);
     record.repeat = integerField(where, "repeat", fields[8]);
     record.process = integerField(where, "process", fields[9]);
-    if (record.process < 0) {
-        throw Error(where, "column 'process': expected 0 or more, found '" + fields[9] + "'");
+    if (record.process < 0 || record.process >= kMostProcesses) {
+        throw Error(where, "column 'process': expected 0 to " + std::to_string(kMostProcesses - 1) +
+                               ", found '" + fields[9] + "'");
     }
     record.lane = std::move(fields[10]);
     record.pass = std::move(fields[11]);
@@ -120,7 +122,8 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
     return record;
 }
 
-/// A JSON object, or nothing; its `output`, if it has one, is an object, too.
+/// A JSON object, or nothing; its `output`, if it has one, is an object, too, and its
+/// `scene_sample` a number of a seed.
 void requireParams(const SourceLocation& where, const std::string& params) {
     if (params.empty()) return;
     if (isTooDeepJson(params)) {
@@ -128,9 +131,18 @@ void requireParams(const SourceLocation& where, const std::string& params) {
                                std::to_string(kMostJsonLevels) + " levels");
     }
     const auto json = nlohmann::json::parse(params, nullptr, false);
-    if (json.is_object() && (!json.contains("output") || json["output"].is_object())) return;
-    throw Error(where,
-                "column 'params': expected a JSON object, found '" + params.substr(0, 80) + "'");
+    if (!json.is_object() || (json.contains("output") && !json["output"].is_object())) {
+        throw Error(
+            where, "column 'params': expected a JSON object, found '" + params.substr(0, 80) + "'");
+    }
+    const auto sample = json.find(kSceneSample);
+    if (sample == json.end()) return;
+    if (!sample->is_number_integer() || *sample < 0 || *sample > kMostSceneSample) {
+        throw Error(where, "column 'params': '/" + std::string(kSceneSample) + "' is " +
+                               sample->dump().substr(0, 80) +
+                               "; expected a whole number from 0 to " +
+                               std::to_string(kMostSceneSample));
+    }
 }
 
 void checkHeader(const fs::path& path, std::string_view text) {

@@ -137,7 +137,8 @@ Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
             path, how.units, folder, sha256(fmt::format("read {} {}", kReadingVersion, content)));
     }
     if (!how.colourMap.empty()) {
-        scene.textures.push_back(rgbOf(image::readPng8(assetsFolder / how.colourMap)));
+        const fs::path map = assetsFolder / how.colourMap;
+        scene.textures.push_back(rgbOf(image::decodePng8(MappedFile(map).bytes(), map.string())));
         Material ground;
         ground.baseColorTexture = 0;
         scene.materials.push_back(ground);

@@ -195,12 +195,28 @@ TEST_F(Compare, PicturesMayDifferByWhatTheTableAllows) {
     EXPECT_NE(notFinite.out.find("channel B has a value of 0.5 before, nan after"),
               std::string::npos)
         << notFinite.out;
-    fs::remove_all(a + "/images");  // as kept results are
-    const ProcessResult without = mockGfxrepro({"compare", a, b, "--out", out});
-    EXPECT_EQ(without.exitCode, 0) << without.out;
-    EXPECT_NE(without.out.find("warning: the older run has no pictures: none are compared\n"),
+}
+
+TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
+    const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
+    const std::string a = folder.path() / "a", b = folder.path() / "b";
+    for (const std::string& dir : {a, b}) {
+        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    }
+    fs::remove_all(b + "/images");
+    const ProcessResult lost = mockGfxrepro({"compare", a, b, "--out", out});
+    EXPECT_EQ(lost.exitCode, 1) << lost.out << lost.err;
+    EXPECT_NE(lost.out.find("sweep/mock mock picture/flat: lost: recorded before only\n"),
               std::string::npos)
-        << without.out;
+        << lost.out;
+    EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"lost: recorded before only"),
+              std::string::npos);
+    const ProcessResult never = mockGfxrepro({"compare", b, a, "--out", out});  // kept results
+    EXPECT_EQ(never.exitCode, 0) << never.out << never.err;
+    EXPECT_NE(never.out.find("warning: the older run has no pictures: none are compared\n"),
+              std::string::npos)
+        << never.out;
+    EXPECT_EQ(mockGfxrepro({"compare", b, b, "--out", out}).exitCode, 0);
 }
 
 TEST_F(Compare, RefusesWhatIsNoPair) {

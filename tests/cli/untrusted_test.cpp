@@ -172,6 +172,56 @@ TEST_F(Untrusted, LinesOfALogTakeLittleMemory) {
                   dir + "/log.jsonl:2: a line of 1048577 bytes; at most 1048576 are read\n");
 }
 
+TEST_F(Untrusted, WhatHasAnotherShapeIsSaidWithItsPlace) {
+    const auto with = [&](const char* name, const char* place, const nlohmann::ordered_json& value,
+                          const std::vector<std::string>& command, const std::string& why) {
+        const std::string file = dir + "/" + name, whole = readFile(file);
+        auto json = nlohmann::ordered_json::parse(whole);
+        json[nlohmann::ordered_json::json_pointer(place)] = value;
+        writeFileAtomic(file, json.dump(1));
+        expectRefused(command, file + ": " + why + "\n");
+        writeFileAtomic(file, whole);
+    };
+    const char* manifest = "manifest.json";
+    with(manifest, "/started", 3, {"table", dir}, "'/started' is number; expected a line of text");
+    with(manifest, "/cores", 1e300, {"table", dir},
+         "'/cores' is number; expected a whole number below 2^31");
+    with(manifest, "/invocations/0/command", nullptr, {"report", dir},
+         "'/invocations/0/command' is null; expected text");
+    folder.write("run/log.jsonl",
+                 "{\"event\": \"case\", \"case\": \"a\", \"cost\": {\"load_s\": 0, "
+                 "\"setup_s\": 0, \"render_s\": 0, \"record_s\": 0, "
+                 "\"peak_bytes\": 1e300}}\n");
+    expectRefused({"report", dir}, dir +
+                                       "/log.jsonl:1: '/cost/peak_bytes' is number; expected a "
+                                       "whole number\n");
+    folder.write("run/submission.json", "{}");
+    with("submission.json", "/units", {1, "x"}, {"submit", "--status", dir},
+         "'/run_arguments' is missing");
+    folder.write("run/submission.json",
+                 "{\"run_arguments\": [], \"units\": [1, 1e300], \"array_job\": \"\", "
+                 "\"merge_job\": \"\"}");
+    expectRefused({"submit", "--status", dir},
+                  "submission.json: '/units' is array; expected whole numbers below 2^31\n");
+    dropFrozenHash();
+    const std::string plan = readFile(dir + "/plan.json");
+    const auto line = [&](const std::string& text) {
+        return ":" +
+               std::to_string(std::count(plan.begin(), plan.begin() + plan.find(text), '\n') + 1);
+    };
+    const auto planned = [&](const std::string& from, const std::string& to,
+                             const std::string& why) {
+        replaceInPlan(from, to);
+        expectRefused({"table", dir}, dir + "/plan.json" + line(from) + ": " + why + "\n");
+        writeFileAtomic(dir + "/plan.json", plan);
+    };
+    planned("\"seed\":\"", "\"scene_sample\":1000,\"seed\":\"",
+            "'scene_sample' is 1000; expected a whole number from 0 to 999");
+    planned("\"repeats\":", "\"repeats\":1e300,\"r\":",
+            "'repeats' is 1e300; expected a whole number from 0 to 2147483647");
+    planned("\"profile\": \"", "\"profile\": [], \"p\": \"", "'profile' is a list; expected text");
+}
+
 TEST_F(Untrusted, APlanNamesConfigsAndCases) {
     const std::string file = "\"file\": \"" + (folder.path() / "mock.yaml").string();
     const std::string other = folder.write("secret.yaml", "password: 1\n");

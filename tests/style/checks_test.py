@@ -54,6 +54,14 @@ expect("check_layers", {"techniques/marching/x.h": "", "runner/core/a.cpp": "// 
        "runner/core/a.cpp: runner/ names the technique 'marching'")
 expect("check_layers", {"runner/core/a.cpp": '#include "error.h"\n'},
        'runner/core/a.cpp:1: includes are root-relative, not "error.h"')
+WORKFLOW = ".github/workflows/a.yml"
+for action in ("other/action@v1", "'other/action@main'", "other/action@0123abc", "actions-rs/toolchain@v1"):
+    expect("check_style", {WORKFLOW: f"      - uses: {action}\n"},
+           f"{WORKFLOW}:1: " + action.strip("'") + ": not pinned to a commit")
+for action in ("actions/checkout@v4", "other/action@" + "0123456789" * 4 + "  # v1"):
+    code, output = run("check_style", {**GOOD, WORKFLOW: f"      - uses: {action}\n"})
+    if code != 0:
+        sys.exit(f"check_style found something in {action}:\n{output}")
 expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")
 expect("check_style", {"runner/core/a.cpp": "\n" * 401}, "runner/core/a.cpp: 401 lines, at most 400")
 # The data of a scene may be long, that of others not.

@@ -5,6 +5,7 @@
 
 #include "runner/batch/run_files.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::test {
@@ -46,6 +47,22 @@ TEST(RunDirectory, OutputsAreLeftOutOfALargeLog) {
     const batch::Json beyond = lastAt((64 << 20) + 1);
     EXPECT_EQ(beyond["output"], "[5 bytes left out: the log has 64 MiB]");
     EXPECT_EQ(beyond["message"], "no end");
+}
+
+TEST(RunDirectory, ALogEndsWithOneLineThatSaysSo) {
+    const TemporaryFolder folder;
+    const batch::RunDirectory directory = batch::RunDirectory::create(folder.path() / "run");
+    const fs::path log = folder.path() / "run/log.jsonl";
+    fs::resize_file(log, batch::kMostWrittenLogBytes);  // of which the disk has nothing
+    for (int i = 0; i < 3; ++i) directory.log({{"event", "start"}, {"process", i}});
+    const MappedFile whole(log);
+    const std::string written(whole.text().substr(batch::kMostWrittenLogBytes));
+    const std::vector<std::string> lines = split(written, '\n');
+    ASSERT_EQ(lines.size(), 3U) << written;
+    EXPECT_EQ(batch::Json::parse(lines[0])["process"], 0);
+    EXPECT_EQ(batch::Json::parse(lines[1])["event"], "full");
+    EXPECT_EQ(batch::Json::parse(lines[1])["message"],
+              "the log has 384 MiB: what follows is left out");
 }
 
 }  // namespace

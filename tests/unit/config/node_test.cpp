@@ -182,12 +182,12 @@ TEST(Node, OfJson) {
     EXPECT_TRUE(node.find("b")->items()[2].asBool());
     EXPECT_TRUE(node.find("b")->items()[3].isNull());
     EXPECT_FALSE(node.find("b")->items()[4].tryDouble().has_value());
-    EXPECT_EQ(node.find("c")->location(), (SourceLocation{"a.json", 0, 0}));
+    EXPECT_EQ(node.find("c")->location(), (SourceLocation{"a.json", 1, 0}));
     const auto error = [&](const std::string& text) { return errorText([&] { json(text); }); };
     EXPECT_EQ(error("{\n  \"a\": x}"), "a.json:2:8: this is no JSON");
     EXPECT_EQ(error(""), "a.json:1: this is no JSON");
     EXPECT_EQ(error("{} {}"), "a.json:1:4: this is no JSON");
-    EXPECT_EQ(error(std::string(201, '[')), "a.json: nested deeper than 200");
+    EXPECT_EQ(error(std::string(201, '[')), "a.json:1: nested deeper than 200");
     EXPECT_EQ(error(std::string(200, '[') + std::string(200, ']')), "no error");
 }
 

@@ -98,18 +98,43 @@ TEST(Png, RefusesHeadersThatDeclareTooMuch) {
               "of 41 bytes");
 }
 
+TEST(Png, EvenPicturesThatARunWritesAreRead) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "black.png";
+    writePng(path, Image8(8192, 8192, 1));  // 256 MiB as RGBA
+    const std::uintmax_t bytes = std::filesystem::file_size(path);
+    EXPECT_LT(bytes, (std::uintmax_t{256} << 20) / 500);
+    EXPECT_EQ(readPng8(path).width(), 8192);
+    // A texture of somebody's may be no such file, and a picture no larger than 16,384².
+    EXPECT_EQ(errorText([&] { decodePng8(MappedFile(path).bytes(), "t.png"); }),
+              "t.png: the header declares 8192 x 8192 pixels of 4 bytes, too many for a file of " +
+                  std::to_string(bytes) + " bytes");
+    EXPECT_EQ(errorText([&] { PngRows(path, kMaxSidePx); }, folder.path()),
+              "DIR/black.png: the header declares 8192 x 8192 pixels of 4 bytes, too many for a "
+              "file of " +
+                  std::to_string(bytes) + " bytes");
+    EXPECT_EQ(PngRows(path, kMaxSidePx, ImageUse::Picture).width(), 8192);
+    checkDeclaredSize(16384, 16384, 4, 260'000, "a", kMaxSidePx, ImageUse::Picture);
+    EXPECT_NE(errorText([] {
+                  checkDeclaredSize(16384, 16384, 4, 250'000, "a", kMaxSidePx, ImageUse::Picture);
+              }),
+              "");
+    EXPECT_NE(errorText([] {
+                  checkDeclaredSize(16384, 16385, 4, 900'000, "a", kMaxSidePx, ImageUse::Picture);
+              }),
+              "");
+}
+
 TEST(Png, RefusesTinyFilesThatFillTheMemory) {
     const TemporaryFolder folder;
-    // 16000 x 16000 grey pixels in a file of a thousandth of their bytes, as of an even picture.
-    std::string content("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x3e\x80\x08\0\0\0\0", 29);
-    content += std::string("\x64\x15\x80\x02\0\0\0\0IDAT", 12);
+    // 20000 x 20000 grey pixels in a file of a thousandth of their bytes, as of an even picture.
+    std::string content("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\x4e\x20\x08\0\0\0\0", 29);
+    content += std::string("\xc6\x1b\x19\xe5\0\0\0\0IDAT", 12);
     content.resize(1 << 20);
     const auto path = folder.write("a.png", content);
     EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()),
-              "DIR/a.png: the header declares 16000 x 16000 pixels of 4 bytes, too many for a file "
+              "DIR/a.png: the header declares 20000 x 20000 pixels of 4 bytes, too many for a file "
               "of 1048576 bytes");
-    writePng(folder.path() / "even.png", Image8(4096, 4096, 1));
-    EXPECT_EQ(readPng8(folder.path() / "even.png").width(), 4096);
 }
 
 TEST(Png, RefusesImagesThatPngCannotHold) {

@@ -249,8 +249,9 @@ std::vector<Record> records() {
 }
 
 TEST_F(Drawing, WritesFilesOfEachPlot) {
+    std::chrono::milliseconds patience = kGnuplotPatience;
     const auto files =
-        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()});
+        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()}, patience);
     ASSERT_EQ(files.size(), 2U);
     EXPECT_EQ(files[0].table, "zju2005/9.9");
     EXPECT_EQ(files[0].title, "A table");
@@ -266,21 +267,36 @@ TEST_F(Drawing, WritesFilesOfEachPlot) {
 }
 
 TEST_F(Drawing, DrawsNothingOfNothing) {
+    std::chrono::milliseconds patience = kGnuplotPatience;
     const auto stale = folder.write("plots/zju2005-9.9.svg", "old");
-    const auto files = writePlots(folder.path(), buildTables({experiment()}, {}), {experiment()});
+    const auto files =
+        writePlots(folder.path(), buildTables({experiment()}, {}), {experiment()}, patience);
     EXPECT_EQ(files.at(0).problem, "no value was measured");
     EXPECT_EQ(files[0].svg, "");
     EXPECT_EQ(files[0].script, "");
     EXPECT_FALSE(std::filesystem::exists(stale));
 }
 
+TEST(Plots, AllTogetherWaitForGnuplotNoLongerThanOne) {
+    const test::TemporaryFolder folder;
+    const ProgramInFront program(folder, "gnuplot", "#!/bin/sh\nexec sleep 20\n");
+    std::chrono::milliseconds patience(500);
+    const auto files =
+        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()}, patience);
+    ASSERT_EQ(files.size(), 2U);
+    EXPECT_EQ(files[0].problem, "gnuplot did not end in 1.5 s");
+    EXPECT_EQ(files[1].problem, "gnuplot did not end in 1 s");
+    EXPECT_EQ(patience, std::chrono::milliseconds(0));
+}
+
 TEST(Plots, GoWithoutGnuplot) {
+    std::chrono::milliseconds patience = kGnuplotPatience;
     const test::TemporaryFolder folder;
     const auto stale = folder.write("plots/zju2005-9.9.svg", "old");
     const std::string path = std::getenv("PATH");
     ::setenv("PATH", folder.path().c_str(), 1);
     const auto files =
-        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()});
+        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()}, patience);
     ::setenv("PATH", path.c_str(), 1);
     EXPECT_EQ(files.at(0).problem, "gnuplot is not installed");
     EXPECT_EQ(files[0].svg, "");

@@ -154,7 +154,14 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
     EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0.5,0,0,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
     EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,-2,timing,p,x,ms,1,ok,,1\n"),
-              "DIR/records.csv:2: column 'process': expected 0 or more, found '-2'");
+              "DIR/records.csv:2: column 'process': expected 0 to 999999, found '-2'");
+    for (const char* sample : {"-1", "1000", "1.5", "1e3", "null"}) {
+        EXPECT_EQ(error(kHeader + ("2,c,t,q,m,s,\"{\"\"scene_sample\"\":" + std::string(sample)) +
+                        "}\",0,0,0,timing,p,x,ms,1,ok,,1\n"),
+                  "DIR/records.csv:2: column 'params': '/scene_sample' is " +
+                      (sample == std::string("1e3") ? "1000.0" : std::string(sample)) +
+                      "; expected a whole number from 0 to 999");
+    }
     EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,fast,ok,,1\n"),
               "DIR/records.csv:2: column 'value': expected a number or nothing, found 'fast'");
     EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,fine,,1\n"),

@@ -1,0 +1,120 @@
+// A worker seen from the runner: shells that speak its protocol stand for workers, and time is
+// given.
+#include "runner/batch/worker_handle.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <thread>
+
+#include "tests/unit/batch/plan_fixture.h"
+
+namespace gfxrepro::batch {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = WorkerHandle::Clock;
+
+constexpr const char* kReady =
+    R"({"ready": {"index": 0, "platform": "p", "vendor": "v", "renderer": "r", "version": "4.5",
+"mesa_version": "", "is_software": true, "timer_resolution_ns": 1.0}})";
+
+class Worker : public testing::Test {
+  protected:
+    Worker() { item.measure.timeLimitS = 5.0; }
+
+    /// Says that it is ready, and runs `script` when it has its case.
+    std::vector<std::string> command(const std::string& script) const {
+        std::string ready = kReady;
+        std::ranges::replace(ready, '\n', ' ');
+        return {"/bin/sh", "-c", "echo \"$0\" >&3; read -r line; " + script, ready};
+    }
+    static std::optional<CaseResult> receive(WorkerHandle& worker) {
+        for (int i = 0; i < 1000; ++i, std::this_thread::sleep_for(10ms)) {
+            if (auto result = worker.receive()) return result;
+            if (worker.isGone()) break;
+        }
+        return std::nullopt;
+    }
+    static void waitUntilReady(WorkerHandle& worker) {
+        for (int i = 0; i < 1000 && !worker.device(); ++i, std::this_thread::sleep_for(10ms)) {
+            worker.receive();
+        }
+        ASSERT_TRUE(worker.device());
+    }
+    static void signal(const WorkerHandle& worker, int number) {
+        ::kill(worker.process().pid(), number);
+        for (int i = 0; i < 1000 && worker.process().isSuspended() != (number == SIGSTOP); ++i) {
+            std::this_thread::sleep_for(10ms);
+        }
+        ASSERT_EQ(worker.process().isSuspended(), number == SIGSTOP);
+    }
+
+    PhaseClock phases;
+    Case item = test::makeCase("t/1", "a", 1);
+};
+
+TEST_F(Worker, SuspendedAloneItsLimitMovesBySixtySecondsAtMost) {
+    WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const Clock::time_point begin = Clock::now();
+    signal(worker, SIGSTOP);
+    for (const auto at : {1s, 30s, 59s, 61s, 64s}) {
+        EXPECT_FALSE(worker.checkLimits(begin + at)) << at.count();
+    }
+    const auto result = worker.checkLimits(begin + 66s);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, report::Status::Timeout);
+    EXPECT_EQ(result->message, "suspended from outside for more than 60 s");
+    EXPECT_TRUE(result->isOutsideKill) << "the case is measured again, and not marked";
+    EXPECT_TRUE(worker.isGone());
+}
+
+TEST_F(Worker, AfterASuspensionItHasItsOwnTime) {
+    WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const Clock::time_point begin = Clock::now();
+    signal(worker, SIGSTOP);
+    EXPECT_FALSE(worker.checkLimits(begin + 1s));
+    EXPECT_FALSE(worker.checkLimits(begin + 20s));
+    signal(worker, SIGCONT);
+    EXPECT_FALSE(worker.checkLimits(begin + 21s));
+    EXPECT_FALSE(worker.checkLimits(begin + 25s));
+    const auto result = worker.checkLimits(begin + 27s);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->message, "not finished after 5 s");
+    EXPECT_FALSE(result->isOutsideKill);
+}
+
+TEST_F(Worker, AnAnswerOfAnotherShapeIsAnErrorOfTheCase) {
+    const auto messageOf = [&](const std::string& done) {
+        WorkerHandle worker(
+            command("echo '{\"begin\": 3}' >&3; echo '{\"done\": " + done + "}' >&3; sleep 1000"),
+            config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        worker.assign({&item, 0});
+        const auto result = receive(worker);
+        EXPECT_TRUE(result && result->status == report::Status::Error);
+        return result ? result->message : "";
+    };
+    const auto done = [](const std::string& status, const std::string& samples) {
+        return "{\"status\": " + status +
+               ", \"message\": \"\", \"void\": \"\", \"cost\": {\"load_s\": 0, \"setup_s\": 0, "
+               "\"render_s\": 0, \"record_s\": 0, \"peak_bytes\": 1}, \"images\": [], \"scenes\": "
+               "[], \"samples\": " +
+               samples + "}";
+    };
+    EXPECT_EQ(messageOf(done("3", "[]")),
+              "the worker's answer: '/status' is number; expected text");
+    EXPECT_EQ(
+        messageOf(done("\"ok\"", "[[0, 0, \"\", \"m\", \"ms\", null, false]]")),
+        "the worker's answer: '/samples/0/5' is null; expected a number, \"inf\" or \"-inf\"");
+    EXPECT_EQ(messageOf(done("\"ok\"", "[[0, 0]]")),
+              "the worker's answer: '/samples/0' has 2 values; expected 7");
+    EXPECT_EQ(messageOf("{}"), "the worker's answer: '/status' is missing");
+}
+
+}  // namespace
+}  // namespace gfxrepro::batch
