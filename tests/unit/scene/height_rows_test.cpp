@@ -198,7 +198,9 @@ TEST(HeightRows, BrokenFilesLeaveNothingBehind) {
     writePng(folder.path() / "whole.png", values(), PNG_INTERLACE_NONE);
     const std::string png = readFile(folder.path() / "whole.png");
     folder.write("cut.png", png.substr(0, png.size() / 2));
+    testing::internal::CaptureStderr();
     EXPECT_EQ(message("cut.png"), "DIR/cut.png: the file ends early");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // and is not tried in memory
     folder.write("none.raw", std::string(2 * 70 * 150, '\x80'));
     folder.write("none.raw.yaml", "{width: 70, height: 150, type: i16, no_data: -32640}");
     EXPECT_EQ(message("none.raw"), "DIR/none.raw: no sample has data; allowed: at least one");
