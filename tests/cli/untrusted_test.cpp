@@ -407,6 +407,24 @@ TEST_F(Untrusted, NoTextIsACommandToGitHub) {
     expectNone(table);
 }
 
+TEST(Doctor, NoTextOfADriverIsACommand) {
+    const std::string name = "force_gl_renderer=a\xFF\x1B[2J\n::stop-commands::abc";  // Mesa's
+    const auto doctor = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "doctor"};
+        command.insert(command.end(), options.begin(), options.end());
+        return runProgram(command, {name});
+    };
+    const ProcessResult json = doctor({"--json"});
+    EXPECT_EQ(json.exitCode, 0) << json.err;
+    const auto found = nlohmann::json::parse(json.out);
+    if (found["devices"][0]["renderer"] != "a\uFFFD\x1B[2J\n::stop-commands::abc") {
+        GTEST_SKIP() << "the driver has its own name: " << found["devices"][0]["renderer"];
+    }
+    const ProcessResult text = doctor({});
+    EXPECT_THAT(text.out, HasSubstr("device 0   a\xFF?[2J\n| ::stop-commands::abc ("));
+    EXPECT_EQ(text.out.find('\x1B'), std::string::npos);
+}
+
 TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
     dropFrozenHash();
     replaceInPlan("\"device\": \"", "\"device\": \"$(touch y)");
