@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "runner/batch/made_from.h"
 #include "runner/batch/predictions.h"
 #include "runner/batch/submission.h"
 #include "runner/core/files.h"
@@ -185,6 +186,7 @@ void writeArtifact(const fs::path& runDir, const StoredRun& run, const scene::Ca
                    const fs::path& target) {
     if (fs::exists(target))
         throw Error(target.string() + ": is there already; give another folder");
+    takeFolder(target, runDir, run.manifest);
     writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
     copyMeasured(runDir, target);
     writeResults(target, run, {});

@@ -195,13 +195,16 @@ std::string planDifference(const Plan& then, const Plan& now) {
 }
 
 std::string programBuildId() {
+    return buildIdOf("/proc/self/exe", dataFolder("shaders"));
+}
+
+std::string buildIdOf(const fs::path& program, const fs::path& shaders) {
     std::vector<fs::path> files;
-    const fs::path shaders = dataFolder("shaders");
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(shaders)) {
         if (entry.is_regular_file()) files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());
-    std::string content = sha256OfFile("/proc/self/exe");
+    std::string content = sha256OfFile(program);
     for (const fs::path& file : files) {
         content += '\n' + fs::relative(file, shaders).string() + ' ' + sha256OfFile(file);
     }

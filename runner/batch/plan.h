@@ -133,7 +133,9 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
 /// Why results under `now` may not be put beside those under `then`; empty when they may.
 std::string planDifference(const Plan& then, const Plan& now);
 
-/// Identity of the running program: SHA-256 over the executable and every shader file.
+/// Identity of a program: SHA-256 over the executable and every shader file.
+std::string buildIdOf(const std::filesystem::path& program, const std::filesystem::path& shaders);
+/// Of the running one.
 std::string programBuildId();
 
 }  // namespace gfxrepro::batch

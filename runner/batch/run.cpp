@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "runner/batch/made_from.h"
 #include "runner/batch/merge.h"
 #include "runner/batch/report_runs.h"
 #include "runner/batch/run_files.h"
@@ -244,6 +245,7 @@ report::ReportContext reportContext(const StoredRun& run) {
 
 Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Results& which) {
     const fs::path out = which.out.empty() ? runDir : which.out;
+    if (!which.out.empty()) takeFolder(out, runDir, run.manifest);
     const report::ReportContext context = reportContext(run);
     std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
     report::addCalibrations(context.calibrations, tables);

@@ -80,7 +80,7 @@ struct Conclusion {
     report::PrintedCells printedCells;
 };
 /// Makes tables/, claims.csv with junit.xml, report.html again from the records. With `out` nothing
-/// is written into the run's folder.
+/// is written into the run's folder, and nothing over the results of another run (made_from.h).
 Conclusion writeResults(const std::filesystem::path& runDir, const StoredRun& run,
                         const Results& which);
 

@@ -15,6 +15,12 @@ namespace {
 
 constexpr int kMergeLimitMin = 60;
 
+/// With the shaders and configs that lie beside it, whatever the user's environment says.
+std::string programCommand(const Submission& submission) {
+    return fmt::format("env GFXREPRO_DATA={} {}", shellQuoted(submission.program.parent_path()),
+                       shellQuoted(submission.program));
+}
+
 /// `shard` and `folder` are shell words.
 std::string runCommand(const Submission& submission, const std::string& shard,
                        const std::string& folder) {
@@ -23,7 +29,7 @@ std::string runCommand(const Submission& submission, const std::string& shard,
         arguments += shellQuoted(argument) + ' ';
     }
     return fmt::format("{} run --quiet {}--from {} --shard {} --resume {}",
-                       shellQuoted(submission.program), arguments,
+                       programCommand(submission), arguments,
                        shellQuoted(submission.out / "predictions.csv"), shard, folder);
 }
 
@@ -71,7 +77,7 @@ std::string shardCommand(const Submission& submission, int index) {
 
 std::string mergeCommand(const Submission& submission) {
     std::string command =
-        fmt::format("{} merge {}", shellQuoted(submission.program), shellQuoted(submission.out));
+        fmt::format("{} merge {}", programCommand(submission), shellQuoted(submission.out));
     for (int index = 1; index <= submission.shardCount; ++index) {
         command += ' ' + shellQuoted(submission.shardFolder(index));
     }
@@ -138,6 +144,11 @@ std::map<std::string, std::string> parseQueue(const std::string& squeueOutput) {
         states[task.substr(0, none)] = state;
     }
     return states;
+}
+
+bool isUnderWay(const std::map<std::string, std::string>& queue, const std::string& task) {
+    const auto found = queue.find(task);
+    return found != queue.end() && !isStopped(found->second);
 }
 
 std::string stateOf(const ShardProgress& progress,

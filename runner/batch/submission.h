@@ -13,11 +13,12 @@ namespace gfxrepro::batch {
 
 /// Everything that the commands and scripts of a submission say.
 ///
-/// Files: OUT/predictions.csv (by which every shard is cut), OUT/submission.json, OUT/shards/<k>,
+/// Files: OUT/submitted-plan.json and OUT/submitted-program (what is measured, and by which build),
+/// OUT/predictions.csv (by which every shard is cut), OUT/submission.json, OUT/shards/<k>,
 /// OUT/task.sh and merge.sh (Slurm), OUT/commands.txt; OUT itself becomes the merged run.
 struct Submission {
     std::string name;                       // of the job: "zju2005"
-    std::string program;                    // absolute path
+    std::filesystem::path program;          // absolute; shaders/ and configs/ lie beside it
     std::vector<std::string> runArguments;  // configs, profile, device, …: of every shard
     std::filesystem::path out;              // absolute
     int shardCount = 1;
@@ -59,6 +60,9 @@ struct ShardProgress {
     int failed = 0;
     bool isComplete() const { return unitCount == finished + failed; }
 };
+
+/// Whether the queue has a task that is not at its end.
+bool isUnderWay(const std::map<std::string, std::string>& queue, const std::string& task);
 
 /// What is known of a shard: from its files first, from the queue (none: it did not answer) second.
 std::string stateOf(const ShardProgress& progress,

@@ -238,6 +238,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
     submitApp->add_option("--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x")
         ->allow_extra_args(false)
         ->option_text("FLAG");
+    submitApp->add_flag("--force", s.isForced, "also what may be queued: squeue does not answer");
     submitApp->add_flag("--dry-run", s.isDryRun, "print scripts and commands only");
     submitApp->add_flag("--status", s.isStatus, "of the submission in this folder");
     submitApp->callback([&] { o.command = [&] { return submit(context, o.submit); }; });

@@ -61,6 +61,7 @@ struct SubmitOptions {
     std::string partition;
     std::string gres;
     std::vector<std::string> sbatchFlags;
+    bool isForced = false;
     bool isDryRun = false;
     bool isStatus = false;
 };

@@ -19,6 +19,7 @@
 #include "runner/batch/worker_handle.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -176,22 +177,22 @@ Json gather(const std::vector<gl::DeviceReport>& reports, const scene::Catalog& 
 void printDevice(const Json& device) {
     const std::string problem = device["problem"];
     if (!problem.empty()) {
-        fmt::print("device {}   does not serve: {}\n", device["index"].get<int>(), problem);
+        say("device {}   does not serve: {}\n", device["index"].get<int>(), problem);
         return;
     }
     const Json& limits = device["limits"];
-    fmt::print("device {}   {} ({}, {})\n", device["index"].get<int>(),
-               device["renderer"].get<std::string>(), device["platform"].get<std::string>(),
-               device["is_software"].get<bool>() ? "software" : "gpu");
-    fmt::print("           OpenGL {}, timer resolution {:.0f} ns\n",
-               device["version"].get<std::string>(), device["timer_resolution_ns"].get<double>());
-    fmt::print("           textures {}², 3D {}³, {} layers, storage blocks {} MiB,\n",
-               limits["max_texture_size_px"].get<int>(),
-               limits["max_3d_texture_size_px"].get<int>(), limits["max_array_layers"].get<int>(),
-               limits["max_storage_block_bytes"].get<long long>() >> 20);
-    fmt::print("           tessellation {}, compute {} invocations, {} image units\n",
-               limits["max_tessellation_level"].get<int>(),
-               limits["max_compute_invocations"].get<int>(), limits["max_image_units"].get<int>());
+    say("device {}   {} ({}, {})\n", device["index"].get<int>(),
+        device["renderer"].get<std::string>(), device["platform"].get<std::string>(),
+        device["is_software"].get<bool>() ? "software" : "gpu");
+    say("           OpenGL {}, timer resolution {:.0f} ns\n", device["version"].get<std::string>(),
+        device["timer_resolution_ns"].get<double>());
+    say("           textures {}², 3D {}³, {} layers, storage blocks {} MiB,\n",
+        limits["max_texture_size_px"].get<int>(), limits["max_3d_texture_size_px"].get<int>(),
+        limits["max_array_layers"].get<int>(),
+        limits["max_storage_block_bytes"].get<long long>() >> 20);
+    say("           tessellation {}, compute {} invocations, {} image units\n",
+        limits["max_tessellation_level"].get<int>(), limits["max_compute_invocations"].get<int>(),
+        limits["max_image_units"].get<int>());
 }
 
 std::vector<std::string> namesInState(const Json& scenes, const std::string& state) {
@@ -203,19 +204,18 @@ std::vector<std::string> namesInState(const Json& scenes, const std::string& sta
 }
 
 void print(const Json& found) {
-    fmt::print("program    {}, {}\n", found["commit"].get<std::string>(),
-               found["build"].get<std::string>());
+    say("program    {}, {}\n", found["commit"].get<std::string>(),
+        found["build"].get<std::string>());
     for (const Json& device : found["devices"]) printDevice(device);
-    fmt::print("embree     {} ({})\n", found["embree"]["version"].get<std::string>(),
-               found["embree"]["cpu_isa"].get<std::string>());
-    fmt::print("assets     {}{}\n", found["assets"]["folder"].get<std::string>(),
-               found["assets"]["exists"].get<bool>() ? "" : " (not there)");
+    say("embree     {} ({})\n", found["embree"]["version"].get<std::string>(),
+        found["embree"]["cpu_isa"].get<std::string>());
+    say("assets     {}{}\n", found["assets"]["folder"].get<std::string>(),
+        found["assets"]["exists"].get<bool>() ? "" : " (not there)");
     for (const char* state : {"real", "stand-in", "generated", "missing"}) {
         const std::vector<std::string> names = namesInState(found["scenes"], state);
-        if (!names.empty()) fmt::print("  {:<11}{}\n", state, fmt::join(names, ", "));
+        if (!names.empty()) say("  {:<11}{}\n", state, joined(names));
     }
-    fmt::print("disk       {:.1f} GiB free here\n",
-               found["free_disk_bytes"].get<double>() / kBytesPerGib);
+    say("disk       {:.1f} GiB free here\n", found["free_disk_bytes"].get<double>() / kBytesPerGib);
 }
 
 /// Drivers are asked in this process, which one that does not answer would hold for ever.
@@ -243,14 +243,14 @@ int doctor(const Context& context, const std::string& assets, bool asJson) {
     Json found = gather(reports, catalog, facts);
     if (asJson) {
         found["findings"] = findingsJson(findings);
-        fmt::print("{}\n", found.dump(2));
+        fmt::print("{}\n", found.dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
         print(found);
         for (const Finding& finding : findings) {
-            fmt::print("\n{:<10} {}\n{:<10} {}\n", severityName(finding.severity), finding.problem,
-                       "  to do", finding.advice);
+            say("\n{:<10} {}\n{:<10} {}\n", severityName(finding.severity), finding.problem,
+                "  to do", finding.advice);
         }
-        if (findings.empty()) fmt::print("all well\n");
+        if (findings.empty()) say("all well\n");
     }
     const bool anyServes = std::any_of(reports.begin(), reports.end(),
                                        [](const auto& report) { return report.problem.empty(); });

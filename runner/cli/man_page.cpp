@@ -71,10 +71,10 @@ constexpr const char* kExitStatus = R"(.SH EXIT STATUS
 All is well.
 .TP
 .B 1
-A claim failed, or a comparison found a regression.
+A claim failed, or a comparison gave an alarm.
 .TP
 .B 2
-The command line, a config or a file is wrong; the message says where.
+The command line, a config or a file is wrong, or cannot be read or written; the message says where.
 .TP
 .B 3
 No usable device;
@@ -82,10 +82,10 @@ No usable device;
 says what to do.
 .TP
 .B 4
-Incomplete: some case did not finish.
+Incomplete: some case did not finish, also where a claim failed, or a submission is not complete.
 .TP
 .B 130
-Interrupted;
+Interrupted by Ctrl-C or SIGTERM;
 .B \-\-resume
 goes on.
 )";

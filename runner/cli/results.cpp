@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runner/batch/expectations.h"
+#include "runner/batch/made_from.h"
 #include "runner/batch/report_runs.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
@@ -142,6 +143,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     for (report::ClaimResult& claim : claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
+    batch::takeFolder(out, runDir, run.manifest);
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, tables);
@@ -169,6 +171,16 @@ void noteOtherMachines(std::vector<html::ReportRun>& runs) {
     if (machines.size() < 2) return;
     runs.front().manifest["notes"].push_back("the runs are of several machines: " +
                                              joined(machines, "; "));
+}
+
+/// A report does not go over that of a run that it does not show.
+void requireNoOtherRun(const fs::path& folder, const std::vector<html::ReportRun>& runs) {
+    const bool isShown = std::ranges::any_of(runs, [&](const html::ReportRun& run) {
+        std::error_code isAbsent;
+        return fs::equivalent(folder, run.folder, isAbsent);
+    });
+    if (isShown || !fs::exists(folder / "plan.json")) return;
+    throw Error(folder.string() + ": holds another run; give another folder");
 }
 
 void sayReport(const fs::path& runDir) {
@@ -243,7 +255,16 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
     noteOtherMachines(runs);
     for (const html::ReportRun& run : runs) sayNotes(run.manifest);
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
+    requireNoOtherRun(fs::absolute(file).parent_path(), runs);
+    const fs::path made = file.parent_path() / (file.stem().string() + "-files");
+    std::set<std::string> lines;
+    for (const html::ReportRun& run : runs) {
+        lines.insert(batch::madeFromLine(run.folder, run.manifest));
+    }
+    const std::string from = joined(std::vector<std::string>(lines.begin(), lines.end()), "");
+    if (!out.empty()) batch::requireMadeFrom(made, from);
     html::writeReport(file, runs);
+    if (fs::exists(made)) batch::noteMadeFrom(made, from);
     say("report: {}\n", file.string());
     return code;
 }

@@ -4,12 +4,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
 
-#include "runner/batch/child_process.h"
+#include "runner/batch/kept_program.h"
 #include "runner/batch/merge.h"
 #include "runner/batch/shards.h"
 #include "runner/batch/twins.h"
@@ -17,8 +16,9 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
+#include "runner/cli/slurm.h"
+#include "runner/config/json_shape.h"
 #include "runner/core/files.h"
-#include "runner/core/json_depth.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::cli {
@@ -29,15 +29,15 @@ using batch::Submission;
 
 namespace {
 
-constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
 constexpr double kShardS = 1800.0;  // predicted, of a shard, where no number of them is given
 constexpr int kUnknownShards = 8;   // where nothing is predicted either
+constexpr const char* kUnknownJob = "?";
 
 /// What of a submission is kept in submission.json.
 struct Stored {
     std::vector<std::string> asked;
     std::vector<int> unitCounts;  // a shard each
-    std::string arrayJob;         // empty: not by Slurm
+    std::string arrayJob;         // empty: none; kUnknownJob: sbatch was asked, and gave no number
     std::string mergeJob;
 };
 
@@ -47,9 +47,14 @@ fs::path storedFile(const fs::path& out) {
 
 std::optional<Stored> readStored(const fs::path& out) {
     if (!fs::exists(storedFile(out))) return std::nullopt;
-    const std::string text = readFile(storedFile(out));
-    const Json json = isTooDeepJson(text) ? Json() : Json::parse(text, nullptr, false);
-    if (!json.is_object()) throw Error(storedFile(out).string() + ": is no JSON object");
+    using config::JsonKind;
+    static constexpr config::JsonMember kMembers[] = {
+        {"/run_arguments", JsonKind::List}, {"/run_arguments", JsonKind::Texts},
+        {"/units", JsonKind::List},         {"/units", JsonKind::Ints},
+        {"/array_job", JsonKind::Text},     {"/merge_job", JsonKind::Text}};
+    const SourceLocation where{storedFile(out).string(), 0, 0};
+    const Json json = config::parseJsonObject(MappedFile(storedFile(out)).text(), where);
+    config::requireMembers(json, kMembers, where);
     return Stored{json.at("run_arguments"), json.at("units"), json.at("array_job"),
                   json.at("merge_job")};
 }
@@ -57,6 +62,11 @@ std::optional<Stored> readStored(const fs::path& out) {
 /// What its tasks measure, whatever becomes of the configs.
 fs::path frozenPlan(const fs::path& out) {
     return out / "submitted-plan.json";
+}
+
+/// The program that they run, whatever is built later.
+fs::path programFolder(const fs::path& out) {
+    return out / "submitted-program";
 }
 
 void writeStored(const fs::path& out, const Stored& stored) {
@@ -115,9 +125,13 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     const std::optional<Stored> before = readStored(out);
     const bool isBegun = before.has_value();
     const bool isFrozen = isBegun && before->asked == cut.asked && fs::exists(frozenPlan(out));
-    cut.plan = isFrozen ? submittedPlan(context, frozenPlan(out), assets)
-                        : planFor(context, request, options.selection.profile, assets,
-                                  deviceClassFor(options.selection));
+    if (isFrozen) {
+        cut.plan = batch::Plan::fromJsonFile(frozenPlan(out));
+        warnOfChangedConfigs(cut.plan, "what was submitted is measured");
+    } else {
+        cut.plan = planFor(context, request, options.selection.profile, assets,
+                           deviceClassFor(options.selection));
+    }
     History history = isBegun ? openHistory({out / "predictions.csv"}, "")
                               : openHistory(options.from, cut.plan.deviceClass);
     const bool arePredicted = !forecastText(cut.plan, history, 1).empty();
@@ -125,7 +139,7 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
         batch::withoutTwins(cut.plan.cases, batch::caseTimesS(cut.plan, history.predictor));
     Submission& s = cut.submission;
     s.name = runSlug(cut.plan);
-    s.program = fs::read_symlink("/proc/self/exe");
+    s.program = batch::keptProgram(programFolder(out));
     s.runArguments = {"--plan", frozenPlan(out), "--assets", fs::absolute(assetsFolder(assets))};
     if (options.jobs > 0)
         s.runArguments.insert(s.runArguments.end(), {"--jobs", std::to_string(options.jobs)});
@@ -167,14 +181,18 @@ batch::ShardProgress progressOf(const fs::path& folder, int unitCount) {
     return progress;
 }
 
-/// None when squeue is not there or does not answer: then nothing is known, least of all an end.
+std::vector<std::string> jobsOf(const Stored& stored) {
+    std::vector<std::string> jobs;
+    for (const std::string& job : {stored.arrayJob, stored.mergeJob}) {
+        if (!job.empty() && job != kUnknownJob) jobs.push_back(job);
+    }
+    return jobs;
+}
+
 std::optional<std::map<std::string, std::string>> askQueue(const Stored& stored) {
-    const batch::ProgramEnd end =
-        batch::runToEnd({"/usr/bin/env", "squeue", "-h", "-r", "-t", "all", "-j",
-                         stored.arrayJob + "," + stored.mergeJob, "-o", "%F_%K %T"},
-                        kSlurmLimit);
-    if (end.exitCode != 0) return std::nullopt;
-    return batch::parseQueue(end.output);
+    const std::vector<std::string> jobs = jobsOf(stored);
+    if (jobs.empty()) return std::nullopt;
+    return cli::askQueue(jobs);
 }
 
 std::string taskOf(const Stored& stored, int shard) {
@@ -184,7 +202,7 @@ std::string taskOf(const Stored& stored, int shard) {
 int printStatus(const fs::path& out) {
     const std::optional<Stored> stored = readStored(out);
     if (!stored) throw Error(out.string() + ": holds no submission");
-    const auto queue = stored->arrayJob.empty() ? std::nullopt : askQueue(*stored);
+    const auto queue = askQueue(*stored);
     std::vector<std::vector<std::string>> rows = {{"shard", "done", "failed", "state"}};
     const auto count = static_cast<int>(stored->unitCounts.size());
     bool isComplete = true;
@@ -210,39 +228,13 @@ int printStatus(const fs::path& out) {
                                                                          : kExitIncomplete;
 }
 
-/// What sbatch said: a job's number, or why it refused it.
-struct SbatchAnswer {
-    std::string job;
-    std::string refusal;
-};
-
-/// The number is what --parsable prints last: "123" or "123;cluster". Throws Error where sbatch
-/// took something and gave none.
-SbatchAnswer sbatch(std::vector<std::string> arguments) {
-    constexpr int kNotFound = 127;  // env's
-    arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
-    const batch::ProgramEnd end = batch::runToEnd(arguments, kSlurmLimit);
-    const std::string text(trimmed(end.output));
-    if (end.exitCode != 0) {
-        return {"",
-                fmt::format("sbatch did not take the job (exit code {}): {}{}", end.exitCode, text,
-                            end.exitCode == kNotFound
-                                ? "; where there is no Slurm, --engine commands prints commands"
-                                : "")};
-    }
-    const std::string last = text.substr(text.rfind('\n') + 1);
-    const std::string job = last.substr(0, last.find(';'));
-    if (parseInteger(job)) return {job, ""};
-    throw Error(
-        "sbatch gave no number of a job, so what is queued is not known; squeue shows it: " + text);
-}
-
 /// Of a submission that was refused nothing stays that could be taken for queued.
 void removeRefused(const fs::path& out) {
-    for (const fs::path& file :
-         {frozenPlan(out), out / "predictions.csv", out / "task.sh", out / "merge.sh"}) {
+    for (const fs::path& file : {storedFile(out), frozenPlan(out), out / "predictions.csv",
+                                 out / "task.sh", out / "merge.sh"}) {
         fs::remove(file);
     }
+    fs::remove_all(programFolder(out));
     std::error_code isNotEmpty;
     fs::remove(out, isNotEmpty);
 }
@@ -259,29 +251,60 @@ std::vector<std::string> mergeArguments(const Submission& s, const std::string& 
     return arguments;
 }
 
-/// Shards that are not complete. Throws where the queue still holds one of them.
-std::vector<int> pendingShards(const Cut& cut, const std::optional<Stored>& before) {
-    const auto queue = before && !before->arrayJob.empty() ? askQueue(*before) : std::nullopt;
-    std::vector<int> pending;
+std::vector<int> incompleteShards(const Cut& cut) {
+    std::vector<int> incomplete;
     for (int k = 1; k <= cut.submission.shardCount; ++k) {
         const batch::ShardProgress progress = progressOf(
             cut.submission.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)]);
-        if (progress.isComplete()) continue;
-        const std::string state = batch::stateOf(progress, queue, before ? taskOf(*before, k) : "");
-        if (state == "RUNNING" || state == "PENDING") {
-            throw Error(fmt::format("{}: shard {} is {} already; wait, or scancel {}",
-                                    cut.submission.out.string(), k, state, before->arrayJob));
-        }
-        pending.push_back(k);
+        if (!progress.isComplete()) incomplete.push_back(k);
     }
-    return pending;
+    return incomplete;
 }
 
-int submitToSlurm(const Cut& cut, const std::optional<Stored>& before, bool isDryRun) {
+/// Nothing is queued twice. Throws where the queue has one of the shards or the merge, and, unless
+/// forced to, where it may have.
+void requireNotQueued(const Stored& before, const fs::path& out, const std::vector<int>& shards,
+                      bool isForced) {
+    std::map<std::string, std::string> tasks;  // what each is, by the queue's name
+    if (!before.arrayJob.empty()) {
+        for (const int k : shards) tasks[taskOf(before, k)] = fmt::format("shard {}", k);
+    }
+    const bool isMerged = fs::exists(out / "plan.json") && progressOf(out, 0).isComplete();
+    if (!before.mergeJob.empty() && !isMerged) tasks[before.mergeJob] = "the merge";
+    if (tasks.empty()) return;
+    const auto queue = askQueue(before);
+    for (const auto& [task, name] : tasks) {
+        if (!queue || !batch::isUnderWay(*queue, task)) continue;
+        throw Error(fmt::format("{}: {} is {} already; wait, or scancel {}", out.string(), name,
+                                queue->at(task), task.substr(0, task.find('_'))));
+    }
+    const bool isUnknown = before.arrayJob == kUnknownJob || before.mergeJob == kUnknownJob;
+    if (isForced || (queue && !isUnknown)) return;
+    throw Error(fmt::format(
+        "{}: {}, so {} may be queued; look with squeue, and submit again with "
+        "--force where nothing is",
+        out.string(), isUnknown ? "sbatch gave no number of a job" : "the queue does not answer",
+        tasks.begin()->second));
+}
+
+/// The number of the job that is asked for: until it is known the file says that it is not.
+SbatchAnswer sbatchStored(const std::vector<std::string>& arguments, const fs::path& out,
+                          Stored& stored, std::string Stored::*job) {
+    stored.*job = std::string(kUnknownJob);
+    writeStored(out, stored);
+    SbatchAnswer answer = sbatch(arguments);
+    stored.*job = answer.job;
+    writeStored(out, stored);
+    return answer;
+}
+
+int submitToSlurm(const Cut& cut, const std::optional<Stored>& before,
+                  const SubmitOptions& options) {
     const Submission& s = cut.submission;
-    const std::vector<int> pending = pendingShards(cut, before);
+    const std::vector<int> pending = incompleteShards(cut);
+    if (before) requireNotQueued(*before, s.out, pending, options.isForced);
     const std::string indices = batch::arrayIndices(pending);
-    if (isDryRun) {
+    if (options.isDryRun) {
         fmt::print("# {}\n{}# {}\n{}", (s.out / "task.sh").string(), batch::taskScript(s),
                    (s.out / "merge.sh").string(), batch::mergeScript(s));
         if (!pending.empty()) fmt::print("sbatch {}\n", joined(arrayArguments(s, indices), " "));
@@ -292,22 +315,24 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before, bool isDr
     writeFileAtomic(s.out / "merge.sh", batch::mergeScript(s));
     Stored stored{cut.asked, cut.unitCounts, "", ""};
     if (!pending.empty()) {
-        const SbatchAnswer array = sbatch(arrayArguments(s, indices));
+        const SbatchAnswer array =
+            sbatchStored(arrayArguments(s, indices), s.out, stored, &Stored::arrayJob);
         if (!array.refusal.empty()) {
-            if (!before) removeRefused(s.out);
+            if (before) {
+                writeStored(s.out, *before);
+            } else {
+                removeRefused(s.out);
+            }
             throw Error(array.refusal + "; nothing was queued");
         }
-        stored.arrayJob = array.job;
     }
-    writeStored(s.out, stored);  // known even if the merge is refused
-    const SbatchAnswer merge = sbatch(mergeArguments(s, stored.arrayJob));
+    const SbatchAnswer merge =
+        sbatchStored(mergeArguments(s, stored.arrayJob), s.out, stored, &Stored::mergeJob);
     if (!merge.refusal.empty()) {
         throw Error(fmt::format(
             "the merge: {}; {}; submit again when the shards are complete", merge.refusal,
             pending.empty() ? "nothing was queued" : "array " + stored.arrayJob + " is queued"));
     }
-    stored.mergeJob = merge.job;
-    writeStored(s.out, stored);
     fmt::print("array {} (shards {}), merge {}; gfxrepro submit --status {}\n",
                pending.empty() ? "none" : stored.arrayJob, pending.empty() ? "none" : indices,
                stored.mergeJob, s.out.string());
@@ -346,14 +371,16 @@ int submit(const Context& context, const SubmitOptions& options) {
         throw Error(s.out.string() + ": holds another submission; give another folder");
     }
     // What lies in a folder without a submission was never queued: a killed submit left it.
-    if (!options.isDryRun && !before) {
-        batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
+    if (!options.isDryRun) {
+        if (!before) fs::remove_all(programFolder(s.out));
+        batch::keepProgram(programFolder(s.out), cut.plan.buildId);
+        if (!before) batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
     }
     if (!options.isDryRun && (!before || !fs::exists(frozenPlan(s.out)))) {
         writeFileAtomic(frozenPlan(s.out), cut.plan.toText());
     }
     if (options.engine == "commands") return writeCommands(cut, options.isDryRun);
-    return submitToSlurm(cut, before, options.isDryRun);
+    return submitToSlurm(cut, before, options);
 }
 
 }  // namespace gfxrepro::cli

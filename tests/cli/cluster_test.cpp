@@ -1,5 +1,6 @@
 // Predictions, shards, merges and submissions of the program, without a cluster.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -337,14 +338,16 @@ TEST(Submit, WhatWasSubmittedIsMeasured) {
 
     const std::string file = out + "/submitted-plan.json";
     fs::remove_all(out + "/shards");
-    folder.write("data/shaders/other.glsl", "");
-    fs::create_directories(folder.path() / "data/configs/scenes");
-    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]},
-                                           {"GFXREPRO_DATA=" + (folder.path() / "data").string()});
+    folder.write("out/submitted-program/shaders/other.glsl", "");
+    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]});
     EXPECT_EQ(other.exitCode, 2);
     EXPECT_THAT(other.err, HasSubstr(file + ": cannot be measured: the program or a shader changed "
                                             "(build "));
     EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
+    EXPECT_THAT(
+        mockGfxrepro(command).err,
+        HasSubstr(out + "/submitted-program: is not the program that was submitted (build "));
+    fs::remove(out + "/submitted-program/shaders/other.glsl");
     std::string changed = readFile(file);
     changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
     writeFileAtomic(file, changed);
@@ -353,6 +356,52 @@ TEST(Submit, WhatWasSubmittedIsMeasured) {
     EXPECT_FALSE(fs::exists(out + "/shards/1"));
     EXPECT_EQ(mockGfxrepro({"run", config, "--plan", file}).err,
               "gfxrepro: run: --plan has configs and options of its own; give none\n");
+}
+
+TEST(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const std::string out = folder.path() / "out", program = folder.path() / "built/gfxrepro";
+    const fs::path shaders = fs::path(GFXREPRO_MOCK_PROGRAM).parent_path() / "../../shaders";
+    fs::create_directories(folder.path() / "built");
+    fs::copy_file(GFXREPRO_MOCK_PROGRAM, program);
+    fs::copy(shaders, folder.path() / "built/shaders", fs::copy_options::recursive);
+    fs::create_directory_symlink(GFXREPRO_SOURCE "/configs", folder.path() / "built/configs");
+    const std::vector<std::string> command = {program,    "submit",   config, "--device",
+                                              "software", "--out",    out,    "--engine",
+                                              "commands", "--shards", "2"};
+    const ProcessResult submitted = runProgram(command);
+    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+
+    std::ofstream(program, std::ios::app) << "another build";
+    folder.write("built/shaders/another.glsl", "");
+    const std::string data = "GFXREPRO_DATA=" + (folder.path() / "built").string();
+    const std::vector<std::string> lines = split(submitted.out, '\n');
+    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[0]}, {data}).exitCode, 0);
+    const ProcessResult again = runProgram(command);  // the shards go on with what began
+    EXPECT_EQ(again.exitCode, 0) << again.err;
+    EXPECT_EQ(again.out, submitted.out);
+    fs::remove_all(folder.path() / "built");
+    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);
+    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
+    EXPECT_EQ(merged.exitCode, 0) << merged.err;
+    EXPECT_THAT(merged.out, HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
+}
+
+TEST(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
+    const TemporaryFolder folder;
+    const std::string config = writeNumbers(folder, 2);
+    const fs::path out = folder.path() / "out";
+    folder.write("data/shaders/a.glsl", "");
+    fs::create_directories(folder.path() / "data/configs/scenes");
+    ASSERT_EQ(::mkfifo((folder.path() / "data/shaders/pipe").c_str(), 0600), 0);
+    const ProcessResult result = runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device",
+                                             "software", "--out", out, "--engine", "commands"},
+                                            {"GFXREPRO_DATA=" + (folder.path() / "data").string()});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err,
+                HasSubstr("gfxrepro: no copy of the program for the tasks could be made: "));
+    EXPECT_FALSE(fs::exists(out));
 }
 
 TEST(Submit, DryRunWritesNothing) {
@@ -425,13 +474,29 @@ TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
     ASSERT_EQ(runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"})
                   .exitCode,
               0);
-    const std::string mute = fakeSlurm(folder, "echo 42\n", "exit 1\n");
+    const std::string mute = fakeSlurm(folder, "echo 43\n", "exit 1\n");
     EXPECT_THAT(runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {mute}).out,
                 HasSubstr("1/2    2/2   0       complete\n"
                           "2/2    0/2   0       unknown: the queue does not answer\n"));
-    // Once more: what is complete is left out.
-    EXPECT_EQ(runProgram(command, {mute}).out,
-              "array 42 (shards 2), merge 42; gfxrepro submit --status " + out + "\n");
+    // So nothing is queued a second time that may be queued.
+    const ProcessResult refusedAgain = runProgram(command, {mute});
+    EXPECT_EQ(refusedAgain.exitCode, 2);
+    EXPECT_THAT(replaced(refusedAgain.err, out, "OUT"),
+                HasSubstr("gfxrepro: OUT: the queue does not answer, so the merge may be queued; "
+                          "look with squeue, and submit again with --force where nothing is\n"));
+    // One that has forgotten the jobs answers. What is complete is left out.
+    for (const char* answer : {"",
+                               "echo 'slurm_load_jobs error: Invalid job id specified' >&2; "
+                               "exit 1\n"}) {
+        EXPECT_EQ(runProgram(command, {fakeSlurm(folder, "echo 42\n", answer)}).out,
+                  "array 42 (shards 2), merge 42; gfxrepro submit --status " + out + "\n");
+    }
+    std::vector<std::string> forced = command;
+    forced.emplace_back("--force");
+    EXPECT_EQ(runProgram(forced, {fakeSlurm(folder, "echo 43\n", "exit 1\n")}).out,
+              "array 43 (shards 2), merge 43; gfxrepro submit --status " + out + "\n");
+    EXPECT_THAT(runProgram(forced, {fakeSlurm(folder, "echo 44\n", "echo '43_2 SUSPENDED'\n")}).err,
+                HasSubstr(": shard 2 is SUSPENDED already; wait, or scancel 43\n"));
 }
 
 TEST(Submit, WhatWasRefusedIsNotQueued) {
@@ -483,11 +548,17 @@ TEST(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
                                      "1): no such dependency; array 41 is queued; submit again "
                                      "when the shards are complete\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "a/submitted-plan.json")) << "the array measures it";
+    const ProcessResult again = submitted("a", "echo 42\n");
+    EXPECT_EQ(again.exitCode, 2) << again.out;
+    EXPECT_THAT(again.err, HasSubstr("/a: the queue does not answer, so shard 1 may be queued; "));
     const ProcessResult mute = submitted("b", "echo 'Submitted batch job'\n");
     EXPECT_EQ(mute.exitCode, 2);
     EXPECT_THAT(mute.err, HasSubstr("gfxrepro: sbatch gave no number of a job, so what is queued "
                                     "is not known; squeue shows it: Submitted batch job\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "b/submitted-plan.json"));
+    const ProcessResult unknown = submitted("b", "echo 42\n");
+    EXPECT_EQ(unknown.exitCode, 2) << unknown.out;
+    EXPECT_THAT(unknown.err, HasSubstr("/b: sbatch gave no number of a job, so shard 1 may be "));
 }
 
 TEST(Submit, SaysWhatItNeeds) {

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 class Untrusted : public ::testing::Test {
   protected:
@@ -406,6 +407,24 @@ TEST_F(Untrusted, NoTextIsACommandToGitHub) {
     expectNone(table);
 }
 
+TEST(Doctor, NoTextOfADriverIsACommand) {
+    const std::string name = "force_gl_renderer=a\xFF\x1B[2J\n::stop-commands::abc";  // Mesa's
+    const auto doctor = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "doctor"};
+        command.insert(command.end(), options.begin(), options.end());
+        return runProgram(command, {name});
+    };
+    const ProcessResult json = doctor({"--json"});
+    EXPECT_EQ(json.exitCode, 0) << json.err;
+    const auto found = nlohmann::json::parse(json.out);
+    if (found["devices"][0]["renderer"] != "a\uFFFD\x1B[2J\n::stop-commands::abc") {
+        GTEST_SKIP() << "the driver has its own name: " << found["devices"][0]["renderer"];
+    }
+    const ProcessResult text = doctor({});
+    EXPECT_THAT(text.out, HasSubstr("device 0   a\xFF?[2J\n| ::stop-commands::abc ("));
+    EXPECT_EQ(text.out.find('\x1B'), std::string::npos);
+}
+
 TEST_F(Untrusted, NoTextOfAPlanIsACommand) {
     dropFrozenHash();
     replaceInPlan("\"device\": \"", "\"device\": \"$(touch y)");
@@ -444,6 +463,44 @@ TEST_F(Untrusted, WhatIsWrittenElsewhereLeavesTheRunAsItIs) {
     const std::string flip = "/images/sweep-mock/" + rowsOf(dir, "number")[0].caseId + "-flat-flip";
     written({"report", dir}, out + "-files/A" + flip + ".png");
     written({"report", dir, dir}, out + "-files/B" + flip + ".png");
+}
+
+TEST_F(Untrusted, ResultsElsewhereDoNotGoOverThoseOfAnotherRun) {
+    const std::string config = folder.path() / "mock.yaml", other = folder.path() / "other";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", other}).exitCode, 0);
+    const auto at = [](std::vector<std::string> command, const std::string& place) {
+        command.insert(command.end(), {"--out", place});
+        return mockGfxrepro(command);
+    };
+    const std::vector<std::string> judged = {"claims", other, "--config", config};
+    ASSERT_EQ(at({"table", dir}, out).exitCode, 0);
+    const std::string from = readFile(out + "/made-from.txt");
+    EXPECT_THAT(from, MatchesRegex("run, started 20[-0-9T:]+Z, plan [0-9a-f]+\n"));
+    EXPECT_EQ(at({"claims", dir + "/"}, out).exitCode, 0) << "of the same run";
+    const std::map<std::string, std::string> before = contents(out);
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"table", other}, {"claims", other}, judged}) {
+        const ProcessResult result = at(command, out);
+        EXPECT_EQ(result.exitCode, 2) << command.front();
+        EXPECT_EQ(result.err, "gfxrepro: " + out + ": was made from another run (" +
+                                  from.substr(0, from.size() - 1) + "); give another folder\n");
+    }
+    EXPECT_EQ(contents(out), before);
+
+    fs::remove(out + "/made-from.txt");
+    EXPECT_EQ(at({"table", dir}, out).err,
+              "gfxrepro: " + out +
+                  ": has claims.csv, and no made-from.txt says of which run; give "
+                  "another folder\n");
+    EXPECT_THAT(at({"table", dir}, other).err, HasSubstr(": has plan.json, and no made-from.txt"));
+    EXPECT_EQ(at({"report", dir}, other + "/report.html").err,
+              "gfxrepro: " + other + ": holds another run; give another folder\n");
+    EXPECT_EQ(at({"report", dir}, out + "/r.html").exitCode, 0);
+    EXPECT_EQ(at({"report", dir}, out + "/r.html").exitCode, 0);
+    EXPECT_THAT(at({"report", other}, out + "/r.html").err,
+                HasSubstr("/r-files: was made from another run (run, started "));
+    ASSERT_EQ(at({"export", dir}, out + "/artifact").exitCode, 0);
+    EXPECT_EQ(readFile(out + "/artifact/made-from.txt"), from);
 }
 
 TEST_F(Untrusted, AReportOfManyRuns) {

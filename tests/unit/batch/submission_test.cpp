@@ -12,7 +12,7 @@ namespace {
 batch::Submission makeSubmission() {
     batch::Submission s;
     s.name = "zju2005";
-    s.program = "/opt/gfxrepro";
+    s.program = "/opt/kept it/gfxrepro";
     s.runArguments = {"/c/t.yaml", "--set", "a=[1, 2]"};
     s.out = "/out put";
     s.shardCount = 2;
@@ -30,12 +30,13 @@ TEST(Submission, QuotesForTheShell) {
 }
 
 TEST(Submission, Commands) {
-    EXPECT_EQ(
-        batch::shardCommand(makeSubmission(), 2),
-        "/opt/gfxrepro run --quiet /c/t.yaml --set 'a=[1, 2]' --from '/out put/predictions.csv' "
-        "--shard 2/2 --resume '/out put/shards/2'");
+    EXPECT_EQ(batch::shardCommand(makeSubmission(), 2),
+              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet /c/t.yaml "
+              "--set 'a=[1, 2]' --from '/out put/predictions.csv' "
+              "--shard 2/2 --resume '/out put/shards/2'");
     EXPECT_EQ(batch::mergeCommand(makeSubmission()),
-              "/opt/gfxrepro merge '/out put' '/out put/shards/1' '/out put/shards/2'");
+              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put' '/out "
+              "put/shards/1' '/out put/shards/2'");
 }
 
 TEST(Submission, Scripts) {
@@ -47,14 +48,16 @@ TEST(Submission, Scripts) {
               "#SBATCH --time=12\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
               "#SBATCH --exclusive\n#SBATCH --partition=p\n#SBATCH --gres=gpu:1\n"
               "#SBATCH --account=x\n#SBATCH --mem=8G\n"
-              "exec /opt/gfxrepro run --quiet /c/t.yaml --set 'a=[1, 2]' --from "
+              "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet /c/t.yaml "
+              "--set 'a=[1, 2]' --from "
               "'/out put/predictions.csv' --shard \"$SLURM_ARRAY_TASK_ID\"/2 --resume "
               "'/out put/shards'/\"$SLURM_ARRAY_TASK_ID\"\n");
     EXPECT_EQ(batch::mergeScript(s),
               "#!/bin/sh\n#SBATCH --job-name=gfxrepro-zju2005-merge\n#SBATCH --ntasks=1\n"
               "#SBATCH --time=60\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
               "#SBATCH --partition=p\n#SBATCH --account=x\n"
-              "exec /opt/gfxrepro merge '/out put' '/out put/shards/1' '/out put/shards/2'\n");
+              "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put' "
+              "'/out put/shards/1' '/out put/shards/2'\n");
 }
 
 TEST(Submission, ArrayIndices) {
@@ -89,6 +92,10 @@ TEST(Submission, FilesFirstQueueSecond) {
     EXPECT_EQ(batch::stateOf(half, queue, "12_3"), "lost: not complete and not in the queue");
     EXPECT_EQ(batch::stateOf(half, std::nullopt, "12_1"), "unknown: the queue does not answer");
     EXPECT_EQ(batch::stateOf(half, std::nullopt, ""), "not complete");
+    EXPECT_TRUE(batch::isUnderWay(queue, "12_1"));
+    EXPECT_TRUE(batch::isUnderWay(queue, "13"));
+    EXPECT_FALSE(batch::isUnderWay(queue, "12_2"));
+    EXPECT_FALSE(batch::isUnderWay(queue, "12_3"));
 }
 
 }  // namespace

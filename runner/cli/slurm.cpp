@@ -1,0 +1,53 @@
+#include "runner/cli/slurm.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "runner/batch/child_process.h"
+#include "runner/batch/submission.h"
+#include "runner/core/error.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::cli {
+
+namespace {
+
+constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
+
+}  // namespace
+
+/// The number is what --parsable prints last: "123" or "123;cluster".
+SbatchAnswer sbatch(std::vector<std::string> arguments) {
+    constexpr int kNotFound = 127;  // env's
+    arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
+    const batch::ProgramEnd end = batch::runToEnd(arguments, kSlurmLimit);
+    const std::string text(trimmed(end.output));
+    if (end.exitCode != 0) {
+        return {"",
+                fmt::format("sbatch did not take the job (exit code {}): {}{}", end.exitCode, text,
+                            end.exitCode == kNotFound
+                                ? "; where there is no Slurm, --engine commands prints commands"
+                                : "")};
+    }
+    const std::string last = text.substr(text.rfind('\n') + 1);
+    const std::string job = last.substr(0, last.find(';'));
+    if (parseInteger(job)) return {job, ""};
+    throw Error(
+        "sbatch gave no number of a job, so what is queued is not known; squeue shows it: " + text);
+}
+
+std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs) {
+    const batch::ProgramEnd end =
+        batch::runToEnd({"/usr/bin/env", "squeue", "-h", "-r", "-t", "all", "-j", joined(jobs, ","),
+                         "-o", "%F_%K %T"},
+                        kSlurmLimit);
+    // Its answer to the number of a single job that it has forgotten.
+    if (end.output.find("Invalid job id") != std::string::npos) {
+        return std::map<std::string, std::string>();
+    }
+    if (end.exitCode != 0) return std::nullopt;
+    return batch::parseQueue(end.output);
+}
+
+}  // namespace gfxrepro::cli
