@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,9 @@ constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
 // In a log of this size what drivers print is left out: one of 512 MiB is not read again.
 constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
 constexpr auto kMostLogBytes = static_cast<off_t>(kMostWrittenLogBytes);
+
+/// A worker that its runner began when it was killed has the lock until it is its own program.
+constexpr std::chrono::seconds kLockPatience{2};
 
 off_t sizeOf(int fd) {
     struct stat now = {};
@@ -128,9 +133,13 @@ void requirePlainFiles(const fs::path& runDir) {
 
 RunDirectory::RunDirectory(const fs::path& path) : path_(path) {
     lockFd_ = openFile(path_ / "lock", O_RDWR);
-    if (::flock(lockFd_, LOCK_EX | LOCK_NB) != 0) {
-        ::close(lockFd_);
-        throw Error(path.string() + ": another run is writing to this folder");
+    const auto until = std::chrono::steady_clock::now() + kLockPatience;
+    while (::flock(lockFd_, LOCK_EX | LOCK_NB) != 0) {
+        if (std::chrono::steady_clock::now() >= until) {
+            ::close(lockFd_);
+            throw Error(path.string() + ": another run is writing to this folder");
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     logFd_ = openFile(path_ / "log.jsonl", O_WRONLY | O_APPEND);
 }

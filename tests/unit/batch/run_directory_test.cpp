@@ -1,7 +1,12 @@
 // What a run writes into its log it can read again.
 #include "runner/batch/run_directory.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <thread>
 
 #include "runner/batch/run_files.h"
 #include "runner/core/files.h"
@@ -14,6 +19,20 @@ namespace {
 namespace fs = std::filesystem;
 using testing::EndsWith;
 using testing::StartsWith;
+
+TEST(RunDirectory, ALockOfOneThatIsGoingIsWaitedFor) {
+    const TemporaryFolder folder;
+    const int going = ::open(folder.write("run/lock", "").c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_EQ(::flock(going, LOCK_EX), 0);
+    const auto create = [&] { batch::RunDirectory::create(folder.path() / "run"); };
+    EXPECT_EQ(errorText(create, folder.path()), "DIR/run: another run is writing to this folder");
+    std::thread end([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        ::close(going);
+    });
+    create();
+    end.join();
+}
 
 TEST(RunDirectory, TextsOfTheLogAreCut) {
     const TemporaryFolder folder;
