@@ -171,7 +171,7 @@ TEST(Run, PrintedParametersHaveToBeParameters) {
 
 TEST(Run, SecondRunIntoOneFolderIsRefused) {
     const TemporaryFolder folder;
-    const std::string config = writeMockConfig(folder, "params: {pause_ms: 1500}\n");
+    const std::string config = writeMockConfig(folder, "params: {pause_ms: 4000}\n");
     const std::string dir = folder.path() / "run";
     BackgroundProgram first(
         {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
