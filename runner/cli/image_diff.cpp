@@ -40,6 +40,7 @@ Pair readPair(const ImageDiffOptions& options) {
     pair.reference = image::readStored(options.reference);
     pair.test = image::readStored(options.test);
     metrics::requireComparable(pair.reference, pair.test);
+    metrics::requireFlipSize(pair.reference);
     pair.linearReference = pair.isLinear ? pair.reference : image::readLinear(options.reference);
     pair.linearTest = pair.isLinear ? pair.test : image::readLinear(options.test);
     return pair;

@@ -136,6 +136,8 @@ class Gallery {
         shot.truth = nameOf(truth);
         const image::Image8 reference = image::readPng8(runDir_ / truth.png);
         if (reference.width() != picture.width() || reference.height() != picture.height()) return;
+        const std::int64_t pixels = std::int64_t{picture.width()} * picture.height();
+        if (pixels > metrics::kMaxFlipPixels) return;
         const image::ImageF map = metrics::flipMap(displayed(reference), displayed(picture));
         const auto values = map.values();
         shot.flipMean =

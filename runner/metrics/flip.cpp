@@ -293,6 +293,12 @@ float redistributed(float difference, float largest) {
 
 }  // namespace
 
+void requireFlipSize(const ImageF& image) {
+    if (std::int64_t{image.width()} * image.height() <= kMaxFlipPixels) return;
+    throw Error(fmt::format("FLIP compares pictures of at most 8192² pixels, found {} x {}",
+                            image.width(), image.height()));
+}
+
 ImageF flipMap(const ImageF& reference, const ImageF& test, double pixelsPerDegree) {
     requireComparable(reference, test);
     if (reference.channels() != 3) {

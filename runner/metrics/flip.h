@@ -1,6 +1,8 @@
 // FLIP: the difference that a person sees when flipping between two images.
 #pragma once
 
+#include <cstdint>
+
 #include "runner/image/image.h"
 
 namespace gfxrepro::metrics {
@@ -8,6 +10,12 @@ namespace gfxrepro::metrics {
 /// Pixels a degree of visual angle: 0.7 m before a 0.7 m wide display of 3840 pixels, as the
 /// published reference implementation has it.
 constexpr double kFlipPixelsPerDegree = 67.0206;
+
+/// FLIP takes some 90 bytes of memory a pixel: of files that may come from anyone, no larger ones
+/// (8192²) are compared by it.
+constexpr std::int64_t kMaxFlipPixels = 1 << 26;
+/// Throws Error for a larger image.
+void requireFlipSize(const image::ImageF& image);
 
 /// LDR-FLIP (Andersson et al. 2020) a pixel, in [0, 1]. `reference` and `test` have 3 channels,
 /// linear, Rec. 709; what a display cannot show is clamped to [0, 1]. (The method takes sRGB and

@@ -107,6 +107,7 @@ ImageF withoutInfinities(ImageF image) {
 }
 
 ImageF flipMapOf(const Picture& before, const Picture& after) {
+    metrics::requireFlipSize(before.colours);
     const ImageF a = withoutInfinities(before.colours), b = withoutInfinities(after.colours);
     const bool isHdr = metrics::exceedsDisplay(a) || metrics::exceedsDisplay(b);
     return isHdr ? metrics::hdrFlipMap(a, b) : metrics::flipMap(a, b);

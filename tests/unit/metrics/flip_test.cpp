@@ -280,6 +280,12 @@ TEST(Flip, ClampsWhatADisplayCannotShow) {
     EXPECT_EQ(flip(a, b), 0.0);
 }
 
+TEST(Flip, OfFilesTakesNoMoreThan8192SquaredPixels) {
+    requireFlipSize(ImageF(32768, 2048, 1));
+    EXPECT_EQ(errorText([] { requireFlipSize(ImageF(32768, 2049, 1)); }),
+              "FLIP compares pictures of at most 8192² pixels, found 32768 x 2049");
+}
+
 TEST(Flip, RefusesWhatCannotBeCompared) {
     EXPECT_EQ(errorText([] { flip(ImageF(2, 3, 3), ImageF(3, 3, 3)); }),
               "the images differ in shape: 2x3 with 3 channels and 3x3 with 3 channels");
