@@ -11,6 +11,7 @@
 #include "runner/image/png_io.h"
 #include "runner/scene/catalog_entry.h"
 #include "runner/scene/load.h"
+#include "runner/scene/model_files.h"
 #include "runner/scene/point_sampling.h"
 #include "runner/scene/refine.h"
 
@@ -249,6 +250,16 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
                     (entry.canonical.empty() ? "" : " or from " + entry.canonical));
 }
 
+const Catalog::FileDigest& Catalog::digestOf(const fs::path& path) const {
+    FileDigest& digest = digests_[path];
+    const auto sizeBytes = fs::file_size(path);
+    const auto time = fs::last_write_time(path);
+    if (digest.sha256.empty() || digest.sizeBytes != sizeBytes || digest.time != time) {
+        digest = {sizeBytes, time, sha256OfFile(path), filesBeside(path)};
+    }
+    return digest;
+}
+
 std::string Catalog::contentKey(const Node& reference) const {
     const SceneSource source = resolve(reference);
     const std::string points =
@@ -258,14 +269,10 @@ std::string Catalog::contentKey(const Node& reference) const {
                       std::string(source.generator->name) + ' ' + std::to_string(source.seed) +
                       ' ' + source.params.toFlowText() + points);
     }
-    const fs::path path = assetsFolder_ / source.file;
-    FileDigest& digest = digests_[path];
-    const auto sizeBytes = fs::file_size(path);
-    const auto time = fs::last_write_time(path);
-    if (digest.sha256.empty() || digest.sizeBytes != sizeBytes || digest.time != time) {
-        digest = {sizeBytes, time, sha256OfFile(path)};
-    }
-    return sha256("file " + digest.sha256 + ' ' +
+    const FileDigest& digest = digestOf(assetsFolder_ / source.file);
+    std::string content = digest.sha256;
+    for (const fs::path& file : digest.beside) content += digestOf(file).sha256;
+    return sha256("file " + content + ' ' +
                   (source.refineTo ? std::to_string(*source.refineTo) : "as it is") +
                   (source.isZUp ? " z up" : "") + points +
                   (source.heightMap ? heightMapKey(assetsFolder_, source) : ""));

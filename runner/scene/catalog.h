@@ -73,7 +73,8 @@ class Catalog {
     /// (config::SceneReference). Throws Error for unknown names (with the nearest) and for entries
     /// none of whose sources is at hand (with where it looked and how to get it).
     SceneSource resolve(const config::Node& reference) const;
-    /// Identity of the content: changes when the file or the generator's parameters change.
+    /// Identity of the content: changes when the file, one that it draws in (filesBeside()), or the
+    /// generator's parameters change.
     /// Remembers the digests of files by size and time, so not for several threads at once.
     std::string contentKey(const config::Node& reference) const;
     Scene load(const config::Node& reference) const;
@@ -85,7 +86,9 @@ class Catalog {
         std::uintmax_t sizeBytes = 0;
         std::filesystem::file_time_type time;
         std::string sha256;
+        std::vector<std::filesystem::path> beside;  // what else belongs to a model
     };
+    const FileDigest& digestOf(const std::filesystem::path& path) const;
     const SceneEntry& entryNamed(const config::Node& reference) const;
     SceneSource sourceOf(const config::Node& reference) const;
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "runner/core/error.h"
-#include "runner/core/hash.h"
+#include "runner/scene/model_files.h"
 
 namespace gfxrepro::scene {
 
@@ -43,7 +43,7 @@ void requireKnownExtension(const std::filesystem::path& path) {
 Scene loadScene(const std::filesystem::path& path) {
     Scene scene = formatOf(path).load(path);
     scene.name = path.stem().string();
-    scene.origin = {Origin::Kind::Real, path.filename().string(), sha256OfFile(path)};
+    scene.origin = {Origin::Kind::Real, path.filename().string(), sha256OfModel(path)};
     return scene;
 }
 

@@ -202,6 +202,26 @@ TEST(Catalog, ContentKeyFollowsTheContent) {
     EXPECT_NE(catalog.contentKey(reference("m/x")), before);
 }
 
+TEST(Catalog, ContentKeyFollowsTheFilesThatAModelDrawsIn) {
+    const Folders folders;
+    folders.folder.write("assets/a.obj", "mtllib a.mtl\n" + std::string(kTriangle));
+    folders.folder.write("assets/a.mtl", "newmtl m\nmap_Kd a.png\n");
+    folders.folder.write("assets/b.gltf",
+                         R"({"buffers": [{"uri": "b.bin"}], "images": [{"uri": "a.png"}]})");
+    for (const char* model : {"a.obj", "b.gltf"}) {
+        folders.folder.write("assets/a.png", "one");
+        folders.folder.write("assets/b.bin", "one");
+        folders.entry("scene: m/x\ndoc: d\nsources: [{file: " + std::string(model) + "}]\n");
+        const Catalog catalog = folders.catalog();
+        const std::string before = catalog.contentKey(reference("m/x"));
+        folders.folder.write("assets/a.png", "other");
+        const std::string between = catalog.contentKey(reference("m/x"));
+        EXPECT_NE(between, before) << model;
+        folders.folder.write("assets/b.bin", "other");
+        EXPECT_EQ(catalog.contentKey(reference("m/x")) == between, model[0] == 'a');
+    }
+}
+
 TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
     const Folders folders;
     const std::string file = folders.folder.write("mine/my.obj", kTriangle).string();

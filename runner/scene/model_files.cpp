@@ -1,0 +1,94 @@
+#include "runner/scene/model_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+
+#include "runner/core/error.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/scene/load_mtl.h"
+#include "runner/scene/load_texture.h"
+
+namespace gfxrepro::scene {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The JSON of a .glb: its first chunk, behind a head of 12 bytes and the chunk's own of 8.
+std::string_view jsonOfGlb(std::string_view file) {
+    constexpr std::size_t kHead = 20;
+    std::uint32_t length = 0;
+    if (file.size() < kHead) return {};
+    std::memcpy(&length, file.data() + 12, sizeof(length));
+    return file.substr(kHead, length);
+}
+
+std::vector<std::string> namesInGltf(std::string_view text) {
+    const nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+    std::vector<std::string> names;
+    for (const char* member : {"buffers", "images"}) {
+        if (!document.is_object() || !document.contains(member)) continue;
+        for (const nlohmann::json& item : document[member]) {
+            if (!item.is_object() || !item.contains("uri") || !item["uri"].is_string()) continue;
+            const auto& uri = item["uri"].get_ref<const std::string&>();
+            if (!uri.starts_with("data:")) names.push_back(uri);
+        }
+    }
+    return names;
+}
+
+std::vector<std::string> namesInObj(std::string_view text, const fs::path& folder) {
+    constexpr std::string_view kKey = "mtllib";
+    std::vector<std::string> names;
+    for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at + 1)) {
+        if (at > 0 && text[at - 1] != '\n') continue;
+        const std::string_view line = text.substr(at, text.find_first_of("\r\n", at) - at);
+        const std::string name(trimmed(line.substr(kKey.size())));
+        const auto path = pathInside(folder, name);
+        if (!path || !fs::is_regular_file(*path)) continue;
+        names.push_back(name);
+        for (const auto& [material, read] : loadMtl(*path)) names.push_back(read.colourFile);
+    }
+    return names;
+}
+
+}  // namespace
+
+std::vector<fs::path> filesBeside(const fs::path& model) {
+    std::string extension = model.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::vector<std::string> names;
+    try {
+        const MappedFile file(model);
+        if (extension == ".gltf") names = namesInGltf(file.text());
+        if (extension == ".glb") names = namesInGltf(jsonOfGlb(file.text()));
+        if (extension == ".obj") names = namesInObj(file.text(), model.parent_path());
+    } catch (const Error&) {
+        return {};
+    }
+    std::set<fs::path> files;
+    for (std::string& name : names) {
+        std::ranges::replace(name, '\\', '/');
+        const auto path = pathInside(model.parent_path(), name);
+        if (path && fs::is_regular_file(*path)) files.insert(*path);
+    }
+    return {files.begin(), files.end()};
+}
+
+std::string sha256OfModel(const fs::path& model) {
+    const std::vector<fs::path> beside = filesBeside(model);
+    std::string all = sha256OfFile(model);
+    if (beside.empty()) return all;
+    for (const fs::path& file : beside) all += sha256OfFile(file);
+    return sha256(all);
+}
+
+}  // namespace gfxrepro::scene
