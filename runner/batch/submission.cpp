@@ -139,9 +139,13 @@ int timeLimitMin(const Plan& plan, const std::vector<int>& shardOf,
 std::map<std::string, std::string> parseQueue(const std::string& squeueOutput) {
     std::map<std::string, std::string> states;
     std::istringstream lines(squeueOutput);
-    for (std::string task, state; lines >> task >> state;) {
-        const std::size_t none = task.find("_N/A");
-        states[task.substr(0, none)] = state;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string task, state, more;
+        const bool isTask = words >> task >> state && !(words >> more) &&
+                            task.find_first_not_of("0123456789_N/A") == task.npos;
+        if (!isTask) continue;  // a notice
+        states[task.substr(0, task.find("_N/A"))] = state;
     }
     return states;
 }

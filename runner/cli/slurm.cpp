@@ -47,7 +47,10 @@ std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std
         return std::map<std::string, std::string>();
     }
     if (end.exitCode != 0) return std::nullopt;
-    return batch::parseQueue(end.output);
+    std::map<std::string, std::string> states = batch::parseQueue(end.output);
+    const bool isNotice = states.empty() && !trimmed(end.output).empty();
+    if (isNotice) return std::nullopt;  // it says something else: not that the jobs are forgotten
+    return states;
 }
 
 }  // namespace gfxrepro::cli

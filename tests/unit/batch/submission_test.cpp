@@ -81,7 +81,9 @@ TEST(Submission, TimeLimits) {
 }
 
 TEST(Submission, FilesFirstQueueSecond) {
-    const auto queue = batch::parseQueue("12_1 RUNNING\n12_2 NODE_FAIL\n13_N/A PENDING\n");
+    const auto queue = batch::parseQueue(
+        "squeue: maintenance tomorrow\n12_1 RUNNING\n12_2 NODE_FAIL\n13_N/A PENDING\n");
+    EXPECT_EQ(queue.size(), 3U);
     EXPECT_EQ(queue.at("13"), "PENDING");
     const batch::ShardProgress done{3, 2, 1};
     const batch::ShardProgress half{3, 1, 0};
