@@ -1,25 +1,22 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
-#include <string_view>
 #include <thread>
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/protocol.h"
-#include "runner/batch/worker_handle.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
+#include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -218,19 +215,9 @@ void print(const Json& found) {
     say("disk       {:.1f} GiB free here\n", found["free_disk_bytes"].get<double>() / kBytesPerGib);
 }
 
-/// Drivers are asked in this process, which one that does not answer would hold for ever.
-void giveUp(int) {
-    static constexpr std::string_view kText = "gfxrepro: a driver did not answer in time\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText.data(), kText.size());
-    ::_exit(kExitNoDevice);
-}
-
 std::vector<gl::DeviceReport> askDrivers() {
-    std::signal(SIGALRM, giveUp);
-    ::alarm(static_cast<unsigned>(batch::WorkerHandle::startLimit().count()));
-    std::vector<gl::DeviceReport> reports = gl::listDevices();
-    ::alarm(0);
-    return reports;
+    const DriverLimit limit;
+    return gl::listDevices();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
+#include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
@@ -50,6 +51,11 @@ void exportTo(const fs::path& path, const scene::Scene& scene) {
     say("exported   {}\n", path.string());
 }
 
+gl::Device openDevice(const std::string& name) {
+    const DriverLimit limit;
+    return gl::Device::open({name, gl::DebugOutput::Log});
+}
+
 /// f.png rasterized and f-raytraced.png ray traced, and how far they are apart.
 void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOptions& options) {
     if (path.extension() != ".png") {
@@ -63,7 +69,7 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
         renderTo(path, preview, options);
         return;
     }
-    const gl::Device device = gl::Device::open({options.device, gl::DebugOutput::Log});
+    const gl::Device device = openDevice(options.device);
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     const scene::Camera camera =
         scene.cameras.empty() ? scene::framingCamera(scene.bounds(), 1.0F) : scene.cameras.front();

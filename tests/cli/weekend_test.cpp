@@ -82,15 +82,20 @@ TEST(Weekend, ADriverThatDoesNotAnswer) {
               "gfxrepro: GFXREPRO_START_LIMIT_S: expected a number of seconds, found 'soon'\n");
 }
 
-TEST(Weekend, DoctorWaitsForNoDriverEither) {
+TEST(Weekend, DoctorAndScenesWaitForNoDriverEither) {
     const TemporaryFolder folder;
     const std::string pipe = folder.path() / "vendor.json";  // which the loader of drivers reads
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-    const ProcessResult result =
-        runProgram({GFXREPRO_MOCK_PROGRAM, "doctor"},
-                   {"__EGL_VENDOR_LIBRARY_FILENAMES=" + pipe, "GFXREPRO_START_LIMIT_S=1"});
-    EXPECT_EQ(result.exitCode, 3);
-    EXPECT_EQ(result.err, "gfxrepro: a driver did not answer in time\n");
+    const std::string picture = folder.path() / "picture.png";
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"doctor"}, {"scene", "shapes/torus", "--render", picture}}) {
+        std::vector<std::string> arguments = command;
+        arguments.insert(arguments.begin(), GFXREPRO_MOCK_PROGRAM);
+        const ProcessResult result = runProgram(
+            arguments, {"__EGL_VENDOR_LIBRARY_FILENAMES=" + pipe, "GFXREPRO_START_LIMIT_S=1"});
+        EXPECT_EQ(result.exitCode, 3) << command[0];
+        EXPECT_EQ(result.err, "gfxrepro: a driver did not answer in time\n") << command[0];
+    }
 }
 
 TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
