@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "runner/regression/comparison.h"
+#include "runner/report/records.h"
 
 namespace gfxrepro::regression {
 
@@ -53,8 +55,10 @@ const std::string* textOf(const CaseTexts& texts, const SeriesKey& key) {
 }
 
 Difference failure(const SeriesKey& key, const std::string* before, const std::string& after) {
+    const std::string_view flaky = report::statusName(report::Status::Flaky);
+    const bool wasMeasured = !before || (before->starts_with(flaky) && !after.starts_with(flaky));
     Difference result{
-        .key = key, .verdict = before ? Verdict::Failed : Verdict::Lost, .reason = after};
+        .key = key, .verdict = wasMeasured ? Verdict::Lost : Verdict::Failed, .reason = after};
     if (before && *before != after) {
         result.reason = fmt::format("before {}; after {}", *before, after);
     }

@@ -67,6 +67,15 @@ TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
     EXPECT_FALSE(fs::exists(state + "/history.csv"));
 }
 
+TEST_F(Nightly, TheFirstNightLandsNothingThatCrashes) {
+    isCrashing = true;
+    EXPECT_EQ(night(0).exitCode, 4);
+    EXPECT_FALSE(fs::exists(state + "/landed"));
+    isCrashing = false;
+    EXPECT_EQ(night(0).exitCode, 0);
+    EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
+}
+
 TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     ASSERT_EQ(night(0).exitCode, 0);
     const ProcessResult same = night(1);

@@ -347,6 +347,14 @@ TEST(Comparison, WhatFailedOnBothSidesIsNamed) {
     EXPECT_EQ(differences[0].verdict, Verdict::Failed);
     EXPECT_EQ(differences[0].reason, "before timeout; after crash: SIGSEGV");
     EXPECT_FALSE(differences[0].isAlarm());
+    // What passed at the second try had been measured.
+    differences.clear();
+    noteFailures(differences, {{a, "flaky: timeout"}}, {{a, "crash: SIGSEGV"}});
+    ASSERT_EQ(differences.size(), 1U);
+    EXPECT_EQ(differences[0].verdict, Verdict::Lost);
+    differences.clear();
+    noteFailures(differences, {{a, "flaky: timeout"}}, {{a, "flaky: timeout"}});
+    EXPECT_FALSE(differences.at(0).isAlarm());
     // Another case of the same title is no excuse.
     SeriesKey other = a;
     other.params = R"({"size":2})";
