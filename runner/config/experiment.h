@@ -63,7 +63,7 @@ struct Measure {
 /// recorded.
 struct PictureTolerance {
     double flip = 1e-3;       // mean FLIP: a thousandth of the pixels is wholly another
-    double difference = 1.0;  // of any value; white is 1
+    double difference = 0.1;  // of any value; white is 1
 };
 
 /// What a share is of: another metric, or another pass, of the same cases.

@@ -101,7 +101,8 @@ TEST_F(Pictures, AChangedOneIsKeptWithTheMapOfDifferences) {
     EXPECT_TRUE(changed.isAlarm());
     EXPECT_DOUBLE_EQ(changed.picture->largest, 0.5);
     EXPECT_GT(changed.picture->flip, 0.1);
-    EXPECT_THAT(changed.reason, HasSubstr(" (0.001 allowed), largest difference 0.5 (1 allowed)"));
+    EXPECT_THAT(changed.reason,
+                HasSubstr(" (0.001 allowed), largest difference 0.5 (0.1 allowed)"));
     EXPECT_EQ(changed.evidence, "pictures/p-1/b-flat0");
     const std::string kept = (folder.path() / "out/pictures/p-1/b-flat0").string();
     for (const char* ending : {".png", ".exr"}) {
