@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "runner/core/files.h"
+#include "runner/image/limits.h"
 #include "runner/image/png_io.h"
 #include "runner/image/resample.h"
 #include "runner/image/srgb.h"
@@ -91,16 +92,29 @@ class Gallery {
 
     const std::vector<report::ImageEntry>& entries() const { return entries_; }
 
+    /// Width and height, by its header.
+    std::pair<int, int> sizeOf(const report::ImageEntry& entry) const {
+        const image::PngRows rows(runDir_ / entry.png, image::kMaxSidePx, image::ImageUse::Picture);
+        return {rows.width(), rows.height()};
+    }
+    std::int64_t pixelsOf(const report::ImageEntry& entry) const {
+        const auto [width, height] = sizeOf(entry);
+        return std::int64_t{width} * height;
+    }
+
     Shot shotOf(const report::ImageEntry& entry) const {
         const fs::path file = runDir_ / entry.png;
-        const image::Image8 picture = image::readPng8(file);
         Shot shot;
         shot.table = entry.table;
         shot.caseId = entry.caseId;
         shot.caseTitle = entry.title;
         shot.name = nameOf(entry);
-        shot.width = picture.width();
-        shot.height = picture.height();
+        std::tie(shot.width, shot.height) = sizeOf(entry);
+        if (pixelsOf(entry) > metrics::kMaxFlipPixels) {
+            shot.thumbnail = addressOf(file);  // too large to be decoded for a thumbnail
+            return shot;
+        }
+        const image::Image8 picture = image::readPng8(file);
         const fs::path thumbnail = embeds_ ? file : thumbnailOf(entry.png, picture);
         shot.thumbnail = addressOf(thumbnail);
         if (thumbnail != file) shot.full = addressOf(file);
@@ -134,10 +148,8 @@ class Gallery {
     void compare(const report::ImageEntry& entry, const image::Image8& picture,
                  const report::ImageEntry& truth, Shot& shot) const {
         shot.truth = nameOf(truth);
+        if (sizeOf(truth) != sizeOf(entry)) return;
         const image::Image8 reference = image::readPng8(runDir_ / truth.png);
-        if (reference.width() != picture.width() || reference.height() != picture.height()) return;
-        const std::int64_t pixels = std::int64_t{picture.width()} * picture.height();
-        if (pixels > metrics::kMaxFlipPixels) return;
         const image::ImageF map = metrics::flipMap(displayed(reference), displayed(picture));
         const auto values = map.values();
         shot.flipMean =
@@ -170,9 +182,17 @@ class Gallery {
 std::vector<Shot> gatherShots(const fs::path& runDir, const fs::path& madeDir, const fs::path& file,
                               bool embeds) {
     const Gallery gallery(runDir, madeDir, file, embeds);
-    std::vector<Shot> shots(gallery.entries().size());
-    tbb::parallel_for(std::size_t{0}, shots.size(),
-                      [&](std::size_t i) { shots[i] = gallery.shotOf(gallery.entries()[i]); });
+    const std::vector<report::ImageEntry>& entries = gallery.entries();
+    std::vector<Shot> shots(entries.size());
+    // Large ones one after another: FLIP takes up to 6 GB of memory for one.
+    constexpr std::int64_t kLarge = 1 << 22;
+    const auto isLarge = [&](std::size_t i) { return gallery.pixelsOf(entries[i]) > kLarge; };
+    tbb::parallel_for(std::size_t{0}, shots.size(), [&](std::size_t i) {
+        if (!isLarge(i)) shots[i] = gallery.shotOf(entries[i]);
+    });
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+        if (isLarge(i)) shots[i] = gallery.shotOf(entries[i]);
+    }
     return shots;
 }
 
