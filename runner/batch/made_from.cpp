@@ -28,7 +28,8 @@ void requireMadeFrom(const fs::path& folder, const std::string& lines) {
         throw Error(fmt::format("{}: was made from another run ({}); give another folder",
                                 folder.string(), others.substr(0, others.find('\n'))));
     }
-    for (const char* name : {"plan.json", "manifest.json", "claims.csv", "tables"}) {
+    for (const char* name : {"plan.json", "manifest.json", "claims.csv", "tables", "junit.xml",
+                             "report.html", "comparison.md"}) {
         if (!fs::exists(folder / name)) continue;
         throw Error(fmt::format("{}: has {}, and no {} says of which run; give another folder",
                                 folder.string(), name, kFile));

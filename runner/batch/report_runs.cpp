@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "runner/batch/case_filter.h"
+#include "runner/batch/run_directory.h"
 #include "runner/batch/run_files.h"
 #include "runner/batch/submission.h"
 #include "runner/core/files.h"
@@ -104,6 +105,7 @@ html::ReportRun reportRun(const fs::path& folder) {
         throw Error(folder.string() + ": is neither a run directory (plan.json) nor kept results " +
                     "(manifest.json and claims.csv)");
     }
+    requirePlainFiles(folder);
     html::ReportRun result;
     result.folder = folder;
     result.manifest = readManifest(folder / "manifest.json");
