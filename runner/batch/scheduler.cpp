@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <memory>
+#include <set>
+#include <string_view>
 
 #include "runner/batch/twins.h"
 
@@ -93,6 +96,13 @@ class Scheduler {
                 workKeys_.try_emplace(unit.item, std::move(key));
             }
         }
+        std::map<std::string_view, int> cases;
+        for (const auto& [item, key] : workKeys_) ++cases[key];
+        std::set<const Case*> alone;
+        for (const auto& [item, key] : workKeys_) {
+            if (cases[key] == 1) alone.insert(item);
+        }
+        std::erase_if(workKeys_, [&](const auto& entry) { return alone.contains(entry.first); });
     }
 
     RunOutcome run() {
@@ -333,7 +343,7 @@ class Scheduler {
 
     SignalWatch signals_;
     std::deque<Unit> waiting_;
-    std::map<const Case*, std::string> workKeys_;  // of cases in the quality lane
+    std::map<const Case*, std::string> workKeys_;  // of cases in the quality lane that have twins
     Rounds& rounds_;
     std::string table_;  // of the unit that ran last, or is next
     const RunDirectory& directory_;
