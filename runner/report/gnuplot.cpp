@@ -56,7 +56,11 @@ int start(const std::string& script, std::FILE* output, std::FILE* errors, pid_t
     posix_spawn_file_actions_adddup2(&actions, fileno(errors), STDERR_FILENO);
     std::string arguments[] = {"gnuplot", "--default-settings", script};
     char* pointers[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
-    const int reason = posix_spawnp(&pid, "gnuplot", &actions, nullptr, pointers, environ);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // killed with what it begins
+    const int reason = posix_spawnp(&pid, "gnuplot", &actions, &attributes, pointers, environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     return reason;
 }
@@ -72,7 +76,7 @@ std::optional<int> endOf(pid_t pid, std::chrono::milliseconds limit) {
         if (ended == pid) return isKilled ? std::nullopt : std::optional(status);
         if (ended < 0 && errno != EINTR) return std::nullopt;
         if (Clock::now() >= until + kKillPatience) return std::nullopt;  // it waits for a disk
-        if (!isKilled && Clock::now() >= until) isKilled = ::kill(pid, SIGKILL) == 0;
+        if (!isKilled && Clock::now() >= until) isKilled = ::kill(-pid, SIGKILL) == 0;
         std::this_thread::sleep_for(pause);
     }
 }

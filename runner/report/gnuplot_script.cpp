@@ -361,7 +361,9 @@ class ScriptWriter {
 
 std::string gnuplotQuoted(const std::string& text) {
     std::string quoted = "'";
-    for (const char c : text) {
+    const bool beginsWithQuote = text.starts_with('\'');  // gnuplot 5.4 takes it for an empty text
+    if (beginsWithQuote) quoted += "’";
+    for (const char c : text.substr(beginsWithQuote ? 1 : 0)) {
         if (c == '\'') quoted += '\'';
         quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }

@@ -168,6 +168,7 @@ TEST(GnuplotScript, ColoursStandOutFromLightAndDark) {
 
 TEST(GnuplotScript, Quotes) {
     EXPECT_EQ(gnuplotQuoted("it's\n\\"), "'it''s \\'");
+    EXPECT_EQ(gnuplotQuoted("'a'"), "'’a'''");
     const std::string script = gnuplotScript(hostileFigure(), "p", kHostile);
     EXPECT_THAT(script, Not(HasSubstr("\nEOD\nprint 1")));
     EXPECT_THAT(script, HasSubstr("set xlabel 'it''s \"x\" 50 %"));
