@@ -76,11 +76,13 @@ function(gfxrepro_shaders target folder)
     endif()
 endfunction()
 
-# gfxrepro_test(NAME LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case
+# gfxrepro_test(NAME [SERIAL] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
+# SERIAL: beside no other test
 function(gfxrepro_test name)
-    cmake_parse_arguments(arg "" "LABEL" "SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(arg "SERIAL" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABEL}" TIMEOUT 300)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABEL}" TIMEOUT 300
+                         RUN_SERIAL ${arg_SERIAL})
 endfunction()
