@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -20,6 +21,14 @@ namespace gfxrepro::scene {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Nothing of a name that no file can have, such as one of 5,000 letters.
+std::optional<fs::path> existing(const fs::path& folder, std::string name) {
+    std::ranges::replace(name, '\\', '/');
+    const auto path = pathInside(folder, name);
+    std::error_code ignored;
+    return path && fs::is_regular_file(*path, ignored) ? path : std::nullopt;
+}
 
 /// The JSON of a .glb: its first chunk, behind a head of 12 bytes and the chunk's own of 8.
 std::string_view jsonOfGlb(std::string_view file) {
@@ -51,9 +60,9 @@ std::vector<std::string> namesInObj(std::string_view text, const fs::path& folde
         if (at > 0 && text[at - 1] != '\n') continue;
         const std::string_view line = text.substr(at, text.find_first_of("\r\n", at) - at);
         const std::string name(trimmed(line.substr(kKey.size())));
-        const auto path = pathInside(folder, name);
-        if (!path || !fs::is_regular_file(*path)) continue;
         names.push_back(name);
+        const auto path = existing(folder, name);
+        if (!path) continue;
         for (const auto& [material, read] : loadMtl(*path)) names.push_back(read.colourFile);
     }
     return names;
@@ -75,10 +84,8 @@ std::vector<fs::path> filesBeside(const fs::path& model) {
         return {};
     }
     std::set<fs::path> files;
-    for (std::string& name : names) {
-        std::ranges::replace(name, '\\', '/');
-        const auto path = pathInside(model.parent_path(), name);
-        if (path && fs::is_regular_file(*path)) files.insert(*path);
+    for (const std::string& name : names) {
+        if (const auto path = existing(model.parent_path(), name)) files.insert(*path);
     }
     return {files.begin(), files.end()};
 }

@@ -220,6 +220,9 @@ TEST(Catalog, ContentKeyFollowsTheFilesThatAModelDrawsIn) {
         folders.folder.write("assets/b.bin", "other");
         EXPECT_EQ(catalog.contentKey(reference("m/x")) == between, model[0] == 'a');
     }
+    folders.folder.write("assets/b.gltf",
+                         R"({"buffers": [{"uri": ")" + std::string(5000, 'b') + R"("}]})");
+    EXPECT_NE(folders.catalog().contentKey(reference("m/x")), "") << "no file has such a name";
 }
 
 TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
