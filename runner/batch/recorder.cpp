@@ -40,6 +40,15 @@ std::string shortName(std::string_view name) {
            std::string(name.substr(name.size() - kEnd));
 }
 
+/// Makes a folder below the run's, which is not made again where it was moved or removed.
+fs::path madeBelow(const fs::path& runDir, const fs::path& folder) {
+    if (!fs::is_directory(runDir)) {
+        throw Error(runDir.string() + ": was removed or moved while a case wrote to it");
+    }
+    fs::create_directories(runDir / folder);
+    return runDir / folder;
+}
+
 }  // namespace
 
 void RunRecorder::metric(std::string_view metric, double value, std::string_view unit,
@@ -70,13 +79,14 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
                     " channels; 1, 3 or 4 are allowed");
     }
     checkFileName(name);
-    std::string stem = "images/" + item_.slug() + "/" + item_.id + "-" + shortName(name);
+    const std::string folder = "images/" + item_.slug();
+    madeBelow(runDir_, folder);
+    std::string stem = folder + "/" + item_.id + "-" + shortName(name);
     if (item_.measure.frames > 1) {
         char frame[16];
         std::snprintf(frame, sizeof(frame), "-f%04d", frame_);
         stem += frame;
     }
-    fs::create_directories((runDir_ / stem).parent_path());
     image::ExrImage exr = options.layers;
     exr.add(image, kChannels[channels]);
     describeImage(exr, item_, frame_, command_, options);
@@ -102,9 +112,7 @@ void RunRecorder::checkTruths() const {
 
 fs::path RunRecorder::artifact(std::string_view fileName) {
     checkFileName(fileName);
-    const fs::path folder = runDir_ / "artifacts" / item_.slug();
-    fs::create_directories(folder);
-    return folder / (item_.id + "-" + shortName(fileName));
+    return madeBelow(runDir_, "artifacts/" + item_.slug()) / (item_.id + "-" + shortName(fileName));
 }
 
 }  // namespace gfxrepro::batch

@@ -14,7 +14,7 @@ namespace gfxrepro::batch {
 
 /// Metrics and images go into `result`; files are written atomically. Throws Error for a second
 /// value of a metric, pass, frame and repeat, for values that are not finite (but +∞ dB, which two
-/// equal pictures have) and for names that are no file names.
+/// equal pictures have), for names that are no file names, and where the run directory is gone.
 class RunRecorder : public technique::Recorder {
   public:
     /// `command` is the one that measures, as typed.

@@ -28,15 +28,17 @@ class RunDirectory {
 
     /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
     /// and outputs left out once it has 64 MiB; beyond kMostWrittenLogBytes nothing is written, but
-    /// for one line that says so. Throws Error where the folder is no longer this
-    /// run's: removed, moved, or without its lock, so that another one may write to it.
+    /// for one line that says so. Throws as requireOurs().
     void log(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
     void logFlushed(const nlohmann::ordered_json& event) const;
 
+    /// Throws Error where the folder is no longer this run's: removed, moved, or without its lock,
+    /// so that another one may write to it.
+    void requireOurs() const;
+
   private:
     explicit RunDirectory(const std::filesystem::path& path);
-    void requireOurs() const;
     void appendToLog(const nlohmann::ordered_json& event) const;
 
     std::filesystem::path path_;

@@ -314,6 +314,7 @@ class Scheduler {
     /// Images first: a unit whose rows are there is complete.
     void record(const Unit& unit, const CaseResult& result, const std::string& output,
                 const char* event) {
+        directory_.requireOurs();
         const bool hasValues =
             result.status == report::Status::Ok || result.status == report::Status::Flaky;
         report::appendImages(

@@ -100,7 +100,7 @@ std::string mergeScript(const Submission& submission) {
     std::string script = scriptHead("gfxrepro-" + submission.name + "-merge", kMergeLimitMin);
     // No device is needed to merge, and nothing else that was asked for the tasks but the place.
     for (const std::string& flag : submission.sbatchFlags) {
-        for (const char* place : {"--partition=", "--account=", "--qos="}) {
+        for (const char* place : {"--partition=", "--account=", "--qos=", "--clusters="}) {
             if (flag.starts_with(place)) script += fmt::format("#SBATCH {}\n", flag);
         }
     }

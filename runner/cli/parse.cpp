@@ -1,5 +1,8 @@
 #include "runner/cli/parse.h"
 
+#include <fmt/core.h>
+
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -45,7 +48,9 @@ void parse(CLI::App& app, int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {  // --help, --version: CLI11 answers them by throwing
-        app.exit(help);
+        std::ostringstream text;
+        app.exit(help, text, text);
+        fmt::print("{}", text.str());  // flushed, and checked, with all else at the program's end
     } catch (const CLI::ParseError& problem) {
         throw usageError(app, problem);
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "runner/batch/child_process.h"
@@ -24,31 +25,37 @@ SbatchAnswer sbatch(std::vector<std::string> arguments) {
     const batch::ProgramEnd end = batch::runToEnd(arguments, kSlurmLimit);
     const std::string text(trimmed(end.output));
     if (end.exitCode != 0) {
-        return {"",
+        return {"", "",
                 fmt::format("sbatch did not take the job (exit code {}): {}{}", end.exitCode, text,
                             end.exitCode == kNotFound
                                 ? "; where there is no Slurm, --engine commands prints commands"
                                 : "")};
     }
     const std::string last = text.substr(text.rfind('\n') + 1);
-    const std::string job = last.substr(0, last.find(';'));
-    if (parseInteger(job)) return {job, ""};
+    const std::size_t jobEnd = std::min(last.find(';'), last.size());
+    const std::string job = last.substr(0, jobEnd);
+    const std::string cluster = last.substr(std::min(jobEnd + 1, last.size()));
+    if (parseInteger(job)) return {job, cluster, ""};
     throw Error(
         "sbatch gave no number of a job, so what is queued is not known; squeue shows it: " + text);
 }
 
-std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs) {
-    const batch::ProgramEnd end =
-        batch::runToEnd({"/usr/bin/env", "squeue", "-h", "-r", "-t", "all", "-j", joined(jobs, ","),
-                         "-o", "%F_%K %T"},
-                        kSlurmLimit);
+std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs,
+                                                           const std::string& cluster) {
+    std::vector<std::string> command = {"/usr/bin/env", "squeue",  "-h", "-r",
+                                        "-t",           "all",     "-j", joined(jobs, ","),
+                                        "-o",           "%F_%K %T"};
+    if (!cluster.empty()) command.push_back("--clusters=" + cluster);
+    const batch::ProgramEnd end = batch::runToEnd(command, kSlurmLimit);
     // Its answer to the number of a single job that it has forgotten.
     if (end.output.find("Invalid job id") != std::string::npos) {
         return std::map<std::string, std::string>();
     }
     if (end.exitCode != 0) return std::nullopt;
     std::map<std::string, std::string> states = batch::parseQueue(end.output);
-    const bool isNotice = states.empty() && !trimmed(end.output).empty();
+    const std::string_view said = trimmed(end.output);
+    const bool isHead = said == "CLUSTER: " + cluster;  // of an answer without a task
+    const bool isNotice = states.empty() && !said.empty() && !isHead;
     if (isNotice) return std::nullopt;  // it says something else: not that the jobs are forgotten
     return states;
 }

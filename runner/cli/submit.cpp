@@ -39,6 +39,7 @@ struct Stored {
     std::vector<int> unitCounts;  // a shard each
     std::string arrayJob;         // empty: none; kUnknownJob: sbatch was asked, and gave no number
     std::string mergeJob;
+    std::string cluster;  // that took them; empty: the one that takes jobs by default
 };
 
 fs::path storedFile(const fs::path& out) {
@@ -51,12 +52,13 @@ std::optional<Stored> readStored(const fs::path& out) {
     static constexpr config::JsonMember kMembers[] = {
         {"/run_arguments", JsonKind::List}, {"/run_arguments", JsonKind::Texts},
         {"/units", JsonKind::List},         {"/units", JsonKind::Ints},
-        {"/array_job", JsonKind::Text},     {"/merge_job", JsonKind::Text}};
+        {"/array_job", JsonKind::Text},     {"/merge_job", JsonKind::Text},
+        {"/cluster", JsonKind::Text, false}};
     const SourceLocation where{storedFile(out).string(), 0, 0};
     const Json json = config::parseJsonObject(MappedFile(storedFile(out)).text(), where);
     config::requireMembers(json, kMembers, where);
     return Stored{json.at("run_arguments"), json.at("units"), json.at("array_job"),
-                  json.at("merge_job")};
+                  json.at("merge_job"), json.value("cluster", "")};
 }
 
 /// What its tasks measure, whatever becomes of the configs.
@@ -73,7 +75,8 @@ void writeStored(const fs::path& out, const Stored& stored) {
     const Json json = {{"run_arguments", stored.asked},
                        {"units", stored.unitCounts},
                        {"array_job", stored.arrayJob},
-                       {"merge_job", stored.mergeJob}};
+                       {"merge_job", stored.mergeJob},
+                       {"cluster", stored.cluster}};
     writeFileAtomic(storedFile(out), json.dump(1) + '\n');
 }
 
@@ -192,7 +195,7 @@ std::vector<std::string> jobsOf(const Stored& stored) {
 std::optional<std::map<std::string, std::string>> askQueue(const Stored& stored) {
     const std::vector<std::string> jobs = jobsOf(stored);
     if (jobs.empty()) return std::nullopt;
-    return cli::askQueue(jobs);
+    return cli::askQueue(jobs, stored.cluster);
 }
 
 std::string taskOf(const Stored& stored, int shard) {
@@ -244,10 +247,12 @@ std::vector<std::string> arrayArguments(const Submission& s, const std::string& 
     return {"--array=" + indices, fmt::format("--output={}", (s.out / "task-%a.txt").string()),
             s.out / "task.sh"};
 }
-std::vector<std::string> mergeArguments(const Submission& s, const std::string& arrayJob) {
+std::vector<std::string> mergeArguments(const Submission& s, const std::string& arrayJob,
+                                        const std::string& cluster) {
     std::vector<std::string> arguments = {
         fmt::format("--output={}", (s.out / "merge.txt").string()), s.out / "merge.sh"};
     if (!arrayJob.empty()) arguments.insert(arguments.begin(), "--dependency=afterany:" + arrayJob);
+    if (!cluster.empty()) arguments.insert(arguments.begin(), "--clusters=" + cluster);
     return arguments;
 }
 
@@ -294,6 +299,7 @@ SbatchAnswer sbatchStored(const std::vector<std::string>& arguments, const fs::p
     writeStored(out, stored);
     SbatchAnswer answer = sbatch(arguments);
     stored.*job = answer.job;
+    if (!answer.job.empty()) stored.cluster = answer.cluster;
     writeStored(out, stored);
     return answer;
 }
@@ -308,12 +314,12 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before,
         fmt::print("# {}\n{}# {}\n{}", (s.out / "task.sh").string(), batch::taskScript(s),
                    (s.out / "merge.sh").string(), batch::mergeScript(s));
         if (!pending.empty()) fmt::print("sbatch {}\n", joined(arrayArguments(s, indices), " "));
-        fmt::print("sbatch {}\n", joined(mergeArguments(s, pending.empty() ? "" : "JOB"), " "));
+        fmt::print("sbatch {}\n", joined(mergeArguments(s, pending.empty() ? "" : "JOB", ""), " "));
         return kExitOk;
     }
     writeFileAtomic(s.out / "task.sh", batch::taskScript(s));
     writeFileAtomic(s.out / "merge.sh", batch::mergeScript(s));
-    Stored stored{cut.asked, cut.unitCounts, "", ""};
+    Stored stored{cut.asked, cut.unitCounts, "", "", ""};
     if (!pending.empty()) {
         const SbatchAnswer array =
             sbatchStored(arrayArguments(s, indices), s.out, stored, &Stored::arrayJob);
@@ -326,8 +332,8 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before,
             throw Error(array.refusal + "; nothing was queued");
         }
     }
-    const SbatchAnswer merge =
-        sbatchStored(mergeArguments(s, stored.arrayJob), s.out, stored, &Stored::mergeJob);
+    const SbatchAnswer merge = sbatchStored(mergeArguments(s, stored.arrayJob, stored.cluster),
+                                            s.out, stored, &Stored::mergeJob);
     if (!merge.refusal.empty()) {
         throw Error(fmt::format(
             "the merge: {}; {}; submit again when the shards are complete", merge.refusal,
@@ -348,7 +354,7 @@ int writeCommands(const Cut& cut, bool isDryRun) {
     if (isDryRun) return kExitOk;
     writeFileAtomic(s.out / "commands.txt", commands);
     writeFileAtomic(s.out / "merge.sh", "#!/bin/sh\n" + merge);
-    writeStored(s.out, {cut.asked, cut.unitCounts, "", ""});
+    writeStored(s.out, {cut.asked, cut.unitCounts, "", "", ""});
     tell("parallel --jobs 1 < {}; sh {}\n", (s.out / "commands.txt").string(),
          (s.out / "merge.sh").string());
     return kExitOk;

@@ -6,10 +6,35 @@
 
 namespace gfxrepro::report {
 
+namespace {
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+
+/// Bytes of the character of several bytes that the text begins with; 0 where it is no UTF-8, or
+/// none that XML has (U+FFFE, U+FFFF).
+std::size_t longCharacter(std::string_view text) {
+    const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t length = at(0) >= 0xF0 ? 4 : at(0) >= 0xE0 ? 3 : 2;
+    if (at(0) < 0xC2 || at(0) > 0xF4 || text.size() < length) return 0;
+    std::uint32_t code = at(0) & (0x7FU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((at(i) & 0xC0U) != 0x80U) return 0;
+        code = code << 6 | (at(i) & 0x3FU);
+    }
+    constexpr std::uint32_t kLeast[] = {0x80, 0x800, 0x10000};
+    const bool isSurrogate = code >= 0xD800 && code <= 0xDFFF;
+    const bool isShort = code < kLeast[length - 2];
+    return isShort || isSurrogate || code > 0x10FFFF || code == 0xFFFE || code == 0xFFFF ? 0
+                                                                                         : length;
+}
+
+}  // namespace
+
 std::string escapeXml(std::string_view text) {
     std::string out;
     out.reserve(text.size());
-    for (const char c : text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
         switch (c) {
             case '&':
                 out += "&amp;";
@@ -34,9 +59,14 @@ std::string escapeXml(std::string_view text) {
                 break;
             default:
                 if (static_cast<unsigned char>(c) < 0x20) {
-                    out += "\xEF\xBF\xBD";
-                } else {
+                    out += kReplacement;
+                } else if (static_cast<unsigned char>(c) < 0x80) {
                     out += c;
+                } else if (const std::size_t length = longCharacter(text.substr(i)); length > 0) {
+                    out += text.substr(i, length);
+                    i += length - 1;
+                } else {
+                    out += kReplacement;
                 }
         }
     }

@@ -455,18 +455,21 @@ TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                                        "invalid partition; nothing was queued\n"));
     // Numbers may come with a cluster's name; the second job waits for the first.
     const std::string log = folder.path() / "log";
-    const std::string path = fakeSlurm(folder, "echo \"$@\" >>'" + log + "'\necho '41;here'\n",
-                                       "printf '41_1 RUNNING\\n41_2 NODE_FAIL\\n'\n");
+    const std::string path =
+        fakeSlurm(folder, "echo \"$@\" >>'" + log + "'\necho '41;here'\n",
+                  "echo \"$@\" >>'" + log + "'\nprintf '41_1 RUNNING\\n41_2 NODE_FAIL\\n'\n");
     const ProcessResult taken = runProgram(command, {path});
     EXPECT_EQ(taken.out, "array 41 (shards 1-2), merge 41; gfxrepro submit --status " + out + "\n");
-    EXPECT_EQ(readFile(log), "--parsable --array=1-2 --output=" + out + "/task-%a.txt " + out +
-                                 "/task.sh\n--parsable --dependency=afterany:41 --output=" + out +
-                                 "/merge.txt " + out + "/merge.sh\n");
+    EXPECT_EQ(readFile(log),
+              "--parsable --array=1-2 --output=" + out + "/task-%a.txt " + out +
+                  "/task.sh\n--parsable --clusters=here --dependency=afterany:41 --output=" + out +
+                  "/merge.txt " + out + "/merge.sh\n");
     const ProcessResult status =
         runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {path});
     EXPECT_EQ(status.exitCode, 4);
     EXPECT_THAT(status.out, HasSubstr("1/2    0/2   0       RUNNING\n"
                                       "2/2    0/2   0       stopped: NODE_FAIL\n"));
+    EXPECT_THAT(readFile(log), HasSubstr("-j 41,41 -o %F_%K %T --clusters=here\n"));
     EXPECT_EQ(replaced(runProgram(command, {path}).err, out, "OUT"),
               "4 cases in 2 shards of 2 to 2 units; no earlier run tells their time\n"
               "gfxrepro: OUT: shard 1 is RUNNING already; wait, or scancel 41\n");

@@ -99,6 +99,12 @@ TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
 }
 
+TEST_F(Nightly, AReasonIsKeptOfTheFirstNightToo) {
+    ASSERT_EQ(night(0, false, "from now on").exitCode, 0);
+    const std::string reasons = readFile(state + "/accepted.csv");
+    EXPECT_NE(reasons.find(",0,\"from now on\"\n"), std::string::npos) << reasons;
+}
+
 TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
     ASSERT_EQ(night(0).exitCode, 0);
     shade = "0.75";

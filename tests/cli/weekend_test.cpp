@@ -65,6 +65,10 @@ TEST(Weekend, NobodyReadsTheProgress) {
     const ProcessResult full = shell(GFXREPRO_MOCK_PROGRAM " list scenes >/dev/full");
     EXPECT_EQ(full.exitCode, 2);
     EXPECT_THAT(full.err, HasSubstr("No space left on device"));
+    for (const char* question : {" --version", " --help", " run --help"}) {
+        EXPECT_EQ(shell(GFXREPRO_MOCK_PROGRAM + std::string(question) + " >/dev/full").exitCode, 2)
+            << question;
+    }
 }
 
 TEST(Weekend, ADriverThatDoesNotAnswer) {
@@ -115,6 +119,8 @@ TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
     const std::string moved = folder.path() / "moved", locked = folder.path() / "locked";
     ended(moved, [&] { fs::rename(moved, moved + "-away"); });
     ended(locked, [&] { fs::remove(locked + "/lock"); });
+    EXPECT_FALSE(fs::exists(moved)) << "nothing is written where it was";
+    EXPECT_TRUE(rowsOf(locked, "number").empty()) << "another run may have measured it";
     const ProcessResult rest = mockGfxrepro({"run", "--resume", locked});
     EXPECT_EQ(rest.exitCode, 0) << rest.err;
     EXPECT_EQ(rowsOf(locked, "number").size(), 4U);

@@ -11,7 +11,15 @@ TEST(Markup, Xml) {
     EXPECT_EQ(escapeXml(std::string_view("a\0b\x1b\n", 5)),
               "a\xEF\xBF\xBD"
               "b\xEF\xBF\xBD&#10;");
-    EXPECT_EQ(escapeXml("256³ ≤"), "256³ ≤");
+    EXPECT_EQ(escapeXml("256³ ≤ \U0001F40E"), "256³ ≤ \U0001F40E");
+    // No UTF-8 (cut, overlong, a surrogate, beyond the last), and what XML has no place for.
+    for (const std::string_view bad :
+         {"\xE2\x89", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xFF", "\xEF\xBF\xBE"}) {
+        const std::string text = escapeXml("a" + std::string(bad) + "b");
+        EXPECT_EQ(text.find(bad), text.npos) << bad;
+        EXPECT_EQ(text.substr(0, 4), "a\xEF\xBF\xBD") << bad;
+        EXPECT_EQ(text.back(), 'b') << bad;
+    }
 }
 
 TEST(Markup, Latex) {
