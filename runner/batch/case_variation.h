@@ -13,7 +13,7 @@ namespace gfxrepro::batch {
 void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item);
 
 /// The case, whose scene is the config's, with what takes its place; with a generated one, once for
-/// each of its seeds. Throws Error when the scene is not at hand.
+/// each of its seeds. Throws Error when the scene is not found.
 std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
                              const scene::Catalog& catalog);
 

@@ -84,7 +84,7 @@ std::string whyUnequal(const std::vector<RepeatWork>& repeats) {
             if (!why.empty()) return why;
         }
         if (first.image && here.image && !areAlike(*first.image, *here.image)) {
-            return fmt::format("the picture of repeat {} is another than that of repeat 0", i);
+            return fmt::format("repeat {} drew a different picture than repeat 0", i);
         }
     }
     return "";

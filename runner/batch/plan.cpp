@@ -113,6 +113,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         }
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);
+        requireCaseCount(plan.cases.size() + cases.size(), experiment);
         plan.cases.reserve(plan.cases.size() + cases.size());
         for (Case& item : cases) {
             if (!item.scene.isNull()) {

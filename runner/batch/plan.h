@@ -96,6 +96,11 @@ struct Plan {
     static Plan fromJsonFile(const std::filesystem::path& path);
 };
 
+/// Of a plan: one of more could be written, and would be refused when it is read.
+inline constexpr std::size_t kMostCases = 200'000;
+/// Throws Error, naming the config, for more.
+void requireCaseCount(std::size_t count, const config::Experiment& experiment);
+
 /// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
 /// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.
 /// Needs no device.

@@ -73,6 +73,12 @@ void requireModestTitle(const config::Experiment& experiment, const Case& item) 
 
 }  // namespace
 
+void requireCaseCount(std::size_t count, const config::Experiment& experiment) {
+    if (count <= kMostCases) return;
+    throw Error(fmt::format("{}: the plan has {} cases; at most {} are allowed",
+                            experiment.file.string(), count, kMostCases));
+}
+
 std::vector<Case> resolveParameters(const config::Experiment& experiment,
                                     const scene::Catalog& catalog,
                                     std::span<const technique::TechniqueInfo> techniques,
@@ -83,6 +89,7 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
         techniques, experiment.technique,
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
     std::vector<config::CaseSpec> specs = config::expandCases(experiment);
+    requireCaseCount(specs.size(), experiment);
     std::vector<Case> cases;
     cases.reserve(specs.size());
     for (config::CaseSpec& given : specs) {

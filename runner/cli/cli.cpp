@@ -49,7 +49,7 @@ void addAssets(CLI::App* app, std::string& assets) {
 }
 
 void addProfile(CLI::App* app, std::string& profile) {
-    app->add_option("--profile", profile, "how much is measured")
+    app->add_option("--profile", profile, "how many cases, frames and repeats")
         ->check(CLI::IsMember({"quick", "full", "paper"}));
 }
 
@@ -105,7 +105,8 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--shard", options.shard, "the Kth of N parts; --from the same for each")
         ->option_text("K/N");
     addFrom(app, options.from);
-    app->add_option("--budget", options.budget, "the tables that decide most claims in it")
+    app->add_option("--budget", options.budget,
+                    "only the tables that decide most claims within TIME")
         ->option_text("TIME");
     app->add_option("--jobs", options.jobs, "quality cases at once")
         ->check(CLI::Range(1, 256))
@@ -233,8 +234,8 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
     submitApp->add_option("--jobs", s.jobs, "quality cases at once, a shard")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
-    submitApp->add_option("--partition", s.partition, "sbatch's")->option_text("PARTITION");
-    submitApp->add_option("--gres", s.gres, "sbatch's: gpu:1")->option_text("LIST");
+    submitApp->add_option("--partition", s.partition, "as for sbatch")->option_text("PARTITION");
+    submitApp->add_option("--gres", s.gres, "as for sbatch: gpu:1")->option_text("LIST");
     submitApp->add_option("--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x")
         ->allow_extra_args(false)
         ->option_text("FLAG");

@@ -31,8 +31,9 @@ struct Reader {
     int* line;
 };
 
-/// A value takes many times its bytes in memory; 100,000 cases have 15 million.
-constexpr std::size_t kMostValues = 10'000'000;
+/// A value takes many times its bytes in memory. A plan has 200,000 cases at most, of up to 150 values
+/// each.
+constexpr std::size_t kMostValues = 30'000'000;
 
 /// Builds the tree while the parser walks the text: a tree of the parser's own would be as large as
 /// the plan once more, and search each object for every key that it adds.

@@ -27,7 +27,9 @@ std::string rangeText(const ParamSpec& spec) {
 
 std::string rangeWithUnit(const ParamSpec& spec) {
     const std::string range = rangeText(spec);
-    return range.empty() || spec.unit.empty() ? range : range + " " + std::string(spec.unit);
+    return range.empty() || spec.unit.empty() || spec.unit == "1"
+               ? range
+               : range + " " + std::string(spec.unit);
 }
 
 bool isInRange(double value, const ParamSpec& spec) {

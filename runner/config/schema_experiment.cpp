@@ -75,7 +75,7 @@ SchemaSection content() {
           mapOf(anything())},
          {"output", "map", "512 × 512", "size of the image", refTo("output")},
          {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
-         {"measure", "map", "once", "how, and how often", refTo("measure")},
+         {"measure", "map", "once", "lane, warm-up, repeats and processes", refTo("measure")},
          {"picture_tolerance", "map", "none",
           "what `gfxrepro compare` lets the pictures of two builds differ by: without it the "
           "values "

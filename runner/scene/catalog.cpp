@@ -245,7 +245,7 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
         tried += "\n  " + path.string();
     }
     throw Error(reference.location(),
-                "scene '" + name + "' is not at hand; looked at:" + tried + "\nget it with " +
+                "scene '" + name + "' not found; searched:" + tried + "\nget it with " +
                     "scripts/fetch-assets" +
                     (entry.canonical.empty() ? "" : " or from " + entry.canonical));
 }

@@ -160,7 +160,7 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
     const std::string blank =
         "ambiguous: frame 0: the picture of repeat 0 is blank: all its pixels are the same";
     const std::string another =
-        "ambiguous: frame 0: the picture of repeat 1 is another than that of repeat 0";
+        "ambiguous: frame 0: repeat 1 drew a different picture than repeat 0";
     EXPECT_THAT(messages, testing::UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank,
                                                         another, another, another));
     for (const report::Record& row : rowsOf(dir, "number"))

@@ -187,13 +187,17 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
 }
 
 TEST_F(Nightly, SaysWhatIsMissing) {
-    const ProcessResult result = runProgram({GFXREPRO_SOURCE "/scripts/nightly", "--rounds"});
-    EXPECT_EQ(result.exitCode, 1);
-    EXPECT_NE(result.err.find("--rounds needs a number"), std::string::npos) << result.err;
-    const ProcessResult unknown = runProgram(
-        {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state, GFXREPRO_SOURCE "/scripts/nightly", "--fxi"});
-    EXPECT_EQ(unknown.exitCode, 2);
-    EXPECT_EQ(unknown.err, "nightly: unknown option '--fxi'\n");
+    const auto refusal = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
+                                             GFXREPRO_SOURCE "/scripts/nightly"});
+        const ProcessResult result = runProgram(arguments);
+        EXPECT_EQ(result.exitCode, 2) << "1 would be an alarm";
+        return result.err;
+    };
+    EXPECT_EQ(refusal({"--rounds"}), "nightly: --rounds needs a value\n");
+    EXPECT_EQ(refusal({"--accept"}), "nightly: --accept needs a value\n");
+    EXPECT_EQ(refusal({"--program", "/nonexistent"}), "nightly: /nonexistent is no folder\n");
+    EXPECT_EQ(refusal({"--fxi"}), "nightly: unknown option '--fxi'\n");
     EXPECT_FALSE(fs::exists(state));
 }
 

@@ -101,7 +101,7 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
     EXPECT_EQ(message("{}"), "no error");
     EXPECT_EQ(message("{method: direct, forward: splats, threshold: 1}"), "no error");
     EXPECT_EQ(message("{threshold: 1.5}"),
-              "case.yaml:1:13: technique 'reflection_reuse': threshold is 1.5; allowed: 0 … 1 1");
+              "case.yaml:1:13: technique 'reflection_reuse': threshold is 1.5; allowed: 0 … 1");
     EXPECT_EQ(message("{method: ray_traced, threshold: 0.3}"),
               "case.yaml:1:33: 'threshold' needs 'method: reuse' or 'method: direct'");
     EXPECT_EQ(message("{method: ray_traced, seam_px: 1}"),

@@ -55,7 +55,7 @@ TEST(EqualWork, DifferencesAreNamedWithTheirNumbers) {
     EXPECT_EQ(whyUnequal({work(5, 1000), work(5, 1011)}),
               "repeat 1 has 1011 fragments, repeat 0 has 1000");
     EXPECT_EQ(whyUnequal({work(5, 1000), work(5, 1000, 0.02F)}),
-              "the picture of repeat 1 is another than that of repeat 0");
+              "repeat 1 drew a different picture than repeat 0");
     RepeatWork idle = work(5, 1000);
     idle.counts->invocations = 0;
     EXPECT_EQ(whyUnequal({work(5, 1000), idle}),

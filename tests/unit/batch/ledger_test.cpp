@@ -88,6 +88,15 @@ TEST(ResolveCases, RefusesACaseGivenTwice) {
     EXPECT_EQ(ledger.cases(ledger.load("sweep: {zip: [{bias: [0.5, 0.25]}]}\n")).size(), 2U);
 }
 
+/// A plan of more could not be read any more.
+TEST(ResolveCases, RefusesMoreThanAPlanMayHave) {
+    const Ledger ledger;
+    EXPECT_EQ(test::errorText(
+                  [&] { ledger.cases(ledger.load("sweep: {bias: {range: [0, 1, 0.000002]}}\n")); },
+                  ledger.folder.path()),
+              "DIR/t.yaml: the plan has 500001 cases; at most 200000 are allowed");
+}
+
 TEST(Ledger, TakesValueAndUnitFromTheCases) {
     const config::Experiment experiment = Ledger().bound(
         "sweep: {scene: [grass, scan], bias: [0.1, 0.2]}\noutput: {width: 64, height: 32}\n"

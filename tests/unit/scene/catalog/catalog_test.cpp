@@ -255,7 +255,7 @@ TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {
         "sources: [{file: x/full.ply}, {file: x/small.ply, refine_to: 9}]\n");
     const Catalog catalog = folders.catalog();
     EXPECT_EQ(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
-              "table.yaml:5:8: scene 'm/x' is not at hand; looked at:\n"
+              "table.yaml:5:8: scene 'm/x' not found; searched:\n"
               "  DIR/assets/x/full.ply\n"
               "  DIR/assets/x/small.ply\n"
               "get it with scripts/fetch-assets or from http://example.org/x.tar.gz");
