@@ -24,7 +24,8 @@ using Clock = PhaseClock::Clock;
 constexpr std::chrono::milliseconds kTickInterval{250};
 constexpr std::chrono::seconds kSuspended{1};  // nothing but a suspended runner oversleeps so long
 
-/// Ctrl-C and SIGTERM as a descriptor to poll, for as long as the object lives.
+/// Ctrl-C, SIGTERM and the end of the terminal (unless it is ignored, as under nohup) as a
+/// descriptor to poll, for as long as the object lives.
 class SignalWatch {
   public:
     SignalWatch() {
@@ -32,6 +33,9 @@ class SignalWatch {
         sigemptyset(&signals);
         sigaddset(&signals, SIGINT);
         sigaddset(&signals, SIGTERM);
+        struct sigaction hangUp = {};
+        ::sigaction(SIGHUP, nullptr, &hangUp);
+        if (hangUp.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
         ::sigprocmask(SIG_BLOCK, &signals, &before_);
         fd_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
     }

@@ -154,6 +154,29 @@ TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     EXPECT_EQ(again.wait().exitCode, 130);
 }
 
+/// A batch system's limit and a closed terminal, thrice in one case: none is a death of the runner.
+TEST(Weekend, AnInterruptionIsNoCrash) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {pause_ms: 2000}\n");
+    const std::string dir = folder.path() / "run";
+    std::vector<std::string> command = {
+        GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir};
+    std::size_t starts = 0;
+    for (const int signal : {SIGTERM, SIGHUP, SIGHUP}) {
+        BackgroundProgram run(command);
+        waitForStarts(dir, ++starts);
+        run.signal(signal);
+        EXPECT_EQ(run.wait().exitCode, 130) << signal;
+        command = {GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir};
+    }
+    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+    EXPECT_EQ(
+        shell("trap '' HUP; " + mockRun(config, dir + "2") + " & sleep 1; kill -HUP $!; wait $!")
+            .exitCode,
+        0)
+        << "where hang-ups are ignored, as under nohup";
+}
+
 /// Kills a run of these configs twice during its first unit.
 void killTwice(const std::vector<std::string>& configs, const std::string& dir) {
     for (const std::size_t start : {1U, 2U}) {
