@@ -103,7 +103,7 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
         item.experiment = experiment.id;
         item.technique = experiment.technique;
         item.scene = absoluteReference(spec.scene, catalog);
-        item.params = params.resolved();
+        item.params = config::Node::map(params.resolved().entries());  // without places of keys
         for (const auto& [name, value] : spec.sceneParams.entries()) {
             item.params.set(std::string(config::kSceneAxisPrefix) + name, value,
                             spec.sceneParams.keyLocation(name));

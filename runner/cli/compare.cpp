@@ -9,6 +9,7 @@
 #include <set>
 
 #include "runner/batch/child_process.h"
+#include "runner/batch/made_from.h"
 #include "runner/batch/run.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
@@ -45,6 +46,7 @@ struct Measured {
     regression::PictureMap pictures;
     std::map<std::string, config::PictureTolerance> tolerances;  // by table that has one
     std::string buildId;
+    std::string madeFrom;  // its line of made-from.txt
 };
 
 /// Of flaky cases, too.
@@ -74,7 +76,8 @@ Measured readMeasured(const fs::path& runDir) {
                       batch::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records),
                       {},
-                      run.plan.buildId};
+                      run.plan.buildId,
+                      batch::madeFromLine(runDir, run.manifest)};
     for (const config::Experiment& experiment : run.plan.experiments) {
         if (!experiment.pictureTolerance) continue;
         measured.tolerances[experiment.id] = *experiment.pictureTolerance;
@@ -279,6 +282,8 @@ int compare(const CompareOptions& options) {
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
+        batch::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        batch::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {

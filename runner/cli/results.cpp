@@ -15,6 +15,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
+#include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/report/report.h"
 
@@ -183,6 +184,18 @@ void requireNoOtherRun(const fs::path& folder, const std::vector<html::ReportRun
     throw Error(folder.string() + ": holds another run; give another folder");
 }
 
+/// Throws Error where the file is there and is not a report.
+void requireReport(const fs::path& file) {
+    std::error_code isAbsent;
+    if (!fs::exists(file, isAbsent)) return;
+    constexpr std::size_t kHeadBytes = 4096;
+    const MappedFile there(file);
+    if (there.text().substr(0, kHeadBytes).find("<title>gfxrepro: ") != std::string_view::npos) {
+        return;
+    }
+    throw Error(file.string() + ": is there and is not a report; give another file");
+}
+
 void sayReport(const fs::path& runDir) {
     say("report: {}\n", (runDir / "report.html").string());
 }
@@ -262,7 +275,10 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
         lines.insert(batch::madeFromLine(run.folder, run.manifest));
     }
     const std::string from = joined(std::vector<std::string>(lines.begin(), lines.end()), "");
-    if (!out.empty()) batch::requireMadeFrom(made, from);
+    if (!out.empty()) {
+        batch::requireMadeFrom(made, from);
+        requireReport(file);
+    }
     html::writeReport(file, runs);
     if (fs::exists(made)) batch::noteMadeFrom(made, from);
     say("report: {}\n", file.string());

@@ -17,7 +17,7 @@ namespace gfxrepro::config {
 namespace {
 
 /// A map of so many keys is searched one after another.
-constexpr std::size_t kFewKeys = 16;
+constexpr std::size_t kFewKeys = 64;
 
 [[noreturn]] void throwExpected(const char* wanted, const Node& found) {
     std::string what = found.kindName();

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -184,15 +182,9 @@ std::vector<Shot> gatherShots(const fs::path& runDir, const fs::path& madeDir, c
     const Gallery gallery(runDir, madeDir, file, embeds);
     const std::vector<report::ImageEntry>& entries = gallery.entries();
     std::vector<Shot> shots(entries.size());
-    // Large ones one after another: FLIP takes up to 6 GB of memory for one.
-    constexpr std::int64_t kLarge = 1 << 22;
-    const auto isLarge = [&](std::size_t i) { return gallery.pixelsOf(entries[i]) > kLarge; };
-    tbb::parallel_for(std::size_t{0}, shots.size(), [&](std::size_t i) {
-        if (!isLarge(i)) shots[i] = gallery.shotOf(entries[i]);
-    });
-    for (std::size_t i = 0; i < shots.size(); ++i) {
-        if (isLarge(i)) shots[i] = gallery.shotOf(entries[i]);
-    }
+    metrics::forEachPicture(
+        shots.size(), [&](std::size_t i) { return gallery.pixelsOf(entries[i]); },
+        [&](std::size_t i) { shots[i] = gallery.shotOf(entries[i]); });
     return shots;
 }
 

@@ -299,6 +299,15 @@ void requireFlipSize(const ImageF& image) {
                             image.width(), image.height()));
 }
 
+void forEachPicture(std::size_t count, const std::function<std::int64_t(std::size_t)>& pixelsOf,
+                    const std::function<void(std::size_t)>& body) {
+    constexpr std::int64_t kLarge = 1 << 22;
+    std::vector<std::size_t> small, large;
+    for (std::size_t i = 0; i < count; ++i) (pixelsOf(i) > kLarge ? large : small).push_back(i);
+    tbb::parallel_for(std::size_t{0}, small.size(), [&](std::size_t i) { body(small[i]); });
+    for (const std::size_t i : large) body(i);
+}
+
 ImageF flipMap(const ImageF& reference, const ImageF& test, double pixelsPerDegree) {
     requireComparable(reference, test);
     if (reference.channels() != 3) {

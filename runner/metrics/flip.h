@@ -1,7 +1,9 @@
 // FLIP: the difference that a person sees when flipping between two images.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "runner/image/image.h"
 
@@ -16,6 +18,10 @@ constexpr double kFlipPixelsPerDegree = 67.0206;
 constexpr std::int64_t kMaxFlipPixels = 1 << 26;
 /// Throws Error for a larger image.
 void requireFlipSize(const image::ImageF& image);
+/// Calls `body` for the pictures 0 … count − 1, several at once; those of more than 2048² pixels
+/// one after another, as FLIP and what it compares take gigabytes of memory for one.
+void forEachPicture(std::size_t count, const std::function<std::int64_t(std::size_t)>& pixelsOf,
+                    const std::function<void(std::size_t)>& body);
 
 /// LDR-FLIP (Andersson et al. 2020) a pixel, in [0, 1]. `reference` and `test` have 3 channels,
 /// linear, Rec. 709; what a display cannot show is clamped to [0, 1]. (The method takes sRGB and

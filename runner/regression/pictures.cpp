@@ -2,19 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "runner/core/text.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/image_file.h"
+#include "runner/image/limits.h"
 #include "runner/image/png_io.h"
 #include "runner/metrics/error_map.h"
+#include "runner/metrics/flip.h"
 #include "runner/metrics/hdr_flip.h"
 #include "runner/report/images.h"
 
@@ -106,9 +109,9 @@ ImageF withoutInfinities(ImageF image) {
     return image;
 }
 
-ImageF flipMapOf(const Picture& before, const Picture& after) {
-    metrics::requireFlipSize(before.colours);
-    const ImageF a = withoutInfinities(before.colours), b = withoutInfinities(after.colours);
+ImageF flipMapOf(ImageF before, ImageF after) {
+    metrics::requireFlipSize(before);
+    const ImageF a = withoutInfinities(std::move(before)), b = withoutInfinities(std::move(after));
     const bool isHdr = metrics::exceedsDisplay(a) || metrics::exceedsDisplay(b);
     return isHdr ? metrics::hdrFlipMap(a, b) : metrics::flipMap(a, b);
 }
@@ -146,19 +149,35 @@ struct Pair {
     PictureFiles before, after;
 };
 
+/// By the headers; of one that does not tell, the most.
+std::int64_t pixelsOf(const Pair& pair) {
+    std::int64_t most = 0;
+    for (const PictureFiles* files : {&pair.before, &pair.after}) {
+        try {
+            const image::PngRows rows(files->png, image::kMaxSidePx, image::ImageUse::Picture);
+            most = std::max(most, std::int64_t{rows.width()} * rows.height());
+        } catch (const Error&) {
+            return std::numeric_limits<std::int64_t>::max();
+        }
+    }
+    return most;
+}
+
 /// What the two pictures are to each other, and the map of their differences.
 Difference compareOne(const Pair& pair, const config::PictureTolerance& allowed,
                       std::optional<ImageF>& map) {
     Difference result{.key = pair.key, .verdict = Verdict::Changed};
     try {
         const bool isExr = !pair.before.exr.empty() && !pair.after.exr.empty();
-        const Picture before = readPicture(pair.before, isExr);
-        const Picture after = readPicture(pair.after, isExr);
+        Picture before = readPicture(pair.before, isExr);
+        Picture after = readPicture(pair.after, isExr);
         result.reason = whyNotComparable(before, after);
         if (!result.reason.empty()) return result;
         result.picture = PictureError{0.0, largestDifference(before, after)};
         if (result.picture->largest > 0.0) {
-            map = flipMapOf(before, after);
+            before.channels.clear();
+            after.channels.clear();
+            map = flipMapOf(std::move(before.colours), std::move(after.colours));
             result.picture->flip = metrics::meanOfFlip(*map);
         }
     } catch (const Error& error) {
@@ -262,8 +281,9 @@ std::vector<Difference> comparePictures(const PictureMap& before, const PictureM
         }
     }
     std::vector<Difference> compared(pairs.size());
-    tbb::parallel_for(std::size_t{0}, pairs.size(),
-                      [&](std::size_t i) { compared[i] = compareAndKeep(pairs[i], rules); });
+    metrics::forEachPicture(
+        pairs.size(), [&](std::size_t i) { return pixelsOf(pairs[i]); },
+        [&](std::size_t i) { compared[i] = compareAndKeep(pairs[i], rules); });
     std::ranges::move(compared, std::back_inserter(differences));
     std::ranges::sort(differences, {}, &Difference::key);
     return differences;

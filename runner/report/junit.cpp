@@ -22,8 +22,8 @@ std::vector<Test> testsOf(const std::vector<CaseResult>& cases) {
     std::map<std::string, int> known;
     std::vector<Test> tests;
     for (const CaseResult& one : cases) {
-        // Those of several seeds of a scene have one title.
-        const int count = ++known[one.title];
+        // Those of several seeds of a scene have one title; others differ by what XML cannot write.
+        const int count = ++known[escapeXml(one.title)];
         tests.push_back({one.table, one.title + (count > 1 ? fmt::format(" ({})", count) : ""),
                          one.outcome, one.text});
     }

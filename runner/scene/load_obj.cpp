@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 #include <unordered_map>
 
 #include "runner/core/files.h"
@@ -74,7 +76,9 @@ class ObjParser {
             } else if (key == "usemtl") {
                 useMaterial(std::string(lines_.rest()));
             } else if (key == "mtllib") {
-                content_.materialFiles.emplace_back(lines_.rest());
+                std::string file(lines_.rest());
+                const bool isNew = materialFiles_.insert(file).second;
+                if (isNew) content_.materialFiles.push_back(std::move(file));
             }  // groups, smoothing, lines, curves: no triangles in them
         }
         if (content_.colors.size() != content_.positions.size()) content_.colors.clear();
@@ -172,6 +176,7 @@ class ObjParser {
     std::unordered_map<std::string, std::size_t> groupOf_;
     std::size_t group_ = 0;
     std::vector<Corner> polygon_;
+    std::set<std::string> materialFiles_;
 };
 
 /// The corners as they are: vertex i of the mesh is line i of the file.

@@ -56,10 +56,14 @@ std::vector<std::string> namesInGltf(std::string_view text) {
 std::vector<std::string> namesInObj(std::string_view text, const fs::path& folder) {
     constexpr std::string_view kKey = "mtllib";
     std::vector<std::string> names;
+    std::set<std::string> libraries;
     for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at + 1)) {
-        if (at > 0 && text[at - 1] != '\n') continue;
+        const std::size_t before = text.find_last_not_of(" \t", at - (at > 0 ? 1 : 0));
+        const bool beginsLine = at == 0 || before == text.npos || text[before] == '\n';
+        if (!beginsLine) continue;
         const std::string_view line = text.substr(at, text.find_first_of("\r\n", at) - at);
         const std::string name(trimmed(line.substr(kKey.size())));
+        if (!libraries.insert(name).second) continue;
         names.push_back(name);
         const auto path = existing(folder, name);
         if (!path) continue;

@@ -499,6 +499,18 @@ TEST_F(Untrusted, ResultsElsewhereDoNotGoOverThoseOfAnotherRun) {
     EXPECT_EQ(at({"report", dir}, out + "/r.html").exitCode, 0);
     EXPECT_THAT(at({"report", other}, out + "/r.html").err,
                 HasSubstr("/r-files: was made from another run (run, started "));
+    const std::string plan = readFile(dir + "/plan.json");
+    EXPECT_EQ(at({"report", dir}, dir + "/plan.json").err,
+              "gfxrepro: " + dir + "/plan.json: is there and is not a report; give another file\n");
+    EXPECT_EQ(readFile(dir + "/plan.json"), plan);
+    const std::string mine = folder.path() / "mine";
+    folder.write("mine/junit.xml", "<testsuites/>");
+    EXPECT_THAT(at({"compare", dir, other}, mine).err, HasSubstr("/mine: has junit.xml, and no "));
+    EXPECT_THAT(at({"compare", dir, other}, other).err, HasSubstr("/other: has plan.json, and no"));
+    fs::remove(mine + "/junit.xml");
+    EXPECT_EQ(at({"compare", dir, other}, mine).exitCode, 0);
+    EXPECT_EQ(at({"compare", dir, other}, mine).exitCode, 0) << "of the same runs";
+    EXPECT_THAT(at({"compare", other, dir}, mine).err, HasSubstr("was made from another run"));
     ASSERT_EQ(at({"export", dir}, out + "/artifact").exitCode, 0);
     EXPECT_EQ(readFile(out + "/artifact/made-from.txt"), from);
 }

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <thread>
 
 #include "runner/core/random.h"
 #include "tests/support/support.h"
@@ -284,6 +287,23 @@ TEST(Flip, OfFilesTakesNoMoreThan8192SquaredPixels) {
     requireFlipSize(ImageF(32768, 2048, 1));
     EXPECT_EQ(errorText([] { requireFlipSize(ImageF(32768, 2049, 1)); }),
               "FLIP compares pictures of at most 8192² pixels, found 32768 x 2049");
+}
+
+TEST(Flip, LargePicturesAreTakenOneAfterAnother) {
+    constexpr std::int64_t kSmall = 2048 * 2048, kLarge = kSmall + 1;
+    std::atomic<int> atOnce = 0, mostAtOnce = 0;
+    std::array<std::atomic<int>, 16> calls{};
+    forEachPicture(
+        calls.size(), [&](std::size_t i) { return i % 2 == 0 ? kSmall : kLarge; },
+        [&](std::size_t i) {
+            ++calls[i];
+            if (i % 2 == 0) return;
+            mostAtOnce = std::max(mostAtOnce.load(), ++atOnce);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            --atOnce;
+        });
+    EXPECT_EQ(mostAtOnce, 1);
+    for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
 }
 
 TEST(Flip, RefusesWhatCannotBeCompared) {

@@ -102,7 +102,9 @@ TEST(Writers, ClaimFiles) {
     const std::vector<CaseResult> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>"},
-        {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"}};
+        {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"},
+        {"zju2005/9.9", "zju2005/9.9 text=\x01", Outcome::Measured},
+        {"zju2005/9.9", "zju2005/9.9 text=\x02", Outcome::Measured}};
     writeClaims(run.folder.path(), cases, results, kContext);
     EXPECT_EQ(
         run.read("claims.csv"),
@@ -129,12 +131,14 @@ TEST(Writers, ClaimFiles) {
         run.read("junit.xml"),
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<testsuites>\n"
-        "<testsuite name=\"cases\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
+        "<testsuite name=\"cases\" tests=\"5\" failures=\"1\" skipped=\"1\">\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a\"/>\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a (2)\">"
         "<failure message=\"crash: &lt;11&gt;\"/></testcase>\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=b\">"
         "<skipped message=\"missing: too slow\"/></testcase>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD (2)\"/>\n"
         "</testsuite>\n"
         "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim A\"/>\n"
