@@ -11,6 +11,7 @@
 
 #include "runner/scene/load.h"
 #include "runner/scene/load_gltf_accessor.h"
+#include "runner/scene/load_gltf_lights.h"
 #include "runner/scene/load_gltf_material.h"
 #include "runner/scene/load_text.h"
 
@@ -46,7 +47,7 @@ std::vector<glm::uvec3> trianglesOf(const std::vector<std::uint32_t>& indices, i
 
 class SceneBuilder {
   public:
-    explicit SceneBuilder(const gltf::File& file) : file_(file), accessors_(file) {}
+    explicit SceneBuilder(const gltf::File& file) : file_(file), accessors_(file), lights_(file) {}
 
     Scene build() {
         textureUses_ = gltf::addMaterials(file_, accessors_, scene_);
@@ -57,6 +58,7 @@ class SceneBuilder {
             fail("no triangles or points in the scene");
         }
         for (const std::size_t camera : unaimed_) aim(scene_.cameras[camera], scene_.bounds());
+        lights_.moveTo(scene_);
         return std::move(scene_);
     }
 
@@ -258,6 +260,7 @@ class SceneBuilder {
 
     void addContent(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode) {
         if (node.camera >= 0) addCamera(node, index, worldFromNode);
+        lights_.add(node, index, worldFromNode);
         if (node.mesh < 0) return;
         if (static_cast<std::size_t>(node.mesh) >= parts_.size()) {
             fail(fmt::format("node {}: mesh {} does not exist; there are {}", index, node.mesh,
@@ -372,6 +375,7 @@ class SceneBuilder {
 
     const gltf::File& file_;
     gltf::Accessors accessors_;
+    gltf::Lights lights_;
     std::vector<gltf::TextureUse> textureUses_;
     std::vector<Parts> parts_;
     std::vector<bool> wasVisited_;

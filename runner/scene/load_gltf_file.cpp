@@ -18,11 +18,10 @@ namespace gfxrepro::scene::gltf {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> kSupportedExtensions{
-    "EXT_mesh_gpu_instancing", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_transmission",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array<std::string_view, 8> kSupportedExtensions{
+    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",        "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_mesh_quantization",   "KHR_texture_transform"};
 
 /// tinygltf gives URIs, percent signs decoded, to these callbacks; they resolve them in the file's
 /// folder only.

@@ -7,9 +7,6 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-/// A larger object is drawn by several commands: llvmpipe keeps the vertices of a draw.
-constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
-
 /// Pairs of an object and a cluster that sees it; 8 MiB. All pairs of 512 objects and as many
 /// clusters as there may be; more of both is counted in AtlasState::leftOut.
 constexpr std::size_t kMostInstances = std::size_t{1} << 21;
@@ -38,12 +35,13 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                          "clustered_reflections/cluster_image.frag.glsl"},
                         defines);
 
+    const std::uint32_t most = objects.mostTrianglesPerDraw();
     std::vector<DrawCommand> commands;
     std::vector<glm::uvec2> pieces;  // an object's first command and how many
     for (const reflections::Object& object : scene.objects()) {
         const auto first = static_cast<std::uint32_t>(commands.size());
-        for (std::uint32_t done = 0; done < object.triangleCount; done += kTrianglesPerDraw) {
-            const std::uint32_t count = std::min(object.triangleCount - done, kTrianglesPerDraw);
+        for (std::uint32_t done = 0; done < object.triangleCount; done += most) {
+            const std::uint32_t count = std::min(object.triangleCount - done, most);
             commands.push_back({3 * count, 0, 3 * (object.firstTriangle + done), 0, 0});
         }
         pieces.emplace_back(first, static_cast<std::uint32_t>(commands.size()) - first);

@@ -20,11 +20,9 @@ ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
 }
 
 void ClusterIntersection::prepare(const gl::Program& program, const reflections::GBuffer& gbuffer,
-                                  const ClusterImages& images,
                                   const reflections::EnvironmentMap& map) const {
     program.use();
     gbuffer.bind(program, kGBufferUnit);
-    images.bind();
     map.bind(kEnvironmentUnit);
     reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
 }
@@ -40,28 +38,37 @@ void ClusterIntersection::intersectAll(const reflections::GBuffer& gbuffer,
     const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
         &target.radiance, &target.distance, &environmentSamples_});
     framebuffer.bind();
-    prepare(all_, gbuffer, images, map);
+    prepare(all_, gbuffer, map);
+    images.bind();
     clusters.clusterOfSample.bind(kClusterOfSampleUnit);
     wholeImage_.draw();
 }
 
-void ClusterIntersection::intersectCluster(const reflections::GBuffer& gbuffer,
-                                           const Clusters& clusters, std::uint32_t cluster,
-                                           const glm::uvec4& range, const ClusterImages& images,
-                                           const reflections::EnvironmentMap& map,
-                                           reflections::ReflectionTarget& target) {
-    constexpr std::uint32_t kGroupSize = 64;  // of the shader
-    const std::uint32_t sampleCount = range.y;
-    if (sampleCount == 0) return;
-    prepare(one_, gbuffer, images, map);
+void ClusterIntersection::beginClusters(const reflections::GBuffer& gbuffer,
+                                        const Clusters& clusters,
+                                        const reflections::EnvironmentMap& map,
+                                        reflections::ReflectionTarget& target) const {
+    prepare(one_, gbuffer, map);
     clusters.samples.bindStorage(kSamplesBinding);
-    one_.set("cluster", cluster);
-    one_.set("firstSample", range.x);
-    one_.set("sampleCount", sampleCount);
     target.radiance.bindImage(0, GL_WRITE_ONLY);
     target.distance.bindImage(1, GL_WRITE_ONLY);
     environmentSamples_.bindImage(2, GL_WRITE_ONLY);
+}
+
+void ClusterIntersection::intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
+                                           const ClusterImages& images) const {
+    constexpr std::uint32_t kGroupSize = 64;  // of the shader
+    const std::uint32_t sampleCount = range.y;
+    if (sampleCount == 0) return;
+    one_.use();
+    images.bind();
+    one_.set("cluster", cluster);
+    one_.set("firstSample", range.x);
+    one_.set("sampleCount", sampleCount);
     glDispatchCompute((sampleCount + kGroupSize - 1) / kGroupSize, 1, 1);
+}
+
+void ClusterIntersection::endClusters() {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                     GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }

@@ -19,11 +19,15 @@ class ClusterIntersection {
                       const ClusterImages& images, const reflections::EnvironmentMap& map,
                       reflections::ReflectionTarget& target);
 
-    /// Of one cluster's samples: `range` is its entry of Clusters::ranges.
-    void intersectCluster(const reflections::GBuffer& gbuffer, const Clusters& clusters,
-                          std::uint32_t cluster, const glm::uvec4& range,
-                          const ClusterImages& images, const reflections::EnvironmentMap& map,
-                          reflections::ReflectionTarget& target);
+    /// Of one cluster's samples after the other, each between the drawing of its image and of the
+    /// next: `range` is its entry of Clusters::ranges. What they share is set up once a frame, and
+    /// what they write is awaited once.
+    void beginClusters(const reflections::GBuffer& gbuffer, const Clusters& clusters,
+                       const reflections::EnvironmentMap& map,
+                       reflections::ReflectionTarget& target) const;
+    void intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
+                          const ClusterImages& images) const;
+    static void endClusters();
 
     /// Once a frame, before either.
     void clearEnvironmentSamples();
@@ -32,7 +36,7 @@ class ClusterIntersection {
 
   private:
     void prepare(const gl::Program& program, const reflections::GBuffer& gbuffer,
-                 const ClusterImages& images, const reflections::EnvironmentMap& map) const;
+                 const reflections::EnvironmentMap& map) const;
 
     CameraSettings settings_;
     gl::Program all_, one_;

@@ -24,7 +24,7 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     const scene::Camera camera =
         reflections::cameraFor(scene_->scene(), params_.view, 0, 1, size.x / size.y);
 
-    objects_.emplace(*scene_);
+    objects_.emplace(*scene_, context.device.info().isSoftware);
     map_.emplace(shaders, *scene_);
     map_->render(*objects_);
     gbufferRenderer_.emplace(shaders, *scene_);

@@ -38,6 +38,10 @@ bool isSameView(const depth_images::View& a, const depth_images::View& b) {
 
 void ClusteredReflections::record(technique::Recorder& recorder) {
     const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
+    // A view that reflects nothing has no errors: claims on them are left unmeasured.
+    const auto isReflective = [&](std::uint32_t surface) { return (surface & 0xFFFFU) != 0; };
+    hasReflections_ = std::ranges::any_of(gbuffer.surface, isReflective);
+    if (!hasReflections_) scene_->printEmptyView();
     recordShares(recorder, gbuffer);
     recordMemory(recorder);
     if (!params_.measuresErrors && !params_.showsPictures && !clusteredTracer_) return;
@@ -54,9 +58,6 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
         composite_->render(*gbuffer_, *target_, true);
         recorder.image("reflection", composite_->read(), seenFrom(gbuffer.view));
     }
-    // A view that reflects nothing has no errors: claims on them are left unmeasured.
-    const auto isReflective = [&](std::uint32_t surface) { return (surface & 0xFFFFU) != 0; };
-    hasReflections_ = std::ranges::any_of(gbuffer.surface, isReflective);
     if (params_.measuresErrors && hasReflections_) recordErrors(recorder, gbuffer, picture);
     if (clusteredTracer_) recordClusters(recorder, gbuffer, picture);
 }

@@ -89,18 +89,19 @@ struct ClusteredTracer::Impl {
             }
             if (!sizes.empty()) places.write(std::span<const glm::ivec4>(sizes));
         }
+        clusterCameras.cameras().bindStorage(kCamerasBinding);
+        places.bindStorage(kPlacesBinding);
+        intersection.beginClusters(gbuffer, builder.clusters(), map, target);
         for (std::uint32_t cluster = 0; cluster < table.size(); ++cluster) {
             const glm::ivec2 sizePx(sizes[cluster].z, sizes[cluster].w);
-            clusterCameras.cameras().bindStorage(kCamerasBinding);
-            places.bindStorage(kPlacesBinding);
             if (sizePx.x > 0) {
                 const gl::GpuScope scope(profiler, "depth_images");
                 trianglesDrawn += oneByOne->draw(*objects, cluster, table[cluster], sizePx, images);
             }
             const gl::GpuScope scope(profiler, "intersection");
-            intersection.intersectCluster(gbuffer, builder.clusters(), cluster, ranges[cluster],
-                                          images, map, target);
+            intersection.intersectCluster(cluster, ranges[cluster], images);
         }
+        ClusterIntersection::endClusters();
     }
 
     ClusteredSettings settings;

@@ -1,5 +1,6 @@
 #include "techniques/clustered_reflections/visible_triangles.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace gfxrepro::clustered_reflections {
@@ -8,20 +9,17 @@ namespace {
 /// Triangles drawn in a frame: 46 MB. Views of the generated rooms have a tenth to a half of them;
 /// more are counted in AtlasState::leftOut.
 constexpr std::uint32_t kMostVisible = 1U << 20;
-/// A software device keeps what a draw shows until it is done.
-constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
-constexpr std::uint32_t kDraws = kMostVisible / kTrianglesPerDraw;
 
 /// As glMultiDrawArraysIndirect reads it.
 struct DrawCommand {
     std::uint32_t count = 0, instanceCount = 0, first = 0, baseInstance = 0;
 };
 
-gl::Defines visibleDefines() {
+gl::Defines visibleDefines(std::uint32_t draws) {
     gl::Defines defines = imageDefines();
     defines["GROUP_SIZE"] = static_cast<int>(kChunkTriangles);
-    defines["TRIANGLES_PER_DRAW"] = static_cast<int>(kTrianglesPerDraw);
-    defines["DRAWS"] = static_cast<int>(kDraws);
+    defines["TRIANGLES_PER_DRAW"] = static_cast<int>(kMostVisible / draws);
+    defines["DRAWS"] = static_cast<int>(draws);
     defines["MOST_VISIBLE"] = static_cast<int>(kMostVisible);
     return defines;
 }
@@ -34,6 +32,7 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
                                const CameraSettings& settings, float levelErrorPx)
     : settings_(settings),
       levelErrorPx_(levelErrorPx),
+      draws_(kMostVisible / std::min(kMostVisible, objects.mostTrianglesPerDraw())),
       levels_(detailLevels(scene, levelErrorPx > 0.0F)),
       places_(shaders),
       families_(gl::Buffer::of(reflectorFamilies(scene))),
@@ -43,12 +42,12 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
       chunkBoxes_(levels_.chunks.size() * 2 * sizeof(glm::vec4)),
       triangles_(gl::Buffer::of(levels_.triangles)),
       cornersWorld_(levels_.triangles.size() * 3 * sizeof(glm::vec3)),
-      commands_(kDraws * sizeof(DrawCommand)),
+      commands_(draws_ * sizeof(DrawCommand)),
       visible_(kMostVisible * sizeof(glm::uvec2)),
       visibleCorners_(std::size_t{kMostVisible} * 3 * sizeof(glm::vec3)),
       restPoses_(objects.poses().begin(), objects.poses().end()) {
     const auto compute = [&](const char* name) {
-        return gl::Program(shaders, {name}, visibleDefines());
+        return gl::Program(shaders, {name}, visibleDefines(draws_));
     };
     placeChunks_ = compute("clustered_reflections/place_chunks.comp.glsl");
     list_ = compute("clustered_reflections/list_visible.comp.glsl");
@@ -56,7 +55,7 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
     draw_ = gl::Program(shaders,
                         {"clustered_reflections/visible_triangle.vert.glsl",
                          "clustered_reflections/visible_triangle.frag.glsl"},
-                        visibleDefines());
+                        visibleDefines(draws_));
     vertexArray_.setAttribute(0, visibleCorners_, 3);
     place(objects);
 }
@@ -115,7 +114,8 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
                     GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 
     drawInPlaces(target, draw_, vertexArray_, commands_, [&] {
-        glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, kDraws, sizeof(DrawCommand));
+        glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<GLsizei>(draws_),
+                                  sizeof(DrawCommand));
     });
 }
 

@@ -33,6 +33,7 @@ class VisiblePainter {
 
     CameraSettings settings_;
     float levelErrorPx_;
+    std::uint32_t draws_;  // of what is listed
     DetailLevels levels_;
     ImagePlaces places_;
     gl::Program placeChunks_, list_, split_, draw_;

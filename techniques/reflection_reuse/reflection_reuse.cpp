@@ -23,7 +23,7 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
     outputSizePx_ = context.outputSizePx;
     const glm::ivec2 samplesPx = params_.supersampling * outputSizePx_;
 
-    objects_.emplace(*scene_);
+    objects_.emplace(*scene_, context.device.info().isSoftware);
     map_.emplace(shaders, *scene_);
     map_->render(*objects_);
     tracer_ = std::make_unique<RestingTracer>(makeTracer(shaders));

@@ -88,6 +88,7 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
     for (std::size_t i = 0; i < host.surface.size(); ++i)
         reflective += host.isReflective(i) ? 1 : 0;
     recorder.metric("reflective_pct", percent(reflective, host.surface.size()), "%");
+    if (reflective == 0) scene_->printEmptyView();
     const std::size_t frameBytes =
         renderer_ ? renderer_->sizeBytes()
                   : fullTracing_->gbuffer.sizeBytes() + fullTracing_->target.sizeBytes();
@@ -98,7 +99,7 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
     // A key frame is traced, and has nothing to be judged by; the next frame shows it
     // (`key_frame`).
     const bool isKeyFrame = renderer_ && renderer_->counts().isKeyFrame;
-    const bool isJudged = params_.measuresErrors && !isKeyFrame;
+    const bool isJudged = params_.measuresErrors && !isKeyFrame && reflective > 0;
     const bool isShown = params_.showsPictures && !(isKeyFrame && frame_ + 1 < frameCount_);
     if (!isJudged && !isShown) return;
     const image::ImageF picture = composite_->read();
@@ -121,7 +122,7 @@ void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
         lastKeyFrame_ = frame_;
         return;
     }
-    recorder.metric("recomputed_pct", recomputedPct, "%");
+    if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct, "%");
     if (params_.method == Method::Reuse) recordMatches(recorder);
 }
 
@@ -149,6 +150,7 @@ void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
         ++reflective;
         unmatched += isValid(offsets[i]) ? 0 : 1;
     }
+    if (reflective == 0) return;
     recorder.metric("matching_steps", renderer_->counts().matchingSteps, "step");
     recorder.metric("unmatched_pct", percent(unmatched, reflective), "%");
     if (renderer_->shifted()) {

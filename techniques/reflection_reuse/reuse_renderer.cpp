@@ -45,8 +45,8 @@ struct ReuseRenderer::Impl {
     MovedObjects movedObjects;
     gl::Program mend;
     ReflectionDepthImage key;
-    reflections::GBuffer gbuffer;              // of frames that are not key frames
-    reflections::ReflectionTarget reflection;  // the same
+    reflections::GBuffer gbuffer;              // of this frame; of a key frame, `key` has it
+    reflections::ReflectionTarget reflection;  // of frames that are not key frames
     reflections::ReflectionTarget traced;
     std::array<Offsets, 2> offsets;       // of this and of the frame before
     std::optional<ShiftedImage> shifted;  // of two steps
@@ -96,12 +96,14 @@ struct ReuseRenderer::Impl {
         return recomputedSamples() > share * reprojection.reflectiveSamples();
     }
 
-    void renderKeyFrame(const depth_images::View& view, gl::Profiler& profiler) {
-        {
-            const gl::GpuScope scope(profiler, "diffuse");
-            key.gbuffer.view = view;
-            gbufferRenderer.render(objects, key.gbuffer);
-        }
+    void drawDiffuse(const depth_images::View& view, gl::Profiler& profiler) {
+        const gl::GpuScope scope(profiler, "diffuse");
+        gbuffer.view = view;
+        gbufferRenderer.render(objects, gbuffer);
+    }
+
+    void renderKeyFrame(gl::Profiler& profiler) {
+        std::swap(key.gbuffer, gbuffer);
         {
             const gl::GpuScope scope(profiler, "recompute");
             tracer.trace(key.gbuffer, nullptr, key.reflection, profiler);
@@ -113,13 +115,7 @@ struct ReuseRenderer::Impl {
         hasOffsets = false;
     }
 
-    void renderReused(const depth_images::View& view, gl::Profiler& profiler,
-                      gl::Profiler* recomputeTimes) {
-        {
-            const gl::GpuScope scope(profiler, "diffuse");
-            gbuffer.view = view;
-            gbufferRenderer.render(objects, gbuffer);
-        }
+    void renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes) {
         const bool hasMoved = settings.recomputesMoved && movedObjects.find(objects);
         if (!settings.isDirect) match(profiler);
         const gl::Texture* doubtful =
@@ -188,12 +184,15 @@ ReuseRenderer::~ReuseRenderer() = default;
 void ReuseRenderer::render(const depth_images::View& view, gl::Profiler& profiler,
                            gl::Profiler* recomputeTimes) {
     GFXREPRO_ASSERT(view.sizePx == impl_->gbuffer.view.sizePx);
+    // First what every frame needs: the device draws it while the count of the frame before, by
+    // which this one is a key frame or not, is waited for.
+    impl_->drawDiffuse(view, profiler);
     impl_->isKeyFrame = impl_->isKeyFrameNext();
     impl_->hadOffsets = impl_->hasOffsets;
     if (impl_->isKeyFrame) {
-        impl_->renderKeyFrame(view, profiler);
+        impl_->renderKeyFrame(profiler);
     } else {
-        impl_->renderReused(view, profiler, recomputeTimes);
+        impl_->renderReused(profiler, recomputeTimes);
     }
     impl_->hasFrame = true;
     impl_->isKeyForgotten = false;

@@ -1,5 +1,5 @@
 #version 450 core
-// Draw commands of the listed triangles, an invocation a command: see kTrianglesPerDraw.
+// Draw commands of the listed triangles, an invocation a command.
 #include "clustered_reflections/atlas.glsl"
 
 layout(local_size_x = DRAWS) in;

@@ -12,8 +12,9 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-/// llvmpipe keeps every triangle of a draw until it is flushed.
-constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
+constexpr std::uint32_t kTrianglesPerSplitDraw = 1U << 16;
+/// Of a draw that is not split: indices are counted by signed numbers.
+constexpr std::uint32_t kMostTriangles = (1U << 31) / 3;
 
 /// Object of shaders/objects.glsl.
 struct ObjectRecord {
@@ -164,7 +165,7 @@ gl::Defines surfaceDefines(const ReflectiveScene& scene) {
     return defines;
 }
 
-GpuObjects::GpuObjects(const ReflectiveScene& scene)
+GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
     : scene_(&scene),
       positions_(gl::Buffer::of(scene.geometry().positions)),
       normals_(gl::Buffer::of(scene.geometry().normals)),
@@ -177,7 +178,8 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene)
       textureLayers_(layersTexture(scene.textureLevels(), GL_SRGB8_ALPHA8)),
       valueLayers_(layersTexture(scene.valueLevels(), GL_RGBA8)),
       objectCount_(static_cast<std::uint32_t>(scene.objects().size())),
-      triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())) {
+      triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())),
+      mostTrianglesPerDraw_(splitsDraws ? kTrianglesPerSplitDraw : kMostTriangles) {
     std::vector<std::uint32_t> indices(objectCount_);
     std::iota(indices.begin(), indices.end(), 0U);
     objectIndices_ = gl::Buffer::of(indices);
@@ -225,15 +227,16 @@ void GpuObjects::draw(std::span<const std::uint32_t> objects) const {
     std::uint32_t unflushed = 0;  // small objects share a batch
     for (const std::uint32_t index : objects) {
         const Object& object = scene_->objects()[index];
-        for (std::uint32_t done = 0; done < object.triangleCount; done += kTrianglesPerDraw) {
-            const std::uint32_t count = std::min(object.triangleCount - done, kTrianglesPerDraw);
+        for (std::uint32_t done = 0; done < object.triangleCount; done += mostTrianglesPerDraw_) {
+            const std::uint32_t count =
+                std::min(object.triangleCount - done, mostTrianglesPerDraw_);
             const std::size_t offsetBytes =
                 static_cast<std::size_t>(object.firstTriangle + done) * sizeof(glm::uvec3);
             glDrawElementsInstancedBaseInstance(
                 GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
                 reinterpret_cast<const void*>(offsetBytes), 1, index);
             unflushed += count;
-            if (unflushed >= kTrianglesPerDraw) {
+            if (unflushed >= mostTrianglesPerDraw_) {
                 glFlush();
                 unflushed = 0;
             }

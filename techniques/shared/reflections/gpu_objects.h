@@ -33,15 +33,17 @@ gl::Defines surfaceDefines(const ReflectiveScene& scene);
 
 class GpuObjects {
   public:
-    explicit GpuObjects(const ReflectiveScene& scene);
+    /// `splitsDraws`: of a software device, which keeps every triangle of a draw until it is
+    /// flushed.
+    explicit GpuObjects(const ReflectiveScene& scene, bool splitsDraws = false);
 
     /// Puts the objects where they are now: one matrix an object, worldFromMesh.
     void setPoses(std::span<const glm::mat4> poses);
 
     /// Binds objects, lights and textures for shaders that include objects.glsl and shading.glsl.
     void bind() const;
-    /// Draws objects with the program in use; each in pieces of at most 2^16 triangles. Culling,
-    /// depth test and target are the caller's.
+    /// Draws objects with the program in use, in pieces of mostTrianglesPerDraw(). Culling, depth
+    /// test and target are the caller's.
     void draw(std::span<const std::uint32_t> objects) const;
     void drawAll() const;
     /// The vertex array with all attributes and indices, for indirect draws; the object index comes
@@ -51,6 +53,7 @@ class GpuObjects {
     const ReflectiveScene& scene() const { return *scene_; }
     std::uint32_t objectCount() const { return objectCount_; }
     std::uint32_t triangleCount() const { return triangleCount_; }
+    std::uint32_t mostTrianglesPerDraw() const { return mostTrianglesPerDraw_; }
     std::span<const glm::mat4> poses() const { return poses_; }
     std::span<const scene::Box> boundsWorld() const { return boundsWorld_; }  // in the present pose
     std::size_t sizeBytes() const;
@@ -73,7 +76,7 @@ class GpuObjects {
     gl::VertexArray vertexArray_;
     std::vector<glm::mat4> poses_;
     std::vector<scene::Box> boundsWorld_;
-    std::uint32_t objectCount_ = 0, triangleCount_ = 0;
+    std::uint32_t objectCount_ = 0, triangleCount_ = 0, mostTrianglesPerDraw_;
 };
 
 }  // namespace gfxrepro::reflections

@@ -241,6 +241,14 @@ void ReflectiveScene::printWarnings() const {
     for (const std::string& line : warnings_) fmt::print(stderr, "warning: {}\n", line);
 }
 
+void ReflectiveScene::printEmptyView() {
+    if (hasWarnedOfEmptyView_) return;
+    hasWarnedOfEmptyView_ = true;
+    fmt::print(stderr,
+               "warning: scene '{}': a frame shows no reflector; no errors are measured of it\n",
+               scene_.name);
+}
+
 int ReflectiveScene::layerOf(Layers& layers, int texture) {
     const auto found = std::find(layers.textures.begin(), layers.textures.end(), texture);
     const auto layer = static_cast<int>(found - layers.textures.begin());

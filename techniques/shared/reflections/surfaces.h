@@ -124,6 +124,8 @@ class ReflectiveScene {
     const std::vector<std::string>& warnings() const { return warnings_; }
     /// To standard error, which the run's log keeps.
     void printWarnings() const;
+    /// There, too, once: that a frame shows no reflector, so that there is nothing to measure.
+    void printEmptyView();
 
     /// Overrides every reflector's glossiness, 0 to 1; before GpuObjects are made of the scene.
     void setGlossiness(float glossiness);
@@ -174,6 +176,7 @@ class ReflectiveScene {
     ObjectGeometry geometry_;
     Layers textureLayers_{TexelKind::Colours}, valueLayers_{TexelKind::Values};
     std::vector<std::string> warnings_;
+    bool hasWarnedOfEmptyView_ = false;
     std::vector<scene::PointLight> lights_;
     scene::Box boundsWorld_;
     int reflectorCount_ = 0, wholeReflectorCount_ = 0, transmissiveCount_ = 0,

@@ -215,8 +215,13 @@ TEST_F(ClusteredReflectionsTest, ViewsWithoutReflectorsHaveNoErrors) {
     const scene::Scene scene = roomWithMirrors();
     for (const char* method : kMethods) {
         SCOPED_TRACE(method);
+        testing::internal::CaptureStderr();
         const Metrics metrics =
             run(fmt::format("{{method: {}, view: ceiling, pictures: true}}", method), scene);
+        EXPECT_EQ(testing::internal::GetCapturedStderr(),
+                  fmt::format("warning: scene '{}': a frame shows no reflector; no errors are "
+                              "measured of it\n",
+                              scene.name));
         EXPECT_EQ(metrics.at("reflective_pct"), 0.0);
         EXPECT_EQ(metrics.at("visible_reflectors"), 0.0);
         for (const char* error : {"planar_pct", "channel_error", "channel_error_image", "flip_mean",

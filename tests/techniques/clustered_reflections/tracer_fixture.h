@@ -8,9 +8,11 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/device.h"
+#include "runner/image/srgb.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/shared/reflections/gbuffer.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
+#include "tests/techniques/reflections/gl_calls.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -24,6 +26,7 @@ struct Traced {
     float imageScale = 1.0F;
     std::size_t sizeBytes = 0;
     std::vector<gl::PassTime> passes;
+    std::vector<reflections::GlCall> calls;
 
     std::size_t reflectiveCount() const {
         std::size_t count = 0;
@@ -68,12 +71,14 @@ class TracerTest : public testing::Test {
         reflections::EnvironmentMap map(shaders(), scene);
         map.render(objects);
         reflections::ReflectionTarget target{glm::ivec2(sizePx)};
-        gl::Profiler profiler(true);
+        gl::Profiler profiler(false);
         ClusteredTracer tracer(shaders(), scene, objects, map, settings, glm::ivec2(sizePx));
+        reflections::glCalls().clear();
         tracer.update(objects, profiler);
         tracer.trace(gbuffer, nullptr, target, profiler);
 
         Traced traced;
+        traced.calls = reflections::glCalls();
         traced.gbuffer = readGBuffer(gbuffer);
         traced.radiance = target.radiance.read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
         traced.distanceM = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
@@ -98,20 +103,25 @@ class TracerTest : public testing::Test {
         return -10.0 * std::log10(sum / count);
     }
 
-    /// The same of the means of 2 × 2 samples, where all four are reflective.
+    /// The same of the means of 2 × 2 samples as they are shown, where all four are reflective.
     static double shownPsnrDb(const Traced& traced, const std::vector<glm::vec3>& expected) {
         const auto width = static_cast<std::size_t>(traced.gbuffer.view.sizePx.x);
         double sum = 0.0, count = 0.0;
         for (std::size_t i = 0; i + width + 1 < traced.radiance.size(); i += 2) {
             if (i / width % 2 == 1) continue;
-            glm::vec3 error(0.0F);
+            glm::vec3 mean(0.0F), expectedMean(0.0F);
             bool isWhole = true;
             for (const std::size_t k : {i, i + 1, i + width, i + width + 1}) {
                 isWhole = isWhole && traced.gbuffer.isReflective(k);
-                error += 0.25F * (traced.radiance[k] - expected[k]);
+                mean += 0.25F * traced.radiance[k];
+                expectedMean += 0.25F * expected[k];
             }
             if (!isWhole) continue;
-            sum += glm::dot(error, error) / 3.0F;
+            for (int channel = 0; channel < 3; ++channel) {
+                const float error =
+                    image::srgbOf(mean[channel]) - image::srgbOf(expectedMean[channel]);
+                sum += error * error / 3.0F;
+            }
             count += 1.0;
         }
         return -10.0 * std::log10(sum / count);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/techniques/reflection_reuse/mirror_room.h"
+#include "tests/techniques/reflections/gl_calls.h"
 
 namespace gfxrepro::reflection_reuse {
 namespace {
@@ -221,6 +222,19 @@ TEST_F(ReuseTest, SearchesBeginWhereTheLastOnesEnded) {
     world.renderer.forgetKeyFrame();
     world.render(front(0.1F));
     EXPECT_LT(world.render(front(0.1F)).counts.matchingSteps, 0.1);
+}
+
+TEST_F(ReuseTest, TheDeviceHasAFrameToDrawWhileTheLastOnesCountIsWaitedFor) {
+    World world(shaders, mirrorRoom(), {});
+    world.render(front());
+    world.render(front(0.02F));
+    gl::Profiler untimed(false);
+    reflections::glCalls().clear();
+    world.renderer.render(depth_images::viewOf(front(0.04F), kSize), untimed);
+    const std::vector<reflections::GlCall>& calls = reflections::glCalls();
+    const auto firstWait = std::ranges::find(calls, reflections::GlCall::Wait);
+    EXPECT_EQ(std::count(calls.begin(), firstWait, reflections::GlCall::DrawObject),
+              world.objects.objectCount());  // its G-buffer
 }
 
 TEST_F(ReuseTest, SeamsAreMixedWithinTheirWidthOnly) {

@@ -7,6 +7,7 @@
 
 #include "runner/image/srgb.h"
 #include "runner/raycast/ray_tracer.h"
+#include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -326,6 +327,27 @@ TEST_F(GBufferTest, DrawsSomeObjectsOnly) {
     EXPECT_GT(first, 300U);
     EXPECT_EQ(samplesOf({1, 2}), first + samplesOf({2}));
     EXPECT_EQ(samplesOf({}), 0U);
+}
+
+TEST_F(GBufferTest, DrawsAreSplitWhereTheDeviceAsksForItOnly) {
+    scene::Scene source;
+    scene::Mesh large = squareMesh();
+    large.triangles.resize(100'000, large.triangles.front());
+    addPart(source, large, {});
+    const ReflectiveScene many(source);
+    const GBufferRenderer renderer(shaders, many);
+    using enum GlCall;
+    const auto callsOf = [&](bool splitsDraws) {
+        const GpuObjects drawn(many, splitsDraws);
+        GBuffer target(viewOfScene());
+        glCalls().clear();
+        renderer.render(drawn, target);
+        std::vector<GlCall> calls = glCalls();
+        std::erase_if(calls, [](GlCall c) { return c != DrawObject && c != Flush; });
+        return calls;
+    };
+    EXPECT_EQ(callsOf(false), std::vector{DrawObject});
+    EXPECT_EQ(callsOf(true), (std::vector{DrawObject, Flush, DrawObject}));
 }
 
 }  // namespace

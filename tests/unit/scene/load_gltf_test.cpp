@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -247,6 +248,39 @@ TEST_F(LoadGltf, ReadsTexturesOfMaterials) {
                   "coordinates than those before it"}));
 }
 
+TEST_F(LoadGltf, TakesPointLightsWithTheirShareOfWhatAllGive) {
+    Document document = square();
+    document["extensionsRequired"] = R"(["KHR_lights_punctual"])";
+    document["extensions"] = R"({"KHR_lights_punctual":{"lights":[
+        {"type":"point","color":[1,0.5,0],"intensity":200},{"type":"spot","intensity":100,"spot":{}},
+        {"type":"directional","intensity":3}]}})";
+    const auto lamp = [](const char* light, const char* place) {
+        return fmt::format(
+            R"({{"translation":{},"extensions":{{"KHR_lights_punctual":{{"light":{}}}}}}})", place,
+            light);
+    };
+    document["nodes"] = "[{\"mesh\":0}," + lamp("0", "[1,2,3]") + "," + lamp("1", "[0,0,1]") + "," +
+                        lamp("2", "[0,0,0]") + "]";
+    document["scenes"] = R"([{"nodes":[0,1,2,3]}])";
+    const Scene scene = load(document);
+    ASSERT_EQ(scene.lights.size(), 2U);
+    EXPECT_EQ(scene.lights[0].position, glm::vec3(1, 2, 3));
+    EXPECT_LT(glm::distance(scene.lights[0].intensity, glm::vec3(0.6F, 0.3F, 0)), 1e-6F);
+    EXPECT_LT(glm::distance(scene.lights[1].intensity, glm::vec3(0.3F)), 1e-6F);
+    EXPECT_FLOAT_EQ(scene.lights[1].radiusM, std::sqrt(0.5F));
+    EXPECT_EQ(scene.warnings, (std::vector<std::string>{"1 spot lights shine in all directions",
+                                                        "1 directional lights are left out"}));
+
+    document["nodes"] = "[{\"mesh\":0}," + lamp("7", "[0,0,0]") + "]";
+    document["scenes"] = R"([{"nodes":[0,1]}])";
+    EXPECT_EQ(error(text(document)), "DIR/a.gltf: node 1: light 7 does not exist; there are 3");
+    document["extensions"] =
+        R"({"KHR_lights_punctual":{"lights":[{"type":"point","intensity":-1}]}})";
+    document["nodes"] = "[{\"mesh\":0}," + lamp("0", "[0,0,0]") + "]";
+    EXPECT_EQ(error(text(document)),
+              "DIR/a.gltf: light 0: intensity -1 of a channel; 0 and more is allowed");
+}
+
 TEST_F(LoadGltf, RefusesTexturesThatAreNotThere) {
     Document document = square();
     document["images"] = kWhitePixel;
@@ -294,9 +328,9 @@ TEST_F(LoadGltf, RefusesWhatItCannotRead) {
               "DIR/a.gltf: glTF version '1.0'; 2.0 is read");
     EXPECT_EQ(errorWith("extensionsRequired", R"(["KHR_draco_mesh_compression","X"])"),
               "DIR/a.gltf: requires the extension KHR_draco_mesh_compression, X; supported are "
-              "EXT_mesh_gpu_instancing, KHR_materials_emissive_strength, KHR_materials_ior, "
-              "KHR_materials_transmission, KHR_materials_unlit, KHR_mesh_quantization, "
-              "KHR_texture_transform");
+              "EXT_mesh_gpu_instancing, KHR_lights_punctual, KHR_materials_emissive_strength, "
+              "KHR_materials_ior, KHR_materials_transmission, KHR_materials_unlit, "
+              "KHR_mesh_quantization, KHR_texture_transform");
     EXPECT_EQ(errorWith("extras", std::string(300, '[') + std::string(300, ']')),
               "DIR/a.gltf: JSON nested deeper than 256");
     EXPECT_THAT(error("{\"asset\": {\"version\": 2"), testing::StartsWith("DIR/a.gltf: "));

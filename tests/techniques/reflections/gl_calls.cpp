@@ -1,0 +1,57 @@
+#include "tests/techniques/reflections/gl_calls.h"
+
+#include <dlfcn.h>
+
+#include "runner/gl/gl.h"
+
+namespace gfxrepro::reflections {
+
+std::vector<GlCall>& glCalls() {
+    static std::vector<GlCall> calls;
+    return calls;
+}
+
+namespace {
+
+/// Notes the call and hands it on to the library that has it.
+template <class Result = void, class... Arguments>
+Result passOn(GlCall call, const char* name, Arguments... arguments) {
+    glCalls().push_back(call);
+    return reinterpret_cast<Result (*)(Arguments...)>(dlsym(RTLD_NEXT, name))(arguments...);
+}
+
+}  // namespace
+}  // namespace gfxrepro::reflections
+
+using gfxrepro::reflections::GlCall;
+using gfxrepro::reflections::passOn;
+
+extern "C" {
+void glDrawElementsInstancedBaseInstance(GLenum mode, GLsizei count, GLenum type,
+                                         const void* indices, GLsizei instanceCount,
+                                         GLuint baseInstance) {
+    passOn(GlCall::DrawObject, __func__, mode, count, type, indices, instanceCount, baseInstance);
+}
+GLint glGetUniformLocation(GLuint program, const GLchar* name) {
+    return passOn<GLint>(GlCall::LookUp, __func__, program, name);
+}
+void glMemoryBarrier(GLbitfield barriers) {
+    passOn(GlCall::Barrier, __func__, barriers);
+}
+void glFlush() {
+    passOn(GlCall::Flush, __func__);
+}
+void glFinish() {
+    passOn(GlCall::Wait, __func__);
+}
+void glGetQueryObjectui64v(GLuint id, GLenum name, GLuint64* value) {
+    passOn(GlCall::Wait, __func__, id, name, value);
+}
+void glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
+    passOn(GlCall::Wait, __func__, buffer, offset, size, data);
+}
+void glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei size,
+                       void* pixels) {
+    passOn(GlCall::Wait, __func__, texture, level, format, type, size, pixels);
+}
+}

@@ -1,0 +1,19 @@
+// What has been asked of GL. Tests that link gl_calls.cpp call these functions of GL through it.
+#pragma once
+
+#include <vector>
+
+namespace gfxrepro::reflections {
+
+enum class GlCall {
+    DrawObject,  // glDrawElementsInstancedBaseInstance
+    Flush,       // glFlush
+    LookUp,      // glGetUniformLocation: one a uniform that is set
+    Barrier,     // glMemoryBarrier
+    Wait,        // what the host cannot go on without: read-backs, results of queries, glFinish
+};
+
+/// In order, since the last clear().
+std::vector<GlCall>& glCalls();
+
+}  // namespace gfxrepro::reflections
