@@ -143,11 +143,11 @@ std::string readmeText(const fs::path& artifact, const StoredRun& run) {
     const report::ReportContext context = reportContext(run.manifest);
     std::string text = fmt::format(
         "# Measured by gfxrepro {}\nProfile {}, on {}.\n\n"
-        "`report.html` shows all; `tables/` and `claims.csv` are what it shows, made from "
-        "`records.csv`. `environment.txt` says with what and on what it was measured, `ASSETS.md` "
-        "which models and their terms, `SHA256SUMS` that nothing changed since. `scripts/` "
-        "measures "
-        "each table again: `scripts/NAME.sh`, with the program on the path or named by "
+        "`report.html` shows all; `tables/` and `claims.csv` are what it shows, made from the "
+        "cases of `plan.json`, where their parameters are, and `records.csv`. `environment.txt` "
+        "says with what and on what it was measured, `ASSETS.md` which models and their terms, "
+        "`SHA256SUMS` that nothing changed since. `scripts/` measures each table again: "
+        "`scripts/NAME.sh`, with the program on the path or named by "
         "`GFXREPRO`, of the same commit for the same bytes.\n\n| table | script | minutes | MiB of "
         "results |\n| --- | --- | ---: | ---: |\n",
         context.commit, context.profile, report::escapeMarkdown(context.device));

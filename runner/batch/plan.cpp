@@ -77,6 +77,12 @@ std::string Case::method() const {
     return method ? method->text() : "";
 }
 
+std::string Case::recordedScene() const {
+    const config::Node* swept = axes.find("scene");
+    const config::Node& shown = swept && standsFor.isNull() ? *swept : scene;
+    return shown.isNull() ? "" : shown.text();
+}
+
 Json Case::recordedParams() const {
     Json json = params.toJson();
     json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
@@ -90,6 +96,19 @@ std::string Shard::name() const {
 
 bool Plan::measures(const Case& item) const {
     return !shard || shard->caseIds.contains(item.id);
+}
+
+std::vector<report::PlannedCase> plannedCases(const std::vector<Case>& cases) {
+    std::vector<report::PlannedCase> planned;
+    planned.reserve(cases.size());
+    for (const Case& item : cases) {
+        planned.push_back(
+            {item.id, item.experiment, item.recordedScene(), item.recordedParams(), {}});
+        for (const auto& [axis, value] : item.axes.entries()) {
+            planned.back().axes.push_back(axis);
+        }
+    }
+    return planned;
 }
 
 Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,

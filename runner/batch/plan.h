@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/report/case_records.h"
 #include "runner/scene/catalog.h"
 #include "runner/technique/technique.h"
 
@@ -38,7 +39,10 @@ struct Case {
     std::string title() const;   // "zju2005/2.1 scene=models/duck"
     std::string slug() const;    // "zju2005-2.1": for file names
     std::string method() const;  // the parameter of that name; empty when there is none
-    /// `params` with the size of the output and which scene it is: what records and images say.
+    /// As the config spells it, unless another takes its place: a user's own file is an absolute
+    /// path in `scene`. Empty for none.
+    std::string recordedScene() const;
+    /// `params` with the size of the output and which scene it is: what images say.
     nlohmann::ordered_json recordedParams() const;
     nlohmann::ordered_json toJson() const;
     void addSceneTo(nlohmann::ordered_json& json) const;
@@ -100,6 +104,9 @@ struct Plan {
 inline constexpr std::size_t kMostCases = 200'000;
 /// Throws Error, naming the config, for more.
 void requireCaseCount(std::size_t count, const config::Experiment& experiment);
+
+/// As tables see them.
+std::vector<report::PlannedCase> plannedCases(const std::vector<Case>& cases);
 
 /// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
 /// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.

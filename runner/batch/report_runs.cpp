@@ -88,8 +88,14 @@ std::string commandOf(const Case& item, const Plan& plan, CaseNames& names) {
 }  // namespace
 
 html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
-    html::ReportRun result{
-        runDir, reportContext(run), run.manifest, run.plan.experiments, run.records, {}, {}};
+    html::ReportRun result{runDir,
+                           reportContext(run),
+                           run.manifest,
+                           run.plan.experiments,
+                           plannedCases(run.plan.cases),
+                           run.records,
+                           {},
+                           {}};
     auto logs = caseLogs(runDir);
     CaseNames names(run.plan);
     for (const Case& item : run.plan.cases) {

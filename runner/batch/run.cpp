@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "runner/batch/made_from.h"
@@ -101,6 +102,23 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
     return {experiments.begin(), experiments.end()};
 }
 
+namespace {
+
+/// Throws Error for a record of a case that the plan has not, or has in another table.
+void requirePlanned(const fs::path& file, const Plan& plan,
+                    const std::vector<report::Record>& records) {
+    std::unordered_map<std::string_view, std::string_view> tables;
+    for (const Case& item : plan.cases) tables[item.id] = item.experiment;
+    for (const report::Record& row : records) {
+        const auto found = tables.find(row.caseId);
+        if (found != tables.end() && found->second == row.table) continue;
+        throw Error({file.string(), 0, 0},
+                    fmt::format("the case {} of {} is not in the plan", row.caseId, row.table));
+    }
+}
+
+}  // namespace
+
 StoredRun readRun(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
@@ -122,6 +140,7 @@ StoredRun readRun(const fs::path& runDir) {
     }
     if (fs::exists(runDir / "records.csv")) {
         run.records = report::readRecords(runDir / "records.csv");
+        requirePlanned(runDir / "records.csv", run.plan, run.records);
     }
     return run;
 }
@@ -247,7 +266,8 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     const fs::path out = which.out.empty() ? runDir : which.out;
     if (!which.out.empty()) takeFolder(out, runDir, run.manifest);
     const report::ReportContext context = reportContext(run);
-    std::vector<report::Table> tables = report::buildTables(run.plan.experiments, run.records);
+    std::vector<report::Table> tables =
+        report::buildTables(run.plan.experiments, plannedCases(run.plan.cases), run.records);
     report::addCalibrations(context.calibrations, tables);
     const std::vector<std::string> notes = notesOf(run.manifest);
     for (report::Table& table : tables) {

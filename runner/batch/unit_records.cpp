@@ -12,12 +12,7 @@ std::vector<report::Record> recordsOf(const Unit& unit, const CaseResult& result
     row.table = item.experiment;
     row.technique = item.technique;
     row.method = item.method();
-    // As the config spells it, unless another takes its place: a user's own file is an absolute
-    // path in item.scene.
-    const config::Node* sceneAxis = item.axes.find("scene");
-    const config::Node& scene = sceneAxis && item.standsFor.isNull() ? *sceneAxis : item.scene;
-    if (!scene.isNull()) row.scene = scene.text();
-    row.params = item.recordedParams().dump();
+    row.scene = item.recordedScene();
     row.process = unit.process;
     row.lane = item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
     row.status = result.status;

@@ -15,10 +15,12 @@ namespace {
 
 /// Says which claims and plots the profile or an override leaves without what they read in the file
 /// as it stands: they will be unmeasured, or left out.
-void sayUnread(const std::string& file, const config::Experiment& experiment,
-               const report::Table& table) {
+void sayUnread(const Context& context, const scene::Catalog& catalog, const std::string& file,
+               const config::Experiment& experiment, const report::Table& table) {
     const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
-    const report::Table wholeTable = report::buildTable(whole, {});
+    const std::vector<batch::Case> cases =
+        batch::resolveParameters(whole, catalog, context.techniques, 1);
+    const report::Table wholeTable = report::buildTable(whole, batch::plannedCases(cases), {});
     for (const config::ClaimSpec& claim : experiment.claims) {
         const std::string absent = report::whatIsAbsent(claim, table);
         const auto then = std::ranges::find(whole.claims, claim.id, &config::ClaimSpec::id);
@@ -49,7 +51,7 @@ int check(const Context& context, const Selection& selection) {
         batch::bindAssumptions(experiment, cases, catalog, context.techniques);
         batch::requireRanges(experiment, cases, catalog, context.techniques);
         const std::size_t caseCount = cases.size();
-        const report::Table table = report::buildTable(experiment, {});
+        const report::Table table = report::buildTable(experiment, batch::plannedCases(cases), {});
         report::requireProvenance(experiment, table);
         batch::resolvePaperCases(experiment, catalog, context.techniques);
         say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
@@ -57,7 +59,7 @@ int check(const Context& context, const Selection& selection) {
             experiment.claims.size() == 1 ? "" : "s");
         const bool isReduced =
             !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
-        if (isReduced) sayUnread(file, experiment, table);
+        if (isReduced) sayUnread(context, catalog, file, experiment, table);
     }
     const std::vector<Error> unknown = unknownExpectations(
         context, selection.names, {config::kDeviceClasses.begin(), config::kDeviceClasses.end()},

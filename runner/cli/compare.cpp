@@ -50,7 +50,8 @@ struct Measured {
 };
 
 /// Of flaky cases, too.
-regression::CaseTexts unexpectedFailures(const batch::StoredRun& run) {
+regression::CaseTexts unexpectedFailures(const batch::StoredRun& run,
+                                         const regression::CaseParams& params) {
     const batch::Expectations expectations = batch::expectationsOf(run.plan, run.manifest);
     std::map<std::string, const batch::Case*> cases;
     for (const batch::Case& item : run.plan.cases) cases[item.id] = &item;
@@ -59,22 +60,24 @@ regression::CaseTexts unexpectedFailures(const batch::StoredRun& run) {
         const auto item = cases.find(row.caseId);
         return item == cases.end() || !expectations.isExpected(*item->second, row.status);
     });
-    return regression::failuresOf(rows);
+    return regression::failuresOf(rows, params);
 }
 
 Measured readMeasured(const fs::path& runDir) {
     const batch::StoredRun run = batch::readRun(runDir);
-    Measured measured{regression::seriesOf(run.records),
-                      regression::failuresOf(run.records),
-                      regression::voidTimesOf(run.records),
+    regression::CaseParams params;
+    for (const batch::Case& item : run.plan.cases) params[item.id] = item.recordedParams().dump();
+    Measured measured{regression::seriesOf(run.records, params),
+                      regression::failuresOf(run.records, params),
+                      regression::voidTimesOf(run.records, params),
                       regression::untimedCases(run.records),
-                      unexpectedFailures(run),
+                      unexpectedFailures(run, params),
                       batch::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       run.plan.deviceClass == "software",
                       {},
                       batch::notesOf(run.manifest),
-                      regression::picturesOf(runDir, run.records),
+                      regression::picturesOf(runDir, run.records, params),
                       {},
                       run.plan.buildId,
                       batch::madeFromLine(runDir, run.manifest)};

@@ -136,7 +136,8 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
         throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
                                 experiment.id, runDir.string()));
     }
-    std::vector<report::Table> tables = report::buildTables(experiments, run.records);
+    std::vector<report::Table> tables =
+        report::buildTables(experiments, batch::plannedCases(run.plan.cases), run.records);
     const std::string mark = "judged after the run, by a config that it did not know";
     for (report::Table& table : tables) table.notes.insert(table.notes.begin(), mark);
     const report::ReportContext context = batch::reportContext(run.manifest);

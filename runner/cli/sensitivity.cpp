@@ -119,7 +119,8 @@ void takeBase(const batch::StoredRun& run, Study& study) {
             batch::basisOf(run.plan, experiment) != study.basis) {
             continue;
         }
-        const std::vector<report::Table> tables = report::buildTables({experiment}, run.records);
+        const std::vector<report::Table> tables =
+            report::buildTables({experiment}, batch::plannedCases(run.plan.cases), run.records);
         study.outcomes.push_back(
             {study.next(), report::evaluateClaims(experiment, tables.front(),
                                                   batch::reportContext(run.manifest))});

@@ -85,7 +85,8 @@ std::string shownFrom(const fs::path& page, const fs::path& file) {
 void addRun(std::size_t index, const fs::path& file, bool embeds,
             std::chrono::milliseconds& patience, Model& model) {
     const ReportRun& run = model.runs[index];
-    std::vector<report::Table> tables = report::buildTables(run.experiments, run.records);
+    std::vector<report::Table> tables =
+        report::buildTables(run.experiments, run.planned, run.records);
     report::addCalibrations(run.context.calibrations, tables);
     const fs::path made = madeFolder(run.folder, index, file);
     const std::vector<report::PlotFile> plots =

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/report/case_records.h"
 #include "runner/report/claims.h"
-#include "runner/report/records.h"
 
 namespace gfxrepro::html {
 
@@ -29,6 +29,7 @@ struct ReportRun {
     report::ReportContext context;
     nlohmann::ordered_json manifest;
     std::vector<config::Experiment> experiments;
+    std::vector<report::PlannedCase> planned;
     std::vector<report::Record> records;
     std::vector<ReportCase> cases;
     /// Verdicts as they were kept, of a run of which only these are at hand; else they are judged.

@@ -227,12 +227,11 @@ Difference onlyOneSide(const SeriesKey& key, Verdict verdict, const char* reason
 
 }  // namespace
 
-PictureMap picturesOf(const fs::path& runDir, const std::vector<report::Record>& records) {
+PictureMap picturesOf(const fs::path& runDir, const std::vector<report::Record>& records,
+                      const CaseParams& params) {
     std::map<std::string, SeriesKey> cases;
     for (const report::Record& record : records) {
-        cases.try_emplace(record.caseId,
-                          SeriesKey{record.table, record.technique, record.method, record.scene,
-                                    record.params, "", kPictureMetric, ""});
+        cases.try_emplace(record.caseId, keyOf(record, params, kPictureMetric));
     }
     const std::vector<report::ImageEntry> entries = report::readImages(runDir);
     std::map<std::string, std::set<int>> frames;

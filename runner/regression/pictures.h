@@ -22,7 +22,7 @@ using PictureMap = std::map<SeriesKey, PictureFiles>;
 
 /// The pictures of a run that are listed and there. Throws Error as readImages().
 PictureMap picturesOf(const std::filesystem::path& runDir,
-                      const std::vector<report::Record>& records);
+                      const std::vector<report::Record>& records, const CaseParams& params);
 
 struct PictureRules {
     /// The tables that say themselves how far pictures may be apart.

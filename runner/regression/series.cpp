@@ -70,14 +70,19 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
     return result;
 }
 
-SeriesKey caseOf(const report::Record& record) {
-    return {record.table,  record.technique,
-            record.method, record.scene,
-            record.params, "",
-            "status",      ""};
-}
-
 }  // namespace
+
+SeriesKey keyOf(const report::Record& record, const CaseParams& params, std::string metric) {
+    const auto found = params.find(record.caseId);
+    return {record.table,
+            record.technique,
+            record.method,
+            record.scene,
+            found == params.end() ? "" : found->second,
+            "",
+            std::move(metric),
+            ""};
+}
 
 std::string SeriesKey::caseTitle() const {
     std::string text = fmt::format("{} {}", table, technique);
@@ -100,13 +105,14 @@ Series standing(const Series& values) {
     return result;
 }
 
-SeriesMap seriesOf(const std::vector<report::Record>& records) {
+SeriesMap seriesOf(const std::vector<report::Record>& records, const CaseParams& params) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
     for (const report::Record& record : records) {
         const bool isVoid = record.status == report::Status::Ambiguous;
         if (record.status != report::Status::Ok && !isVoid) continue;
-        const SeriesKey key{record.table,  record.technique, record.method, record.scene,
-                            record.params, record.pass,      record.metric, record.unit};
+        SeriesKey key = keyOf(record, params, record.metric);
+        key.pass = record.pass;
+        key.unit = record.unit;
         const bool isOfFrame = key.isTime() && key.pass.empty() && record.lane == "timing";
         if (isMadeOfTimes(record) && !isOfFrame) continue;
         if (isOfTheMachine(record.metric)) continue;
@@ -121,7 +127,7 @@ SeriesMap seriesOf(const std::vector<report::Record>& records) {
     return series;
 }
 
-CaseTexts failuresOf(const std::vector<report::Record>& records) {
+CaseTexts failuresOf(const std::vector<report::Record>& records, const CaseParams& params) {
     CaseTexts failures;
     for (const report::Record& record : records) {
         if (record.status == report::Status::Ok || record.status == report::Status::Ambiguous) {
@@ -129,16 +135,16 @@ CaseTexts failuresOf(const std::vector<report::Record>& records) {
         }
         std::string text(report::statusName(record.status));
         if (!record.message.empty()) text += ": " + record.message;
-        failures.insert_or_assign(caseOf(record), text);
+        failures.insert_or_assign(keyOf(record, params, "status"), text);
     }
     return failures;
 }
 
-CaseTexts voidTimesOf(const std::vector<report::Record>& records) {
+CaseTexts voidTimesOf(const std::vector<report::Record>& records, const CaseParams& params) {
     CaseTexts texts;
     for (const report::Record& record : records) {
         if (record.status != report::Status::Ambiguous) continue;
-        texts.try_emplace(caseOf(record), record.message);
+        texts.try_emplace(keyOf(record, params, "status"), record.message);
     }
     return texts;
 }

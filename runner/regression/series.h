@@ -44,20 +44,26 @@ using SeriesMap = std::map<SeriesKey, Series>;
 /// The values that are not void.
 Series standing(const Series& values);
 
+/// The parameters of a run's cases as SeriesKey has them, by id.
+using CaseParams = std::map<std::string, std::string>;
+
 /// The series of `ok` rows, and of times that are void; of two rows of one place the last, as
 /// tables have it. Of times there is the frame's of each case in the timing lane, no more: every
 /// further series asks for more rounds of all, a pass that matters shows in its frame, a rate is a
 /// reciprocal, and loading and setting up depend on what the disk has in its cache. Left out, too,
 /// are numbers made from times (of a unit of time or a rate, or "time" in the name) and what is
 /// about the machine (memory of the process, counts that the order of parallel work changes).
-SeriesMap seriesOf(const std::vector<report::Record>& records);
+SeriesMap seriesOf(const std::vector<report::Record>& records, const CaseParams& params);
+
+/// Of a case: pass and unit are empty.
+SeriesKey keyOf(const report::Record& record, const CaseParams& params, std::string metric);
 
 /// What is said of cases, by case: the key's metric is "status", its pass and unit are empty.
 using CaseTexts = std::map<SeriesKey, std::string>;
 /// Cases that did not end as they should, be it that their second try did: "crash: SIGSEGV: …".
-CaseTexts failuresOf(const std::vector<report::Record>& records);
+CaseTexts failuresOf(const std::vector<report::Record>& records, const CaseParams& params);
 /// Why times of cases are void: "frame 0: the picture of repeat 0 is blank: …".
-CaseTexts voidTimesOf(const std::vector<report::Record>& records);
+CaseTexts voidTimesOf(const std::vector<report::Record>& records, const CaseParams& params);
 /// How many cases ran side by side in the quality lane, so that their times are not compared.
 std::size_t untimedCases(const std::vector<report::Record>& records);
 

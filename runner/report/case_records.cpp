@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <unordered_map>
 
 #include "runner/core/text.h"
@@ -38,57 +37,31 @@ std::optional<std::string> valueIn(const Json& params, const std::string& axis) 
     return jsonText(*value);
 }
 
-Json paramsOf(const Record& record) {
-    if (record.params.empty()) return {};
-    try {
-        return Json::parse(record.params);
-    } catch (const Json::exception& error) {
-        throw Error("case " + record.caseId + " of " + record.table +
-                    ": its params are not JSON: " + error.what());
-    }
-}
-
-AxisValues axesOf(const Record& record, const Json& params, const std::vector<std::string>& axes) {
+AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes) {
     AxisValues values;
     for (const std::string& axis : axes) {
-        if (const auto named = valueIn(params, kStandsFor); axis == "scene" && named) {
+        if (const auto named = valueIn(item.params, kStandsFor); axis == "scene" && named) {
             values.push_back(named);
-        } else if (axis == "scene" && !record.scene.empty()) {
-            values.emplace_back(record.scene);
-        } else if (axis == "method" && !record.method.empty()) {
-            values.emplace_back(record.method);
+        } else if (axis == "scene" && !item.scene.empty()) {
+            values.emplace_back(item.scene);
         } else {
-            values.push_back(valueIn(params, axis));
+            values.push_back(valueIn(item.params, axis));
         }
     }
     return values;
 }
 
-/// What of a case's identity stays when its scene is taken at another seed; and that seed's number.
-struct Family {
-    std::string name;
-    std::optional<int> sample;
-};
-
-Family familyOf(const Record& record, Json params) {
-    const Json* sample = findPath(params, kSceneSample);
-    if (!sample) return {record.caseId, std::nullopt};
-    const int number = sample->get<int>();
-    const std::string scene = valueIn(params, kStandsFor).value_or(record.scene);
-    params.erase(kSceneSample);
-    params.erase(kStandsFor);
-    return {scene + params.dump(), number};
+std::optional<int> sampleOf(const PlannedCase& item) {
+    const Json* sample = findPath(item.params, kSceneSample);
+    return sample ? std::optional(sample->get<int>()) : std::nullopt;
 }
 
-std::optional<std::string> plannedValue(const config::CaseSpec& spec, const Json& params,
-                                        const std::string& axis) {
-    for (const auto& [name, value] : spec.axes) {
-        if (name == axis && !value.isNull()) return canonicalText(value);
-    }
-    if (axis == "scene" && !spec.scene.isNull()) return canonicalText(spec.scene);
-    if (axis == "output.width") return std::to_string(spec.outputWidthPx);
-    if (axis == "output.height") return std::to_string(spec.outputHeightPx);
-    return valueIn(params, axis);
+/// What of a case's identity stays when its scene is taken at another seed.
+std::string familyOf(const PlannedCase& item) {
+    Json params = item.params;
+    params.erase(kSceneSample);
+    params.erase(kStandsFor);
+    return valueIn(item.params, kStandsFor).value_or(item.scene) + params.dump();
 }
 
 bool isOfSetup(const Record* record) {
@@ -113,35 +86,37 @@ std::vector<const Record*> CaseRecords::Attempt::values(std::string_view metric,
     return values;
 }
 
-std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::string_view table,
+std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
+                                     const std::vector<Record>& records, std::string_view table,
                                      const std::vector<std::string>& axes) {
     struct Place {
         std::size_t index;  // in `cases`
-        int firstProcess;
+        int sample;
     };
     std::vector<CaseRecords> cases;
     std::vector<bool> isSeeded;
+    std::unordered_map<std::string_view, Place> places;  // by the case's id
     std::unordered_map<std::string, std::size_t> families;
-    std::unordered_map<std::string_view, Place> places;
+    for (const PlannedCase& item : planned) {
+        if (item.table != table) continue;
+        const std::optional<int> sample = sampleOf(item);
+        const std::size_t next = cases.size();
+        const std::size_t index =
+            sample ? families.try_emplace(familyOf(item), next).first->second : next;
+        if (index == next) {
+            cases.push_back({item.id, axesOf(item, axes), {}, item.scene, item.params});
+            isSeeded.push_back(sample.has_value());
+        }
+        places[item.id] = {index, sample.value_or(0)};
+    }
     int seedCount = 1;
     for (const Record& record : records) {
-        if (record.table != table) continue;
-        const auto [found, isNew] = places.try_emplace(record.caseId, Place{0, 0});
-        if (isNew) {
-            const Json params = paramsOf(record);
-            const Family family = familyOf(record, params);
-            const auto [known, isFirst] = families.try_emplace(family.name, cases.size());
-            if (isFirst) {
-                cases.push_back(
-                    {record.caseId, axesOf(record, params, axes), {}, record.scene, record.params});
-                isSeeded.push_back(family.sample.has_value());
-            }
-            found->second = {known->second, family.sample.value_or(0) * kMostProcesses};
-            seedCount = std::max(seedCount, family.sample.value_or(0) + 1);
-        }
-        const Place& place = found->second;
+        const auto found = places.find(record.caseId);
+        if (found == places.end()) continue;  // of another table
+        const auto [index, sample] = found->second;
+        seedCount = std::max(seedCount, sample + 1);
         CaseRecords::Attempt& attempt =
-            cases[place.index].processes[place.firstProcess + record.process];
+            cases[index].processes[sample * kMostProcesses + record.process];
         if (record.status != Status::Ok && std::isnan(record.value)) {
             attempt.rows.clear();
             attempt.failure = &record;
@@ -160,30 +135,6 @@ std::vector<CaseRecords> groupByCase(const std::vector<Record>& records, std::st
         }
     }
     return cases;
-}
-
-CaseRecords unmeasured(const config::PaperCase& item, const std::vector<std::string>& axes) {
-    Record record;
-    record.scene = item.scene;
-    record.params = item.params.toJson().dump();
-    return {"", axesOf(record, paramsOf(record), axes), {}, record.scene, record.params};
-}
-
-std::vector<PlannedCase> planCases(const config::Experiment& experiment,
-                                   const std::vector<std::string>& axes) {
-    std::vector<PlannedCase> planned;
-    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        const Json params = spec.params.toJson();
-        PlannedCase result;
-        for (const std::string& axis : axes) {
-            result.axes.push_back(plannedValue(spec, params, axis));
-        }
-        result.identity = params.dump() + spec.scene.toFlowText() +
-                          std::to_string(spec.outputWidthPx) + 'x' +
-                          std::to_string(spec.outputHeightPx);
-        planned.push_back(std::move(result));
-    }
-    return planned;
 }
 
 }  // namespace gfxrepro::report

@@ -102,6 +102,7 @@ struct Gathered {  // what the records of a cell came to
     bool isUntimed = false;  // ambiguous for being a time of the quality lane
     std::set<std::string> units;
     std::vector<std::string> caseIds;
+    std::size_t notRun = 0;           // further cases
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
 
     void note(Status status, const std::string& why) {
@@ -184,6 +185,10 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
     Gathered gathered;
     int unitCount = 0;
     for (const CaseRecords* run : casesAt(query.where, cases)) {
+        if (run->processes.empty()) {
+            ++gathered.notRun;
+            continue;
+        }
         gathered.caseIds.push_back(run->id);
         std::map<int, int> unitOfFrame;
         takeCase(*run, query, unitOfFrame, unitCount, gathered);
@@ -201,21 +206,6 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
         gathered.whole = std::move(all.samples);
     }
     return gathered;
-}
-
-std::size_t plannedCount(const CellQuery& query, const LayoutCases& cases) {
-    std::set<std::string_view> identities;
-    for (const PlannedCase* planned : plannedAt(query.where, cases)) {
-        identities.insert(planned->identity);
-    }
-    return identities.size();
-}
-
-/// Whether the plan knows all that the query asks, so that the number of cases can be counted on.
-bool isPlanComplete(const CellQuery& query, const LayoutCases& cases) {
-    return std::ranges::all_of(plannedAt(query.where, cases), [&](const PlannedCase* planned) {
-        return matches(planned->axes, cases, query.where, false);
-    });
 }
 
 std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathered) {
@@ -320,15 +310,14 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.timePower =
         timePower(query.metric) - (query.shareOf ? timePower(query.shareOf->metric) : 0);
     Gathered gathered = gather(query, cases);
-    const std::size_t planned = plannedCount(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
-    const std::size_t taken = gathered.caseIds.size();
-    if (taken == 0) {
+    const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;
+    if (notRun == planned) {
         cell.isPlanned = planned > 0;
         gathered.note(Status::Missing, "not run");
-    } else if (isPlanComplete(query, cases) && planned > taken) {
-        gathered.note(Status::Missing, std::to_string(planned - taken) + " of " +
-                                           std::to_string(planned) + " cases were not run");
+    } else if (notRun > 0) {
+        gathered.note(Status::Missing, std::to_string(notRun) + " of " + std::to_string(planned) +
+                                           " cases were not run");
     }
     if (!hasSamples && gathered.worst == Status::Ok) {
         gathered.note(Status::Missing, whyNothing(query, cases));

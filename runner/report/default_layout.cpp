@@ -7,10 +7,12 @@
 namespace gfxrepro::report {
 
 config::Layout defaultLayout(const config::Experiment& experiment,
+                             std::span<const PlannedCase> planned,
                              const std::vector<Record>& records) {
     config::Layout layout;
-    for (const config::CaseSpec& point : config::expandCases(experiment)) {
-        for (const auto& [axis, value] : point.axes) {
+    for (const PlannedCase& item : planned) {
+        if (item.table != experiment.id) continue;
+        for (const std::string& axis : item.axes) {
             const auto isSame = [&](const auto& known) { return known.name == axis; };
             if (std::ranges::none_of(layout.rows, isSame)) layout.rows.push_back({axis, {}});
         }

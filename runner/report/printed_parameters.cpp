@@ -68,7 +68,7 @@ std::string sceneNameOf(const CaseRecords& item, const Json& params) {
 }
 
 Settings settingsOf(const CaseRecords& item, int frameCount, const config::Printed& printed) {
-    Json params = item.params.empty() ? Json::object() : Json::parse(item.params);
+    Json params = item.params;
     std::string scene = sceneNameOf(item, params);
     Json frames = frameCount;
     layOver(printed, scene, params, frames);
@@ -268,15 +268,15 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     if (experiment.paperCases.empty()) return;
     config::Experiment paper =
         config::experimentFromDocument(experiment.paperDocument, experiment.file);
-    cases_ = gatherCases(paper, {});
+    std::vector<PlannedCase> cases;
+    for (const config::PaperCase& item : experiment.paperCases) {
+        cases.push_back({"", paper.id, item.scene, item.params.toJson(), {}});
+    }
+    cases_ = gatherCases(paper, cases, {});
     layout_ = std::move(paper.layout);
     printed_ = std::move(paper.printed);
     for (const config::Assumption& assumption : paper.assumptions) open_.insert(assumption.name);
     for (const auto& [name, value] : printed_.at) open_.erase(settingNameOf(name));
-    for (const config::PaperCase& item : experiment.paperCases) {
-        cases_.run.push_back(unmeasured(item, cases_.axes));
-    }
-    cases_.makeIndices();
 }
 
 void PrintedParameters::compare(const config::Layout& layout, const Key& row, const Key& column,

@@ -27,7 +27,7 @@ class PrintedParameters {
     /// `experiment.paperCases` are its cases; without any, nothing is known.
     explicit PrintedParameters(const config::Experiment& experiment);
 
-    bool isKnown() const { return !cases_.run.empty(); }
+    bool isKnown() const { return !cases_.cases.empty(); }
     /// Sets what the cell says of its parameters. `layout` and `cases` are this run's. Does nothing
     /// for a cell without a measurement, or where nothing is known.
     void compare(const config::Layout& layout, const Key& row, const Key& column,

@@ -11,14 +11,12 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
-#include "runner/core/json_depth.h"
 #include "runner/core/text.h"
 #include "runner/report/case_records.h"
 #include "runner/report/csv.h"
@@ -30,9 +28,14 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kHeader =
+    "schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,unit,value,"
+    "status,message,rows";
+
+/// Of schema 2, whose rows had the parameters of their case, too.
+constexpr std::string_view kOlderHeader =
     "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
     "value,status,message,rows";
-constexpr std::size_t kColumnCount = 18;
+constexpr std::size_t kOlderParams = 6;
 
 constexpr std::array<std::string_view, 10> kStatusNames = {
     "ok",  "ambiguous", "flaky",       "unsupported", "timeout",
@@ -55,7 +58,7 @@ std::string statusNames() {
 void appendRow(std::string& out, const Record& record, int unitRows) {
     CsvRow row(out);
     row.integer(Record::kSchema).text(record.caseId).text(record.table).text(record.technique);
-    row.text(record.method).text(record.scene).text(record.params);
+    row.text(record.method).text(record.scene);
     row.integer(record.frame).integer(record.repeat).integer(record.process);
     row.text(record.lane).text(record.pass).text(record.metric).text(record.unit);
     row.number(record.value).text(statusName(record.status)).text(record.message);
@@ -84,71 +87,52 @@ double numberField(const SourceLocation& where, const std::string& text) {
     return value;
 }
 
-Record recordFromFields(const SourceLocation& where, std::vector<std::string>& fields) {
-    if (fields.size() != kColumnCount) {
-        throw Error(where, "expected " + std::to_string(kColumnCount) + " columns, found " +
+Record recordFromFields(const SourceLocation& where, std::string_view header,
+                        std::vector<std::string>& fields) {
+    const auto count = static_cast<std::size_t>(std::ranges::count(header, ',') + 1);
+    if (fields.size() != count) {
+        throw Error(where, "expected " + std::to_string(count) + " columns, found " +
                                std::to_string(fields.size()));
     }
-    if (const int schema = integerField(where, "schema", fields[0]); schema != Record::kSchema) {
-        throw Error(where, "expected records of schema " + std::to_string(Record::kSchema) +
-                               ", found " + std::to_string(schema));
+    const bool isOlder = header == kOlderHeader;
+    const int expected = isOlder ? Record::kSchema - 1 : Record::kSchema;
+    if (const int schema = integerField(where, "schema", fields[0]); schema != expected) {
+        throw Error(where, "expected records of schema " + std::to_string(expected) + ", found " +
+                               std::to_string(schema));
     }
+    if (isOlder) fields.erase(fields.begin() + kOlderParams);
     Record record;
     record.caseId = std::move(fields[1]);
     record.table = std::move(fields[2]);
     record.technique = std::move(fields[3]);
     record.method = std::move(fields[4]);
     record.scene = std::move(fields[5]);
-    record.params = std::move(fields[6]);
-    record.frame = integerField(where, "frame", fields[7]);
-    record.repeat = integerField(where, "repeat", fields[8]);
-    record.process = integerField(where, "process", fields[9]);
+    record.frame = integerField(where, "frame", fields[6]);
+    record.repeat = integerField(where, "repeat", fields[7]);
+    record.process = integerField(where, "process", fields[8]);
     if (record.process < 0 || record.process >= kMostProcesses) {
         throw Error(where, "column 'process': expected 0 to " + std::to_string(kMostProcesses - 1) +
-                               ", found '" + fields[9] + "'");
+                               ", found '" + fields[8] + "'");
     }
-    record.lane = std::move(fields[10]);
-    record.pass = std::move(fields[11]);
-    record.metric = std::move(fields[12]);
-    record.unit = std::move(fields[13]);
-    record.value = numberField(where, fields[14]);
-    const auto status = findStatus(fields[15]);
+    record.lane = std::move(fields[9]);
+    record.pass = std::move(fields[10]);
+    record.metric = std::move(fields[11]);
+    record.unit = std::move(fields[12]);
+    record.value = numberField(where, fields[13]);
+    const auto status = findStatus(fields[14]);
     if (!status) {
         throw Error(where,
-                    "column 'status': found '" + fields[15] + "'; allowed: " + statusNames());
+                    "column 'status': found '" + fields[14] + "'; allowed: " + statusNames());
     }
     record.status = *status;
-    record.message = std::move(fields[16]);
+    record.message = std::move(fields[15]);
     return record;
 }
 
-/// A JSON object, or nothing; its `output`, if it has one, is an object, too, and its
-/// `scene_sample` a number of a seed.
-void requireParams(const SourceLocation& where, const std::string& params) {
-    if (params.empty()) return;
-    if (isTooDeepJson(params)) {
-        throw Error(where, "column 'params': nested deeper than " +
-                               std::to_string(kMostJsonLevels) + " levels");
-    }
-    const auto json = nlohmann::json::parse(params, nullptr, false);
-    if (!json.is_object() || (json.contains("output") && !json["output"].is_object())) {
-        throw Error(
-            where, "column 'params': expected a JSON object, found '" + params.substr(0, 80) + "'");
-    }
-    const auto sample = json.find(kSceneSample);
-    if (sample == json.end()) return;
-    if (!sample->is_number_integer() || *sample < 0 || *sample > kMostSceneSample) {
-        throw Error(where, "column 'params': '/" + std::string(kSceneSample) + "' is " +
-                               sample->dump().substr(0, 80) +
-                               "; expected a whole number from 0 to " +
-                               std::to_string(kMostSceneSample));
-    }
-}
-
-void checkHeader(const fs::path& path, std::string_view text) {
+void checkHeader(const fs::path& path, std::string_view text, std::string_view header) {
     const std::string_view first = text.substr(0, text.find('\n'));
-    if (first != kHeader) {
-        throw Error({path.string(), 1, 0}, "expected the header '" + std::string(kHeader) +
+    if (first != header) {
+        throw Error({path.string(), 1, 0}, "expected the header '" + std::string(header) +
                                                "', found '" + std::string(first.substr(0, 200)) +
                                                "'");
     }
@@ -219,8 +203,8 @@ struct WholeUnits {
     std::vector<Record> records;
     std::size_t endBytes = 0;
 };
-WholeUnits readWholeUnits(const fs::path& path, std::string_view text) {
-    checkHeader(path, text);
+WholeUnits readWholeUnits(const fs::path& path, std::string_view text, std::string_view header) {
+    checkHeader(path, text, header);
     CsvReader reader(text, path.string());
     std::vector<std::string> fields;
     std::vector<Row> rows;
@@ -231,10 +215,7 @@ WholeUnits readWholeUnits(const fs::path& path, std::string_view text) {
             continue;
         }
         const SourceLocation where = reader.location();
-        Record record = recordFromFields(where, fields);
-        if (rows.empty() || record.params != rows.back().record.params) {
-            requireParams(where, record.params);
-        }
+        Record record = recordFromFields(where, header, fields);
         rows.push_back({std::move(record), where.line, integerField(where, "rows", fields.back()),
                         reader.rowEnd()});
     }
@@ -266,7 +247,7 @@ RecordWriter::RecordWriter(const fs::path& path) : path_(path) {
         const std::string header = std::string(kHeader) + '\n';
         const MappedFile file(path);
         const bool isNew = header != file.text() && header.starts_with(file.text());
-        const std::size_t length = isNew ? 0 : readWholeUnits(path, file.text()).endBytes;
+        const std::size_t length = isNew ? 0 : readWholeUnits(path, file.text(), kHeader).endBytes;
         if (::ftruncate(fd_, static_cast<off_t>(length)) != 0) failWriting(path, errno);
         if (isNew) writeBlock(header);
     } catch (...) {
@@ -304,7 +285,8 @@ void RecordWriter::writeBlock(std::string_view block) {
 
 std::vector<Record> readRecords(const fs::path& path) {
     const MappedFile file(path);
-    return readWholeUnits(path, file.text()).records;
+    const bool isOlder = file.text().starts_with(kOlderHeader);
+    return readWholeUnits(path, file.text(), isOlder ? kOlderHeader : kHeader).records;
 }
 
 }  // namespace gfxrepro::report

@@ -30,21 +30,21 @@ Status statusFromName(std::string_view name);
 inline constexpr int kSetup = -1;
 
 /// A row of records.csv. Columns in this order, schema version first; the last one, `rows`, says
-/// how many rows the row's unit (its case in its process) has.
+/// how many rows the row's unit (its case in its process) has. With which parameters the case was
+/// measured is in the plan.
 struct Record {
-    static constexpr int kSchema = 2;
+    static constexpr int kSchema = 3;
 
     std::string caseId;
     std::string table;  // "zju2005/2.1"
     std::string technique;
     std::string method;
     std::string scene;
-    std::string params;  // one-line JSON of the case's resolved parameters
-    int frame = 0;       // or kSetup
-    int repeat = 0;      // or kSetup
-    int process = 0;     // from 0
-    std::string lane;    // "timing" | "quality"
-    std::string pass;    // the paper's step; empty for whole-case metrics
+    int frame = 0;     // or kSetup
+    int repeat = 0;    // or kSetup
+    int process = 0;   // from 0
+    std::string lane;  // "timing" | "quality"
+    std::string pass;  // the paper's step; empty for whole-case metrics
     std::string metric;
     std::string unit;
     /// Not-a-number for failed cases, written as an empty field; +∞ ("inf") of equal pictures.
@@ -75,9 +75,10 @@ class RecordWriter {
     int fd_ = -1;
 };
 
-/// Reads records.csv. A last unit whose write was cut, be it at a line's end, is left out. Throws
-/// Error with file and line for any other unit without all of its rows, for a malformed row, and
-/// for a value (case, process, frame, repeat, pass, metric) that is there twice.
+/// Reads records.csv, also of schema 2, whose rows had the parameters. A last unit whose write was
+/// cut, be it at a line's end, is left out. Throws Error with file and line for any other unit
+/// without all of its rows, for a malformed row, and for a value (case, process, frame, repeat,
+/// pass, metric) that is there twice.
 std::vector<Record> readRecords(const std::filesystem::path& path);
 
 }  // namespace gfxrepro::report

@@ -15,8 +15,9 @@
 
 namespace gfxrepro::report {
 
-/// The tables of a run, beside `experiments`.
+/// The tables of a run, beside `experiments`; `planned` are the cases of its plan.
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
+                               std::span<const PlannedCase> planned,
                                const std::vector<Record>& records);
 
 /// tables/<slug>.csv (every column printed, measured, low, high, what these bounds are, status;

@@ -237,10 +237,11 @@ Table transposed(const Table& table, std::size_t rowAxis) {
     return result;
 }
 
-Table buildTable(const config::Experiment& given, const std::vector<Record>& records) {
+Table buildTable(const config::Experiment& given, std::span<const PlannedCase> planned,
+                 const std::vector<Record>& records) {
     config::Experiment experiment = given;
     if (!given.layout.isGiven && given.kind == config::Experiment::Kind::Sweep) {
-        experiment.layout = defaultLayout(given, records);
+        experiment.layout = defaultLayout(given, planned, records);
     }
     Table table;
     table.id = experiment.id;
@@ -253,7 +254,7 @@ Table buildTable(const config::Experiment& given, const std::vector<Record>& rec
     if (!experiment.layout.isGiven) return table;
 
     const config::Layout& layout = experiment.layout;
-    const LayoutCases cases = gatherCases(experiment, records);
+    const LayoutCases cases = gatherCases(experiment, planned, records);
     const std::vector<Key> columns = collectKeys(layout.columns, cases);
     table.rowAxes = axisNames(layout.rows);
     for (const Key& column : columns) table.columns.push_back({joined(column, "_"), ""});

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/report/case_records.h"
 #include "runner/report/records.h"
 #include "runner/report/sampling.h"
 
@@ -137,6 +139,7 @@ Table transposed(const Table& table, std::size_t rowAxis);
 ///
 /// A cell whose metric is a time or a frame rate never shows a record of the quality lane. Throws
 /// Error with the layout's place for an unknown statistic or axis.
-Table buildTable(const config::Experiment& experiment, const std::vector<Record>& records);
+Table buildTable(const config::Experiment& experiment, std::span<const PlannedCase> planned,
+                 const std::vector<Record>& records);
 
 }  // namespace gfxrepro::report

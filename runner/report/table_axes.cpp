@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "runner/core/error.h"
 
@@ -29,16 +28,6 @@ void addPoints(const AxisValues& values, const LayoutCases& cases,
         }
         points.push_back(std::move(point));
     }
-}
-
-std::vector<int> framesOf(const CaseRecords& run) {
-    std::set<int> frames;
-    for (const auto& [process, attempt] : run.processes) {
-        for (const auto& [place, record] : attempt.rows) {
-            if (place.frame != kSetup) frames.insert(place.frame);
-        }
-    }
-    return {frames.begin(), frames.end()};
 }
 
 /// Lays the labels of labelled axes between the values of the sweep axes: every combination.
@@ -78,23 +67,31 @@ void addAxesOf(const config::Selection& selection, std::vector<std::string>& axe
     for (const auto& [axis, value] : selection.where) addAxis(axes, axis);
 }
 
+bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where) {
+    for (const auto& [axis, allowed] : where) {
+        if (axis == "frame") continue;
+        const auto& value = values[cases.indexOf(axis)];
+        if (!value || std::ranges::find(allowed, *value) == allowed.end()) return false;
+    }
+    return true;
+}
+
 /// The places of the cases that may lie there: those that fit on the axis that leaves the fewest.
-std::vector<std::size_t> candidates(const LayoutCases& cases, const CaseIndex& index,
-                                    const Where& where) {
+std::vector<std::size_t> candidates(const LayoutCases& cases, const Where& where) {
     std::optional<std::size_t> best;
     const std::vector<std::string>* values = nullptr;
     std::size_t fewest = 0;
     for (const auto& [name, allowed] : where) {
         if (name == "frame") continue;
         const std::size_t axis = cases.indexOf(name);
-        const std::size_t count = index.countOf(axis, allowed);
+        const std::size_t count = cases.index.countOf(axis, allowed);
         if (best && count >= fewest) continue;
         best = axis;
         fewest = count;
         values = &allowed;
     }
-    if (best) return index.placesOf(*best, *values);
-    std::vector<std::size_t> all(index.caseCount());
+    if (best) return cases.index.placesOf(*best, *values);
+    std::vector<std::size_t> all(cases.index.caseCount());
     std::iota(all.begin(), all.end(), std::size_t{0});
     return all;
 }
@@ -106,18 +103,17 @@ CaseIndex::CaseIndex(const std::vector<const AxisValues*>& cases) : caseCount_(c
         const AxisValues& values = *cases[place];
         axes_.resize(std::max(axes_.size(), values.size()));
         for (std::size_t axis = 0; axis < values.size(); ++axis) {
-            Axis& own = axes_[axis];
-            (values[axis] ? own.places[*values[axis]] : own.unknown).push_back(place);
+            if (values[axis]) axes_[axis][*values[axis]].push_back(place);
         }
     }
 }
 
 std::size_t CaseIndex::countOf(std::size_t axis, const std::vector<std::string>& values) const {
     if (axis >= axes_.size()) return 0;
-    std::size_t count = axes_[axis].unknown.size();
+    std::size_t count = 0;
     for (const std::string& value : values) {
-        const auto found = axes_[axis].places.find(value);
-        if (found != axes_[axis].places.end()) count += found->second.size();
+        const auto found = axes_[axis].find(value);
+        if (found != axes_[axis].end()) count += found->second.size();
     }
     return count;
 }
@@ -125,23 +121,15 @@ std::size_t CaseIndex::countOf(std::size_t axis, const std::vector<std::string>&
 std::vector<std::size_t> CaseIndex::placesOf(std::size_t axis,
                                              const std::vector<std::string>& values) const {
     if (axis >= axes_.size()) return {};
-    std::vector<std::size_t> places = axes_[axis].unknown;
+    std::vector<std::size_t> places;
     for (const std::string& value : values) {
-        const auto found = axes_[axis].places.find(value);
-        if (found == axes_[axis].places.end()) continue;
+        const auto found = axes_[axis].find(value);
+        if (found == axes_[axis].end()) continue;
         places.insert(places.end(), found->second.begin(), found->second.end());
     }
     std::ranges::sort(places);
     places.erase(std::ranges::unique(places).begin(), places.end());
     return places;
-}
-
-void LayoutCases::makeIndices() {
-    std::vector<const AxisValues*> plannedAxes, runAxes;
-    for (const PlannedCase& one : planned) plannedAxes.push_back(&one.axes);
-    for (const CaseRecords& one : run) runAxes.push_back(&one.axes);
-    plannedIndex = CaseIndex(plannedAxes);
-    runIndex = CaseIndex(runAxes);
 }
 
 std::size_t LayoutCases::indexOf(const std::string& axis) const {
@@ -150,38 +138,17 @@ std::size_t LayoutCases::indexOf(const std::string& axis) const {
     return static_cast<std::size_t>(found - axes.begin());
 }
 
-bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
-             bool isUnknownMatching) {
-    for (const auto& [axis, allowed] : where) {
-        if (axis == "frame") continue;
-        const auto& value = values[cases.indexOf(axis)];
-        const bool isMatching =
-            value ? std::find(allowed.begin(), allowed.end(), *value) != allowed.end()
-                  : isUnknownMatching;
-        if (!isMatching) return false;
-    }
-    return true;
-}
-
 std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases) {
     std::vector<const CaseRecords*> found;
-    for (const std::size_t place : candidates(cases, cases.runIndex, where)) {
-        const CaseRecords& run = cases.run[place];
-        if (matches(run.axes, cases, where, false)) found.push_back(&run);
+    for (const std::size_t place : candidates(cases, where)) {
+        const CaseRecords& item = cases.cases[place];
+        if (matches(item.axes, cases, where)) found.push_back(&item);
     }
     return found;
 }
 
-std::vector<const PlannedCase*> plannedAt(const Where& where, const LayoutCases& cases) {
-    std::vector<const PlannedCase*> found;
-    for (const std::size_t place : candidates(cases, cases.plannedIndex, where)) {
-        const PlannedCase& planned = cases.planned[place];
-        if (matches(planned.axes, cases, where, true)) found.push_back(&planned);
-    }
-    return found;
-}
-
-LayoutCases gatherCases(const config::Experiment& experiment, const std::vector<Record>& records) {
+LayoutCases gatherCases(const config::Experiment& experiment, std::span<const PlannedCase> planned,
+                        const std::vector<Record>& records) {
     LayoutCases cases;
     const config::Layout& layout = experiment.layout;
     for (const auto* axes : {&layout.rows, &layout.columns}) {
@@ -191,10 +158,11 @@ LayoutCases gatherCases(const config::Experiment& experiment, const std::vector<
         }
     }
     addAxesOf(layout.cell, cases.axes);
-    cases.planned = planCases(experiment, cases.axes);
-    cases.run = groupByCase(records, experiment.id, cases.axes);
+    cases.cases = groupByCase(planned, records, experiment.id, cases.axes);
     cases.frameCount = experiment.measure.frames;
-    cases.makeIndices();
+    std::vector<const AxisValues*> values;
+    for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);
+    cases.index = CaseIndex(values);
     return cases;
 }
 
@@ -203,14 +171,11 @@ std::vector<Key> collectKeys(const std::vector<config::LayoutAxis>& layoutAxes,
     const bool hasFrames = std::any_of(layoutAxes.begin(), layoutAxes.end(), [](const auto& axis) {
         return axis.isSweepAxis() && axis.name == "frame";
     });
-    std::vector<int> plannedFrames(hasFrames ? static_cast<std::size_t>(cases.frameCount) : 1);
-    std::iota(plannedFrames.begin(), plannedFrames.end(), 0);
+    std::vector<int> frames(hasFrames ? static_cast<std::size_t>(cases.frameCount) : 1);
+    std::iota(frames.begin(), frames.end(), 0);
     std::vector<Key> points;
-    for (const PlannedCase& planned : cases.planned) {
-        addPoints(planned.axes, cases, layoutAxes, plannedFrames, points);
-    }
-    for (const CaseRecords& run : cases.run) {
-        addPoints(run.axes, cases, layoutAxes, hasFrames ? framesOf(run) : plannedFrames, points);
+    for (const CaseRecords& item : cases.cases) {
+        addPoints(item.axes, cases, layoutAxes, frames, points);
     }
     const bool hasSweepAxis = std::any_of(layoutAxes.begin(), layoutAxes.end(),
                                           [](const auto& axis) { return axis.isSweepAxis(); });

@@ -21,51 +21,40 @@ class CaseIndex {
     explicit CaseIndex(const std::vector<const AxisValues*>& cases);
 
     std::size_t caseCount() const { return caseCount_; }
-    /// How many cases have one of the values on the axis, or none that is known.
+    /// How many cases have one of the values on the axis.
     std::size_t countOf(std::size_t axis, const std::vector<std::string>& values) const;
     /// Their places, ascending.
     std::vector<std::size_t> placesOf(std::size_t axis,
                                       const std::vector<std::string>& values) const;
 
   private:
-    struct Axis {
-        std::unordered_map<std::string, std::vector<std::size_t>> places;
-        std::vector<std::size_t> unknown;
-    };
+    using Axis = std::unordered_map<std::string, std::vector<std::size_t>>;  // places by value
     std::size_t caseCount_ = 0;
     std::vector<Axis> axes_;
 };
 
-/// What is known of a layout's cases. `axes` names the sweep axes of its rows and columns and of
-/// all `where` selections; planned and run cases carry their values beside it.
+/// The cases of a layout. `axes` names the sweep axes of its rows and columns and of all `where`
+/// selections; cases carry their values beside it.
 struct LayoutCases {
     std::vector<std::string> axes;
-    std::vector<PlannedCase> planned;
-    std::vector<CaseRecords> run;
+    std::vector<CaseRecords> cases;
     int frameCount = 1;
-    CaseIndex plannedIndex, runIndex;
+    CaseIndex index;
 
-    /// Makes the indices; again when cases were added.
-    void makeIndices();
     /// The place of an axis in `axes`.
     std::size_t indexOf(const std::string& axis) const;
 };
 
 /// Which cases a layout asks for: axis → any of these values.
 using Where = std::map<std::string, std::vector<std::string>>;
-/// Whether a case with these values lies there; `isUnknownMatching`: also where a value is not
-/// known.
-bool matches(const AxisValues& values, const LayoutCases& cases, const Where& where,
-             bool isUnknownMatching);
-/// Those that were run and lie there.
+/// Those that lie there, run or not.
 std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases);
-/// Those of the plan that lie there, or may: what is not known of one may match.
-std::vector<const PlannedCase*> plannedAt(const Where& where, const LayoutCases& cases);
 
-LayoutCases gatherCases(const config::Experiment& experiment, const std::vector<Record>& records);
+LayoutCases gatherCases(const config::Experiment& experiment, std::span<const PlannedCase> planned,
+                        const std::vector<Record>& records);
 
-/// The combinations of `layoutAxes`: on sweep axes those that occur in the plan or, where that does
-/// not know them, in the records; on labelled axes all. Sorted by axis, then by the order in which
+/// The combinations of `layoutAxes`: on sweep axes those that occur in the plan; on labelled axes
+/// all. Sorted by axis, then by the order in which
 /// values first occur.
 std::vector<Key> collectKeys(const std::vector<config::LayoutAxis>& layoutAxes,
                              const LayoutCases& cases);

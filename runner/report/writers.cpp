@@ -170,10 +170,11 @@ std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportConte
 }  // namespace
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
+                               std::span<const PlannedCase> planned,
                                const std::vector<Record>& records) {
     std::vector<Table> tables;
     for (const config::Experiment& experiment : experiments) {
-        tables.push_back(buildTable(experiment, records));
+        tables.push_back(buildTable(experiment, planned, records));
     }
     return tables;
 }

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runner/core/files.h"
+
 namespace gfxrepro::test {
 
 ProcessResult gfxrepro(std::vector<std::string> arguments) {
@@ -29,14 +31,21 @@ std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const st
     return rows;
 }
 
+std::map<std::string, nlohmann::json> paramsOf(const std::filesystem::path& runDir) {
+    std::map<std::string, nlohmann::json> params;
+    const auto plan = nlohmann::json::parse(readFile(runDir / "plan.json"));
+    for (const auto& item : plan["cases"]) params[item["id"]] = item["params"];
+    return params;
+}
+
 std::vector<std::string> statusLines(const std::filesystem::path& runDir) {
     std::vector<std::string> lines;
     std::string lastCase;
+    const auto params = paramsOf(runDir);
     for (const report::Record& row : report::readRecords(runDir / "records.csv")) {
         if (row.caseId == lastCase) continue;
         lastCase = row.caseId;
-        const auto params = nlohmann::json::parse(row.params);
-        std::string line = params["behaviour"].get<std::string>() + ": ";
+        std::string line = params.at(row.caseId).at("behaviour").get<std::string>() + ": ";
         line += report::statusName(row.status);
         if (!row.message.empty()) line += " (" + row.message + ")";
         lines.push_back(line);

@@ -4,6 +4,8 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,9 @@ std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::
 
 /// Rows of a metric.
 std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);
+
+/// The parameters of the cases of a run's plan, by id.
+std::map<std::string, nlohmann::json> paramsOf(const std::filesystem::path& runDir);
 
 /// "value=status message" of every case in order of the rows, by the parameter `behaviour`.
 std::vector<std::string> statusLines(const std::filesystem::path& runDir);

@@ -41,9 +41,10 @@ ProcessResult measure(std::vector<std::string> configs, const std::string& dir,
 /// The wall times of a table's cases by number: no two measurements have the same.
 std::map<int, double> timesOf(const std::string& dir, const std::string& table) {
     std::map<int, double> times;
+    const auto params = paramsOf(dir);
     for (const report::Record& row : rowsOf(dir, "wall_time_ms")) {
         if (row.table != table) continue;
-        times[nlohmann::json::parse(row.params).at("number").get<int>()] = row.value;
+        times[params.at(row.caseId).at("number").get<int>()] = row.value;
     }
     return times;
 }
@@ -144,8 +145,9 @@ TEST(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
     EXPECT_EQ(timesOf(dir, "demo2026/1"), before);
     EXPECT_EQ(timesOf(dir, "demo2026/2").size(), 3U);
     // And as if it had measured nothing but number=1 and the twin of number=2.
-    keep([](const report::Record& row) {
-        const int number = nlohmann::json::parse(row.params).at("number").get<int>();
+    const auto params = paramsOf(dir);
+    keep([&](const report::Record& row) {
+        const int number = params.at(row.caseId).at("number").get<int>();
         return number == (row.table == "demo2026/1" ? 1 : 2);
     });
     const ProcessResult rest = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});

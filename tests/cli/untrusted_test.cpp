@@ -132,10 +132,28 @@ TEST_F(Untrusted, BracketsAloneDoNotTakeTheStack) {
     writeFileAtomic(dir + "/manifest.json", manifest);
     expectRefused({"report", dir}, "/manifest.json: nested deeper than 200 levels");
     writeFileAtomic(dir + "/manifest.json", whole);
-    std::string records = readFile(dir + "/records.csv");
-    records.replace(records.find("\"{\"\""), 2, "\"{\"\"x\"\":" + deep + ",");
-    writeFileAtomic(dir + "/records.csv", records);
-    expectRefused({"table", dir}, "column 'params': nested deeper than 200 levels");
+    replaceInPlan("\"params\":{", "\"params\":{\"x\":" + deep + ",");
+    expectRefused({"table", dir}, "nested deeper than 200\n");
+}
+
+TEST_F(Untrusted, RecordsAreOfThePlansCases) {
+    const std::string file = dir + "/records.csv";
+    const report::Record known = rowsOf(dir, "number")[0];
+    const auto expectUnknown = [&](const std::string& id, const std::string& table) {
+        const std::string whole = readFile(file);
+        report::Record row = known;
+        row.process = 1;
+        row.caseId = id;
+        row.table = table;
+        report::RecordWriter(file).append({row});
+        for (const char* command : {"table", "claims", "report"}) {
+            expectRefused({command, dir},
+                          file + ": the case " + id + " of " + table + " is not in the plan\n");
+        }
+        writeFileAtomic(file, whole);
+    };
+    expectUnknown("0123456789ab", known.table);
+    expectUnknown(known.caseId, "demo2026/1");
 }
 
 TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
@@ -367,10 +385,10 @@ TEST_F(Untrusted, NoTextIsACommandToGitHub) {
             EXPECT_EQ(line.find('\x1B'), line.npos) << line;
         }
     };
-    const auto row = [&](int process, const std::string& table, const std::string& message) {
+    const auto row = [&](int process, const std::string& method, const std::string& message) {
         report::Record row = rowsOf(dir, "number")[0];
         row.process = process;
-        row.table = table;
+        row.method = method;
         row.status = report::Status::Crash;
         row.message = message;
         return row;
@@ -378,11 +396,10 @@ TEST_F(Untrusted, NoTextIsACommandToGitHub) {
     const std::string other = folder.path() / "other";
     fs::copy(dir, other, fs::copy_options::recursive);
     report::RecordWriter(other + "/records.csv")
-        .append(
-            {row(1, "sweep/mock", "x\n" + stop), row(2, "\u00A0" + stop, "##[add-mask]y\x1B[2J")});
+        .append({row(1, "", "x\n" + stop), row(2, "\n\u00A0" + stop, "##[add-mask]y\x1B[2J")});
     const ProcessResult compared = mockGfxrepro({"compare", dir, other, "--out", out});
     EXPECT_THAT(compared.out, HasSubstr("crash: x\n| ::stop-commands::abc\n"));
-    EXPECT_THAT(compared.out, HasSubstr("\u00A0: :stop-commands::abc"));
+    EXPECT_THAT(compared.out, HasSubstr("| \u00A0::stop-commands::abc status: "));
     EXPECT_THAT(compared.out, HasSubstr("# #[add-mask]y?[2J\n"));
     expectNone(compared);
     const std::string config = writeMockConfig(

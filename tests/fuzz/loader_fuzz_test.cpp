@@ -307,7 +307,7 @@ TEST(LoaderFuzz, FilesOfRuns) {
     report::Record row;
     row.caseId = "0123456789ab";
     row.table = "zju2005/2.1";
-    row.params = R"({"method":"a, \"b\"","output":{"width":8,"height":8}})";
+    row.method = R"(a, "b")";
     row.metric = "psnr_db";
     std::vector<report::Record> rows(3, row);
     rows[1].frame = 1;

@@ -44,7 +44,7 @@ assumptions:
                                   {{"models/duck", "{}"}, {"<b>&|_%", "{}"}});
 }
 
-std::vector<report::Record> records(double drawMs = 8.0) {
+report::Recorded records(double drawMs = 8.0) {
     report::RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {drawMs});
     maker.add("scene_source", {1.0}, "", "enum");
@@ -62,6 +62,7 @@ ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
             kContext,
             {{"cpu", "Xeon <script>"}, {"scenes", {{"models/duck", {{"kind", "stand-in"}}}}}},
             {experiment()},
+            report::planOf(experiment(), records(drawMs)),
             records(drawMs),
             {{id, "zju2005/9.9", "zju2005/9.9 scene=models/duck", "gfxrepro run 'a<b'", {"ok"}}},
             {}};

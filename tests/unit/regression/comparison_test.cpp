@@ -485,7 +485,7 @@ TEST(SeriesOf, TakesFramesTimesOfTheTimingLaneOnly) {
     records.push_back(record);
     record.status = report::Status::Crash;
     records.push_back(record);
-    const SeriesMap series = seriesOf(records);
+    const SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
     EXPECT_EQ(series.begin()->second, (Series{2.0, 4.0}));
     EXPECT_EQ(series.begin()->first.title(), "p/1  wall_time_ms");
@@ -496,18 +496,18 @@ TEST(SeriesOf, ATimeWithAFrameThatIsVoidIsVoid) {
     records[1].frame = 1;
     records[1].status = report::Status::Ambiguous;
     records[1].message = "frame 1: blank";
-    SeriesMap series = seriesOf(records);
+    SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
     ASSERT_EQ(series.begin()->second.size(), 1U);
     EXPECT_TRUE(standing(series.begin()->second).empty()) << "the other frames are another time";
-    const CaseTexts texts = voidTimesOf(records);
+    const CaseTexts texts = voidTimesOf(records, {});
     ASSERT_EQ(texts.size(), 1U);
     EXPECT_EQ(texts.begin()->second, "frame 1: blank");
-    EXPECT_TRUE(failuresOf(records).empty());
+    EXPECT_TRUE(failuresOf(records, {}).empty());
     EXPECT_EQ(untimedCases(records), 0U);
     records[1].lane = "quality";
     EXPECT_EQ(untimedCases(records), 1U);
-    EXPECT_EQ(seriesOf(records).begin()->second, Series{3.0});
+    EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{3.0});
 }
 
 TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
@@ -522,7 +522,7 @@ TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
                                            recordOf("wall_time_ms", "ms", 1),
                                            recordOf("voxels", "voxel", 7)};
     records[8].pass = "draw";
-    const SeriesMap series = seriesOf(records);
+    const SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
     EXPECT_EQ(series.begin()->first.metric, "voxels");
 }
@@ -530,16 +530,16 @@ TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
 TEST(SeriesOf, TheLastOfTwoValuesOfOnePlaceCounts) {
     const std::vector<report::Record> records = {recordOf("triangles", "triangle", 5),
                                                  recordOf("triangles", "triangle", 7)};
-    EXPECT_EQ(seriesOf(records).begin()->second, Series{7.0});
+    EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{7.0});
 }
 
 TEST(SeriesOf, SetUpCountsWhereNoFrameHasTheSame) {
     std::vector<report::Record> records = {recordOf("nodes", "node", 5),
                                            recordOf("nodes", "node", 7)};
     records[0].frame = records[0].repeat = report::kSetup;
-    EXPECT_EQ(seriesOf(records).begin()->second, Series{7.0});
+    EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{7.0});
     records.pop_back();
-    EXPECT_EQ(seriesOf(records).begin()->second, Series{5.0});
+    EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{5.0});
 }
 
 }  // namespace

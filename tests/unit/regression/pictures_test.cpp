@@ -23,7 +23,7 @@ using testing::HasSubstr;
 /// Two runs of one case, and where their comparison goes.
 class Pictures : public ::testing::Test {
   protected:
-    /// Records a picture in the run `side`; `params` as its records say them.
+    /// Records a picture in the run `side`; `params` as its plan says them.
     void record(const std::string& side, const std::string& name, const ImageF& picture,
                 const std::string& params = "{}", int frame = 0) {
         const fs::path dir = folder.path() / side;
@@ -40,7 +40,7 @@ class Pictures : public ::testing::Test {
         row.caseId = side;
         row.table = "p/1";
         row.technique = "mock";
-        row.params = params;
+        caseParams[side] = params;
         records[side] = {row};
     }
     std::string file(const std::string& side, const std::string& ending) const {
@@ -48,7 +48,7 @@ class Pictures : public ::testing::Test {
     }
     std::vector<Difference> compared(bool isOneBuild = false) {
         const auto pictures = [&](const std::string& side) {
-            return picturesOf(folder.path() / side, records[side]);
+            return picturesOf(folder.path() / side, records[side], caseParams);
         };
         return comparePictures(
             pictures("a"), pictures("b"),
@@ -62,6 +62,7 @@ class Pictures : public ::testing::Test {
 
     test::TemporaryFolder folder;
     std::map<std::string, std::vector<report::Record>> records;
+    CaseParams caseParams;
     std::map<std::string, config::PictureTolerance> tolerances;
 };
 
@@ -214,8 +215,8 @@ TEST_F(Pictures, ALostOneIsAnAlarmUnlessAllOfItsCaseIsLost) {
 TEST_F(Pictures, ListedOnesThatAreNotThereAreNone) {
     record("a", "flat", kGrey);
     for (const char* ending : {".png", ".exr"}) fs::remove(file("a", ending));
-    EXPECT_TRUE(picturesOf(folder.path() / "a", records["a"]).empty());
-    EXPECT_TRUE(picturesOf(folder.path() / "nothing", {}).empty());
+    EXPECT_TRUE(picturesOf(folder.path() / "a", records["a"], caseParams).empty());
+    EXPECT_TRUE(picturesOf(folder.path() / "nothing", {}, {}).empty());
 }
 
 TEST_F(Pictures, NamesOfARunBecomeNoOtherPlace) {

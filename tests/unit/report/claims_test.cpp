@@ -39,7 +39,7 @@ layout:
 using Function = double (*)(double);
 constexpr Function kZero = [](double) { return 1.0; };
 
-std::vector<Record> powers(Function a, Function b = kZero, Function c = kZero) {
+Recorded powers(Function a, Function b = kZero, Function c = kZero) {
     RecordMaker maker;
     for (const int n : {1, 2, 4, 8}) {
         maker.beginCase("", "{\"n\":" + std::to_string(n) + "}");
@@ -48,7 +48,7 @@ std::vector<Record> powers(Function a, Function b = kZero, Function c = kZero) {
     return maker.records();
 }
 
-ClaimResult judgeOne(const std::string& body, const std::vector<Record>& records,
+ClaimResult judgeOne(const std::string& body, const Recorded& records,
                      const ReportContext& context = kSoftware) {
     const config::Experiment experiment = experimentFrom(body);
     const auto results = evaluateClaims(experiment, buildTable(experiment, records), context);
@@ -56,7 +56,7 @@ ClaimResult judgeOne(const std::string& body, const std::vector<Record>& records
     return results[0];
 }
 
-ClaimResult judgePowers(const std::string& claim, const std::vector<Record>& records) {
+ClaimResult judgePowers(const std::string& claim, const Recorded& records) {
     return judgeOne(powersBody(claim), records);
 }
 
@@ -410,7 +410,7 @@ double normal(Random& random) {
     return sum;
 }
 
-std::vector<Record> noisyPair(double ratio, double noise, std::uint64_t seed) {
+Recorded noisyPair(double ratio, double noise, std::uint64_t seed) {
     Random random(seed);
     RecordMaker maker;
     for (const auto& [method, mean] :
@@ -450,7 +450,7 @@ TEST(Claims, AmbiguousSaysSo) {
 /// Rows n = 1, 2, 4, 8; wall and CPU time in each of `rounds` processes: a function of n and round.
 using Timed = std::function<double(double n, int round)>;
 
-std::vector<Record> timedRows(int rounds, const Timed& wallMs, const Timed& processMs = {}) {
+Recorded timedRows(int rounds, const Timed& wallMs, const Timed& processMs = {}) {
     RecordMaker maker;
     for (const int n : {1, 2, 4, 8}) {
         maker.beginCase("", "{\"n\":" + std::to_string(n) + "}");
@@ -476,7 +476,7 @@ claims:
            claim + "}\n";
 }
 
-ClaimResult judgeTimed(const std::string& claim, const std::vector<Record>& records,
+ClaimResult judgeTimed(const std::string& claim, const Recorded& records,
                        const ReportContext& context = kSoftware) {
     return judgeOne(timedBody(claim), records, context);
 }

@@ -26,7 +26,7 @@ layout:
 }
 
 /// Scene a: draw_ms is 10 · size by three processes, failed at size 1; b is not run.
-std::vector<Record> sizedRecords() {
+Recorded sizedRecords() {
     RecordMaker maker;
     for (const int size : {0, 2, 4}) {
         maker.beginCase("a", "{\"size\":" + std::to_string(size) + "}");
@@ -40,7 +40,7 @@ std::vector<Record> sizedRecords() {
     return maker.records();
 }
 
-Figure figureOf(const config::Experiment& experiment, const std::vector<Record>& records) {
+Figure figureOf(const config::Experiment& experiment, const Recorded& records) {
     return makeFigure(experiment.plots.at(0), buildTable(experiment, records));
 }
 

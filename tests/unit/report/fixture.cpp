@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/support/support.h"
 
@@ -23,6 +24,64 @@ config::Experiment withPaperCases(
     return experiment;
 }
 
+namespace {
+
+/// Whether the recorded case lies at that point of the sweep: what both name is the same.
+bool isAt(const PlannedCase& recorded, const PlannedCase& point) {
+    const auto standsFor = recorded.params.find(kStandsFor);
+    const std::string scene =
+        standsFor == recorded.params.end() ? recorded.scene : standsFor->get<std::string>();
+    if (recorded.table != point.table) return false;
+    if (!point.scene.empty() && scene != point.scene) return false;
+    for (const auto& [name, value] : point.params.items()) {
+        const auto own = recorded.params.find(name);
+        if (own != recorded.params.end() && *own != value) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Recorded& records) {
+    std::vector<PlannedCase> planned;
+    std::set<std::string> placed;
+    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
+        PlannedCase point{"",
+                          experiment.id,
+                          spec.scene.isNull() ? "" : spec.scene.text(),
+                          spec.params.toJson(),
+                          {}};
+        point.params["output"] = {{"width", spec.outputWidthPx}, {"height", spec.outputHeightPx}};
+        for (const auto& [axis, value] : spec.axes) point.axes.push_back(axis);
+        bool isRecorded = false;
+        for (const PlannedCase& item : records.cases) {
+            if (!isAt(item, point)) continue;
+            isRecorded = true;
+            if (!placed.insert(item.id).second) continue;
+            planned.push_back(item);
+            planned.back().axes = point.axes;
+        }
+        if (!isRecorded) planned.push_back(std::move(point));
+    }
+    for (const PlannedCase& item : records.cases) {
+        if (placed.insert(item.id).second) planned.push_back(item);
+    }
+    return planned;
+}
+
+Table buildTable(const config::Experiment& experiment, const Recorded& records) {
+    return buildTable(experiment, planOf(experiment, records), records);
+}
+
+std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
+                               const Recorded& records) {
+    std::vector<Table> tables;
+    for (const config::Experiment& experiment : experiments) {
+        tables.push_back(buildTable(experiment, records));
+    }
+    return tables;
+}
+
 RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string& params) {
     current_ = Record{};
     current_.caseId = "case:" + scene + params;
@@ -31,7 +90,8 @@ RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string&
     const auto json = nlohmann::json::parse(params);
     if (json.contains("method")) current_.method = json["method"].get<std::string>();
     current_.scene = scene;
-    current_.params = params;
+    records_.cases.push_back(
+        {current_.caseId, current_.table, scene, nlohmann::json::parse(params), {}});
     current_.lane = "timing";
     return *this;
 }

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/report/case_records.h"
 #include "runner/report/claims.h"
 #include "runner/report/records.h"
+#include "runner/report/report.h"
 #include "runner/report/table.h"
 
 namespace gfxrepro::report {
@@ -20,6 +22,19 @@ config::Experiment experimentFrom(const std::string& body);
 /// JSON.
 config::Experiment withPaperCases(config::Experiment experiment,
                                   std::initializer_list<std::pair<const char*, const char*>> cases);
+
+/// Records with the cases that they are of.
+struct Recorded : std::vector<Record> {
+    std::vector<PlannedCase> cases;
+};
+
+/// The cases of the experiment's sweep, those that are recorded in the place of those that they
+/// are; behind them the other recorded ones.
+std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Recorded& records);
+/// The table of a run with that plan.
+Table buildTable(const config::Experiment& experiment, const Recorded& records);
+std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
+                               const Recorded& records);
 
 /// Makes records of "zju2005/9.9"; a case is known by its scene and params.
 class RecordMaker {
@@ -36,11 +51,11 @@ class RecordMaker {
                      const std::string& pass = "", const std::string& unit = "ms");
     RecordMaker& fail(Status status, const std::string& message);
 
-    const std::vector<Record>& records() const { return records_; }
+    const Recorded& records() const { return records_; }
 
   private:
     Record current_;
-    std::vector<Record> records_;
+    Recorded records_;
 };
 
 }  // namespace gfxrepro::report

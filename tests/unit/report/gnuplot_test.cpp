@@ -240,7 +240,7 @@ plots:
 )");
 }
 
-std::vector<Record> records() {
+Recorded records() {
     RecordMaker maker;
     for (const int size : {1, 2, 4}) {
         maker.beginCase("a", "{\"size\":" + std::to_string(size) + "}");

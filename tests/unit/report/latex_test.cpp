@@ -22,7 +22,7 @@ std::vector<std::string> keysOf(const std::string& latex) {
     return keys;
 }
 
-Table tableFrom(const std::string& body, const std::vector<Record>& records) {
+Table tableFrom(const std::string& body, const Recorded& records) {
     return buildTable(experimentFrom(body), records);
 }
 

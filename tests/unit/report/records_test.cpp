@@ -20,8 +20,8 @@ using test::errorText;
 using test::TemporaryFolder;
 
 constexpr const char* kHeader =
-    "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
-    "value,status,message,rows\n";
+    "schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,unit,value,"
+    "status,message,rows\n";
 
 TEST(Csv, RowsAndColumnsHaveTheirLimits) {
     std::vector<std::string> fields;
@@ -42,7 +42,6 @@ Record sample(const std::string& caseId, double value) {
     record.technique = "voxelization";
     record.method = "worksheet";
     record.scene = "models/duck";
-    record.params = R"({"resolution":256,"method":"worksheet"})";
     record.frame = 1;
     record.repeat = 2;
     record.process = 3;
@@ -60,8 +59,7 @@ TEST(Records, WriteTheDocumentedColumns) {
     RecordWriter(path).append({sample("abc", 0.1)});
     EXPECT_EQ(readFile(path),
               std::string(kHeader) +
-                  "2,abc,zju2005/2.1,voxelization,worksheet,models/duck,"
-                  "\"{\"\"resolution\"\":256,\"\"method\"\":\"\"worksheet\"\"}\",1,2,3,timing,"
+                  "3,abc,zju2005/2.1,voxelization,worksheet,models/duck,1,2,3,timing,"
                   "rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
 }
 
@@ -143,35 +141,28 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
         const auto path = folder.write("records.csv", content);
         return errorText([&] { readRecords(path); }, folder.path());
     };
-    const std::string good = "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,,1\n";
+    const std::string good = "3,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n";
     EXPECT_EQ(error("a,b\n"),
               "DIR/records.csv:1: expected the header "
-              "'schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,"
-              "metric,unit,value,status,message,rows', found 'a,b'");
-    EXPECT_EQ(error(kHeader + good + "2,c,t\n"), "DIR/records.csv:3: expected 18 columns, found 3");
-    EXPECT_EQ(error(kHeader + good + "1,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,ok,,1\n"),
-              "DIR/records.csv:3: expected records of schema 2, found 1");
-    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0.5,0,0,timing,p,x,ms,1,ok,,1\n"),
+              "'schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,"
+              "unit,value,status,message,rows', found 'a,b'");
+    EXPECT_EQ(error(kHeader + good + "3,c,t\n"), "DIR/records.csv:3: expected 17 columns, found 3");
+    EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n"),
+              "DIR/records.csv:3: expected records of schema 3, found 2");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0.5,0,0,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
-    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,-2,timing,p,x,ms,1,ok,,1\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,-2,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:2: column 'process': expected 0 to 999999, found '-2'");
-    for (const char* sample : {"-1", "1000", "1.5", "1e3", "null"}) {
-        EXPECT_EQ(error(kHeader + ("2,c,t,q,m,s,\"{\"\"scene_sample\"\":" + std::string(sample)) +
-                        "}\",0,0,0,timing,p,x,ms,1,ok,,1\n"),
-                  "DIR/records.csv:2: column 'params': '/scene_sample' is " +
-                      (sample == std::string("1e3") ? "1000.0" : std::string(sample)) +
-                      "; expected a whole number from 0 to 999");
-    }
-    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,fast,ok,,1\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,0,timing,p,x,ms,fast,ok,,1\n"),
               "DIR/records.csv:2: column 'value': expected a number or nothing, found 'fast'");
-    EXPECT_EQ(error(std::string(kHeader) + "2,c,t,q,m,s,{},0,0,0,timing,p,x,ms,1,fine,,1\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,0,timing,p,x,ms,1,fine,,1\n"),
               "DIR/records.csv:2: column 'status': found 'fine'; allowed: ok, ambiguous, flaky, "
               "unsupported, timeout, oom, crash, device-lost, missing, error");
-    EXPECT_EQ(error(std::string(kHeader) + "2,\"two\nlines\",t\n" + good),
-              "DIR/records.csv:2: expected 18 columns, found 3");
-    EXPECT_EQ(error(std::string(kHeader) + "1,c\"d,t\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "3,\"two\nlines\",t\n" + good),
+              "DIR/records.csv:2: expected 17 columns, found 3");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c\"d,t\n"),
               "DIR/records.csv:2: expected a comma or the end of the line after 'c', found '\"'");
-    EXPECT_EQ(error(std::string(kHeader) + "1,\"c\"d,t\n"),
+    EXPECT_EQ(error(std::string(kHeader) + "3,\"c\"d,t\n"),
               "DIR/records.csv:2: expected a comma or the end of the line after 'c', found 'd'");
     EXPECT_EQ(errorText([&] { readRecords(folder.path() / "none.csv"); }, folder.path()),
               "cannot read DIR/none.csv: No such file or directory");
@@ -182,8 +173,8 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
 
 /// A row of case `caseId` as written, which says that its unit has `rows` rows.
 std::string rowText(const std::string& caseId, int frame, int process, int rows) {
-    return "2," + caseId + ",t,q,m,s,{}," + std::to_string(frame) + ",0," +
-           std::to_string(process) + ",timing,p,x,ms,1,ok,," + std::to_string(rows) + "\n";
+    return "3," + caseId + ",t,q,m,s," + std::to_string(frame) + ",0," + std::to_string(process) +
+           ",timing,p,x,ms,1,ok,," + std::to_string(rows) + "\n";
 }
 
 TEST(Records, AValueGivenTwiceIsAnError) {
@@ -207,6 +198,31 @@ TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
     const auto path = folder.write("records.csv", kHeader + cut + whole);
     EXPECT_EQ(errorText([&] { readRecords(path); }, folder.path()),
               "DIR/records.csv:3: case c, process 1 has 2 of 3 rows");
+}
+
+/// Rows of schema 2 had the parameters of their case.
+TEST(Records, ThoseOfBeforeAreReadAndNotGoneOnWith) {
+    const TemporaryFolder folder;
+    const std::string header =
+        "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,"
+        "unit,value,status,message,rows\n";
+    const std::string row =
+        "2,abc,zju2005/2.1,voxelization,worksheet,models/duck,\"{\"\"resolution\"\":256}\",1,2,3,"
+        "timing,rasterization,gpu_time_ms,ms,0.5,ok,,";
+    const auto path = folder.write("records.csv", header + row + "1\n");
+    EXPECT_EQ(readRecords(path), std::vector{sample("abc", 0.5)});
+    EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
+                testing::StartsWith("DIR/records.csv:1: expected the header 'schema,case,"));
+    EXPECT_EQ(readFile(path), header + row + "1\n");
+    const auto error = [&](const std::string& rows) {
+        folder.write("records.csv", header + rows);
+        return errorText([&] { readRecords(path); }, folder.path());
+    };
+    EXPECT_TRUE((folder.write("records.csv", header + row + "2\n"), readRecords(path)).empty())
+        << "a unit that was cut";
+    EXPECT_EQ(error("3" + row.substr(1) + "1\n"),
+              "DIR/records.csv:2: expected records of schema 2, found 3");
+    EXPECT_EQ(error("2,c,t\n"), "DIR/records.csv:2: expected 18 columns, found 3");
 }
 
 TEST(Records, WriterRefusesAnotherFile) {

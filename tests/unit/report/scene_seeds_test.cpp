@@ -19,7 +19,7 @@ claims:
 )";
 
 /// The meadow's share at each seed; the scan, which has none, has 6.
-std::vector<Record> records(const std::vector<double>& shares) {
+Recorded records(const std::vector<double>& shares) {
     RecordMaker maker;
     for (std::size_t i = 0; i < shares.size(); ++i) {
         const std::string sample = "\"scene_sample\":" + std::to_string(i);

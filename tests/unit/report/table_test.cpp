@@ -213,7 +213,7 @@ TEST(Table, OneProcessOfTwoFailedIsPartial) {
 TEST(Table, FlakyValueIsShownAndMarked) {
     RecordMaker maker;
     maker.beginCase("models/bunny").add("gpu_time_ms", {4.0, 4.0}, "draw");
-    std::vector<Record> records = maker.records();
+    Recorded records = maker.records();
     for (Record& record : records) record.status = Status::Flaky;
     const Table table = buildTable(experimentFrom(kPlain), records);
     const Cell& cell = table.rows[1].cells[1];
@@ -240,7 +240,7 @@ TEST(Table, TimesOfTheQualityLaneStayOut) {
 TEST(Table, DoubtfulMeasurementIsNoNumber) {
     RecordMaker maker;
     maker.beginCase("models/bunny").add("gpu_time_ms", {4.0, 5.0}, "draw");
-    std::vector<Record> records = maker.records();
+    Recorded records = maker.records();
     for (Record& record : records) {
         record.status = Status::Ambiguous;
         record.message = "the image is blank";
@@ -255,8 +255,9 @@ TEST(Table, DoubtfulMeasurementIsNoNumber) {
 }
 
 TEST(Table, OtherExperimentsArePassedOver) {
-    std::vector<Record> records = duckAndBunny().records();
+    Recorded records = duckAndBunny().records();
     for (Record& record : records) record.table = "zju2005/9.8";
+    for (PlannedCase& item : records.cases) item.table = "zju2005/9.8";
     const Table table = buildTable(experimentFrom(kPlain), records);
     EXPECT_EQ(table.rows[0].cells[1].status, Status::Missing);
 }
@@ -490,16 +491,6 @@ layout:
 )x";
     const Table table = buildTable(experimentFrom(body), maker.records());
     EXPECT_EQ(table.rows[0].cells[0].measured, "16.0 (25.0)");
-}
-
-TEST(Table, BadParamsNameTheCase) {
-    RecordMaker maker;
-    maker.beginCase("models/duck").add("gpu_time_ms", {4.0}, "draw");
-    std::vector<Record> records = maker.records();
-    records[0].params = "{oops";
-    EXPECT_THAT(errorText([&] { buildTable(experimentFrom(kPlain), records); }),
-                testing::StartsWith("case case:models/duck{} of zju2005/9.9: its params are not "
-                                    "JSON: "));
 }
 
 TEST(Table, OnesOwnExperimentNeedsNoLayout) {

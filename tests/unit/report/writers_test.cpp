@@ -37,7 +37,7 @@ assumptions:
                           {{"models/duck", "{}"}, {"<b>&|_%", "{light_grid: 16}"}});
 }
 
-std::vector<Record> records() {
+Recorded records() {
     RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
     maker.add("scene_source", {1.0}, "", "enum");
