@@ -24,8 +24,7 @@ using Clock = PhaseClock::Clock;
 constexpr std::chrono::milliseconds kTickInterval{250};
 constexpr std::chrono::seconds kSuspended{1};  // nothing but a suspended runner oversleeps so long
 
-/// Ctrl-C, SIGTERM and the end of the terminal (unless it is ignored, as under nohup) as a
-/// descriptor to poll, for as long as the object lives.
+/// Ctrl-C, SIGTERM and the terminal's end (unless ignored: nohup) as a descriptor to poll.
 class SignalWatch {
   public:
     SignalWatch() {

@@ -105,8 +105,7 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--shard", options.shard, "the Kth of N parts; --from the same for each")
         ->option_text("K/N");
     addFrom(app, options.from);
-    app->add_option("--budget", options.budget,
-                    "only the tables that decide most claims within TIME")
+    app->add_option("--budget", options.budget, "only tables that decide most claims in TIME")
         ->option_text("TIME");
     app->add_option("--jobs", options.jobs, "quality cases at once")
         ->check(CLI::Range(1, 256))

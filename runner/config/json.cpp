@@ -31,8 +31,7 @@ struct Reader {
     int* line;
 };
 
-/// A value takes many times its bytes in memory. A plan has 200,000 cases at most, of up to 150 values
-/// each.
+/// A value takes many times its bytes in memory. A plan has at most 200,000 cases of 150 values.
 constexpr std::size_t kMostValues = 30'000'000;
 
 /// Builds the tree while the parser walks the text: a tree of the parser's own would be as large as
