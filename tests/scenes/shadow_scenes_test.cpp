@@ -64,7 +64,7 @@ TEST(TownSquare, HasAsManyLeavesAsAsked) {
 
 TEST(TownSquare, BadParametersAreLocated) {
     EXPECT_EQ(test::errorText([] { generated("town_square", "{detail: 9}"); }),
-              "t.yaml:1:10: generator 'town_square': detail is 9; allowed: 0.1 … 4 1");
+              "t.yaml:1:10: generator 'town_square': detail is 9; allowed: 0.1 … 4");
 }
 
 }  // namespace
