@@ -211,12 +211,13 @@ TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
         << lost.out;
     EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"lost: recorded before only"),
               std::string::npos);
-    const ProcessResult never = mockGfxrepro({"compare", b, a, "--out", out});  // kept results
+    const ProcessResult never =
+        mockGfxrepro({"compare", b, a, "--out", out + "2"});  // kept results
     EXPECT_EQ(never.exitCode, 0) << never.out << never.err;
     EXPECT_NE(never.out.find("warning: the older run has no pictures: none are compared\n"),
               std::string::npos)
         << never.out;
-    EXPECT_EQ(mockGfxrepro({"compare", b, b, "--out", out}).exitCode, 0);
+    EXPECT_EQ(mockGfxrepro({"compare", b, b, "--out", out + "3"}).exitCode, 0);
 }
 
 TEST_F(Compare, RefusesWhatIsNoPair) {
