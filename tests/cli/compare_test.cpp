@@ -185,10 +185,10 @@ TEST_F(Compare, PicturesMayDifferByWhatTheTableAllows) {
         const ProcessResult run = runProgram(
             {program("other", 0, shade), "run", config, "--device", "software", "--out", b});
         EXPECT_EQ(run.exitCode, 0) << run.err;
-        return mockGfxrepro({"compare", a, b, "--out", out});
+        return mockGfxrepro({"compare", a, b, "--out", out + shade});
     };
     EXPECT_EQ(compared("0.75").exitCode, 0);
-    EXPECT_FALSE(fs::exists(out + "/pictures"));
+    EXPECT_FALSE(fs::exists(out + "0.75/pictures"));
     EXPECT_EQ(compared("0.875").exitCode, 1);
     const ProcessResult notFinite = compared("nan");
     EXPECT_EQ(notFinite.exitCode, 1);
