@@ -101,14 +101,18 @@ Node::MapContent& Node::OwnMap::get() {
 
 Node Node::scalar(std::string text, SourceLocation where, bool quoted) {
     Node node;
-    node.value_ = Scalar{std::move(text), quoted, false};
+    if (quoted) {
+        node.value_ = Quoted{std::move(text)};
+    } else {
+        node.value_ = Plain{std::move(text)};
+    }
     node.location_ = std::move(where);
     return node;
 }
 
 Node Node::block(std::string text, SourceLocation where) {
     Node node;
-    node.value_ = Scalar{std::move(text), true, true};
+    node.value_ = Block{std::move(text)};
     node.location_ = std::move(where);
     return node;
 }
@@ -161,9 +165,17 @@ std::string Node::kindName() const {
     return tryBool() ? "a boolean" : "text";
 }
 
+const std::string* Node::scalarText() const {
+    if (const auto* plain = std::get_if<Plain>(&value_)) return &plain->text;
+    if (const auto* quoted = std::get_if<Quoted>(&value_)) return &quoted->text;
+    if (const auto* block = std::get_if<Block>(&value_)) return &block->text;
+    return nullptr;
+}
+
 const std::string& Node::text() const {
-    if (!isScalar()) throwExpected("text", *this);
-    return std::get<Scalar>(value_).text;
+    const std::string* text = scalarText();
+    if (!text) throwExpected("text", *this);
+    return *text;
 }
 
 double Node::asDouble() const {
@@ -200,18 +212,18 @@ std::span<Node::Map::value_type> Node::entries() {
 }
 
 std::optional<double> Node::tryDouble() const {
-    const auto* value = std::get_if<Scalar>(&value_);
-    return value && !value->quoted ? parseDouble(value->text) : std::nullopt;
+    const auto* value = std::get_if<Plain>(&value_);
+    return value ? parseDouble(value->text) : std::nullopt;
 }
 
 std::optional<long long> Node::tryInteger() const {
-    const auto* value = std::get_if<Scalar>(&value_);
-    return value && !value->quoted ? parseInteger(value->text) : std::nullopt;
+    const auto* value = std::get_if<Plain>(&value_);
+    return value ? parseInteger(value->text) : std::nullopt;
 }
 
 std::optional<bool> Node::tryBool() const {
-    const auto* value = std::get_if<Scalar>(&value_);
-    if (!value || value->quoted) return std::nullopt;
+    const auto* value = std::get_if<Plain>(&value_);
+    if (!value) return std::nullopt;
     if (value->text == "true") return true;
     if (value->text == "false") return false;
     return std::nullopt;
@@ -286,13 +298,13 @@ void Node::setPath(std::string_view dottedPath, Node value) {
 }
 
 bool Node::sameContent(const Node& other) const {
-    if (value_.index() != other.value_.index()) return false;
-    if (isScalar()) {
+    if (isScalar() && other.isScalar()) {
         const auto a = tryDouble();
         const auto b = other.tryDouble();
         if (a || b) return a == b;
         return tryBool() == other.tryBool() && text() == other.text();
     }
+    if (value_.index() != other.value_.index()) return false;
     if (isSequence()) {
         return std::equal(items().begin(), items().end(), other.items().begin(),
                           other.items().end(),
@@ -338,14 +350,14 @@ std::string Node::toFlowText() const {
         for (const auto& [key, value] : entries()) parts.push_back(key + ": " + value.toFlowText());
         return fmt::format("{{{}}}", joined(parts));
     }
-    const auto& [text, quoted, isBlock] = std::get<Scalar>(value_);
-    const bool misread = quoted && (parseDouble(text) || text == "true" || text == "false");
+    const std::string& text = *scalarText();
+    const bool misread = !std::holds_alternative<Plain>(value_) &&
+                         (parseDouble(text) || text == "true" || text == "false");
     return misread || needsQuotes(text) ? toJson().dump() : text;
 }
 
 SourceLocation Node::lineLocation(std::size_t lineIndex) const {
-    const auto* value = std::get_if<Scalar>(&value_);
-    if (!value || !value->isBlock || location_.line == 0) return location_;
+    if (!std::holds_alternative<Block>(value_) || location_.line == 0) return location_;
     return {location_.file, location_.line + 1 + static_cast<int>(lineIndex), 0};
 }
 

@@ -46,7 +46,7 @@ class Node {
     std::string kindName() const;
 
     bool isNull() const { return std::holds_alternative<std::monostate>(value_); }
-    bool isScalar() const { return std::holds_alternative<Scalar>(value_); }
+    bool isScalar() const { return scalarText() != nullptr; }
     bool isSequence() const { return std::holds_alternative<Sequence>(value_); }
     bool isMap() const { return std::holds_alternative<OwnMap>(value_); }
 
@@ -86,10 +86,15 @@ class Node {
     std::string toFlowText() const;
 
   private:
-    struct Scalar {
+    // How a scalar was written: kinds of their own, as a plan of 100,000 cases has millions.
+    struct Plain {
         std::string text;
-        bool quoted = false;   // a quoted "12" is text, not a number
-        bool isBlock = false;  // written below a bar
+    };
+    struct Quoted {  // "12" is text, not a number
+        std::string text;
+    };
+    struct Block {  // written below a bar
+        std::string text;
     };
     struct MapContent {
         Map entries;
@@ -119,8 +124,9 @@ class Node {
         std::unique_ptr<MapContent> content_;
     };
     const MapContent& mapContent() const { return std::get<OwnMap>(value_).get(); }
+    const std::string* scalarText() const;  // null: no scalar
 
-    std::variant<std::monostate, Scalar, Sequence, OwnMap> value_;
+    std::variant<std::monostate, Plain, Quoted, Block, Sequence, OwnMap> value_;
     SourceLocation location_;
 };
 

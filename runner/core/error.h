@@ -2,7 +2,6 @@
 // assertion.
 #pragma once
 
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -10,12 +9,12 @@
 
 namespace gfxrepro {
 
-/// The name of a file. Copies share the text (a departure from the rule against shared_ptr): every
-/// value of a plan of 100,000 cases has it, which would be a hundred bytes each.
+/// The name of a file, kept once however many places are in it: every value of a plan of 100,000
+/// cases has one.
 class FileName {
   public:
     FileName() = default;
-    FileName(std::string name) : name_(std::make_shared<const std::string>(std::move(name))) {}
+    FileName(const std::string& name);
     FileName(const char* name) : FileName(std::string(name)) {}
 
     const std::string& text() const {
@@ -23,11 +22,11 @@ class FileName {
         return name_ ? *name_ : kNone;
     }
     operator const std::string&() const { return text(); }
-    bool empty() const { return text().empty(); }
-    bool operator==(const FileName& other) const { return text() == other.text(); }
+    bool empty() const { return name_ == nullptr; }
+    bool operator==(const FileName& other) const = default;
 
   private:
-    std::shared_ptr<const std::string> name_;
+    const std::string* name_ = nullptr;  // null: empty
 };
 
 /// A place in a text file. Lines and columns count from 1; 0 means that it is not known.
