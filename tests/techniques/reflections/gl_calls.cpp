@@ -47,6 +47,9 @@ void glFinish() {
 void glGetQueryObjectui64v(GLuint id, GLenum name, GLuint64* value) {
     passOn(GlCall::Wait, __func__, id, name, value);
 }
+void glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, const void* data) {
+    passOn(GlCall::Write, __func__, buffer, offset, size, data);
+}
 void glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
     passOn(GlCall::Wait, __func__, buffer, offset, size, data);
 }

@@ -10,6 +10,7 @@ enum class GlCall {
     Flush,       // glFlush
     LookUp,      // glGetUniformLocation: one a uniform that is set
     Barrier,     // glMemoryBarrier
+    Write,       // glNamedBufferSubData: into what the device may still read
     Wait,        // what the host cannot go on without: read-backs, results of queries, glFinish
 };
 

@@ -1,6 +1,7 @@
 // The device's ray tracer against Embree's.
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -9,6 +10,7 @@
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/shared/reflections/embree_tracer.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/techniques/reflections/gl_calls.h"
 
 namespace gfxrepro::reflections {
 namespace {
@@ -238,6 +240,26 @@ TEST_F(GpuRayTracerTest, TracesOnlyWhatIsWanted) {
     tracer.trace(gbuffer, &wanted, some, profiler_);
     EXPECT_EQ(tracer.lastCounts().samples, 0U);
     EXPECT_EQ(tracer.lastCounts().rays, 0U);
+}
+
+// What the device may still be reading, of the last frame, is not written to by the host: that
+// would wait for it.
+TEST_F(GpuRayTracerTest, TheHostNeitherWritesNorWaitsWhileItTraces) {
+    const ReflectiveScene scene(mirrors());
+    GpuObjects objects(scene);
+    EnvironmentMap map(shaders_, scene);
+    GBuffer gbuffer(depth_images::viewOf(scene.scene().cameras.front(), kSizePx));
+    GBufferRenderer(shaders_, scene).render(objects, gbuffer);
+    GpuRayTracer tracer(shaders_, objects, map, {}, scene.diagonalM());
+    tracer.update(objects, profiler_);
+    ReflectionTarget target(kSizePx);
+    gl::Profiler untimed(false);
+    tracer.trace(gbuffer, nullptr, target, untimed);
+    glCalls().clear();
+    tracer.trace(gbuffer, nullptr, target, untimed);
+    EXPECT_GT(std::ranges::count(glCalls(), GlCall::Barrier), 0);
+    EXPECT_EQ(std::ranges::count(glCalls(), GlCall::Write), 0);
+    EXPECT_EQ(std::ranges::count(glCalls(), GlCall::Wait), 0);
 }
 
 }  // namespace
