@@ -14,8 +14,10 @@ struct ReuseSettings {
     /// When more than this share of a frame's reflective samples was recomputed, the next frame is
     /// a key frame (Sec. 5.4.4). 0: every frame that needs any; 1: never again.
     float keyFrameThreshold = 0.3F;
-    MatchingSettings matching;
-    ReprojectionSettings reprojection;
+    /// Not the printed algorithm, as which matcher and reprojection begin: matches between pixels,
+    /// resampled once, err less in less time (README.md).
+    MatchingSettings matching{.matching = Matching::SecondOrder};
+    ReprojectionSettings reprojection{.resampling = Resampling::Once};
     /// The comparator: depth alone, as if reflections were painted on the surface.
     bool isDirect = false;
     /// Outlook of Sec. 5.5.4: samples whose reflected segment, then or now, passes the box of an

@@ -41,6 +41,21 @@ scene::Scene roomWithPaths() {
     return scene;
 }
 
+/// Algorithms 8 and 9 as the thesis has them, which is not the default.
+constexpr const char* kPrinted = ", matching: first_order, resampling: twice";
+
+TEST(ReuseParamsTest, MatchesLieBetweenPixelsAndAreResampledOnceByDefault) {
+    const auto settingsOf = [](const std::string& yaml) {
+        config::Params params = paramsOf(yaml);
+        return ReuseParams(params).reuse;
+    };
+    EXPECT_EQ(settingsOf("{}").matching.matching, Matching::SecondOrder);
+    EXPECT_EQ(settingsOf("{}").reprojection.resampling, Resampling::Once);
+    const ReuseSettings printed = settingsOf(fmt::format("{{method: reuse{}}}", kPrinted));
+    EXPECT_EQ(printed.matching.matching, Matching::FirstOrder);
+    EXPECT_EQ(printed.reprojection.resampling, Resampling::Twice);
+}
+
 class ReflectionReuseTest : public test::GlTest {
   protected:
     /// What is recorded of frames 0 … frameCount − 1, each rendered `repeats` times.
@@ -158,7 +173,8 @@ TEST_F(ReflectionReuseTest, EveryMethodAndTracerRecordsSharesMemoryAndErrors) {
         for (const char* tracer : {"compute", "embree", "clustered"}) {
             SCOPED_TRACE(fmt::format("{} {}", method, tracer));
             const auto frames =
-                recorded(fmt::format("{{method: {}, tracer: {}, path_frames: 40}}", method, tracer),
+                recorded(fmt::format("{{method: {}, tracer: {}, path_frames: 40{}}}", method,
+                                     tracer, std::string(method) == "reuse" ? kPrinted : ""),
                          &room_, 2);
             EXPECT_EQ(passes_.front(), "diffuse");
             EXPECT_EQ(passes_.back(), "composite");
@@ -191,12 +207,9 @@ TEST_F(ReflectionReuseTest, EveryMethodAndTracerRecordsSharesMemoryAndErrors) {
 }
 
 TEST_F(ReflectionReuseTest, ResamplingOnceTakesNoShiftLessMemoryAndErrsLess) {
-    const char* const kTwice = "{tracer: embree, path_frames: 20, matching: second_order}";
-    const char* const kOnce =
-        "{tracer: embree, path_frames: 20, matching: second_order, resampling: once}";
-    const auto twice = recorded(kTwice, &room_, 4);
+    const auto twice = recorded("{tracer: embree, path_frames: 20, resampling: twice}", &room_, 4);
     EXPECT_EQ(std::ranges::count(passes_, "reflection_shift"), 1);
-    const auto once = recorded(kOnce, &room_, 4);
+    const auto once = recorded("{tracer: embree, path_frames: 20}", &room_, 4);
     EXPECT_EQ(std::ranges::count(passes_, "reflection_shift"), 0);
     EXPECT_EQ(std::ranges::count(passes_, "reflection_warp"), 1);
     EXPECT_EQ(kindsOf(twice), "Krrr");
@@ -257,7 +270,8 @@ TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
 TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
     // A path of one key; one of no length; a camera.
     for (const char* view : {"rest", "still", "front"}) {
-        for (const char* method : {"reuse", "direct", "reuse, resampling: once"}) {
+        for (const char* method :
+             {"reuse", "direct", "reuse, matching: first_order, resampling: twice"}) {
             SCOPED_TRACE(fmt::format("{} {}", view, method));
             const auto frames = recorded(
                 fmt::format("{{view: {}, method: {}, tracer: embree}}", view, method), &room_, 3);
@@ -315,7 +329,7 @@ TEST_F(ReflectionReuseTest, TheThresholdDecidesWhatIsAKeyFrame) {
 // The runner warms up on the first frame and may repeat each.
 TEST_F(ReflectionReuseTest, RenderingAFrameAgainChangesNothing) {
     for (const char* options :
-         {"threshold: 0", "threshold: 1", "matching: second_order, threshold: 1",
+         {"threshold: 0", "threshold: 1", "threshold: 1, matching: first_order, resampling: twice",
           "method: direct, threshold: 0"}) {
         SCOPED_TRACE(options);
         const std::string yaml =
@@ -426,7 +440,8 @@ TEST_F(ReflectionReuseTest, FitsRecomputingOnceAfterTheLastFrame) {
 }
 
 TEST_F(ReflectionReuseTest, ShowsPicturesOfEveryStep) {
-    const auto frames = recorded("{pictures: true, path_frames: 40, supersampling: 2}", &room_, 2);
+    const auto frames = recorded(
+        "{pictures: true, path_frames: 40, supersampling: 2, resampling: twice}", &room_, 2);
     EXPECT_TRUE(frames[0].images.empty()) << "the next frame has the key frame";
     const char* expected[] = {"error",  "error_60", "recomputed", "reflection",
                               "result", "truth",    "undetected"};
