@@ -17,6 +17,7 @@
 
 #include "runner/batch/run_files.h"
 #include "runner/core/error.h"
+#include "runner/core/files.h"
 #include "runner/core/temporary.h"
 
 namespace gfxrepro::batch {
@@ -182,12 +183,7 @@ RunDirectory RunDirectory::open(const fs::path& path) {
 }
 
 void RunDirectory::requireOurs() const {
-    struct stat locked = {}, there = {};
-    const bool isThere = ::stat((path_ / "lock").c_str(), &there) == 0;
-    if (!isThere && errno != ENOENT && errno != ENOTDIR) return;  // a file system that is away
-    const bool isOurs = isThere && ::fstat(lockFd_, &locked) == 0 &&
-                        locked.st_ino == there.st_ino && locked.st_dev == there.st_dev;
-    if (isOurs) return;
+    if (isStillAt(path_ / "lock", lockFd_)) return;
     throw Error(path_.string() +
                 ": was removed or moved, or its lock was, while a run wrote to it; nothing is "
                 "measured into it any more");
