@@ -152,6 +152,10 @@ ProgramEnd runToEnd(const std::vector<std::string>& arguments, std::chrono::seco
             throw Error(arguments.front() + ": did not end in " + std::to_string(limit.count()) +
                         " s");
         }
+        if (end.output.size() > kMostPrintedBytes) {
+            throw Error(arguments.front() + ": ended, as it prints more than " +
+                        std::to_string(kMostPrintedBytes >> 20) + " MiB");
+        }
     }
     end.exitCode = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
     return end;
@@ -159,7 +163,8 @@ ProgramEnd runToEnd(const std::vector<std::string>& arguments, std::chrono::seco
 
 bool readAvailable(int fd, std::string& text) {
     char buffer[65536];
-    while (true) {
+    constexpr std::size_t kMostBytes = std::size_t{4} << 20;
+    for (const std::size_t before = text.size(); text.size() < before + kMostBytes;) {
         const ssize_t count = ::read(fd, buffer, sizeof(buffer));
         if (count > 0) {
             text.append(buffer, static_cast<std::size_t>(count));
@@ -169,6 +174,7 @@ bool readAvailable(int fd, std::string& text) {
             return errno == EAGAIN;
         }
     }
+    return true;
 }
 
 }  // namespace gfxrepro::batch

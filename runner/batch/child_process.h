@@ -60,11 +60,13 @@ struct ProgramEnd {
     int exitCode = 0;
     std::string output;
 };
-/// Runs a program to its end; `arguments[0]` is a path. Throws Error when it takes longer than
-/// `limit`.
+/// Runs a program to its end; `arguments[0]` is a path. Ends it and throws Error when it takes
+/// longer than `limit`, or prints more than kMostPrintedBytes.
+inline constexpr std::size_t kMostPrintedBytes = std::size_t{64} << 20;
 ProgramEnd runToEnd(const std::vector<std::string>& arguments, std::chrono::seconds limit);
 
-/// Appends what can be read now to `text`; false at the end of the stream.
+/// Appends what can be read now to `text`, some MiB of it at most, lest one that never ceases to
+/// write is all that is looked after; false at the end of the stream.
 bool readAvailable(int fd, std::string& text);
 
 }  // namespace gfxrepro::batch

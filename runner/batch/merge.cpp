@@ -1,5 +1,7 @@
 #include "runner/batch/merge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -154,11 +156,12 @@ void copyImages(const RunDirectory& directory, const std::vector<ShardRun>& shar
     report::appendImages(directory.path(), images);
 }
 
-/// A line of a log without what its worker printed.
-std::string withoutOutput(std::string_view line) {
-    if (line.find("\"output\":") == line.npos) return std::string(line);
+/// A line of a log without what its worker printed, or in short.
+std::string reduced(std::string_view line, bool isInShort) {
+    if (!isInShort && line.find("\"output\":") == line.npos) return std::string(line);
     const Json event = Json::parse(line, nullptr, false);
-    if (!event.is_object()) return std::string(line);
+    if (!event.is_object()) return isInShort ? "" : std::string(line);
+    if (isInShort) return inShort(event).dump();
     Json kept = Json::object();
     for (const auto& [name, value] : event.items()) {  // of anybody's: nothing deep is copied
         const bool isFlat =
@@ -171,7 +174,8 @@ std::string withoutOutput(std::string_view line) {
 
 }  // namespace
 
-std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytesWithOutput) {
+std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytesWithOutput,
+                      std::size_t mostWholeBytes) {
     const std::size_t part = mostBytesWithOutput / shards.size();
     std::string text;
     for (const ShardRun& shard : shards) {
@@ -182,12 +186,16 @@ std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytes
         for (std::string_view rest = mapped.text(); !rest.empty();) {
             const std::string_view line = rest.substr(0, rest.find('\n'));
             rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-            if (text.size() + line.size() > kMostWrittenLogBytes) {
-                return text + lastLogEvent().dump() + '\n';
-            }
+            const bool isInShort = text.size() + line.size() > mostWholeBytes;
             const bool isFull = text.size() - begin + line.size() > part;
-            text += isFull ? withoutOutput(line) : std::string(line);
+            text += isInShort || isFull ? reduced(line, isInShort) : std::string(line);
             text += '\n';
+            if (text.size() > kMostLogBytes) {
+                throw Error(
+                    fmt::format("the logs of the shards have more than {} MiB, even in "
+                                "short: a larger log is not read again",
+                                kMostLogBytes >> 20));
+            }
         }
     }
     return text;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runner/batch/run.h"
+#include "runner/batch/run_files.h"
 
 namespace gfxrepro::batch {
 
@@ -27,9 +28,11 @@ std::vector<std::string> missingUnits(const StoredRun& run);
 std::vector<std::string> missingShards(const std::vector<ShardRun>& shards);
 
 /// The logs of the shards one after another; each with what workers printed as far as its part of
-/// `mostBytesWithOutput`: all of it may be more than is read again.
+/// `mostBytesWithOutput`, and in short beyond `mostWholeBytes`: all of it may be more than is read
+/// again. Throws Error where even that is.
 std::string mergedLog(const std::vector<ShardRun>& shards,
-                      std::size_t mostBytesWithOutput = std::size_t{256} << 20);
+                      std::size_t mostBytesWithOutput = std::size_t{256} << 20,
+                      std::size_t mostWholeBytes = kMostWholeLogBytes);
 
 /// Writes plan, manifest, records, log, images and artifacts into `directory`, the plan last.
 void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& shards,

@@ -17,6 +17,7 @@
 
 #include "runner/batch/run_files.h"
 #include "runner/core/error.h"
+#include "runner/core/files.h"
 #include "runner/core/temporary.h"
 
 namespace gfxrepro::batch {
@@ -30,7 +31,8 @@ namespace {
 constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
 // In a log of this size what drivers print is left out: one of 512 MiB is not read again.
 constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
-constexpr auto kMostLogBytes = static_cast<off_t>(kMostWrittenLogBytes);
+constexpr auto kMostWholeBytes = static_cast<off_t>(kMostWholeLogBytes);
+constexpr auto kMostBytes = static_cast<off_t>(kMostLogBytes - (std::size_t{1} << 20));  // a line
 
 /// A worker that its runner began when it was killed has the lock until it is its own program.
 constexpr std::chrono::seconds kLockPatience{2};
@@ -182,12 +184,7 @@ RunDirectory RunDirectory::open(const fs::path& path) {
 }
 
 void RunDirectory::requireOurs() const {
-    struct stat locked = {}, there = {};
-    const bool isThere = ::stat((path_ / "lock").c_str(), &there) == 0;
-    if (!isThere && errno != ENOENT && errno != ENOTDIR) return;  // a file system that is away
-    const bool isOurs = isThere && ::fstat(lockFd_, &locked) == 0 &&
-                        locked.st_ino == there.st_ino && locked.st_dev == there.st_dev;
-    if (isOurs) return;
+    if (isStillAt(path_ / "lock", lockFd_)) return;
     throw Error(path_.string() +
                 ": was removed or moved, or its lock was, while a run wrote to it; nothing is "
                 "measured into it any more");
@@ -195,9 +192,16 @@ void RunDirectory::requireOurs() const {
 
 void RunDirectory::log(const nlohmann::ordered_json& event) const {
     requireOurs();
-    if (sizeOf(logFd_) > kMostLogBytes) return;
+    const off_t bytes = sizeOf(logFd_);
+    if (bytes > kMostBytes) {
+        throw Error(
+            fmt::format("{}: has {} MiB, and a larger one is not read again: nothing more "
+                        "is measured into this folder",
+                        (path_ / "log.jsonl").string(), bytes >> 20));
+    }
+    if (bytes > kMostWholeBytes) return appendToLog(inShort(event));
     appendToLog(event);
-    if (sizeOf(logFd_) > kMostLogBytes) appendToLog(lastLogEvent());
+    if (sizeOf(logFd_) > kMostWholeBytes) appendToLog(inShortFromHere());
 }
 
 void RunDirectory::appendToLog(const nlohmann::ordered_json& event) const {

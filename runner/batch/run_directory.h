@@ -27,8 +27,9 @@ class RunDirectory {
     std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
 
     /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
-    /// and outputs left out once it has 64 MiB; beyond kMostWrittenLogBytes nothing is written, but
-    /// for one line that says so. Throws as requireOurs().
+    /// outputs left out once it has 64 MiB, and all of it written in short beyond
+    /// kMostWholeLogBytes. Throws as requireOurs(), and where the log would not be read again: what
+    /// began is known of every run.
     void log(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
     void logFlushed(const nlohmann::ordered_json& event) const;

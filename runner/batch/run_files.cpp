@@ -26,7 +26,7 @@ constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {{"plan.json", 5
                                                                  {"manifest.json", 64 * kMiB},
                                                                  {"records.csv", 1024 * kMiB},
                                                                  {"images/index.csv", 256 * kMiB}};
-constexpr std::size_t kMostLogBytes = 512 * kMiB;
+constexpr std::string_view kLeftOutInShort[] = {"as", "command", "message", "output", "title"};
 constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
 constexpr std::size_t kMostEvents = 4'000'000;
 
@@ -99,10 +99,19 @@ Json readManifest(const fs::path& file) {
     return manifest;
 }
 
-Json lastLogEvent() {
-    return {{"event", "full"},
-            {"message", fmt::format("the log has {} MiB: what follows is left out",
-                                    kMostWrittenLogBytes >> 20)}};
+Json inShortFromHere() {
+    return {{"event", "in_short"},
+            {"message", fmt::format("the log has {} MiB: what follows is without its texts",
+                                    kMostWholeLogBytes >> 20)}};
+}
+
+Json inShort(const Json& event) {
+    Json kept = Json::object();
+    for (const auto& [name, value] : event.items()) {
+        const bool isText = std::ranges::find(kLeftOutInShort, name) != std::end(kLeftOutInShort);
+        if (value.is_primitive() && !isText) kept[name] = value;
+    }
+    return kept;
 }
 
 std::vector<Json> readLog(const fs::path& file) {

@@ -15,9 +15,13 @@ namespace gfxrepro::batch {
 /// it gets in any run (the log is readLog's): the largest had records of 75 MB, a plan of 15 MB.
 void requireModestFiles(const std::filesystem::path& runDir);
 
-/// A log gets no larger than this and a line, so that it is read again; its last line says so.
-inline constexpr std::size_t kMostWrittenLogBytes = std::size_t{384} << 20;
-Json lastLogEvent();
+/// Beyond the first a log gets events in short alone, after one line that says so; beyond the
+/// second it gets none, as it would not be read again.
+inline constexpr std::size_t kMostWholeLogBytes = std::size_t{384} << 20;
+inline constexpr std::size_t kMostLogBytes = std::size_t{512} << 20;
+Json inShortFromHere();
+/// What a run that goes on needs to know of an event: not its texts, nor what a case cost.
+Json inShort(const Json& event);
 
 /// manifest.json: what is there that others read (machine, invocations, scenes, notes, …) is of its
 /// kind, and all of it is there that a run has from its beginning. Throws Error with the file and
@@ -26,8 +30,8 @@ Json readManifest(const std::filesystem::path& file);
 
 /// The events of log.jsonl; none where there is no such file. Lines that are no JSON object are
 /// passed over: a killed runner has torn them. Throws Error with file and line for a member of
-/// another kind than the runner writes, for a line over 1 MiB, a file over 512 MiB, and beyond
-/// 4,000,000 events.
+/// another kind than the runner writes, for a line over 1 MiB, a file over kMostLogBytes, and
+/// beyond 4,000,000 events.
 std::vector<Json> readLog(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::batch

@@ -111,7 +111,10 @@ std::vector<Difference> comparePictures(const Measured& older, const Measured& n
 void runProgram(const std::vector<std::string>& arguments) {
     const batch::ProgramEnd end = batch::runToEnd(arguments, kRunLimit);
     if (end.exitCode == kExitOk || end.exitCode == kExitIncomplete) return;
-    throw Error(fmt::format("{}: exit code {}: {}", arguments.front(), end.exitCode, end.output));
+    const std::string problem =
+        fmt::format("{}: exit code {}: {}", arguments.front(), end.exitCode, end.output);
+    if (end.exitCode == kExitNoDevice) throw NoDeviceError(problem);
+    throw Error(problem);
 }
 
 /// Rounds of both programs by turns, in fresh processes: OLD NEW, NEW OLD, OLD NEW, …

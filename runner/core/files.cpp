@@ -113,6 +113,14 @@ MappedFile::~MappedFile() {
     if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }
 
+bool isStillAt(const fs::path& path, int fd) {
+    struct stat opened {
+    }, there{};
+    if (::stat(path.c_str(), &there) != 0) return errno != ENOENT && errno != ENOTDIR;
+    return ::fstat(fd, &opened) == 0 && opened.st_ino == there.st_ino &&
+           opened.st_dev == there.st_dev;
+}
+
 void copyTree(const fs::path& from, const fs::path& to) {
     const fs::file_status status = fs::symlink_status(from);
     if (fs::is_regular_file(status)) {

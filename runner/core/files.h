@@ -34,6 +34,10 @@ class MappedFile {
     std::span<const std::byte> bytes_;
 };
 
+/// Whether what lies at `path` is what was opened: it was neither removed nor replaced. Also true
+/// where nobody can tell, as of a file system that is away.
+bool isStillAt(const std::filesystem::path& path, int fd);
+
 /// Copies a file, or a folder with all that is in it, over what is there. Leaves out what is
 /// temporary (isTemporary() in temporary.h) and what goes away meanwhile. Throws Error for a link,
 /// a pipe or a device.

@@ -1,8 +1,7 @@
 #include "runner/report/gnuplot.h"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,8 +17,6 @@
 #include <vector>
 
 #include "runner/core/text.h"
-
-extern char** environ;
 
 namespace gfxrepro::report {
 
@@ -46,23 +43,38 @@ std::string contentOf(std::FILE* file) {
     return text;
 }
 
-/// Starts gnuplot with its output in files: they take any amount, where two pipes have to be read
-/// in turn. An errno where it does not start.
-int start(const std::string& script, std::FILE* output, std::FILE* errors, pid_t& pid) {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(output), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(errors), STDERR_FILENO);
+constexpr int kIsNotInstalled = 127;
+
+/// In the child, between fork and exec: only calls that are safe there.
+[[noreturn]] void becomeGnuplot(char* const* arguments, int input, int output, int errors,
+                                pid_t parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);  // it ended before the line above
+    ::setpgid(0, 0);                        // killed with what it begins
+    ::dup2(input, STDIN_FILENO);
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(errors, STDERR_FILENO);
+    ::execvp(arguments[0], arguments);
+    if (errno == ENOENT) ::_exit(kIsNotInstalled);
+    constexpr std::string_view kReason = "it cannot be executed";
+    [[maybe_unused]] const ssize_t said = ::write(STDERR_FILENO, kReason.data(), kReason.size());
+    ::_exit(1);
+}
+
+/// Starts gnuplot, which ends with this process, with its output in files: they take any amount,
+/// where two pipes have to be read in turn. -1 with errno where no process can be made.
+pid_t start(const std::string& script, std::FILE* output, std::FILE* errors) {
     std::string arguments[] = {"gnuplot", "--default-settings", script};
     char* pointers[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // killed with what it begins
-    const int reason = posix_spawnp(&pid, "gnuplot", &actions, &attributes, pointers, environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    return reason;
+    const File input(std::fopen("/dev/null", "re"), &std::fclose);
+    if (!input) throw Error(fmt::format("cannot read /dev/null: {}", std::strerror(errno)));
+    const pid_t parent = ::getpid();
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+        becomeGnuplot(pointers, fileno(input.get()), fileno(output), fileno(errors), parent);
+    }
+    if (pid > 0) ::setpgid(pid, pid);  // here too: it may be killed before the child has done it
+    return pid;
 }
 
 /// Waits for the end, at most `limit`; nothing where there was none, and the process is killed.
@@ -116,15 +128,15 @@ std::string adaptedLine(std::string line, const std::string& name) {
 Drawn runGnuplot(const std::filesystem::path& script, std::chrono::milliseconds limit) {
     const File output = temporaryFile();
     const File errors = temporaryFile();
-    pid_t pid = 0;
-    const int reason =
-        start(std::filesystem::absolute(script).string(), output.get(), errors.get(), pid);
-    if (reason == ENOENT) return {"", "gnuplot is not installed"};
-    if (reason != 0) return {"", fmt::format("cannot run gnuplot: {}", std::strerror(reason))};
+    const pid_t pid = start(std::filesystem::absolute(script).string(), output.get(), errors.get());
+    if (pid < 0) return {"", fmt::format("cannot run gnuplot: {}", std::strerror(errno))};
     const std::optional<int> status = endOf(pid, limit);
     if (!status) {
         const std::chrono::duration<double> seconds = limit;
         return {"", fmt::format("gnuplot did not end in {} s", seconds.count())};
+    }
+    if (WIFEXITED(*status) && WEXITSTATUS(*status) == kIsNotInstalled) {
+        return {"", "gnuplot is not installed"};
     }
     std::string svg = contentOf(output.get());
     if (*status == 0 && std::string_view(svg).find("</svg>") != std::string_view::npos) {

@@ -255,7 +255,8 @@ const Catalog::FileDigest& Catalog::digestOf(const fs::path& path) const {
     const auto sizeBytes = fs::file_size(path);
     const auto time = fs::last_write_time(path);
     if (digest.sha256.empty() || digest.sizeBytes != sizeBytes || digest.time != time) {
-        digest = {sizeBytes, time, sha256OfFile(path), filesBeside(path)};
+        std::vector<fs::path> beside = filesBeside(path);  // or throws, before all is read
+        digest = {sizeBytes, time, sha256OfFile(path), std::move(beside)};
     }
     return digest;
 }

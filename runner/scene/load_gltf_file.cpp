@@ -6,13 +6,13 @@
 #include <array>
 #include <cstring>
 #include <exception>
-#include <limits>
 #include <optional>
 #include <string_view>
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/scene/load_texture.h"
+#include "runner/scene/model_files.h"
 
 namespace gfxrepro::scene::gltf {
 
@@ -49,6 +49,7 @@ bool readWholeFile(std::vector<unsigned char>* content, std::string*, const std:
                    void* folder) {
     const auto path = static_cast<Folder*>(folder)->find(uri);
     if (!path) return false;
+    requireReadAtOnce(*path);
     const MappedFile file(*path);
     const auto* begin = reinterpret_cast<const unsigned char*>(file.bytes().data());
     content->assign(begin, begin + file.bytes().size());
@@ -131,13 +132,11 @@ bool parse(std::string_view content, bool isBinary, Folder& folder, tinygltf::Mo
 }  // namespace
 
 File readFile(const std::filesystem::path& path) {
+    requireReadAtOnce(path);
     const MappedFile mapped(path);
     const std::string_view content = mapped.text();
     File file;
     file.name = path.string();
-    if (content.size() > std::numeric_limits<unsigned int>::max()) {
-        throw Error(file.name + ": larger than 4 GiB");
-    }
     const bool isBinary = content.starts_with("glTF");
     checkNesting(jsonText(content, isBinary), file.name);
 

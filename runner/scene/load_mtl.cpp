@@ -4,6 +4,7 @@
 
 #include "runner/core/files.h"
 #include "runner/scene/load_lines.h"
+#include "runner/scene/model_files.h"
 
 namespace gfxrepro::scene {
 
@@ -32,6 +33,7 @@ std::string textureName(std::string_view rest) {
 }  // namespace
 
 std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path) {
+    requireReadAtOnce(path);
     const MappedFile file(path);
     LineReader lines(file.text(), path.string());
     std::map<std::string, MtlMaterial> materials;

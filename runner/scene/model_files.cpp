@@ -67,7 +67,10 @@ std::vector<std::string> namesInObj(std::string_view text, const fs::path& folde
         names.push_back(name);
         const auto path = existing(folder, name);
         if (!path) continue;
-        for (const auto& [material, read] : loadMtl(*path)) names.push_back(read.colourFile);
+        try {
+            for (const auto& [material, read] : loadMtl(*path)) names.push_back(read.colourFile);
+        } catch (const Error&) {  // its loader says what is wrong
+        }
     }
     return names;
 }
@@ -78,6 +81,8 @@ std::vector<fs::path> filesBeside(const fs::path& model) {
     std::string extension = model.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool isGltf = extension == ".gltf" || extension == ".glb";
+    if (isGltf) requireReadAtOnce(model);
     std::vector<std::string> names;
     try {
         const MappedFile file(model);
@@ -89,9 +94,21 @@ std::vector<fs::path> filesBeside(const fs::path& model) {
     }
     std::set<fs::path> files;
     for (const std::string& name : names) {
-        if (const auto path = existing(model.parent_path(), name)) files.insert(*path);
+        const auto path = existing(model.parent_path(), name);
+        if (!path) continue;
+        requireReadAtOnce(*path);
+        files.insert(*path);
     }
     return {files.begin(), files.end()};
+}
+
+void requireReadAtOnce(const fs::path& file) {
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;  // what a GLB's head can say
+    std::error_code isAbsent;
+    const std::uintmax_t bytes = fs::file_size(file, isAbsent);
+    if (isAbsent || bytes < kMostBytes) return;
+    throw Error(file.string() + ": has " + std::to_string(bytes) +
+                " bytes; a file of a scene has less than 4 GiB");
 }
 
 std::string sha256OfModel(const fs::path& model) {

@@ -220,6 +220,18 @@ TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
     EXPECT_EQ(mockGfxrepro({"compare", b, b, "--out", out + "3"}).exitCode, 0);
 }
 
+TEST_F(Compare, ADriverThatDoesNotAnswerIsNoDevice) {
+    const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
+    const ProcessResult result =
+        runProgram({GFXREPRO_MOCK_PROGRAM, "compare", "--binaries", "--device", "software", "--out",
+                    out, program("old", 0), program("new", 0), config},
+                   {"GFXREPRO_MOCK_DRIVER_HANGS=1", "GFXREPRO_START_LIMIT_S=1"});
+    EXPECT_EQ(result.exitCode, 3) << result.out;
+    EXPECT_EQ(result.err, "gfxrepro: " + program("old", 0) +
+                              ": exit code 3: gfxrepro: the driver did not open a device within 1 "
+                              "s\n\n");
+}
+
 TEST_F(Compare, RefusesWhatIsNoPair) {
     EXPECT_EQ(mockGfxrepro({"compare", "a"}).err, "gfxrepro: compare: needs two run directories\n");
     EXPECT_EQ(mockGfxrepro({"compare", "--binaries", "a", "b"}).err,

@@ -76,6 +76,39 @@ TEST_F(Nightly, TheFirstNightLandsNothingThatCrashes) {
     EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
 }
 
+/// The step of the workflow that shows a night.
+std::string shownByWorkflow() {
+    const std::string workflow = readFile(GFXREPRO_SOURCE "/.github/workflows/nightly.yml");
+    const std::size_t begin = workflow.find("          night=");
+    return workflow.substr(begin, workflow.find("\n      - ", begin) - begin);
+}
+
+TEST_F(Nightly, TheWorkflowShowsWhatTheNightHas) {
+    const auto shown = [&] {
+        fs::create_directories(folder.path() / "runs");
+        if (!fs::exists(folder.path() / "runs/nightly")) {
+            fs::create_directory_symlink(state, folder.path() / "runs/nightly");
+        }
+        return runProgram(
+            {"/bin/bash", "-e", "-c", "cd " + folder.path().string() + '\n' + shownByWorkflow()},
+            {"GITHUB_STEP_SUMMARY=/dev/stdout"});
+    };
+    EXPECT_EQ(shown().exitCode, 0) << "no night yet";
+    isCrashing = true;
+    ASSERT_EQ(night(0).exitCode, 4);
+    const ProcessResult first = shown();
+    EXPECT_EQ(first.exitCode, 0) << first.err;
+    EXPECT_EQ(first.out, "");
+    isCrashing = false;
+    ASSERT_EQ(night(0).exitCode, 0);
+    letAWeekPass();
+    ASSERT_EQ(night(1).exitCode, 0);
+    const ProcessResult later = shown();
+    EXPECT_EQ(later.exitCode, 0) << later.err;
+    EXPECT_NE(later.out.find("With the fixed build:\n"), std::string::npos) << later.out;
+    EXPECT_TRUE(fs::exists(folder.path() / "benchmark.json"));
+}
+
 TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     ASSERT_EQ(night(0).exitCode, 0);
     const ProcessResult same = night(1);

@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/support.h"
+
 namespace gfxrepro::batch {
 namespace {
 
@@ -66,6 +68,18 @@ TEST(ChildProcess, AProgramIsNotWaitedForBeyondItsLimit) {
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_THROW(runToEnd({"/bin/sleep", "1000"}, 1s), std::exception);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
+}
+
+TEST(ChildProcess, AProgramThatPrintsWithoutEndIsEnded) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(test::errorText([] {
+                  runToEnd({"/bin/sh", "-c", "exec yes"}, 60s);
+              }),
+              "/bin/sh: ended, as it prints more than 64 MiB");
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 60s);
+    const std::string most = "head -c 67108864 /dev/zero";
+    EXPECT_EQ(runToEnd({"/bin/sh", "-c", most}, 60s).output.size(), std::size_t{64} << 20);
+    EXPECT_THROW(runToEnd({"/bin/sh", "-c", most + "; echo"}, 60s), Error);
 }
 
 TEST(ChildProcess, OneThatReadsNothingIsNotWaitedFor) {

@@ -164,6 +164,14 @@ TEST(Merge, LogsAreNotLargerThanWhatIsRead) {
     EXPECT_EQ(batch::mergedLog(shards).size(), expected.size() + 2 * (100 - 44 + 13));
 }
 
+TEST(Merge, WhatBeganIsInALogOfAnyLength) {
+    const TemporaryFolder folder;
+    const std::string line = R"({"event":"start","case":"a","deep":[[1]],"message":"many words"})";
+    folder.write("a/log.jsonl", line + '\n' + line + "\ntorn");
+    EXPECT_EQ(batch::mergedLog({{folder.path() / "a", {}}}, 1000, line.size()),
+              line + '\n' + R"({"event":"start","case":"a"})" + "\n\n");
+}
+
 /// A run directory with these rows.
 batch::RunDirectory directoryWith(const TemporaryFolder& folder, const batch::ShardRun& shard) {
     batch::RunDirectory directory = batch::RunDirectory::create(folder.path());

@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -90,6 +94,28 @@ TEST(Gnuplot, OneThatDoesNotEndIsKilled) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
     EXPECT_EQ(drawn.problem, "gnuplot did not end in 0.5 s");
     EXPECT_EQ(drawn.svg, "");
+}
+
+TEST(Gnuplot, EndsWithTheProgramThatBeganIt) {
+    const test::TemporaryFolder folder;
+    const auto script = folder.write("a.gp", "plot 1\n");
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const ProgramInFront program(
+        folder, "gnuplot", "#!/bin/sh\necho >&" + std::to_string(ends[1]) + "\nexec sleep 20\n");
+    const pid_t beginner = ::fork();
+    if (beginner == 0) {
+        runGnuplot(script);
+        ::_exit(0);
+    }
+    ::close(ends[1]);
+    char begun = 0;
+    EXPECT_EQ(::read(ends[0], &begun, 1), 1);
+    ::kill(beginner, SIGTERM);
+    ::waitpid(beginner, nullptr, 0);
+    pollfd closed{ends[0], POLLIN, 0};  // once nobody has the other end
+    EXPECT_EQ(::poll(&closed, 1, 10'000), 1) << "gnuplot goes on";
+    ::close(ends[0]);
 }
 
 class Drawing : public testing::Test {

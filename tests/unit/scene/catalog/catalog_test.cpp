@@ -1,6 +1,7 @@
 #include "runner/scene/catalog.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -224,6 +225,38 @@ TEST(Catalog, ContentKeyFollowsTheFilesThatAModelDrawsIn) {
     folders.folder.write("assets/b.gltf",
                          R"({"buffers": [{"uri": ")" + std::string(5000, 'b') + R"("}]})");
     EXPECT_NE(folders.catalog().contentKey(reference("m/x")), "") << "no file has such a name";
+}
+
+TEST(Catalog, AFileThatNoLoaderTakesIsNotReadThrough) {
+    const Folders folders;
+    folders.folder.write("assets/a.obj", "mtllib a.mtl\n" + std::string(kTriangle));
+    folders.folder.write("assets/a.mtl", "newmtl m\nmap_Kd huge.bin\n");
+    folders.folder.write("assets/b.obj", "mtllib huge.bin\n" + std::string(kTriangle));
+    folders.folder.write("assets/c.gltf", R"({"asset": {"version": "2.0"},
+        "buffers": [{"uri": "huge.bin", "byteLength": 20000000000}]})");
+    folders.folder.write("assets/d.gltf", R"({"asset": {"version": "2.0"},
+        "images": [{"uri": "huge.bin"}]})");
+    for (const char* huge : {"huge.bin", "e.glb"}) {
+        std::filesystem::resize_file(folders.folder.write("assets/" + std::string(huge), ""),
+                                     20'000'000'000);  // of which the disk has nothing
+    }
+    const auto refusalOf = [&](const std::string& file) {
+        return "DIR/assets/" + file +
+               ": has 20000000000 bytes; a file of a scene has less than 4 GiB";
+    };
+    for (const char* model : {"a.obj", "b.obj", "c.gltf", "d.gltf", "e.glb"}) {
+        folders.entry("scene: m/x\ndoc: d\nsources: [{file: " + std::string(model) + "}]\n");
+        const Catalog catalog = folders.catalog();
+        const std::string refusal = refusalOf(model[0] == 'e' ? model : "huge.bin");
+        EXPECT_EQ(
+            test::errorText([&] { catalog.contentKey(reference("m/x")); }, folders.folder.path()),
+            refusal)
+            << model;
+        if (model[0] == 'a') continue;  // its loader looks at the first bytes of a texture
+        EXPECT_THAT(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
+                    testing::HasSubstr(refusal))
+            << model;
+    }
 }
 
 TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
