@@ -11,7 +11,7 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/clustered_reflections/reflection_pictures.h"
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::clustered_reflections {

@@ -9,7 +9,7 @@
 #include "techniques/depth_sampling/pictures.h"
 #include "techniques/depth_sampling/view_check.h"
 #include "techniques/depth_sampling/visibility_experiment.h"
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -18,12 +18,11 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
     return std::make_unique<DepthSampling>(params);
 }
 
-std::vector<depth_images::View> viewsOf(const std::vector<scene::Camera>& cameras,
-                                        glm::ivec2 sizePx) {
-    std::vector<depth_images::View> views;
+std::vector<kit::View> viewsOf(const std::vector<scene::Camera>& cameras, glm::ivec2 sizePx) {
+    std::vector<kit::View> views;
     views.reserve(cameras.size());
     for (const scene::Camera& camera : cameras) {
-        views.push_back(depth_images::viewOf(camera, sizePx));
+        views.push_back(kit::viewOf(camera, sizePx));
     }
     return views;
 }
@@ -83,19 +82,18 @@ std::vector<scene::Camera> DepthSampling::chooseCameras(technique::SetupContext&
     const glm::ivec2 trialSize =
         longestPx > kLongestSidePx ? glm::max(size * kLongestSidePx / longestPx, 1) : size;
 
-    const depth_images::DrawableScene drawable(*context.scene);
-    depth_images::DepthImageRenderer renderer(context.shaders, params_.triangleIds,
-                                              params_.depthFormat);
+    const kit::DrawableScene drawable(*context.scene);
+    kit::DepthImageRenderer renderer(context.shaders, params_.triangleIds, params_.depthFormat);
     NextView nextView(context.shaders, renderer, drawable,
                       candidateCameras(triangle, params_.views, params_.candidates),
                       outputCameras(triangle, params_.views, kFrames), trialSize);
     std::vector<scene::Camera> cameras;
-    std::vector<depth_images::DepthImage> images;
+    std::vector<kit::DepthImage> images;
     images.reserve(static_cast<std::size_t>(params_.views));
-    std::vector<const depth_images::DepthImage*> imagesSoFar;
+    std::vector<const kit::DepthImage*> imagesSoFar;
     for (int i = 0; i < params_.views; ++i) {
         cameras.push_back(nextView.next(imagesSoFar).camera);
-        images.push_back(renderer.makeImage(depth_images::viewOf(cameras.back(), trialSize)));
+        images.push_back(renderer.makeImage(kit::viewOf(cameras.back(), trialSize)));
         renderer.render(drawable, images.back(), imagesSoFar);
         imagesSoFar.push_back(&images.back());
     }
@@ -112,9 +110,9 @@ Views DepthSampling::makeViews(technique::SetupContext& context) const {
     views.conventional = viewsOf(chooseCameras(context, triangle), size);
     views.images = views.conventional;
     if (params_.method == Method::DepthPeeling) {
-        const depth_images::View view = params_.peeledFrom == PeeledFrom::FirstView
-                                            ? views.conventional.front()
-                                            : depth_images::viewOf(triangle.centre, size);
+        const kit::View view = params_.peeledFrom == PeeledFrom::FirstView
+                                   ? views.conventional.front()
+                                   : kit::viewOf(triangle.centre, size);
         views.images.assign(static_cast<std::size_t>(params_.views), view);
     }
     const glm::ivec2 frameSize = params_.frameSizePx > 0 ? glm::ivec2(params_.frameSizePx) : size;
@@ -129,7 +127,7 @@ void DepthSampling::setup(technique::SetupContext& context) {
     if (scene.triangleCount() == 0) {
         throw Error(fmt::format("scene '{}' has no triangles to take depth images of", scene.name));
     }
-    depth_images::requireIdsFor(scene.triangleCount());
+    kit::requireIdsFor(scene.triangleCount());
     const Views views = makeViews(context);
     views_ = views;
     sceneName_ = scene.name;
@@ -189,17 +187,17 @@ void DepthSampling::record(technique::Recorder& recorder) {
 void DepthSampling::recordPictures(technique::Recorder& recorder) const {
     for (std::size_t i = 0; i < measures_->images.size(); ++i) {
         const MarkedImage marked = experiment_->markedImage(i);
-        recorder.image(imageName(i), depth_images::shadingPicture(marked.image),
-                       depth_images::layersOf(marked.image).options());
+        recorder.image(imageName(i), kit::shadingPicture(marked.image),
+                       kit::layersOf(marked.image).options());
         recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks),
-                       depth_images::seenFrom(marked.image.view));
+                       kit::seenFrom(marked.image.view));
     }
     const MarkedImage frame =
         experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
-    recorder.image("output_frame", depth_images::shadingPicture(frame.image),
-                   depth_images::layersOf(frame.image).options());
+    recorder.image("output_frame", kit::shadingPicture(frame.image),
+                   kit::layersOf(frame.image).options());
     recorder.image("unavailable", availabilityPicture(frame.image, frame.marks),
-                   depth_images::seenFrom(frame.image.view));
+                   kit::seenFrom(frame.image.view));
 }
 
 void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels) {

@@ -4,7 +4,7 @@
 
 namespace gfxrepro::depth_sampling {
 
-using depth_images::HostDepthImage;
+using kit::HostDepthImage;
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 namespace gfxrepro::depth_sampling {
 
-using depth_images::DepthImage;
+using kit::DepthImage;
 
 namespace {
 
@@ -46,7 +46,7 @@ void bindTest(const gl::Program& program, const DepthImage& image, ImageSpan ima
     for (std::size_t i = 0; i < images.size(); ++i) {
         images[i]->triangleId.bind(static_cast<GLuint>(kFirstTriangleIdsUnit + i));
         program.set(fmt::format("otherFromHere[{}]", i).c_str(),
-                    depth_images::reprojection(image.view, images[i]->view));
+                    kit::reprojection(image.view, images[i]->view));
         program.set(fmt::format("otherSizePx[{}]", i).c_str(), glm::vec2(images[i]->view.sizePx));
     }
 }

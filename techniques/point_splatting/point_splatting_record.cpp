@@ -11,10 +11,10 @@
 #include "runner/metrics/flip.h"
 #include "runner/metrics/image_error.h"
 #include "runner/metrics/statistics.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/point_splatting/compression_errors.h"
 #include "techniques/point_splatting/model_picture.h"
 #include "techniques/point_splatting/point_splatting.h"
-#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -83,7 +83,7 @@ void PointSplatting::record(technique::Recorder& recorder) {
     std::optional<image::ImageF> samples;
     if (params_.measuresErrors) samples = supersampled();
     if (params_.showsPictures) {
-        depth_images::ImageLayers layers(depth_images::viewOf(camera_, sizePx_));
+        kit::ImageLayers layers(kit::viewOf(camera_, sizePx_));
         const bool hasNormals = renderer_ && params_.method != Method::Sprites;
         if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
         if (samples) {
@@ -101,8 +101,7 @@ void PointSplatting::recordModes(technique::Recorder& recorder) const {
     SplatSettings splats = params_.splats;
     splats.showsModes = true;
     const ModelPicture modes(drawnWith(splats, params_.selection, 1));
-    recorder.image("modes", modes.color,
-                   depth_images::seenFrom(depth_images::viewOf(camera_, sizePx_)));
+    recorder.image("modes", modes.color, kit::seenFrom(kit::viewOf(camera_, sizePx_)));
     recordEnlarged(recorder, "modes", modes);
 }
 
@@ -262,14 +261,14 @@ image::ImageF PointSplatting::supersampled() const {
 
 void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
                                   const image::ImageF& samples) const {
-    const depth_images::View view = depth_images::viewOf(camera_, sizePx_);
+    const kit::View view = kit::viewOf(camera_, sizePx_);
     const auto compare = [&](const ModelPicture& truth, const ModelPixels& model,
                              const char* name) {
         const image::ImageF flip =
             recordDifference(recorder, truth.color, picture.color, model, name);
         if (!params_.showsPictures) return;
-        recorder.image(name, truth.color, depth_images::seenFrom(view, "image"));
-        recorder.image(fmt::format("flip_{}", name), flip, depth_images::seenFrom(view));
+        recorder.image(name, truth.color, kit::seenFrom(view, "image"));
+        recorder.image(fmt::format("flip_{}", name), flip, kit::seenFrom(view));
     };
     const ModelPicture boxed(image::averaged(samples, kSupersampling));
     const ModelPixels model(boxed, picture);

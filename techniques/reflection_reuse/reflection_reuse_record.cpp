@@ -5,11 +5,11 @@
 
 #include "runner/image/srgb.h"
 #include "runner/metrics/flip.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/reflection_reuse/linear_fit.h"
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
-#include "techniques/shared/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 
 namespace gfxrepro::reflection_reuse {

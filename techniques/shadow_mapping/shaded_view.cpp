@@ -39,7 +39,7 @@ std::size_t ShadedImage::sizeBytes() const {
            normals.sizeBytes() + depth.sizeBytes();
 }
 
-ShadedImage makeShadedImage(const depth_images::View& view, bool hasTerms) {
+ShadedImage makeShadedImage(const kit::View& view, bool hasTerms) {
     ShadedImage image;
     image.view = view;
     image.colour = gl::Texture::make2D(GL_RGBA16F, view.sizePx);
@@ -99,7 +99,7 @@ const gl::Program& ShadedView::programFor(const Variant& variant) {
 }
 
 void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
-                             const depth_images::View& view) const {
+                             const kit::View& view) const {
     const auto setIfActive = [&](const char* name, const auto& value) {
         if (program.isActive(name)) program.set(name, value);
     };
@@ -133,7 +133,7 @@ void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer
     }
 }
 
-void ShadedView::render(const depth_images::DrawableScene& scene, const ShadowMapRenderer& maps,
+void ShadedView::render(const kit::DrawableScene& scene, const ShadowMapRenderer& maps,
                         ShadedImage& target) {
     GFXREPRO_ASSERT(maps.steps().back() == step_);
     Variant variant{

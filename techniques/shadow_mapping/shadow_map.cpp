@@ -86,14 +86,14 @@ ShadowMap ShadowMapRenderer::makeMap(glm::ivec2 sizePx) const {
     return map;
 }
 
-bool ShadowMapRenderer::isCurrent(const depth_images::DrawableScene& scene,
-                                  std::span<const Light> lights, std::uint64_t sceneVersion) const {
+bool ShadowMapRenderer::isCurrent(const kit::DrawableScene& scene, std::span<const Light> lights,
+                                  std::uint64_t sceneVersion) const {
     return scene_ == &scene && sceneVersion_ == sceneVersion &&
            std::equal(lights.begin(), lights.end(), lights_.begin(), lights_.end());
 }
 
-void ShadowMapRenderer::render(const depth_images::DrawableScene& scene,
-                               std::span<const Light> lights, std::uint64_t sceneVersion) {
+void ShadowMapRenderer::render(const kit::DrawableScene& scene, std::span<const Light> lights,
+                               std::uint64_t sceneVersion) {
     if (lights.size() > kMaxLights) {
         throw Error(fmt::format("{} lights with shadows: at most {}", lights.size(), kMaxLights));
     }
@@ -115,8 +115,7 @@ void ShadowMapRenderer::render(const depth_images::DrawableScene& scene,
     sceneVersion_ = sceneVersion;
 }
 
-void ShadowMapRenderer::drawDepth(const depth_images::DrawableScene& scene,
-                                  const ShadowMap& map) const {
+void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowMap& map) const {
     const StepDeclaration& step = steps_.front();
     applyState(step);
     map.framebuffer.bind();

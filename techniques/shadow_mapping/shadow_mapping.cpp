@@ -33,7 +33,7 @@ void ShadowMapping::setup(technique::SetupContext& context) {
     const scene::Camera camera = scene.cameras.empty()
                                      ? scene::framingCamera(scene.bounds(), size.x / size.y)
                                      : scene.cameras.front();
-    image_.emplace(makeShadedImage(depth_images::viewOf(camera, context.outputSizePx), false));
+    image_.emplace(makeShadedImage(kit::viewOf(camera, context.outputSizePx), false));
     // [zju2005] Sec. 4.1: the map is used again while the light and the objects stand still.
     if (params_.isStatic) maps_->render(*drawable_, lights_);
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "techniques/kit/image_layers.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
-#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {
@@ -53,13 +53,13 @@ image::ImageF shadowPicture(const ShadowErrors& errors, const std::vector<float>
 }
 
 /// With the normals that only an image with terms has.
-depth_images::ImageLayers layersOf(const ShadedImage& image) {
+kit::ImageLayers layersOf(const ShadedImage& image) {
     const std::vector<float> normals = image.normals.read<float>(GL_RGB, GL_FLOAT, 3);
     std::vector<glm::vec3> normalWorld;
     for (std::size_t i = 0; i < normals.size(); i += 3) {
         normalWorld.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
     }
-    depth_images::ImageLayers layers(image.view);
+    kit::ImageLayers layers(image.view);
     layers.windowDepths(image.depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1));
     layers.normals(normalWorld);
     return layers;
@@ -83,7 +83,7 @@ void ShadowMapping::record(technique::Recorder& recorder) {
 void ShadowMapping::recordPicture(technique::Recorder& recorder) const {
     const std::vector<float> depths = image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
     recorder.image("result", colourPicture(*image_),
-                   depth_images::ImageLayers(image_->view).windowDepths(depths).options());
+                   kit::ImageLayers(image_->view).windowDepths(depths).options());
 }
 
 // [zju2005] Table 4.3
@@ -124,9 +124,9 @@ void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImag
         const std::string truthName = fmt::format("truth_{}", i);
         recorder.image(name, picture,
                        layersOf(image).errors(picture, truthPicture, truthName).options());
-        recorder.image(truthName, truthPicture, depth_images::seenFrom(image.view, name));
+        recorder.image(truthName, truthPicture, kit::seenFrom(image.view, name));
         recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
-                       depth_images::seenFrom(image.view));
+                       kit::seenFrom(image.view));
     }
     recorder.metric("compared_points", static_cast<double>(compared), "pixel");
     recorder.metric("wrong_pct", percent(edge + acne + leak, compared), "%");

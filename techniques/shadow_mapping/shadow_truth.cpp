@@ -23,8 +23,7 @@ float TruthLight::texelWidthAt(const glm::vec3& point) const {
     return texel * depth;
 }
 
-std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer,
-                                        const depth_images::View& view) {
+std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer, const kit::View& view) {
     const int width = view.sizePx.x;
     std::vector<VisiblePoint> points(static_cast<std::size_t>(width) *
                                      static_cast<std::size_t>(view.sizePx.y));
@@ -32,7 +31,7 @@ std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer,
     tbb::parallel_for(tbb::blocked_range<int>(0, view.sizePx.y), [&](const auto& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) {
             for (int x = 0; x < width; ++x) {
-                const glm::vec3 ray = depth_images::rayThrough(view, glm::vec2(x, y) + 0.5F);
+                const glm::vec3 ray = kit::rayThrough(view, glm::vec2(x, y) + 0.5F);
                 const float perDepth = 1.0F / glm::dot(ray, forward);
                 const auto hit = tracer.closestHit(view.eyeWorld, ray, view.nearM * perDepth,
                                                    view.farM * perDepth, raycast::Faces::Drawn);

@@ -41,7 +41,7 @@ FilteredShadows::FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter 
     momentPyramid_.setFilter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
 }
 
-void FilteredShadows::makeMoments(const depth_images::View& view) {
+void FilteredShadows::makeMoments(const kit::View& view) {
     moments_.use();
     moments_.set("nearM", view.nearM);
     moments_.set("farM", view.farM);
@@ -55,7 +55,7 @@ void FilteredShadows::makeMoments(const depth_images::View& view) {
 void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
                              std::span<const ShadowCaster* const> casters,
                              const gl::Texture& litShares) {
-    const depth_images::View view = lightView(light, light.centre, settings_.sizePx);
+    const kit::View view = lightView(light, light.centre, settings_.sizePx);
     shadowMap_.drawShadowMap(view, casters);
     if (momentPyramid_.id() != 0) makeMoments(view);
 

@@ -20,13 +20,13 @@ void setDepthState() {
 }
 
 /// Width of a shadow-map texel at a distance of one along the view's axis.
-float texelWidth(const depth_images::View& view) {
+float texelWidth(const kit::View& view) {
     return 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x));
 }
 
 }  // namespace
 
-glm::vec3 forwardOf(const depth_images::View& view) {
+glm::vec3 forwardOf(const kit::View& view) {
     return -glm::vec3(glm::transpose(view.viewFromWorld)[2]);
 }
 
@@ -34,9 +34,8 @@ std::size_t Receivers::sizeBytes() const {
     return positions.sizeBytes() + normals.sizeBytes() + shading.sizeBytes();
 }
 
-Receivers renderReceivers(const gl::ShaderLibrary& shaders,
-                          const depth_images::DrawableScene& scene,
-                          const depth_images::View& view) {
+Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,
+                          const kit::View& view) {
     const gl::Program program(
         shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"},
         {{"POSITION", static_cast<int>(gpu_scene::kPosition)},
@@ -94,8 +93,7 @@ void LightVisibility::accumulate(VisibilityMask& mask, const Receivers& receiver
     for (VisibilityMask::Layer& layer : mask.layers) layer.bits.clearToZero();
     for (int j = 0; j < gridSize; ++j) {
         for (int i = 0; i < gridSize; ++i) {
-            const depth_images::View view =
-                lightView(light, light.sample(i, j, gridSize), settings_.sizePx);
+            const kit::View view = lightView(light, light.sample(i, j, gridSize), settings_.sizePx);
             drawShadowMap(view, casters);
             test(mask, j * gridSize + i, receivers, view);
         }
@@ -115,7 +113,7 @@ void LightVisibility::drawMapsAndPlainPasses(VisibilityMask& mask, const AreaLig
     }
 }
 
-void LightVisibility::drawShadowMap(const depth_images::View& lightView,
+void LightVisibility::drawShadowMap(const kit::View& lightView,
                                     std::span<const ShadowCaster* const> casters) const {
     framebuffer_.bind();
     setDepthState();
@@ -123,12 +121,12 @@ void LightVisibility::drawShadowMap(const depth_images::View& lightView,
     for (const ShadowCaster* caster : casters) caster->draw(lightView);
 }
 
-float LightVisibility::biasPerDistance(const depth_images::View& lightView) const {
+float LightVisibility::biasPerDistance(const kit::View& lightView) const {
     return settings_.biasTexels * texelWidth(lightView);
 }
 
 void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& receivers,
-                           const depth_images::View& lightView) const {
+                           const kit::View& lightView) const {
     test_.use();
     test_.set("clipFromWorld", lightView.clipFromWorld());
     test_.set("lightPosition", lightView.eyeWorld);

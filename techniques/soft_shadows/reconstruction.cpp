@@ -68,7 +68,7 @@ void dispatchCorners(glm::ivec2 cornersSize) {
 
 /// H's pixel (x, y) must lie on the lower left corner of I's. 0.01: a hundredth of a pixel, far
 /// above rounding and far below the half pixel that is asked for.
-bool isHalfPixelToLowerLeft(const depth_images::View& offset, const depth_images::View& view) {
+bool isHalfPixelToLowerLeft(const kit::View& offset, const kit::View& view) {
     if (offset.sizePx != view.sizePx || offset.viewFromWorld != view.viewFromWorld) return false;
     const glm::vec2 shift = glm::vec2(offset.clipFromView[2]) - glm::vec2(view.clipFromView[2]);
     const glm::vec2 shiftPx = 0.5F * shift * glm::vec2(view.sizePx);
@@ -81,7 +81,7 @@ std::size_t ReconstructedMesh::sizeBytes() const {
     return vertices.sizeBytes() + indices.sizeBytes();
 }
 
-glm::mat4 worldFromCorner(const depth_images::View& view) {
+glm::mat4 worldFromCorner(const kit::View& view) {
     glm::mat4 matrix = worldFromPixels(view);
     matrix[0] *= 0.5F;
     matrix[1] *= 0.5F;
@@ -110,7 +110,7 @@ std::size_t Reconstructor::scratchBytes() const {
     return flags_.sizeBytes() + places_.sizeBytes() + runs_.sizeBytes();
 }
 
-void Reconstructor::setGeometry(const gl::Program& program, const depth_images::View& view) const {
+void Reconstructor::setGeometry(const gl::Program& program, const kit::View& view) const {
     const auto setIfActive = [&](const char* name, const auto& value) {
         if (program.isActive(name)) program.set(name, value);
     };
@@ -126,7 +126,7 @@ void Reconstructor::setGeometry(const gl::Program& program, const depth_images::
     setIfActive("runsPerRow", runsPerRow_);
 }
 
-glm::uvec4 Reconstructor::countElements(const depth_images::View& view) {
+glm::uvec4 Reconstructor::countElements(const kit::View& view) {
     flags_.bindImage(kFlagsUnit, GL_READ_WRITE);
     places_.bindImage(kPlacesUnit, GL_READ_WRITE);
     runs_.bindStorage(kRunBinding);
@@ -161,10 +161,10 @@ void Reconstructor::emit(const ReconstructedMesh& mesh) {
                     GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-ReconstructedMesh Reconstructor::reconstruct(const depth_images::DepthImage& image,
-                                             const depth_images::DepthImage* offsetImage,
+ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
+                                             const kit::DepthImage* offsetImage,
                                              const gl::Buffer& triangleNormals) {
-    const depth_images::View& view = image.view;
+    const kit::View& view = image.view;
     if (std::max(view.sizePx.x, view.sizePx.y) > kMaxSizePx) {
         throw UnsupportedError(
             fmt::format("a depth image of {} × {} pixels cannot be made a mesh; at most {} a side",

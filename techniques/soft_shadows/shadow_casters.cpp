@@ -38,10 +38,10 @@ gl::VertexArray cornerArray(const ReconstructedMesh& mesh) {
 
 }  // namespace
 
-SceneCaster::SceneCaster(const gl::ShaderLibrary& shaders, const depth_images::DrawableScene& scene)
+SceneCaster::SceneCaster(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene)
     : scene_(scene), program_(castProgram(shaders)) {}
 
-void SceneCaster::draw(const depth_images::View& lightView) const {
+void SceneCaster::draw(const kit::View& lightView) const {
     program_.use();
     program_.set("clipFromWorld", lightView.clipFromWorld());
     scene_.drawDepthOnly();
@@ -53,7 +53,7 @@ ReconstructedCaster::ReconstructedCaster(const gl::ShaderLibrary& shaders,
     for (const ReconstructedMesh& mesh : meshes_) vertexArrays_.push_back(cornerArray(mesh));
 }
 
-void ReconstructedCaster::draw(const depth_images::View& lightView) const {
+void ReconstructedCaster::draw(const kit::View& lightView) const {
     glDisable(GL_CULL_FACE);  // a light may see a quad from behind
     program_.use();
     const glm::dmat4 clipFromWorld =
@@ -81,7 +81,7 @@ std::uint64_t ReconstructedCaster::triangleCount() const {
 MeshCaster::MeshCaster(const gl::ShaderLibrary& shaders, const scene::Mesh& mesh)
     : mesh_(mesh), program_(castProgram(shaders)) {}
 
-void MeshCaster::draw(const depth_images::View& lightView) const {
+void MeshCaster::draw(const kit::View& lightView) const {
     glDisable(GL_CULL_FACE);
     program_.use();
     program_.set("clipFromWorld", lightView.clipFromWorld());

@@ -16,8 +16,7 @@ FactorReplay::FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain
       program_(shaders, {"terrain_tessellation/factor_replay.comp.glsl"},
                terrainDefines(terrain, settings)) {}
 
-std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles,
-                                            const depth_images::View& view) {
+std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles, const kit::View& view) {
     const int side = settings_.factors.tile.patchesPerTile;
     const auto count = tiles.size() * static_cast<std::size_t>(side * side);
     if (count == 0) return {};

@@ -18,7 +18,7 @@ struct PatchCost {
 class PatchCosts {
   public:
     PatchCosts(const TerrainMetadata& metadata, const FactorSettings& settings,
-               const depth_images::View& view, const PatchesToDraw& patches)
+               const kit::View& view, const PatchesToDraw& patches)
         : metadata_(metadata),
           settings_(settings),
           view_(view),
@@ -134,7 +134,7 @@ class PatchCosts {
 
     const TerrainMetadata& metadata_;
     const FactorSettings& settings_;
-    const depth_images::View& view_;
+    const kit::View& view_;
     const PatchesToDraw& patches_;
     glm::dmat4 clipFromWorld_;
     glm::mat4 rows_;  // the rows of clipFromWorld
@@ -163,7 +163,7 @@ struct OpenBatch {
 }  // namespace
 
 PatchBatches batchPatches(const TerrainMetadata& metadata, const FactorSettings& settings,
-                          const depth_images::View& view, const PatchesToDraw& patches,
+                          const kit::View& view, const PatchesToDraw& patches,
                           const BatchLimits& limits) {
     std::vector<PatchCost> costs = PatchCosts(metadata, settings, view, patches).all();
     // The nearest first: hidden fragments fail the depth test before they are shaded.

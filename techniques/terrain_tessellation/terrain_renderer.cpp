@@ -64,8 +64,7 @@ gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers) {
     return buffer;
 }
 
-void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
-                 const depth_images::View& view) {
+void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain, const kit::View& view) {
     const auto setIfRead = [&](const char* name, const auto& value) {
         if (program.isActive(name)) program.set(name, value);
     };
@@ -76,7 +75,7 @@ void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
 }
 
 void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
-                 const RenderSettings& settings, const depth_images::View& view) {
+                 const RenderSettings& settings, const kit::View& view) {
     const auto setIfRead = [&](const char* name, const auto& value) {
         if (program.isActive(name)) program.set(name, value);
     };
@@ -187,7 +186,7 @@ int TerrainRenderer::drawBatches(const PatchBatches& patches) const {
 }
 
 DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                                        const depth_images::View& view, Parts parts) const {
+                                        const kit::View& view, Parts parts) const {
     const int m = settings_.factors.tile.patchesPerTile;
     const bool hasSkirts = parts == Parts::Skirts || (parts == Parts::AsSet && settings_.hasSkirts);
     const int patchesPerTile = m * m + (hasSkirts ? 4 * m : 0);
@@ -217,7 +216,7 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<c
     return counts;
 }
 
-void TerrainRenderer::bindTessellated(const depth_images::View& view) {
+void TerrainRenderer::bindTessellated(const kit::View& view) {
     bindShading(tessellated_);
     bindTerrain(tessellated_, *terrain_, view);
     bindFactors(tessellated_, *terrain_, settings_, view);
@@ -226,8 +225,7 @@ void TerrainRenderer::bindTessellated(const depth_images::View& view) {
     glPatchParameteri(GL_PATCH_VERTICES, 4);
 }
 
-DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
-                                            const depth_images::View& view,
+DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles, const kit::View& view,
                                             const gl::Framebuffer& target) {
     target.bind();
     bindTessellated(view);
@@ -248,7 +246,7 @@ void TerrainRenderer::bindNothing() const {
 }
 
 std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
-                                                   const depth_images::View& view) {
+                                                   const kit::View& view) {
     bindTessellated(view);
     bindNothing();
     const DrawCounts counts =
@@ -259,7 +257,7 @@ std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
 }
 
 std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles,
-                                                     const depth_images::View& view) {
+                                                     const kit::View& view) {
     GFXREPRO_ASSERT(settings_.capturesVertices);
     bindTessellated(view);
     bindNothing();
@@ -303,7 +301,7 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     return draws;
 }
 
-DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const depth_images::View& view,
+DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& view,
                                      const gl::Framebuffer& target) {
     target.bind();
     bindShading(grid_);
@@ -319,8 +317,7 @@ DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const depth_im
 }
 
 DrawCounts TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
-                                        const depth_images::View& view,
-                                        const gl::Framebuffer& target) {
+                                        const kit::View& view, const gl::Framebuffer& target) {
     target.bind();
     bindShading(morphed_);
     bindTerrain(morphed_, *terrain_, view);

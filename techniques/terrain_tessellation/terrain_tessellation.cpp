@@ -20,7 +20,7 @@ double secondsSince(Clock::time_point begin) {
 }
 
 /// The horizontal angle of view has the same pixels per tangent.
-TileView tileViewOf(const depth_images::View& view) {
+TileView tileViewOf(const kit::View& view) {
     return {view.eyeWorld, view.clipFromWorld(),
             0.5F * static_cast<float>(view.sizePx.x) * view.clipFromView[0].x};
 }
@@ -138,7 +138,7 @@ MorphRanges TerrainTessellation::morphRanges() const {
 }
 
 DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selection,
-                                     const depth_images::View& view, const Target& target) {
+                                     const kit::View& view, const Target& target) {
     target.clear();
     switch (method) {
         case Method::UniformGrid:
@@ -154,8 +154,8 @@ DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selecti
 
 void TerrainTessellation::render(technique::FrameContext& context) {
     const glm::vec2 size(sizePx_);
-    view_ = depth_images::viewOf(
-        camera_->camera(context.frame, context.frameCount, size.x / size.y), sizePx_);
+    view_ =
+        kit::viewOf(camera_->camera(context.frame, context.frameCount, size.x / size.y), sizePx_);
     tileView_ = tileViewOf(view_);
     {
         const gl::CpuScope scope(context.profiler, "tile_walk");

@@ -7,7 +7,7 @@
 
 #include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
@@ -23,7 +23,7 @@ double percent(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
 
-DepthMap readDepths(const gl::Texture& depth, const depth_images::View& view) {
+DepthMap readDepths(const gl::Texture& depth, const kit::View& view) {
     DepthMap map{view, depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)};
     const double n = view.nearM, f = view.farM;
     for (float& value : map.depthM) {
@@ -42,7 +42,7 @@ void TerrainTessellation::record(technique::Recorder& recorder) {
     if (params_.measuresErrors) truth = drawnAgain(Method::UniformGrid, selectAll(), true);
     if (params_.showsPictures) {
         const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
-        depth_images::ImageLayers layers(drawn.depths.view, params_.supersampling);
+        kit::ImageLayers layers(drawn.depths.view, params_.supersampling);
         layers.depths(drawn.depths.depthM);
         if (truth) {
             layers.errors(picture, image::averaged(truth->picture, params_.supersampling));
@@ -163,7 +163,7 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
                                                            const TileSelection& selection,
                                                            bool showsUnderside) {
     const int scale = params_.supersampling;
-    depth_images::View view = view_;
+    kit::View view = view_;
     view.sizePx *= scale;
     const Target target(view.sizePx);
     // Lengths in pixels are `scale` times as large: the factors stay as they were.
@@ -212,12 +212,12 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
     if (!params_.showsPictures) return;
     recorder.image("truth", truthPicture,
-                   depth_images::ImageLayers(truth.depths.view, params_.supersampling)
+                   kit::ImageLayers(truth.depths.view, params_.supersampling)
                        .depths(truth.depths.depthM)
                        .options("image"));
     recorder.image("error", reflections::errorPicture(picture, truthPicture, 8),
-                   depth_images::seenFrom(view_));
-    recorder.image("cracks", withMarks(drawn.picture, cracks), depth_images::seenFrom(view_));
+                   kit::seenFrom(view_));
+    recorder.image("cracks", withMarks(drawn.picture, cracks), kit::seenFrom(view_));
 }
 
 }  // namespace gfxrepro::terrain_tessellation

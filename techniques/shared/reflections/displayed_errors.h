@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/image/image.h"
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/shared/reflections/gbuffer.h"
 
 namespace gfxrepro::reflections {

@@ -1,10 +1,10 @@
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
 
 #include <vector>
 
 #include "runner/core/error.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 using image::ExrPixelType;
 using image::ImageF;
@@ -114,4 +114,4 @@ technique::ImageOptions ImageLayers::options(const std::string& truthOf) const {
     return options;
 }
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

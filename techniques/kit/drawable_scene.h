@@ -8,7 +8,7 @@
 #include "runner/gl/program.h"
 #include "runner/scene/scene.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 /// Id of triangle t of scene::flattened(scene) is t + 1; 0 stands for "nothing". Throws
 /// UnsupportedError when `triangleCount` triangles have more ids than 32 bits hold.
@@ -63,4 +63,4 @@ class DrawableScene {
     scene::Box bounds_;
 };
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

@@ -1,4 +1,4 @@
-#include "techniques/shared/drawable_scene.h"
+#include "techniques/kit/drawable_scene.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "runner/core/error.h"
 #include "runner/gpu_scene/gpu_mesh.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 namespace {
 
@@ -187,4 +187,4 @@ std::size_t DrawableScene::sizeBytes() const {
     return sum;
 }
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

@@ -5,10 +5,10 @@
 #include <map>
 #include <span>
 
-#include "techniques/shared/depth_image.h"
-#include "techniques/shared/drawable_scene.h"
+#include "techniques/kit/depth_image.h"
+#include "techniques/kit/drawable_scene.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 /// Where a fragment's triangle id comes from.
 enum class TriangleIds {
@@ -56,4 +56,4 @@ class DepthImageRenderer {
     std::map<Variant, gl::Program> programs_;
 };
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

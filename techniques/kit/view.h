@@ -6,7 +6,12 @@
 
 #include "runner/scene/scene.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro {
+namespace kit {}
+namespace depth_images = kit;  // the name that the reflections still use
+}  // namespace gfxrepro
+
+namespace gfxrepro::kit {
 
 /// Pixel coordinates are continuous; pixel (x, y) covers [x, x + 1) × [y, y + 1), its sample lies
 /// at its centre, and y grows upwards: (0, 0) is the lower left corner of the image, as GL has it.
@@ -29,7 +34,7 @@ View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx =
 View withOffset(View view, glm::vec2 offsetPx);
 
 /// Where a point lands, in pixel coordinates; may lie outside of the image. Nothing for points on
-/// or behind the plane through the eye. Same operations as projectToPixel in shared/view.glsl.
+/// or behind the plane through the eye.
 std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld);
 
 /// The pixel whose square holds the projection; nothing when that is outside of the image.
@@ -47,7 +52,7 @@ glm::mat4 worldFromPixels(const View& view);
 
 /// Takes a sample of `from` to `to`: (x·d, y·d, d, 1) becomes (x'·d', y'·d', d', 1), (x, y) being
 /// pixel coordinates and d the distance along the view axis. Worked out in double precision:
-/// between equal views it is the identity. For reproject() of shared/pixel_redundancy.glsl.
+/// between equal views it is the identity. For reproject() of kit/pixel_redundancy.glsl.
 glm::mat4 reprojection(const View& from, const View& to);
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

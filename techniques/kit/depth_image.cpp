@@ -1,10 +1,10 @@
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
 #include <array>
 
 #include "runner/core/error.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 namespace {
 
@@ -69,4 +69,4 @@ image::ImageF shadingPicture(const HostDepthImage& image, const glm::vec3& backg
     return picture;
 }
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

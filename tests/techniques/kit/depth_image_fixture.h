@@ -5,10 +5,10 @@
 
 #include "runner/core/files.h"
 #include "runner/core/random.h"
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 #include "tests/gl/gl_fixture.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 inline scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
     scene::Camera camera;
@@ -85,4 +85,4 @@ class DepthImageTest : public test::GlTest {
     gl::ShaderLibrary shaders{dataFolder("shaders")};
 };
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

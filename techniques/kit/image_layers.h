@@ -6,9 +6,9 @@
 #include <string>
 
 #include "runner/technique/technique.h"
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 /// For an image that a view shows, without further channels.
 technique::ImageOptions seenFrom(const View& view, const std::string& truthOf = "");
@@ -51,4 +51,4 @@ class ImageLayers {
 /// Depths and triangles ("id", 0: none) of a depth image.
 ImageLayers layersOf(const HostDepthImage& image);
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

@@ -1,8 +1,8 @@
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 namespace {
 
@@ -81,4 +81,4 @@ glm::mat4 reprojection(const View& from, const View& to) {
     return glm::mat4(pixelsFromWorld(to) * glm::inverse(pixelsFromWorld(from)));
 }
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

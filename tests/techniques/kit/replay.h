@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 /// What a pixel must hold, or that rounding decides it.
 struct Verdict {
@@ -40,4 +40,4 @@ class Replay {
     std::vector<Triangle> triangles_;
 };
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

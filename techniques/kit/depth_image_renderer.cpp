@@ -1,11 +1,11 @@
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 
 #include <fmt/format.h>
 
 #include "runner/core/error.h"
 #include "runner/gpu_scene/gpu_mesh.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 namespace {
 
@@ -86,9 +86,8 @@ const gl::Program& DepthImageRenderer::programFor(const Variant& variant) {
     defines["kEarlierIdsUnit"] = static_cast<int>(kEarlierIdsUnit);
     defines["kShadingTarget"] = kShadingTarget;
     defines["kTriangleIdTarget"] = kTriangleIdTarget;
-    std::vector<std::string> files = {"shared/depth_image.vert.glsl",
-                                      "shared/depth_image.frag.glsl"};
-    if (hasGeometryStage) files.push_back("shared/depth_image.geom.glsl");
+    std::vector<std::string> files = {"kit/depth_image.vert.glsl", "kit/depth_image.frag.glsl"};
+    if (hasGeometryStage) files.push_back("kit/depth_image.geom.glsl");
     return programs_.emplace(variant, gl::Program(shaders_, files, defines)).first->second;
 }
 
@@ -125,4 +124,4 @@ void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
     glDepthFunc(GL_LESS);
 }
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

@@ -6,9 +6,9 @@
 
 #include "runner/gl/objects.h"
 #include "runner/image/image.h"
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 /// What the depth test compares; the stored depth does not depend on it.
 enum class DepthFormat {
@@ -57,4 +57,4 @@ void writeDepthImage(const HostDepthImage& host, DepthImage& image);
 image::ImageF shadingPicture(const HostDepthImage& image,
                              const glm::vec3& background = glm::vec3(0.18F, 0.20F, 0.24F));
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

@@ -1,13 +1,13 @@
 // The images against independent answers: a replay on the CPU, Embree, and each other.
-#include "tests/techniques/shared/replay.h"
+#include "tests/techniques/kit/replay.h"
 
 #include <array>
 #include <cmath>
 
 #include "runner/raycast/ray_tracer.h"
-#include "tests/techniques/shared/depth_image_fixture.h"
+#include "tests/techniques/kit/depth_image_fixture.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 namespace {
 
 constexpr int kSizePx = 96;
@@ -165,4 +165,4 @@ TEST_F(ReplayTest, TheDepthFormatDecidesTiesOnly) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

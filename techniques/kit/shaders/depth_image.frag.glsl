@@ -4,7 +4,7 @@
 // lands there. So the nearest fragment that is not redundant stays: a discarded one leaves the depth
 // buffer as it was. Writes shading, distance along the view axis, and triangle id.
 
-#include "shared/pixel_redundancy.glsl"
+#include "kit/pixel_redundancy.glsl"
 
 in VertexData {
     vec3 normalView;

@@ -1,10 +1,10 @@
-#include "tests/techniques/shared/replay.h"
+#include "tests/techniques/kit/replay.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 
 namespace {
 
@@ -143,4 +143,4 @@ Verdict Replay::pixel(glm::ivec2 pixel, std::span<const HostDepthImage> earlier)
     return {isDecided, first.id, first.depthM, tolerance};
 }
 
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

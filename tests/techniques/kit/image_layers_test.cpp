@@ -1,10 +1,10 @@
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
 
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 namespace {
 
 /// From (0, 0, 5) along −z, 90 degrees, depths from 1 to 10.
@@ -102,4 +102,4 @@ TEST(ImageLayers, CameraIsTheView) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit

@@ -2,7 +2,7 @@
 
 // A sample of one view as another view sees it: xy its pixel coordinates there, z its distance along
 // the other view's axis (0 or less: on or behind the eye's plane). `sampleHere` is the same of this
-// view; `thereFromHere` is depth_images::reprojection() of the two. A pixel's centre reprojected
+// view; `thereFromHere` is kit::reprojection() of the two. A pixel's centre reprojected
 // into an equal view stays within a rounding error of the centre, far from the pixel's border.
 vec3 reproject(mat4 thereFromHere, vec3 sampleHere) {
     vec3 there = mat3(thereFromHere) * vec3(sampleHere.xy * sampleHere.z, sampleHere.z) +

@@ -1,9 +1,9 @@
 // Depth images: what is stored, what is culled and discarded, what is refused.
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
-#include "tests/techniques/shared/depth_image_fixture.h"
+#include "tests/techniques/kit/depth_image_fixture.h"
 
-namespace gfxrepro::depth_images {
+namespace gfxrepro::kit {
 namespace {
 
 using test::errorText;
@@ -191,4 +191,4 @@ TEST(TriangleIdsTest, AreThirtyTwoBitsWide) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::depth_images
+}  // namespace gfxrepro::kit
