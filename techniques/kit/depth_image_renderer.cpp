@@ -103,9 +103,7 @@ void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
     program.set("viewFromWorld", view.viewFromWorld);
     program.set("lightDirectionView",
                 glm::normalize(glm::mat3(view.viewFromWorld) * kLightDirectionWorld));
-    if (program.isActive("viewFromPixels")) {
-        program.set("viewFromPixels", viewFromPixels(view));
-    }
+    program.setIfActive("viewFromPixels", viewFromPixels(view));
     bindEarlier(program, view, earlier);
 
     clear(target, format_);

@@ -141,7 +141,6 @@ void DrawableScene::draw(const gl::Program& program, unsigned baseColorUnit) con
     glFrontFace(GL_CCW);
     // Parts without a texture must not leave the unit to what other passes have bound there.
     if (hasTextures()) textures_[0].bind(baseColorUnit);
-    const bool takesFirst = program.isActive("firstTriangle");
     std::uint32_t unflushed = 0;  // small parts share a batch
     for (const Part& part : parts_) {
         if (part.isDoubleSided) {
@@ -149,14 +148,14 @@ void DrawableScene::draw(const gl::Program& program, unsigned baseColorUnit) con
         } else {
             glEnable(GL_CULL_FACE);
         }
-        if (program.isActive("hasTexture")) program.set("hasTexture", part.texture >= 0 ? 1 : 0);
-        if (program.isActive("alphaCutoff")) program.set("alphaCutoff", part.alphaCutoff);
+        program.setIfActive("hasTexture", part.texture >= 0 ? 1 : 0);
+        program.setIfActive("alphaCutoff", part.alphaCutoff);
         if (part.texture >= 0) {
             textures_[static_cast<std::size_t>(part.texture)].bind(baseColorUnit);
         }
         for (std::uint32_t done = 0; done < part.triangleCount; done += kTrianglesPerDraw) {
             const std::uint32_t first = part.firstTriangle + done;
-            if (takesFirst) program.set("firstTriangle", first);
+            program.setIfActive("firstTriangle", first);
             const std::uint32_t count = std::min(part.triangleCount - done, kTrianglesPerDraw);
             drawTriangles(first, count);
             unflushed += count;

@@ -74,9 +74,7 @@ void ComputeSplatter::upload(std::span<const DrawnPatch> drawn) {
 void ComputeSplatter::dispatch(const gl::Program& program, const PatchView& view) const {
     program.use();
     setView(program, view);
-    if (program.isActive("depthTolerance")) {
-        program.set("depthTolerance", settings_.depthTolerance);
-    }
+    program.setIfActive("depthTolerance", settings_.depthTolerance);
     pixels_.bindStorage(kPixelBinding);
     for (const Batch& batch : drawList_.batches) {
         points_.bind(batch.piece);

@@ -261,8 +261,8 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
         if (inUse != &program) {
             setUp(program, view);
-            if (isVisibility && program.isActive("lowPassRadiusPx")) {
-                program.set("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
+            if (isVisibility) {
+                program.setIfActive("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
             }
             inUse = &program;
         }
@@ -309,14 +309,11 @@ void SplatRenderer::issue(const Batch& batch) const {
 void SplatRenderer::setUp(const gl::Program& program, const PatchView& view) const {
     program.use();
     setView(program, view);
-    const auto set = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
-    set("lowPassRadiusPx", settings_.lowPassRadiusPx);
-    set("splatRadiusPx", settings_.lowPassRadiusPx);
-    set("cutoff", settings_.cutoff);
-    set("visibilityOffset", settings_.visibilityOffset);
-    set("lightDirectionView", settings_.lightDirectionView);
+    program.setIfActive("lowPassRadiusPx", settings_.lowPassRadiusPx);
+    program.setIfActive("splatRadiusPx", settings_.lowPassRadiusPx);
+    program.setIfActive("cutoff", settings_.cutoff);
+    program.setIfActive("visibilityOffset", settings_.visibilityOffset);
+    program.setIfActive("lightDirectionView", settings_.lightDirectionView);
 }
 
 }  // namespace gfxrepro::point_splatting

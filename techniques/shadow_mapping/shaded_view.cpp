@@ -28,8 +28,7 @@ glm::vec4 placeOf(const Light& light) {
 /// Element `index` of a uniform array, where the shader reads it.
 template <class T>
 void setElement(const gl::Program& program, const char* name, std::size_t index, const T& value) {
-    const std::string element = fmt::format("{}[{}]", name, index);
-    if (program.isActive(element.c_str())) program.set(element.c_str(), value);
+    program.setIfActive(fmt::format("{}[{}]", name, index).c_str(), value);
 }
 
 }  // namespace
@@ -100,17 +99,14 @@ const gl::Program& ShadedView::programFor(const Variant& variant) {
 
 void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
                              const kit::View& view) const {
-    const auto setIfActive = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
-    setIfActive("clipFromWorld", view.clipFromWorld());
-    setIfActive("eyeWorld", view.eyeWorld);
-    setIfActive("ambient", lighting_.ambient);
-    setIfActive("diffuse", lighting_.diffuse);
-    setIfActive("specular", lighting_.specular);
-    setIfActive("shininess", lighting_.shininess);
-    setIfActive("epsilon", settings_.bias.constant);
-    setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
+    program.setIfActive("clipFromWorld", view.clipFromWorld());
+    program.setIfActive("eyeWorld", view.eyeWorld);
+    program.setIfActive("ambient", lighting_.ambient);
+    program.setIfActive("diffuse", lighting_.diffuse);
+    program.setIfActive("specular", lighting_.specular);
+    program.setIfActive("shininess", lighting_.shininess);
+    program.setIfActive("epsilon", settings_.bias.constant);
+    program.setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
     std::size_t firstView = 0;
     for (std::size_t i = 0; i < maps.maps().size(); ++i) {
         const ShadowMap& map = maps.maps()[i];

@@ -129,12 +129,8 @@ void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowM
     for (const LightView& view : map.views) {
         glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
         depthProgram_.set("clipFromWorld", view.clipFromWorld);
-        if (depthProgram_.isActive("slopeScale")) {
-            depthProgram_.set("slopeScale", settings_.bias.slopeScale);
-        }
-        if (depthProgram_.isActive("planes")) {
-            depthProgram_.set("planes", glm::vec3(view.nearM, view.farM, view.isPerspective));
-        }
+        depthProgram_.setIfActive("slopeScale", settings_.bias.slopeScale);
+        depthProgram_.setIfActive("planes", glm::vec3(view.nearM, view.farM, view.isPerspective));
         scene.drawDepthOnly();
     }
 }

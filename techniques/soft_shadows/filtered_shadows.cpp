@@ -62,15 +62,13 @@ void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
     const glm::mat4 clipFromWorld = view.clipFromWorld();
     filter_.use();
     filter_.set("clipFromWorld", clipFromWorld);
-    if (filter_.isActive("worldFromClip")) {
-        filter_.set("worldFromClip", glm::inverse(clipFromWorld));
-    }
+    filter_.setIfActive("worldFromClip", glm::inverse(clipFromWorld));
     filter_.set("lightPosition", light.centre);
     filter_.set("lightForward", forwardOf(view));
     filter_.set("tangent", 1.0F / view.clipFromView[0].x);
     filter_.set("halfLight", glm::length(light.right));
     filter_.set("nearM", view.nearM);
-    if (filter_.isActive("farM")) filter_.set("farM", view.farM);
+    filter_.setIfActive("farM", view.farM);
     filter_.set("biasPerDistance", shadowMap_.biasPerDistance(view));
     shadowMap_.shadowMap().bind(kShadowMapUnit);
     if (momentPyramid_.id() != 0) momentPyramid_.bind(kMomentUnit);

@@ -111,19 +111,16 @@ std::size_t Reconstructor::scratchBytes() const {
 }
 
 void Reconstructor::setGeometry(const gl::Program& program, const kit::View& view) const {
-    const auto setIfActive = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
     const glm::mat4 rays = worldFromPixels(view);  // of depth 1
-    setIfActive("imageSizePx", view.sizePx);
-    setIfActive("rayOrigin", glm::vec3(rays[2]));
-    setIfActive("rayStepX", glm::vec3(rays[0]));
-    setIfActive("rayStepY", glm::vec3(rays[1]));
-    setIfActive("footprintPerDepth",
-                2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
-    setIfActive("grazingLimitPx", settings_.grazingLimitPx);
-    setIfActive("discontinuityPx", settings_.discontinuityPx);
-    setIfActive("runsPerRow", runsPerRow_);
+    program.setIfActive("imageSizePx", view.sizePx);
+    program.setIfActive("rayOrigin", glm::vec3(rays[2]));
+    program.setIfActive("rayStepX", glm::vec3(rays[0]));
+    program.setIfActive("rayStepY", glm::vec3(rays[1]));
+    program.setIfActive("footprintPerDepth",
+                        2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
+    program.setIfActive("grazingLimitPx", settings_.grazingLimitPx);
+    program.setIfActive("discontinuityPx", settings_.discontinuityPx);
+    program.setIfActive("runsPerRow", runsPerRow_);
 }
 
 glm::uvec4 Reconstructor::countElements(const kit::View& view) {

@@ -65,37 +65,34 @@ gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers) {
 }
 
 void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain, const kit::View& view) {
-    const auto setIfRead = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
     terrain.pages().texture().bind(kHeightUnit);
-    setIfRead("heightOfTexel", terrain.heightOfTexel());
-    setIfRead("spacing", terrain.metadata().spacingM());
-    setIfRead("clipFromWorld", view.clipFromWorld());
+    program.setIfActive("heightOfTexel", terrain.heightOfTexel());
+    program.setIfActive("spacing", terrain.metadata().spacingM());
+    program.setIfActive("clipFromWorld", view.clipFromWorld());
 }
 
 void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
                  const RenderSettings& settings, const kit::View& view) {
-    const auto setIfRead = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
     terrain.blocks().bindStorage(kBlockBinding);
     terrain.firstBlocks().bindStorage(kFirstBlockBinding);
     const glm::vec2 size(view.sizePx);
-    setIfRead("imageSize", size);
-    setIfRead("eye", view.eyeWorld);
-    setIfRead("focalPx", 0.5F * size * glm::vec2(view.clipFromView[0].x, view.clipFromView[1].y));
-    setIfRead("segmentPx", settings.factors.segmentPx);
-    setIfRead("factorLimits", glm::vec2(settings.factors.smallest, settings.factors.greatest));
-    setIfRead("nearDistance", view.nearM);
-    setIfRead("isCulling", settings.cullsPatches ? 1 : 0);
+    program.setIfActive("imageSize", size);
+    program.setIfActive("eye", view.eyeWorld);
+    program.setIfActive("focalPx",
+                        0.5F * size * glm::vec2(view.clipFromView[0].x, view.clipFromView[1].y));
+    program.setIfActive("segmentPx", settings.factors.segmentPx);
+    program.setIfActive("factorLimits",
+                        glm::vec2(settings.factors.smallest, settings.factors.greatest));
+    program.setIfActive("nearDistance", view.nearM);
+    program.setIfActive("isCulling", settings.cullsPatches ? 1 : 0);
     // −w ≤ x, y, z ≤ w, a plane each.
     static constexpr std::array kNames{"frustumPlanes[0]", "frustumPlanes[1]", "frustumPlanes[2]",
                                        "frustumPlanes[3]", "frustumPlanes[4]", "frustumPlanes[5]"};
     const glm::mat4 rows = glm::transpose(view.clipFromWorld());
     for (int i = 0; i < 6; ++i) {
         const glm::vec4 plane = i % 2 == 0 ? rows[3] + rows[i / 2] : rows[3] - rows[i / 2];
-        setIfRead(kNames[static_cast<std::size_t>(i)], plane / glm::length(glm::vec3(plane)));
+        program.setIfActive(kNames[static_cast<std::size_t>(i)],
+                            plane / glm::length(glm::vec3(plane)));
     }
 }
 
@@ -133,12 +130,8 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
     if (hasColourMap(settings_.shading)) settings_.colourMap->bind(kColourUnit);
-    if (program.isActive("lastSample")) {
-        program.set("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
-    }
-    if (program.isActive("heightExtent")) {
-        program.set("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
-    }
+    program.setIfActive("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
+    program.setIfActive("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
 }
 
 template <class Draw>

@@ -193,15 +193,13 @@ void VolumeRenderer::drawPlanes(const gl::Program& program) const {
 
 /// What the shaders use, each its part.
 void VolumeRenderer::setView(const gl::Program& program) const {
-    if (program.isActive("light")) program.set("light", light_);
-    if (program.isActive("eyeVolume")) program.set("eyeVolume", eyeVolume_);
-    if (program.isActive("opacity")) program.set("opacity", settings_.opacity);
+    program.setIfActive("light", light_);
+    program.setIfActive("eyeVolume", eyeVolume_);
+    program.setIfActive("opacity", settings_.opacity);
     if (!settings_.cut) return;
     const auto n = static_cast<float>(layout_.resolution());
-    if (program.isActive("cutLow"))
-        program.set("cutLow", glm::ivec3(glm::round(settings_.cut->min * n)));
-    if (program.isActive("cutHigh"))
-        program.set("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
+    program.setIfActive("cutLow", glm::ivec3(glm::round(settings_.cut->min * n)));
+    program.setIfActive("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
 }
 
 std::vector<std::uint32_t> VolumeRenderer::readHits() const {
