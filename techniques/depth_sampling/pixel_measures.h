@@ -8,6 +8,7 @@
 #include "runner/gl/device.h"
 #include "runner/gl/program.h"
 #include "techniques/kit/depth_image.h"
+#include "techniques/kit/whole_image.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -66,7 +67,7 @@ class PixelMeasures {
     const gl::ShaderLibrary& shaders_;
     Variants markPrograms_, availabilityPrograms_;
     gl::Program countProgram_, samplesProgram_;
-    gl::VertexArray withoutAttributes_;
+    kit::WholeImage wholeImage_;
     gl::SampleQuery countQuery_, samplesQuery_, availableQuery_;
 };
 

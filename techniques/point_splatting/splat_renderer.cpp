@@ -150,9 +150,7 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
     sprites_ = {
         shaders, {"point_splatting/sprite.vert.glsl", "point_splatting/sprite.frag.glsl"}, defines};
     normalization_ = {
-        shaders,
-        {"point_splatting/whole_image.vert.glsl", "point_splatting/normalization.frag.glsl"},
-        defines};
+        shaders, {"kit/whole_image.vert.glsl", "point_splatting/normalization.frag.glsl"}, defines};
 
     depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
     normalSums_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
@@ -283,12 +281,10 @@ void SplatRenderer::drawSprites(const PatchView& view) {
 
 void SplatRenderer::normalize(const PatchView& view) {
     outputTarget_.bind();
-    glDisable(GL_DEPTH_TEST);
     setUp(normalization_, view);
     normalSums_.bind(kNormalSumUnit);
     if (hasColors_) colorSums_.bind(kColorSumUnit);
-    noAttributes_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
 }
 
 void SplatRenderer::issue(const Batch& batch) const {

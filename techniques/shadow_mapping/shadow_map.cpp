@@ -55,7 +55,7 @@ ShadowMapRenderer::ShadowMapRenderer(const gl::ShaderLibrary& shaders,
     if (settings.filter == Filter::Variance) {
         blurProgram_.emplace(
             shaders,
-            std::vector<std::string>{"shadow_mapping/whole_tile.vert.glsl",
+            std::vector<std::string>{"kit/whole_image.vert.glsl",
                                      "shadow_mapping/blur_moments.frag.glsl"},
             gl::Defines{{"kMomentsUnit", kMomentsUnit}, {"FETCHES", settings.blurTexels}});
     }
@@ -137,7 +137,6 @@ void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowM
 
 void ShadowMapRenderer::blur(const ShadowMap& map) const {
     blurProgram_->use();
-    withoutAttributes_.bind();
     const auto pass = [&](const StepDeclaration& step, const gl::Texture& from,
                           const gl::Framebuffer& to, glm::ivec2 along) {
         applyState(step);
@@ -148,7 +147,7 @@ void ShadowMapRenderer::blur(const ShadowMap& map) const {
             glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
             blurProgram_->set("firstTexel", view.tilePx);
             blurProgram_->set("lastTexel", view.tilePx + view.tileSizePx - 1);
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+            wholeImage_.draw();
         }
     };
     pass(steps_[1], map.colour, map.blurredFramebuffer, {1, 0});

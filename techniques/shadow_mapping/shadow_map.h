@@ -5,6 +5,7 @@
 #include <span>
 
 #include "techniques/kit/drawable_scene.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/shadow_mapping/lights.h"
 #include "techniques/shadow_mapping/shadow_steps.h"
 
@@ -58,7 +59,7 @@ class ShadowMapRenderer {
     std::vector<StepDeclaration> steps_;
     gl::Program depthProgram_;
     std::optional<gl::Program> blurProgram_;
-    gl::VertexArray withoutAttributes_;
+    kit::WholeImage wholeImage_;
     std::vector<Light> lights_;
     std::vector<ShadowMap> maps_;
     const kit::DrawableScene* scene_ = nullptr;  // compared, never followed

@@ -67,12 +67,11 @@ LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
       framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
-      test_(shaders, {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
+      test_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
             {{"SHADOW_MAP_UNIT", kShadowMapUnit},
              {"POSITION_UNIT", kPositionUnit},
              {"NORMAL_UNIT", kNormalUnit}}),
-      plainPass_(shaders,
-                 {"soft_shadows/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
+      plainPass_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
 
 VisibilityMask LightVisibility::makeMask(glm::ivec2 sizePx, int gridSize) {
     VisibilityMask mask;
@@ -147,16 +146,10 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
 /// A fragment of the program in use for every pixel; the bits that it puts out are added.
 void LightVisibility::drawBits(VisibilityMask& mask, int sample) const {
     mask.layers[static_cast<std::size_t>(sample / 32)].framebuffer.bind();
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     // Bits gather without being read: faster than images in a compute pass on llvmpipe.
     glEnable(GL_COLOR_LOGIC_OP);
     glLogicOp(GL_OR);
-    withoutAttributes_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
     glDisable(GL_COLOR_LOGIC_OP);
 }
 

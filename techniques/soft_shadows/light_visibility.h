@@ -7,6 +7,7 @@
 
 #include "runner/gl/program.h"
 #include "techniques/kit/drawable_scene.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/soft_shadows/area_light.h"
 
 namespace gfxrepro::soft_shadows {
@@ -93,7 +94,7 @@ class LightVisibility {
     gl::Framebuffer framebuffer_;
     gl::Program test_;
     gl::Program plainPass_;
-    gl::VertexArray withoutAttributes_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::soft_shadows

@@ -8,6 +8,7 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "runner/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/whole_image.h"
 
 namespace gfxrepro::template_ {
 
@@ -44,9 +45,9 @@ class TemplateTechnique : public technique::Technique {
         const gl::Texture* attachments[] = {&colour_};
         framebuffer_ = gl::Framebuffer(attachments);
         if (method_ == Method::Gradient) {
-            program_ = gl::Program(
-                context.shaders, {"template/fullscreen.vert.glsl", "template/gradient.frag.glsl"});
-            withoutAttributes_.emplace();
+            program_ = gl::Program(context.shaders,
+                                   {"kit/whole_image.vert.glsl", "template/gradient.frag.glsl"});
+            wholeImage_.emplace();
             return;
         }
         if (!context.scene) throw Error("method 'silhouette' needs a scene");
@@ -70,8 +71,7 @@ class TemplateTechnique : public technique::Technique {
         program_.set("brightness", brightness_);
         if (method_ == Method::Gradient) {
             program_.set("widthPx", static_cast<float>(size_.x));
-            withoutAttributes_->bind();
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+            wholeImage_->draw();
         } else {
             program_.set("clipFromWorld", clipFromWorld_);
             mesh_->draw();
@@ -97,7 +97,7 @@ class TemplateTechnique : public technique::Technique {
     gl::Framebuffer framebuffer_;
     gl::Program program_;
     std::optional<gpu_scene::GpuMesh> mesh_;
-    std::optional<gl::VertexArray> withoutAttributes_;
+    std::optional<kit::WholeImage> wholeImage_;
 };
 
 std::unique_ptr<technique::Technique> create(config::Params& params) {

@@ -125,8 +125,7 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
     colorTarget_ = gl::Framebuffer(color);
     if (!isOpaque) return;
     shade_ = gl::Program(
-        shaders, {"voxelization/fullscreen.vert.glsl", "voxelization/volume_shade.frag.glsl"},
-        defines);
+        shaders, {"kit/whole_image.vert.glsl", "voxelization/volume_shade.frag.glsl"}, defines);
     hits_ = gl::Texture::make2D(GL_R32UI, sizePx);
     depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
     const std::array<const gl::Texture*, 1> hits{&hits_};
@@ -160,11 +159,10 @@ void VolumeRenderer::drawOpaque() {
     drawPlanes(planes_);
 
     colorTarget_.bind();
-    glDisable(GL_DEPTH_TEST);
     hits_.bind(kHitsUnit);
     shade_.use();
     setView(shade_);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
 }
 
 // [zju2005] Sec. 2.4.2: alpha blending, back to front; premultiplied, since a slice may blend
