@@ -39,9 +39,7 @@ SurfaceShading::SurfaceShading(const scene::Scene& scene) {
     triangles_ = std::move(mesh.triangles);
     for (const scene::Instance& instance : scene.instances) {
         const scene::Mesh& part = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-        const scene::Material material =
-            part.material < 0 ? scene::Material{}
-                              : scene.materials[static_cast<std::size_t>(part.material)];
+        const scene::Material material = materialOf(scene, part);
         const glm::mat3 normalMatrix =
             glm::transpose(glm::inverse(glm::mat3(instance.worldFromMesh)));
         for (std::size_t v = 0; v < part.positions.size(); ++v) {

@@ -15,24 +15,6 @@ namespace {
 /// llvmpipe keeps every triangle of a draw until it is flushed.
 constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
 
-scene::Material materialOf(const scene::Scene& scene, const scene::Mesh& mesh) {
-    return mesh.material < 0 ? scene::Material{}
-                             : scene.materials[static_cast<std::size_t>(mesh.material)];
-}
-
-/// The inverse transpose up to a positive factor, by cofactors: singular matrices have them, too
-/// (an instance flattened to a plane).
-glm::mat3 normalMatrix(const glm::mat3& m) {
-    const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
-                              glm::cross(m[0], m[1]));
-    return glm::determinant(m) < 0.0F ? -cofactors : cofactors;
-}
-
-glm::vec3 unitOrZero(const glm::vec3& vector) {
-    const float length = glm::length(vector);
-    return length > 0.0F ? vector / length : glm::vec3(0.0F);
-}
-
 /// What scene::flattened() leaves out where not all meshes have it, in its order of vertices.
 struct Attributes {
     std::vector<glm::vec3> normals;
@@ -42,10 +24,10 @@ struct Attributes {
     void append(const scene::Mesh& mesh, const scene::Material& material,
                 const glm::mat4& worldFromMesh) {
         const std::size_t vertices = mesh.positions.size();
-        const glm::mat3 toWorld = normalMatrix(glm::mat3(worldFromMesh));
+        const glm::mat3 toWorld = scene::normalMatrix(glm::mat3(worldFromMesh));
         for (std::size_t i = 0; i < vertices; ++i) {
             normals.push_back(mesh.normals.empty() ? glm::vec3(0.0F)
-                                                   : unitOrZero(toWorld * mesh.normals[i]));
+                                                   : scene::unitOrZero(toWorld * mesh.normals[i]));
             texcoords.push_back(mesh.texcoords.empty() ? glm::vec2(0.0F) : mesh.texcoords[i]);
             const glm::vec3 color = mesh.colors.empty() ? glm::vec3(1.0F) : mesh.colors[i];
             colors.push_back(material.baseColor * glm::vec4(color, 1.0F));
