@@ -21,6 +21,17 @@ glm::dmat4 pixelsFromWorld(const View& view) {
 
 }  // namespace
 
+std::array<glm::vec4, 6> frustumPlanes(const View& view) {
+    const glm::mat4 rows = glm::transpose(view.clipFromWorld());
+    std::array<glm::vec4, 6> planes;
+    for (int axis = 0; axis < 3; ++axis) {
+        planes[static_cast<std::size_t>(2 * axis)] = rows[3] + rows[axis];
+        planes[static_cast<std::size_t>(2 * axis) + 1] = rows[3] - rows[axis];
+    }
+    for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
+    return planes;
+}
+
 View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx) {
     View view;
     view.eyeWorld = camera.position;

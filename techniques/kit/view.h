@@ -1,6 +1,7 @@
 // A pinhole view of a given size in pixels.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 
@@ -25,6 +26,10 @@ struct View {
 
     glm::mat4 clipFromWorld() const { return clipFromView * viewFromWorld; }
 };
+
+/// Planes a·x + b·y + c·z + d ≥ 0 of what the view holds, in world space, of unit normals: −w ≤ x,
+/// y, z ≤ w, a plane each, from the rows of the matrix to clip space (Gribb and Hartmann 2001).
+std::array<glm::vec4, 6> frustumPlanes(const View& view);
 
 /// The view of a camera, its samples moved by `offsetPx` (see withOffset).
 View viewOf(const scene::Camera& camera, glm::ivec2 sizePx, glm::vec2 offsetPx = glm::vec2(0.0F));

@@ -131,7 +131,7 @@ void setView(const gl::Program& program, const PatchView& view) {
     const glm::vec2 ndcOffset(-clip[2][0], -clip[2][1]);  // clip w is −z
     glm::mat4 eyeFromView(1.0F);
     eyeFromView[2][2] = -1.0F;
-    program.setIfActive("eyeFromModel", eyeFromView * view.viewFromModel);
+    program.setIfActive("eyeFromModel", eyeFromView * view.viewFromWorld);
     program.setIfActive("ndcPerSlope", ndcPerSlope);
     program.setIfActive("ndcOffset", ndcOffset);
     program.setIfActive("depthFromInverseZ", glm::vec2(clip[3][2], -clip[2][2]));

@@ -12,16 +12,6 @@ constexpr GLuint kPositionLocation = 0;
 /// llvmpipe keeps every primitive of a draw in memory until it is flushed.
 constexpr GLsizei kMaxBatch = 1 << 16;
 
-gl::VertexArray positionArray(const gl::Buffer& positions) {
-    gl::VertexArray array;
-    const GLuint id = array.id();
-    glVertexArrayVertexBuffer(id, 0, positions.id(), 0, sizeof(glm::vec3));
-    glVertexArrayAttribFormat(id, kPositionLocation, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(id, kPositionLocation, 0);
-    glEnableVertexArrayAttrib(id, kPositionLocation);
-    return array;
-}
-
 }  // namespace
 
 PlainPoints::PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& model,
@@ -32,11 +22,11 @@ PlainPoints::PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& mode
                {"point_splatting/plain_point.vert.glsl", "point_splatting/sprite.frag.glsl"},
                {{"POSITION_LOCATION", static_cast<int>(kPositionLocation)}}),
       positions_(gl::Buffer::of(model.positions())),
-      array_(positionArray(positions_)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       output_(gl::Texture::make2D(GL_RGBA8, sizePx)) {
     const std::vector<const gl::Texture*> output{&output_};
     target_ = gl::Framebuffer(output, &depth_);
+    array_.setAttribute(kPositionLocation, positions_, 3);
 }
 
 void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& view,
@@ -51,7 +41,7 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_TRUE);
     program_.use();
-    program_.set("clipFromModel", view.clipFromView * view.viewFromModel);
+    program_.set("clipFromModel", view.clipFromWorld());
     array_.bind();
     std::vector<GLint> firsts;
     std::vector<GLsizei> counts;

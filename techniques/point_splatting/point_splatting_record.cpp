@@ -55,7 +55,7 @@ void recordEnlarged(technique::Recorder& recorder, const std::string& name,
 
 /// Unit, world space; 0 where no splat is.
 std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const PatchView& view) {
-    const glm::mat3 modelFromView = glm::transpose(glm::mat3(view.viewFromModel));
+    const glm::mat3 modelFromView = glm::transpose(glm::mat3(view.viewFromWorld));
     const std::vector<float> sums = accumulated.read<float>(GL_RGBA, GL_FLOAT, 4);
     std::vector<glm::vec3> normals;
     normals.reserve(sums.size() / 4);
@@ -83,7 +83,7 @@ void PointSplatting::record(technique::Recorder& recorder) {
     std::optional<image::ImageF> samples;
     if (params_.measuresErrors) samples = supersampled();
     if (params_.showsPictures) {
-        kit::ImageLayers layers(kit::viewOf(camera_, sizePx_));
+        kit::ImageLayers layers(view_);
         const bool hasNormals = renderer_ && params_.method != Method::Sprites;
         if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
         if (samples) {
@@ -101,7 +101,7 @@ void PointSplatting::recordModes(technique::Recorder& recorder) const {
     SplatSettings splats = params_.splats;
     splats.showsModes = true;
     const ModelPicture modes(drawnWith(splats, params_.selection, 1));
-    recorder.image("modes", modes.color, kit::seenFrom(kit::viewOf(camera_, sizePx_)));
+    recorder.image("modes", modes.color, kit::seenFrom(view_));
     recordEnlarged(recorder, "modes", modes);
 }
 
@@ -156,7 +156,7 @@ double PointSplatting::facingPct() const {
     const std::span<const glm::vec3> positions = model_->positions(), normals = model_->normals();
     std::size_t facing = 0;
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        facing += glm::dot(normals[i], view_.eyeModel - positions[i]) > 0.0F ? 1 : 0;
+        facing += glm::dot(normals[i], view_.eyeWorld - positions[i]) > 0.0F ? 1 : 0;
     }
     return percent(static_cast<double>(facing), static_cast<double>(positions.size()));
 }
@@ -261,14 +261,13 @@ image::ImageF PointSplatting::supersampled() const {
 
 void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
                                   const image::ImageF& samples) const {
-    const kit::View view = kit::viewOf(camera_, sizePx_);
     const auto compare = [&](const ModelPicture& truth, const ModelPixels& model,
                              const char* name) {
         const image::ImageF flip =
             recordDifference(recorder, truth.color, picture.color, model, name);
         if (!params_.showsPictures) return;
-        recorder.image(name, truth.color, kit::seenFrom(view, "image"));
-        recorder.image(fmt::format("flip_{}", name), flip, kit::seenFrom(view));
+        recorder.image(name, truth.color, kit::seenFrom(view_, "image"));
+        recorder.image(fmt::format("flip_{}", name), flip, kit::seenFrom(view_));
     };
     const ModelPicture boxed(image::averaged(samples, kSupersampling));
     const ModelPixels model(boxed, picture);

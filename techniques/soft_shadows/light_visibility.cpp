@@ -36,12 +36,10 @@ std::size_t Receivers::sizeBytes() const {
 
 Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,
                           const kit::View& view) {
+    gl::Defines defines = gpu_scene::attributeDefines();
+    defines["BASE_COLOR_UNIT"] = static_cast<int>(kBaseColorUnit);
     const gl::Program program(
-        shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"},
-        {{"POSITION", static_cast<int>(gpu_scene::kPosition)},
-         {"TEXCOORD", static_cast<int>(gpu_scene::kTexcoord)},
-         {"COLOR", static_cast<int>(gpu_scene::kColor)},
-         {"BASE_COLOR_UNIT", static_cast<int>(kBaseColorUnit)}});
+        shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"}, defines);
     Receivers receivers{view, gl::Texture::make2D(GL_RGBA32F, view.sizePx),
                         gl::Texture::make2D(GL_RGBA16F, view.sizePx),
                         gl::Texture::make2D(GL_RGBA8, view.sizePx)};

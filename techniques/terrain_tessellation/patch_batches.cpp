@@ -24,13 +24,8 @@ class PatchCosts {
           view_(view),
           patches_(patches),
           clipFromWorld_(glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld)),
-          rows_(glm::transpose(view.clipFromWorld())) {
-        // −w ≤ x, y, z ≤ w, a plane each, as the control stage has them.
-        for (int i = 0; i < 6; ++i) {
-            const glm::vec4 plane = rows_[3] + (i % 2 == 0 ? 1.0F : -1.0F) * rows_[i / 2];
-            frustum_[static_cast<std::size_t>(i)] = plane / glm::length(glm::vec3(plane));
-        }
-    }
+          rows_(glm::transpose(view.clipFromWorld())),
+          frustum_(frustumPlanes(view)) {}
 
     std::vector<PatchCost> all() const {
         std::vector<PatchCost> costs;

@@ -1,5 +1,7 @@
 #include "techniques/terrain_tessellation/terrain_renderer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -85,14 +87,9 @@ void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
                         glm::vec2(settings.factors.smallest, settings.factors.greatest));
     program.setIfActive("nearDistance", view.nearM);
     program.setIfActive("isCulling", settings.cullsPatches ? 1 : 0);
-    // −w ≤ x, y, z ≤ w, a plane each.
-    static constexpr std::array kNames{"frustumPlanes[0]", "frustumPlanes[1]", "frustumPlanes[2]",
-                                       "frustumPlanes[3]", "frustumPlanes[4]", "frustumPlanes[5]"};
-    const glm::mat4 rows = glm::transpose(view.clipFromWorld());
-    for (int i = 0; i < 6; ++i) {
-        const glm::vec4 plane = i % 2 == 0 ? rows[3] + rows[i / 2] : rows[3] - rows[i / 2];
-        program.setIfActive(kNames[static_cast<std::size_t>(i)],
-                            plane / glm::length(glm::vec3(plane)));
+    const std::array<glm::vec4, 6> planes = frustumPlanes(view);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        program.setIfActive(fmt::format("frustumPlanes[{}]", i).c_str(), planes[i]);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runner/core/error.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::voxelization {
 
@@ -23,11 +24,6 @@ glm::mat3 frameOf(const scene::Camera& camera) {
 /// From the upper left behind the eye.
 glm::vec3 headlight(const scene::Camera& camera) {
     return frameOf(camera) * glm::normalize(glm::vec3(-0.5F, 0.7F, 1.0F));
-}
-
-glm::mat4 clipFromWorld(const scene::Camera& camera, float aspect) {
-    return glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
-           glm::lookAt(camera.position, camera.target, camera.up);
 }
 
 }  // namespace
@@ -80,7 +76,8 @@ PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int re
     if (towardsCentre.z > std::max(towardsCentre.x, towardsCentre.y)) view.axis = Axis::Z;
     view.eye = localFromVolume(view.axis, eye);
     GFXREPRO_ASSERT(view.eye.z < 0.0F || view.eye.z > static_cast<float>(resolution));
-    view.clipFromVoxel = clipFromWorld(camera, aspect) * glm::translate(glm::mat4(1.0F), box.min) *
+    view.clipFromVoxel = kit::viewOf(camera, sizePx).clipFromWorld() *
+                         glm::translate(glm::mat4(1.0F), box.min) *
                          glm::scale(glm::mat4(1.0F), glm::vec3(voxelSize));
 
     const glm::mat3 frame = frameOf(camera);
