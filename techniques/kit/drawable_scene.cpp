@@ -7,13 +7,11 @@
 
 #include "runner/core/error.h"
 #include "runner/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::kit {
 
 namespace {
-
-/// llvmpipe keeps every triangle of a draw until it is flushed.
-constexpr std::uint32_t kTrianglesPerDraw = 1U << 16;
 
 /// What scene::flattened() leaves out where not all meshes have it, in its order of vertices.
 struct Attributes {
@@ -40,12 +38,6 @@ gl::Buffer upload(const std::vector<T>& values, unsigned location, gl::VertexArr
     gl::Buffer buffer = gl::Buffer::of(values);
     vertexArray.setAttribute(location, buffer, T::length());
     return buffer;
-}
-
-void drawTriangles(std::uint32_t first, std::uint32_t count) {
-    const std::size_t offsetBytes = static_cast<std::size_t>(first) * sizeof(glm::uvec3);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(offsetBytes));
 }
 
 }  // namespace
@@ -123,7 +115,7 @@ void DrawableScene::draw(const gl::Program& program, unsigned baseColorUnit) con
     glFrontFace(GL_CCW);
     // Parts without a texture must not leave the unit to what other passes have bound there.
     if (hasTextures()) textures_[0].bind(baseColorUnit);
-    std::uint32_t unflushed = 0;  // small parts share a batch
+    FlushedDraws draws;
     for (const Part& part : parts_) {
         if (part.isDoubleSided) {
             glDisable(GL_CULL_FACE);
@@ -135,30 +127,18 @@ void DrawableScene::draw(const gl::Program& program, unsigned baseColorUnit) con
         if (part.texture >= 0) {
             textures_[static_cast<std::size_t>(part.texture)].bind(baseColorUnit);
         }
-        for (std::uint32_t done = 0; done < part.triangleCount; done += kTrianglesPerDraw) {
-            const std::uint32_t first = part.firstTriangle + done;
-            program.setIfActive("firstTriangle", first);
-            const std::uint32_t count = std::min(part.triangleCount - done, kTrianglesPerDraw);
-            drawTriangles(first, count);
-            unflushed += count;
-            if (unflushed >= kTrianglesPerDraw) {
-                glFlush();
-                unflushed = 0;
-            }
-        }
+        draws.draw(part.firstTriangle, part.triangleCount,
+                   [&](std::uint32_t first, std::uint32_t count) {
+                       program.setIfActive("firstTriangle", first);
+                       drawTriangles(first, count);
+                   });
     }
 }
 
 void DrawableScene::drawDepthOnly() const {
     vertexArray_.bind();
     glDisable(GL_CULL_FACE);
-    const auto count = static_cast<std::uint32_t>(triangleCount_);
-    for (std::uint32_t first = 0; first < count;) {
-        const std::uint32_t piece = std::min(count - first, kTrianglesPerDraw);
-        drawTriangles(first, piece);
-        if (piece == kTrianglesPerDraw) glFlush();
-        first += piece;
-    }
+    FlushedDraws().draw(0, static_cast<std::uint32_t>(triangleCount_), drawTriangles);
 }
 
 std::size_t DrawableScene::sizeBytes() const {

@@ -3,14 +3,13 @@
 #include <vector>
 
 #include "runner/gl/gl.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {
 
 namespace {
 
 constexpr GLuint kPositionLocation = 0;
-/// llvmpipe keeps every primitive of a draw in memory until it is flushed.
-constexpr GLsizei kMaxBatch = 1 << 16;
 
 }  // namespace
 
@@ -60,7 +59,7 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
         firsts.push_back(static_cast<GLint>(patch.firstPoint));
         counts.push_back(static_cast<GLsizei>(levels_[patch.firstLevel + item.level].count));
         batch += counts.back();
-        if (batch >= kMaxBatch) issue();
+        if (batch >= static_cast<GLsizei>(kit::kPrimitivesPerFlush)) issue();
     }
     issue();
     glDisable(GL_PROGRAM_POINT_SIZE);

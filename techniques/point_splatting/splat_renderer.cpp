@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -11,8 +12,6 @@ namespace {
 
 /// Quads that 16-bit indices reach.
 constexpr std::uint32_t kMaxRange = 1U << 14;
-/// llvmpipe keeps every primitive of a draw in memory until it is flushed.
-constexpr std::uint32_t kMaxBatch = 1U << 16;
 
 /// Of the low-pass filter's radius, in the visibility pass, as the least. With all of it, surfaces
 /// would grow by the filter over what lies behind and end there at a hard edge, where their faint
@@ -194,7 +193,7 @@ void SplatRenderer::upload(std::span<const DrawnPatch> drawn, const PatchView& v
             item.mode = SplatMode::FullEwa;
         }
     }
-    drawList_.assign(points_, items_, kMaxRange, kMaxBatch);
+    drawList_.assign(points_, items_, kMaxRange, kit::kPrimitivesPerFlush);
     if (drawList_.ranges.empty()) return;
     std::vector<Command> commands;
     commands.reserve(drawList_.ranges.size());

@@ -1,5 +1,7 @@
 #include "techniques/soft_shadows/filtered_shadows.h"
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::soft_shadows {
 namespace {
 
@@ -21,8 +23,8 @@ gl::Defines filterDefines(ShadowFilter filter) {
 }
 
 void dispatch(glm::ivec2 sizePx) {
-    const glm::uvec2 groups((sizePx + kGroupSize - 1) / kGroupSize);
-    glDispatchCompute(groups.x, groups.y, 1);
+    glDispatchCompute(kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize),
+                      1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
@@ -57,13 +58,9 @@ gl::Program pass(const gl::ShaderLibrary& shaders, const char* name,
             passDefines(settings)};
 }
 
-GLuint groupsFor(int count, int groupSize) {
-    return static_cast<GLuint>((count + groupSize - 1) / groupSize);
-}
-
 void dispatchCorners(glm::ivec2 cornersSize) {
-    glDispatchCompute(groupsFor(cornersSize.x, kGroupWidth), groupsFor(cornersSize.y, kGroupHeight),
-                      1);
+    glDispatchCompute(kit::groupsFor(cornersSize.x, kGroupWidth),
+                      kit::groupsFor(cornersSize.y, kGroupHeight), 1);
 }
 
 /// H's pixel (x, y) must lie on the lower left corner of I's. 0.01: a hundredth of a pixel, far
@@ -136,7 +133,7 @@ glm::uvec4 Reconstructor::countElements(const kit::View& view) {
     const int runCount = runsPerRow_ * cornersSize_.y;
     count_.use();
     setGeometry(count_, view);
-    glDispatchCompute(groupsFor(runCount, kCountGroupSize), 1, 1);
+    glDispatchCompute(kit::groupsFor(runCount, kCountGroupSize), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 
     scan_.use();

@@ -1,12 +1,9 @@
 #include "techniques/soft_shadows/shadow_casters.h"
 
-#include <algorithm>
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
-
-/// llvmpipe keeps every triangle of a draw in memory until it is flushed.
-constexpr std::uint32_t kTrianglesPerDraw = 1 << 16;
 
 enum VertexLocation : GLuint { kHalfPxLocation = 0, kDepthLocation = 1 };
 
@@ -58,17 +55,13 @@ void ReconstructedCaster::draw(const kit::View& lightView) const {
     program_.use();
     const glm::dmat4 clipFromWorld =
         glm::dmat4(lightView.clipFromView) * glm::dmat4(lightView.viewFromWorld);
+    kit::FlushedDraws draws;
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         const ReconstructedMesh& mesh = meshes_[i];
         program_.set("clipFromCorner",
                      glm::mat4(clipFromWorld * glm::dmat4(worldFromCorner(mesh.view))));
         vertexArrays_[i].bind();
-        for (std::uint32_t first = 0; first < mesh.triangleCount; first += kTrianglesPerDraw) {
-            const std::uint32_t count = std::min(mesh.triangleCount - first, kTrianglesPerDraw);
-            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
-                           reinterpret_cast<const void*>(first * sizeof(glm::uvec3)));
-            glFlush();
-        }
+        draws.draw(0, mesh.triangleCount, kit::drawTriangles);
     }
 }
 
@@ -85,11 +78,9 @@ void MeshCaster::draw(const kit::View& lightView) const {
     glDisable(GL_CULL_FACE);
     program_.use();
     program_.set("clipFromWorld", lightView.clipFromWorld());
-    constexpr int kPiece = static_cast<int>(kTrianglesPerDraw);
-    for (int first = 0; first < mesh_.triangleCount; first += kPiece) {
-        mesh_.draw(first, std::min(mesh_.triangleCount - first, kPiece));
-        glFlush();
-    }
+    mesh_.vertexArray.bind();
+    kit::FlushedDraws().draw(0, static_cast<std::uint32_t>(mesh_.triangleCount),
+                             kit::drawTriangles);
 }
 
 }  // namespace gfxrepro::soft_shadows

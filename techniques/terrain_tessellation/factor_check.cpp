@@ -6,6 +6,7 @@
 #include <map>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -28,7 +29,7 @@ std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles, const k
     program_.set("patchCount", static_cast<int>(count));
     const gl::Buffer factors(count * sizeof(PatchFactors));
     factors.bindStorage(kCounterBinding);
-    glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
+    glDispatchCompute(kit::groupsFor(count, 64), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return factors.read<PatchFactors>(count);
 }

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -13,8 +14,6 @@ namespace {
 
 constexpr unsigned kHeightUnit = 0, kColourUnit = 1;
 constexpr unsigned kTileBinding = 0, kBlockBinding = 1, kFirstBlockBinding = 2;
-// llvmpipe keeps a draw's triangles in memory until it is flushed.
-constexpr int kGridTrianglesPerDraw = 1 << 16;
 
 const char* spacingName(Spacing spacing) {
     if (spacing == Spacing::FractionalEven) return "fractional_even_spacing";
@@ -281,7 +280,7 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     program.set("tileIndex", tile);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
-    const int step = std::max(1, kGridTrianglesPerDraw / (2 * side));
+    const int step = std::max(1, static_cast<int>(kit::kPrimitivesPerFlush) / (2 * side));
     int draws = 0;
     for (int first = 0; first < side; first += step, ++draws) {
         program.set("firstRow", first);
