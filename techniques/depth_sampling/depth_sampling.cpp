@@ -10,6 +10,8 @@
 #include "techniques/depth_sampling/view_check.h"
 #include "techniques/depth_sampling/visibility_experiment.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
+#include "techniques/kit/requirements.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -27,18 +29,13 @@ std::vector<kit::View> viewsOf(const std::vector<scene::Camera>& cameras, glm::i
     return views;
 }
 
-double percent(std::uint64_t part, std::uint64_t whole) {
-    GFXREPRO_ASSERT(whole > 0);
-    return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
-
 void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCounts>& frames) {
     double sumPct = 0.0;
     double minPct = std::numeric_limits<double>::infinity();
     int seen = 0;  // a frame without samples says nothing
     for (const FrameCounts& frame : frames) {
         if (frame.samples == 0) continue;
-        const double availablePct = percent(frame.available, frame.samples);
+        const double availablePct = kit::percent(frame.available, frame.samples);
         sumPct += availablePct;
         minPct = std::min(minPct, availablePct);
         ++seen;
@@ -121,12 +118,7 @@ Views DepthSampling::makeViews(technique::SetupContext& context) const {
 }
 
 void DepthSampling::setup(technique::SetupContext& context) {
-    if (!context.scene)
-        throw Error("technique 'depth_sampling' needs a scene; the config names none");
-    const scene::Scene& scene = *context.scene;
-    if (scene.triangleCount() == 0) {
-        throw Error(fmt::format("scene '{}' has no triangles to take depth images of", scene.name));
-    }
+    const scene::Scene& scene = kit::requireTriangles(context, "depth_sampling");
     kit::requireIdsFor(scene.triangleCount());
     const Views views = makeViews(context);
     views_ = views;
@@ -165,7 +157,7 @@ void DepthSampling::record(technique::Recorder& recorder) {
     if (params_.measured == Measured::OutputFrame) {
         const FrameCounts counts = pixelExperiment_->outputFrameCounts();
         if (counts.samples > 0) {
-            recorder.metric("available_pct", percent(counts.available, counts.samples), "%",
+            recorder.metric("available_pct", kit::percent(counts.available, counts.samples), "%",
                             "output_frame");
         }
     }
@@ -211,10 +203,11 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
                            "sample", pass);
         };
         recorder.metric("samples", static_cast<double>(counts.samples), "sample", pass);
-        recorder.metric("coverage_pct", percent(counts.samples, pixels), "%", pass);
+        recorder.metric("coverage_pct", kit::percent(counts.samples, pixels), "%", pass);
         if (counts.samples == 0) continue;
         ofSamples("redundant_pct", counts.redundant);
-        recorder.metric("redundant_of_pixels_pct", percent(counts.redundant, pixels), "%", pass);
+        recorder.metric("redundant_of_pixels_pct", kit::percent(counts.redundant, pixels), "%",
+                        pass);
         ofSamples("occluded_pct", counts.occluded);
         ofSamples("occluded_literal_pct", counts.occludedLiterally);
         ofSamples("useful_of_samples_pct", counts.useful);
@@ -225,8 +218,8 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
             recorder.share("useful_pct", static_cast<double>(counts.useful),
                            static_cast<double>(counts.occluded), "sample", pass);
         }
-        occludedSumPct += percent(counts.occluded, counts.samples);
-        usefulSumPct += percent(counts.useful, counts.samples);
+        occludedSumPct += kit::percent(counts.occluded, counts.samples);
+        usefulSumPct += kit::percent(counts.useful, counts.samples);
     }
     recorder.metric("occluded_sum_pct", occludedSumPct, "%");
     recorder.metric("useful_sum_pct", usefulSumPct, "%");

@@ -12,6 +12,7 @@
 #include "runner/metrics/image_error.h"
 #include "runner/metrics/statistics.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/point_splatting/compression_errors.h"
 #include "techniques/point_splatting/model_picture.h"
 #include "techniques/point_splatting/point_splatting.h"
@@ -65,10 +66,6 @@ std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const Patc
         normals.push_back(length > 0.0F ? modelFromView * (sum / length) : glm::vec3(0.0F));
     }
     return normals;
-}
-
-double percent(double part, double whole) {
-    return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
 
 }  // namespace
@@ -134,7 +131,7 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     const auto drawn = static_cast<double>(counts_.points);
     const auto all = static_cast<double>(model_->positions().size());
     recorder.metric("drawn_points", drawn, "point");
-    recorder.metric("drawn_pct", percent(drawn, all), "%");
+    recorder.metric("drawn_pct", kit::percent(drawn, all), "%");
     recorder.metric("facing_pct", facingPct(), "%");
     recorder.metric("patches_drawn", counts_.drawn, "patch");
     recorder.metric("patches_outside", counts_.outside, "patch");
@@ -148,7 +145,7 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     }
     constexpr std::array<const char*, 4> kNames{"full_ewa", "reconstruction", "low_pass", "sprite"};
     for (std::size_t mode = 0; mode < ofMode.size(); ++mode) {
-        recorder.metric("mode_pct", percent(ofMode[mode], drawn), "%", kNames[mode]);
+        recorder.metric("mode_pct", kit::percent(ofMode[mode], drawn), "%", kNames[mode]);
     }
 }
 
@@ -158,7 +155,7 @@ double PointSplatting::facingPct() const {
     for (std::size_t i = 0; i < positions.size(); ++i) {
         facing += glm::dot(normals[i], view_.eyeWorld - positions[i]) > 0.0F ? 1 : 0;
     }
-    return percent(static_cast<double>(facing), static_cast<double>(positions.size()));
+    return kit::percent(static_cast<double>(facing), static_cast<double>(positions.size()));
 }
 
 void PointSplatting::recordCompression(technique::Recorder& recorder) const {

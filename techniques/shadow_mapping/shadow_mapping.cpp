@@ -1,19 +1,13 @@
 #include "techniques/shadow_mapping/shadow_mapping.h"
 
+#include "techniques/kit/requirements.h"
+
 namespace gfxrepro::shadow_mapping {
 
 ShadowMapping::ShadowMapping(config::Params& params) : params_(params) {}
 
 void ShadowMapping::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'shadow_mapping' needs a scene");
-    const scene::Scene& scene = *context.scene;
-    if (scene.triangleCount() == 0) {
-        throw Error("technique 'shadow_mapping' needs a scene with triangles");
-    }
-    if (glm::length(scene.bounds().size()) == 0.0F) {
-        throw Error(
-            "technique 'shadow_mapping' needs a scene with some extent; all of its points are one");
-    }
+    const scene::Scene& scene = kit::requireTriangles(context, "shadow_mapping");
     shaders_ = &context.shaders;
     lights_ = makeLights(params_, scene);
     tracer_.emplace(scene);

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {
-
-double percent(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 /// Light `light` of the four channels.
 std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light) {
@@ -129,10 +126,10 @@ void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImag
                        kit::seenFrom(image.view));
     }
     recorder.metric("compared_points", static_cast<double>(compared), "pixel");
-    recorder.metric("wrong_pct", percent(edge + acne + leak, compared), "%");
-    recorder.metric("acne_pct", percent(acne, compared), "%");
-    recorder.metric("leak_pct", percent(leak, compared), "%");
-    recorder.metric("edge_pct", percent(edge, compared), "%");
+    recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared), "%");
+    recorder.metric("acne_pct", kit::percent(acne, compared), "%");
+    recorder.metric("leak_pct", kit::percent(leak, compared), "%");
+    recorder.metric("edge_pct", kit::percent(edge, compared), "%");
 }
 
 // S4: pixels whose shadow differs from that of the other method by more than a filtered fetch may:
@@ -156,7 +153,7 @@ void ShadowMapping::recordDifference(technique::Recorder& recorder, const Shaded
         }
         differing += differs ? 1 : 0;
     }
-    recorder.metric("methods_differ_pct", percent(differing, here.size() / 4), "%");
+    recorder.metric("methods_differ_pct", kit::percent(differing, here.size() / 4), "%");
 }
 
 namespace {

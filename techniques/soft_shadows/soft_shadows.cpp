@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "techniques/kit/requirements.h"
+
 namespace gfxrepro::soft_shadows {
 namespace {
 
@@ -45,16 +47,8 @@ std::vector<const kit::DepthImage*> firstOf(const std::vector<kit::DepthImage>& 
 SoftShadows::SoftShadows(config::Params& params) : params_(params) {}
 
 void SoftShadows::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'soft_shadows' needs a scene");
-    if (context.scene->triangleCount() == 0) {
-        throw Error("technique 'soft_shadows' needs a scene with triangles");
-    }
-    if (glm::length(context.scene->bounds().size()) == 0.0F) {
-        throw Error(
-            "technique 'soft_shadows' needs a scene with some extent; all of its points are one");
-    }
     shaders_ = &context.shaders;
-    scene_ = *context.scene;
+    scene_ = kit::requireTriangles(context, "soft_shadows");
     light_ = makeAreaLight(scene_.bounds(), params_.light);
     for (int corner = 0; corner < 4; ++corner) lightView(light_, light_.corner(corner), 64);
     const glm::vec2 size(context.outputSizePx);

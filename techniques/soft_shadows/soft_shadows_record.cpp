@@ -5,6 +5,7 @@
 
 #include "runner/scene/load.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 
 namespace gfxrepro::soft_shadows {
@@ -218,13 +219,8 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
         agreement.missing += measured[pixel] == 1.0F || difference > tolerance ? 1 : 0;
         agreement.nearer += difference < -tolerance ? 1 : 0;
     }
-    const auto percent = [&](std::size_t count) {
-        return agreement.covered == 0
-                   ? 0.0
-                   : 100.0 * static_cast<double>(count) / static_cast<double>(agreement.covered);
-    };
-    recorder.metric("missing_pct", percent(agreement.missing), "%", name);
-    recorder.metric("nearer_pct", percent(agreement.nearer), "%", name);
+    recorder.metric("missing_pct", kit::percent(agreement.missing, agreement.covered), "%", name);
+    recorder.metric("nearer_pct", kit::percent(agreement.nearer, agreement.covered), "%", name);
     if (!params_.showsPictures) return;
     const std::string casters = fmt::format("casters_{}", name);
     const auto record = [&](const std::string& imageName, const std::vector<float>& windowDepths,

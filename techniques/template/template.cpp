@@ -7,6 +7,7 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "runner/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/requirements.h"
 #include "techniques/kit/view.h"
 #include "techniques/kit/whole_image.h"
 
@@ -45,10 +46,10 @@ class TemplateTechnique : public technique::Technique {
             wholeImage_.emplace();
             return;
         }
-        if (!context.scene) throw Error("method 'silhouette' needs a scene");
+        const scene::Scene& scene = kit::requireScene(context, "template");
         const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
-        view_ = kit::viewOf(scene::framingCamera(context.scene->bounds(), aspect), size_);
-        mesh_.emplace(scene::flattened(*context.scene));
+        view_ = kit::viewOf(scene::framingCamera(scene.bounds(), aspect), size_);
+        mesh_.emplace(scene::flattened(scene));
         program_ = gl::Program(context.shaders,
                                {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
                                gpu_scene::attributeDefines());

@@ -8,6 +8,7 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/gl.h"
+#include "techniques/kit/requirements.h"
 #include "techniques/terrain_tessellation/ground_picture.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -69,11 +70,10 @@ void TerrainTessellation::Target::clear() const {
 TerrainTessellation::TerrainTessellation(config::Params& params) : params_(params) {}
 
 void TerrainTessellation::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'terrain_tessellation' needs a scene");
-    if (!context.scene->heights || context.scene->heights->isEmpty()) {
+    scene_ = &kit::requireScene(context, "terrain_tessellation");
+    if (!scene_->heights || scene_->heights->isEmpty()) {
         throw Error("technique 'terrain_tessellation' needs a scene with a height map");
     }
-    scene_ = context.scene;
     shaders_ = &context.shaders;
     device_ = &context.device;
     sizePx_ = context.outputSizePx;

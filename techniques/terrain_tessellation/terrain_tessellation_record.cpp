@@ -8,6 +8,7 @@
 #include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
@@ -18,10 +19,6 @@ namespace gfxrepro::terrain_tessellation {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double percent(double part, double whole) {
-    return whole > 0.0 ? 100.0 * part / whole : 0.0;
-}
 
 DepthMap readDepths(const gl::Texture& depth, const kit::View& view) {
     DepthMap map{view, depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)};
@@ -76,7 +73,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     if (!hasPatches) return;
     count("patches", counts_.patches, "patch");
     count("culled_patches", counts_.culledPatches, "patch");
-    count("culled_patches_pct", percent(counts_.culledPatches, counts_.patches), "%");
+    count("culled_patches_pct", kit::percent(counts_.culledPatches, counts_.patches), "%");
     if (params_.method != Method::Adaptive) return;
     const auto skirts =
         params_.render.hasSkirts
@@ -101,7 +98,8 @@ void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
     replay.setSegmentPx(2.0F * factors.segmentPx);
     const FactorHalving halving =
         compareHalving(factors, drawn, replay.run(selection_.tiles, view_));
-    recorder.metric("edges_at_greatest_pct", percent(halving.greatestEdges, halving.edges), "%");
+    recorder.metric("edges_at_greatest_pct", kit::percent(halving.greatestEdges, halving.edges),
+                    "%");
     recorder.metric("unclamped_edges", halving.unclampedEdges, "edge");
     recorder.metric("unhalved_edges", halving.unhalvedEdges, "edge");
     if (params_.render.spacing != Spacing::FractionalEven ||
