@@ -22,7 +22,6 @@ enum StorageBinding : int {
 constexpr int kGroupWidth = 32;
 constexpr int kGroupHeight = 4;
 constexpr int kCountGroupSize = 64;
-constexpr int kScanGroupSize = 256;
 /// Corners that one invocation counts in sequence; short enough for some 10⁴ invocations in a
 /// megapixel, long enough that the scan over the runs costs little.
 constexpr int kRunLength = 32;
@@ -46,7 +45,6 @@ gl::Defines passDefines(const ReconstructionSettings& settings) {
             {"GROUP_WIDTH", kGroupWidth},
             {"GROUP_HEIGHT", kGroupHeight},
             {"COUNT_GROUP_SIZE", kCountGroupSize},
-            {"SCAN_GROUP_SIZE", kScanGroupSize},
             {"RUN_LENGTH", kRunLength}};
 }
 
@@ -90,7 +88,7 @@ Reconstructor::Reconstructor(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       classify_(pass(shaders, "classify", settings)),
       count_(pass(shaders, "count", settings)),
-      scan_(shaders, {"soft_shadows/scan.comp.glsl"}, passDefines(settings)),
+      scan_(shaders, "uvec4", kRunBinding, kit::PrefixSum::Total::Behind),
       emit_(pass(shaders, "emit", settings)) {}
 
 void Reconstructor::resizeScratch(glm::ivec2 imageSizePx) {
@@ -136,10 +134,7 @@ glm::uvec4 Reconstructor::countElements(const kit::View& view) {
     glDispatchCompute(kit::groupsFor(runCount, kCountGroupSize), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 
-    scan_.use();
-    scan_.set("runCount", runCount);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    scan_.run(runs_, static_cast<unsigned>(runCount));
     const std::size_t totalsAt = static_cast<std::size_t>(runCount) * sizeof(glm::uvec4);
     return runs_.read<glm::uvec4>(1, totalsAt).front();
 }

@@ -8,6 +8,7 @@
 #include "runner/gl/program.h"
 #include "runner/scene/scene.h"
 #include "techniques/kit/depth_image.h"
+#include "techniques/kit/prefix_sum.h"
 
 namespace gfxrepro::soft_shadows {
 
@@ -85,7 +86,9 @@ class Reconstructor {
     void emit(const ReconstructedMesh& mesh);
 
     ReconstructionSettings settings_;
-    gl::Program classify_, count_, scan_, emit_;
+    gl::Program classify_, count_;
+    kit::PrefixSum scan_;
+    gl::Program emit_;
 
     // A texel a corner, where up to four pixels meet: (width + 1) × (height + 1).
     glm::ivec2 cornersSize_{0};
