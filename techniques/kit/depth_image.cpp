@@ -52,21 +52,9 @@ void writeDepthImage(const HostDepthImage& host, DepthImage& image) {
 }
 
 image::ImageF shadingPicture(const HostDepthImage& image, const glm::vec3& background) {
-    const glm::ivec2 size = image.view.sizePx;
-    image::ImageF picture(size.x, size.y, 3);
-    for (int y = 0; y < size.y; ++y) {
-        const auto row = picture.row(size.y - 1 - y);
-        for (int x = 0; x < size.x; ++x) {
-            const std::size_t index = image.indexOf({x, y});
-            const bool hasSample = image.triangleId[index] != 0;
-            for (int channel = 0; channel < 3; ++channel) {
-                row[static_cast<std::size_t>(3 * x + channel)] =
-                    hasSample ? static_cast<float>(image.shading[index][channel]) / 255.0F
-                              : background[channel];
-            }
-        }
-    }
-    return picture;
+    return pictureOf(image.view.sizePx, [&](std::size_t pixel) {
+        return image.triangleId[pixel] != 0 ? glm::vec3(image.shading[pixel]) / 255.0F : background;
+    });
 }
 
 }  // namespace gfxrepro::kit

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runner/gl/objects.h"
-#include "runner/image/image.h"
+#include "techniques/kit/picture.h"
 #include "techniques/kit/view.h"
 
 namespace gfxrepro::kit {
@@ -55,6 +55,6 @@ void writeDepthImage(const HostDepthImage& host, DepthImage& image);
 /// The shading as an image, rows from the top, 3 linear channels; `background` where there is no
 /// sample.
 image::ImageF shadingPicture(const HostDepthImage& image,
-                             const glm::vec3& background = glm::vec3(0.18F, 0.20F, 0.24F));
+                             const glm::vec3& background = kBackground);
 
 }  // namespace gfxrepro::kit

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "techniques/kit/picture.h"
 #include "techniques/kit/view.h"
 #include "techniques/shadow_mapping/shadow_map.h"
 
@@ -14,7 +15,7 @@ struct Lighting {
     float diffuse = 0.75F;
     float specular = 0.2F;
     float shininess = 32.0F;  // exponent of N·H
-    glm::vec3 background{0.18F, 0.20F, 0.24F};
+    glm::vec3 background = kit::kBackground;
 };
 
 /// What the camera sees. The measured frame has colour only; the rest is for errors.

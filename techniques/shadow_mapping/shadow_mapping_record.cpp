@@ -5,6 +5,7 @@
 
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
+#include "techniques/kit/picture.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
 
 namespace gfxrepro::shadow_mapping {
@@ -17,36 +18,14 @@ std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light)
     return channel;
 }
 
-/// Rows from the top; three of the texture's four channels.
-image::ImageF colourPicture(const ShadedImage& image) {
-    const std::vector<float> colours = image.colour.read<float>(GL_RGBA, GL_FLOAT, 4);
-    const glm::ivec2 size = image.view.sizePx;
-    image::ImageF picture(size.x, size.y, 3);
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            const auto pixel = static_cast<std::size_t>(y * size.x + x);
-            for (int c = 0; c < 3; ++c) {
-                picture.at(x, size.y - 1 - y, c) = colours[4 * pixel + static_cast<std::size_t>(c)];
-            }
-        }
-    }
-    return picture;
-}
-
 /// White where lit, grey where in shadow, dark where it is not asked: by the truth, or by `terms`
 /// of the map.
 image::ImageF shadowPicture(const ShadowErrors& errors, const std::vector<float>* terms,
                             glm::ivec2 sizePx) {
-    image::ImageF picture(sizePx.x, sizePx.y, 1);
-    for (int y = 0; y < sizePx.y; ++y) {
-        for (int x = 0; x < sizePx.x; ++x) {
-            const auto i = static_cast<std::size_t>(y * sizePx.x + x);
-            const float lit = terms ? (*terms)[i] : static_cast<float>(errors.truth[i]);
-            const bool isCompared = errors.classes[i] != PixelClass::NotCompared;
-            picture.at(x, sizePx.y - 1 - y, 0) = isCompared ? 0.2F + 0.7F * lit : 0.02F;
-        }
-    }
-    return picture;
+    return kit::pictureOf(sizePx, [&](std::size_t i) {
+        const float lit = terms ? (*terms)[i] : static_cast<float>(errors.truth[i]);
+        return errors.classes[i] != PixelClass::NotCompared ? 0.2F + 0.7F * lit : 0.02F;
+    });
 }
 
 /// With the normals that only an image with terms has.
@@ -79,7 +58,7 @@ void ShadowMapping::record(technique::Recorder& recorder) {
 
 void ShadowMapping::recordPicture(technique::Recorder& recorder) const {
     const std::vector<float> depths = image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
-    recorder.image("result", colourPicture(*image_),
+    recorder.image("result", image_->colour.readImage(3),
                    kit::ImageLayers(image_->view).windowDepths(depths).options());
 }
 

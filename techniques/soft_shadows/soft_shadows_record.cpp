@@ -6,6 +6,7 @@
 #include "runner/scene/load.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
+#include "techniques/kit/picture.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 
 namespace gfxrepro::soft_shadows {
@@ -58,7 +59,6 @@ float toleranceAt(const kit::View& view, float depth, int referenceSizePx) {
 /// Depths lit by the slope of the depth, rows from the top; background where there is nothing.
 image::ImageF depthPicture(const kit::View& view, const std::vector<float>& windowDepths) {
     const glm::ivec2 size = view.sizePx;
-    image::ImageF picture(size.x, size.y, 3);
     const auto depthAt = [&](int x, int y) {
         x = std::min(x, size.x - 1);
         y = std::min(y, size.y - 1);
@@ -67,22 +67,16 @@ image::ImageF depthPicture(const kit::View& view, const std::vector<float>& wind
     const auto pointAt = [&](int x, int y) {
         return kit::unproject(view, glm::vec2(x, y) + 0.5F, eyeDepth(view, depthAt(x, y)));
     };
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            glm::vec3 color(0.18F, 0.20F, 0.24F);
-            if (depthAt(x, y) < 1.0F) {
-                const glm::vec3 normal = glm::cross(pointAt(x + 1, y) - pointAt(x, y),
-                                                    pointAt(x, y + 1) - pointAt(x, y));
-                const float length = glm::length(normal);
-                const float lit =
-                    length > 0.0F ? std::abs(glm::dot(normal, kit::kLightDirectionWorld)) / length
-                                  : 0.0F;
-                color = glm::vec3(0.15F + 0.7F * lit);
-            }
-            for (int c = 0; c < 3; ++c) picture.at(x, size.y - 1 - y, c) = color[c];
-        }
-    }
-    return picture;
+    return kit::pictureOf(size, [&](std::size_t pixel) {
+        const int x = static_cast<int>(pixel) % size.x, y = static_cast<int>(pixel) / size.x;
+        if (depthAt(x, y) >= 1.0F) return kit::kBackground;
+        const glm::vec3 normal =
+            glm::cross(pointAt(x + 1, y) - pointAt(x, y), pointAt(x, y + 1) - pointAt(x, y));
+        const float length = glm::length(normal);
+        const float lit =
+            length > 0.0F ? std::abs(glm::dot(normal, kit::kLightDirectionWorld)) / length : 0.0F;
+        return glm::vec3(0.15F + 0.7F * lit);
+    });
 }
 
 }  // namespace
