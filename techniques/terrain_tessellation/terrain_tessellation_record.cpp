@@ -7,9 +7,9 @@
 
 #include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
+#include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
-#include "techniques/shared/reflections/displayed_errors.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "techniques/terrain_tessellation/seam_check.h"
@@ -204,17 +204,16 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
 
     const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
     const image::ImageF truthPicture = image::averaged(truth.picture, params_.supersampling);
-    const glm::dvec3 channels = reflections::channelErrors(picture, truthPicture, nullptr);
+    const glm::dvec3 channels = kit::channelErrors(picture, truthPicture, nullptr);
     recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "1");
-    recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truthPicture), "dB");
+    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");
     recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
     if (!params_.showsPictures) return;
     recorder.image("truth", truthPicture,
                    kit::ImageLayers(truth.depths.view, params_.supersampling)
                        .depths(truth.depths.depthM)
                        .options("image"));
-    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8),
-                   kit::seenFrom(view_));
+    recorder.image("error", kit::errorPicture(picture, truthPicture, 8), kit::seenFrom(view_));
     recorder.image("cracks", withMarks(drawn.picture, cracks), kit::seenFrom(view_));
 }
 

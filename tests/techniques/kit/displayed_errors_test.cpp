@@ -1,11 +1,11 @@
-// Errors and pictures of hand-made pictures.
-#include "techniques/shared/reflections/displayed_errors.h"
+// Errors of hand-made pictures.
+#include "techniques/kit/displayed_errors.h"
 
 #include <gtest/gtest.h>
 
 #include "runner/image/srgb.h"
 
-namespace gfxrepro::reflections {
+namespace gfxrepro::kit {
 namespace {
 
 TEST(DisplayedErrorsTest, AreMeansOfShownDifferences) {
@@ -26,19 +26,7 @@ TEST(DisplayedErrorsTest, AreMeansOfShownDifferences) {
     EXPECT_NEAR(shownPsnrDb(a, image::ImageF(2, 1, 3, 1.0F)), 0.0, 1e-9);
 }
 
-TEST(DisplayedErrorsTest, PicturesAverageSamplesAndTurnRows) {
-    HostGBuffer gbuffer;
-    gbuffer.view.sizePx = {4, 4};
-    gbuffer.surface.assign(16, 0);
-    gbuffer.diffuse.assign(16, glm::vec3(0.0F));
-    gbuffer.surface[0] = 1;  // the lowest sample on the left
-    EXPECT_EQ(reflectivePixels(gbuffer, 2), (std::vector<std::uint8_t>{0, 0, 1, 0}));
-    std::vector<std::uint8_t> marks(16, 0);
-    marks[0] = marks[1] = 1;
-    const image::ImageF marked = markedPicture(image::ImageF(2, 2, 3, 0.5F), marks, gbuffer, 2);
-    EXPECT_FLOAT_EQ(marked.at(0, 1, 0), 0.5F * 0.3F + 0.5F);  // half of its samples
-    EXPECT_FLOAT_EQ(marked.at(0, 1, 1), 0.5F * 0.3F);
-    EXPECT_FLOAT_EQ(marked.at(1, 1, 0), 0.3F);
+TEST(DisplayedErrorsTest, PicturesAreDifferencesAsShown) {
     const image::ImageF error = errorPicture(image::ImageF(1, 1, 3, 0.0F),
                                              image::ImageF(1, 1, 3, 1.0F / 12.92F / 255.0F), 50);
     // One level, fifty times: what is shown as 50.
@@ -46,4 +34,4 @@ TEST(DisplayedErrorsTest, PicturesAverageSamplesAndTurnRows) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::reflections
+}  // namespace gfxrepro::kit

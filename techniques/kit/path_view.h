@@ -5,7 +5,7 @@
 
 #include "runner/scene/scene.h"
 
-namespace gfxrepro::reflections {
+namespace gfxrepro::kit {
 
 /// The middle of frame `frame` in a time of 0 … 1: (frame + 0.5) / frameCount. Objects are posed
 /// for it, too.
@@ -20,4 +20,4 @@ scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, d
 scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int frame,
                         int frameCount, float aspect);
 
-}  // namespace gfxrepro::reflections
+}  // namespace gfxrepro::kit

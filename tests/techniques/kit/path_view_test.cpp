@@ -1,9 +1,9 @@
-#include "techniques/shared/reflections/path_view.h"
+#include "techniques/kit/path_view.h"
 
 #include "scenes/shared/mesh_builder.h"
 #include "tests/support/support.h"
 
-namespace gfxrepro::reflections {
+namespace gfxrepro::kit {
 namespace {
 
 scene::Camera cameraAtX(const std::string& name, float x) {
@@ -61,4 +61,4 @@ TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::reflections
+}  // namespace gfxrepro::kit

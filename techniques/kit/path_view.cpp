@@ -1,11 +1,11 @@
-#include "techniques/shared/reflections/path_view.h"
+#include "techniques/kit/path_view.h"
 
 #include <fmt/format.h>
 
 #include "runner/core/error.h"
 #include "runner/scene/animation.h"
 
-namespace gfxrepro::reflections {
+namespace gfxrepro::kit {
 
 namespace {
 
@@ -49,4 +49,4 @@ scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int 
     return cameraAtTime(scene, view, frameTime(frame, frameCount), aspect);
 }
 
-}  // namespace gfxrepro::reflections
+}  // namespace gfxrepro::kit

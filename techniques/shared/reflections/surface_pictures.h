@@ -1,4 +1,4 @@
-// How far a picture's reflections are from the truth's, as both are shown: numbers and pictures.
+// Output pixels of what the samples of a G-buffer are.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,6 @@ namespace gfxrepro::reflections {
 
 /// Output pixels of which a sample reflects, rows from the top as images have them.
 std::vector<std::uint8_t> reflectivePixels(const HostGBuffer& gbuffer, int supersampling);
-
-/// Mean absolute difference a channel of two pictures as they are shown: sRGB, 0 … 255. Over the
-/// pixels that `wanted` marks, all where it is null; 0 over none.
-glm::dvec3 channelErrors(const image::ImageF& picture, const image::ImageF& truth,
-                         const std::vector<std::uint8_t>* wanted);
-
-/// Of pictures as they are shown; equal pictures have kEqualPsnrDb.
-constexpr double kEqualPsnrDb = 120.0;  // above what 8 bits of any picture here can give
-double shownPsnrDb(const image::ImageF& picture, const image::ImageF& truth);
-
-/// [xie2017] Fig. 26 and 41: |picture − truth| of the values that are shown, times `gain`.
-image::ImageF errorPicture(const image::ImageF& picture, const image::ImageF& truth, int gain);
 
 /// A colour a sample, by its index in the G-buffer; averaged to output pixels, rows from the top.
 image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
