@@ -60,8 +60,8 @@ class Program {
     GLuint id() const { return name_.get(); }
     void use() const;
 
-    // Setters by name. A name that is not an active uniform asserts; ask isActive() first where a
-    // define can leave it unused.
+    // Setters by name. A name that is not an active uniform asserts; setIfActive() where a define
+    // can leave it unused.
     void set(const char* name, int value) const;
     void set(const char* name, unsigned value) const;
     void set(const char* name, float value) const;
@@ -73,6 +73,11 @@ class Program {
     void set(const char* name, const glm::vec4& value) const;
     void set(const char* name, const glm::mat4& value) const;
     bool isActive(const char* name) const;
+    /// For what a shader may do without.
+    template <class T>
+    void setIfActive(const char* name, const T& value) const {
+        if (isActive(name)) set(name, value);
+    }
 
   private:
     GLint location(const char* name) const;

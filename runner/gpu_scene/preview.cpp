@@ -45,9 +45,7 @@ class Uploads {
 void drawInstance(const scene::Scene& scene, const scene::Instance& instance, Uploads& uploads,
                   const gl::Program& program) {
     const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-    const scene::Material material = mesh.material < 0
-                                         ? scene::Material{}
-                                         : scene.materials[static_cast<std::size_t>(mesh.material)];
+    const scene::Material material = materialOf(scene, mesh);
     const bool hasTexture = material.baseColorTexture >= 0 && !mesh.texcoords.empty();
     if (hasTexture) uploads.texture(material.baseColorTexture).bind(kBaseColorTexture);
 

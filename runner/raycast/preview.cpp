@@ -70,9 +70,7 @@ class Previewer {
     std::optional<glm::vec3> shaded(const Hit& hit, const glm::vec3& toCamera) const {
         const scene::Mesh& mesh =
             scene_.meshes[static_cast<std::size_t>(scene_.instances[hit.instance].mesh)];
-        const scene::Material material =
-            mesh.material < 0 ? scene::Material{}
-                              : scene_.materials[static_cast<std::size_t>(mesh.material)];
+        const scene::Material material = materialOf(scene_, mesh);
         glm::vec4 base = material.baseColor;
         if (material.baseColorTexture >= 0 && !mesh.texcoords.empty()) {
             base *= textureAt(scene_.textures[static_cast<std::size_t>(material.baseColorTexture)],

@@ -167,9 +167,7 @@ RayTracer::Impl::Impl(const scene::Scene& scene)
         const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
         placed[i].firstTriangle = triangleCount;
         triangleCount += static_cast<unsigned>(mesh.triangles.size());
-        placed[i].isDoubleSided =
-            mesh.material >= 0 &&
-            scene.materials[static_cast<std::size_t>(mesh.material)].isDoubleSided;
+        placed[i].isDoubleSided = materialOf(scene, mesh).isDoubleSided;
         if (!mesh.triangles.empty()) addInstance(mesh, instance.worldFromMesh, i);
     }
     rtcCommitScene(bvh.get());

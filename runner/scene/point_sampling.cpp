@@ -27,10 +27,7 @@ std::vector<Surfel> surfelsOf(const Scene& scene) {
         const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
         const glm::mat3 linear(instance.worldFromMesh);
         const glm::mat3 toWorld = glm::transpose(glm::inverse(linear));
-        const glm::vec3 base =
-            mesh.material < 0
-                ? glm::vec3(Material{}.baseColor)
-                : glm::vec3(scene.materials[static_cast<std::size_t>(mesh.material)].baseColor);
+        const glm::vec3 base(materialOf(scene, mesh).baseColor);
         const bool isColored =
             !mesh.colors.empty() || (mesh.material >= 0 && base != glm::vec3(1.0F));
         const std::vector<glm::vec3> normals =

@@ -13,18 +13,6 @@ glm::vec3 transformedPoint(const glm::mat4& matrix, const glm::vec3& point) {
     return glm::vec3(matrix * glm::vec4(point, 1.0F));
 }
 
-glm::vec3 unitOrZero(const glm::vec3& vector) {
-    const float length = glm::length(vector);
-    return length > 0.0F ? vector / length : glm::vec3(0.0F);
-}
-
-/// The inverse transpose times |determinant|: the cofactors, which exist for singular matrices too.
-glm::mat3 normalMatrix(const glm::mat3& matrix) {
-    const glm::mat3 cofactors(glm::cross(matrix[1], matrix[2]), glm::cross(matrix[2], matrix[0]),
-                              glm::cross(matrix[0], matrix[1]));
-    return glm::determinant(matrix) < 0.0F ? -cofactors : cofactors;
-}
-
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
     to.insert(to.end(), from.begin(), from.end());
@@ -114,6 +102,22 @@ std::size_t Scene::vertexCount() const {
     std::size_t count = 0;
     for (const Instance& instance : instances) count += meshes[instance.mesh].positions.size();
     return count;
+}
+
+Material materialOf(const Scene& scene, const Mesh& mesh) {
+    return mesh.material < 0 ? Material{}
+                             : scene.materials[static_cast<std::size_t>(mesh.material)];
+}
+
+glm::vec3 unitOrZero(const glm::vec3& vector) {
+    const float length = glm::length(vector);
+    return length > 0.0F ? vector / length : glm::vec3(0.0F);
+}
+
+glm::mat3 normalMatrix(const glm::mat3& matrix) {
+    const glm::mat3 cofactors(glm::cross(matrix[1], matrix[2]), glm::cross(matrix[2], matrix[0]),
+                              glm::cross(matrix[0], matrix[1]));
+    return glm::determinant(matrix) < 0.0F ? -cofactors : cofactors;
 }
 
 Mesh flattened(const Scene& scene) {

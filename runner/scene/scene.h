@@ -149,6 +149,15 @@ struct Scene {
     std::size_t vertexCount() const;    // instanced
 };
 
+/// A mesh's material, a plain one where it names none.
+Material materialOf(const Scene& scene, const Mesh& mesh);
+
+/// For normals: the inverse transpose times |determinant|, by cofactors, which singular matrices
+/// have, too.
+glm::mat3 normalMatrix(const glm::mat3& matrix);
+
+glm::vec3 unitOrZero(const glm::vec3& vector);
+
 /// All instances as one mesh in world space (attributes that not all have are dropped; normals by
 /// the inverse transpose; mirrored instances keep their outside). A single instance with the
 /// identity is a plain copy.

@@ -47,12 +47,12 @@ function(gfxrepro_module name)
 endfunction()
 
 # add_technique(NAME SOURCES … SHADERS … [PRIVATE targets …]) → library technique_NAME; its shaders are
-# copied to <build>/shaders/NAME and installed beside the program.
+# copied to <build>/shaders/NAME and installed beside the program. Every technique has techniques/kit.
 function(add_technique name)
     cmake_parse_arguments(arg "" "" "SOURCES;SHADERS;PRIVATE" ${ARGN})
     add_library(technique_${name} STATIC ${arg_SOURCES})
     target_link_libraries(technique_${name}
-        PUBLIC gfxrepro_technique
+        PUBLIC gfxrepro_technique techniques_kit
         PRIVATE gfxrepro_warnings gfxrepro_raycast gfxrepro_metrics gfxrepro_gpu_scene ${arg_PRIVATE})
     gfxrepro_verify_headers(technique_${name})
     gfxrepro_shaders(technique_${name} ${name} ${arg_SHADERS})

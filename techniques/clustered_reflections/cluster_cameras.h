@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "techniques/clustered_reflections/clustering.h"
+#include "techniques/kit/view.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
-#include "techniques/shared/view.h"
 
 namespace gfxrepro::clustered_reflections {
 

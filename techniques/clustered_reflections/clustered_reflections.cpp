@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "runner/scene/animation.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
-#include "techniques/shared/reflections/path_view.h"
 #include "techniques/shared/reflections/screen_space_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -22,7 +22,7 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     const glm::ivec2 samplesPx = params_.supersampling * outputSizePx_;
     const glm::vec2 size(outputSizePx_);
     const scene::Camera camera =
-        reflections::cameraFor(scene_->scene(), params_.view, 0, 1, size.x / size.y);
+        kit::cameraFor(scene_->scene(), params_.view, 0, 1, size.x / size.y);
 
     objects_.emplace(*scene_, context.device.info().isSoftware);
     map_.emplace(shaders, *scene_);
@@ -73,11 +73,11 @@ std::unique_ptr<reflections::ReflectionTracer> ClusteredReflections::makeTracer(
 void ClusteredReflections::render(technique::FrameContext& context) {
     gl::Profiler& profiler = context.profiler;
     const glm::vec2 size(outputSizePx_);
-    const scene::Camera camera = reflections::cameraFor(
-        scene_->scene(), params_.view, context.frame, context.frameCount, size.x / size.y);
+    const scene::Camera camera = kit::cameraFor(scene_->scene(), params_.view, context.frame,
+                                                context.frameCount, size.x / size.y);
     gbuffer_->view = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) {
-        const double time = reflections::frameTime(context.frame, context.frameCount);
+        const double time = kit::frameTime(context.frame, context.frameCount);
         objects_->setPoses(scene::posesAt(scene_->scene(), time));
     }
     {  // step 1

@@ -11,8 +11,9 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/clustered_reflections/reflection_pictures.h"
-#include "techniques/shared/image_layers.h"
-#include "techniques/shared/reflections/displayed_errors.h"
+#include "techniques/kit/displayed_errors.h"
+#include "techniques/kit/image_layers.h"
+#include "techniques/shared/reflections/surface_pictures.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -145,27 +146,25 @@ void ClusteredReflections::recordErrors(technique::Recorder& recorder, const Hos
     const image::ImageF& truth = known.picture;
     const std::vector<std::uint8_t> reflective =
         reflections::reflectivePixels(gbuffer, params_.supersampling);
-    const glm::dvec3 errors = reflections::channelErrors(picture, truth, &reflective);
+    const glm::dvec3 errors = kit::channelErrors(picture, truth, &reflective);
     recorder.metric("channel_error", meanOf(errors), "level");
     recorder.metric("channel_error_r", errors.r, "level");
     recorder.metric("channel_error_g", errors.g, "level");
     recorder.metric("channel_error_b", errors.b, "level");
     if (convergedTracer_) {
         recorder.metric("channel_error_converged",
-                        meanOf(reflections::channelErrors(picture, known.converged, &reflective)),
-                        "level");
+                        meanOf(kit::channelErrors(picture, known.converged, &reflective)), "level");
     }
-    recorder.metric("channel_error_image",
-                    meanOf(reflections::channelErrors(picture, truth, nullptr)), "level");
+    recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, truth, nullptr)),
+                    "level");
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
-    recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
+    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
     recorder.image("truth", truth, seenFrom(gbuffer.view, "result"));
     if (convergedTracer_)
         recorder.image("converged", known.converged, seenFrom(gbuffer.view, "result"));
-    recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(gbuffer.view));
-    recorder.image("error_50", reflections::errorPicture(picture, truth, 50),
-                   seenFrom(gbuffer.view));
+    recorder.image("error", kit::errorPicture(picture, truth, 1), seenFrom(gbuffer.view));
+    recorder.image("error_50", kit::errorPicture(picture, truth, 50), seenFrom(gbuffer.view));
 }
 
 void ClusteredReflections::recordClusters(technique::Recorder& recorder, const HostGBuffer& gbuffer,

@@ -9,7 +9,9 @@
 #include "techniques/depth_sampling/pictures.h"
 #include "techniques/depth_sampling/view_check.h"
 #include "techniques/depth_sampling/visibility_experiment.h"
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
+#include "techniques/kit/requirements.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -18,19 +20,13 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
     return std::make_unique<DepthSampling>(params);
 }
 
-std::vector<depth_images::View> viewsOf(const std::vector<scene::Camera>& cameras,
-                                        glm::ivec2 sizePx) {
-    std::vector<depth_images::View> views;
+std::vector<kit::View> viewsOf(const std::vector<scene::Camera>& cameras, glm::ivec2 sizePx) {
+    std::vector<kit::View> views;
     views.reserve(cameras.size());
     for (const scene::Camera& camera : cameras) {
-        views.push_back(depth_images::viewOf(camera, sizePx));
+        views.push_back(kit::viewOf(camera, sizePx));
     }
     return views;
-}
-
-double percent(std::uint64_t part, std::uint64_t whole) {
-    GFXREPRO_ASSERT(whole > 0);
-    return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
 void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCounts>& frames) {
@@ -39,7 +35,7 @@ void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCo
     int seen = 0;  // a frame without samples says nothing
     for (const FrameCounts& frame : frames) {
         if (frame.samples == 0) continue;
-        const double availablePct = percent(frame.available, frame.samples);
+        const double availablePct = kit::percent(frame.available, frame.samples);
         sumPct += availablePct;
         minPct = std::min(minPct, availablePct);
         ++seen;
@@ -83,19 +79,18 @@ std::vector<scene::Camera> DepthSampling::chooseCameras(technique::SetupContext&
     const glm::ivec2 trialSize =
         longestPx > kLongestSidePx ? glm::max(size * kLongestSidePx / longestPx, 1) : size;
 
-    const depth_images::DrawableScene drawable(*context.scene);
-    depth_images::DepthImageRenderer renderer(context.shaders, params_.triangleIds,
-                                              params_.depthFormat);
+    const kit::DrawableScene drawable(*context.scene);
+    kit::DepthImageRenderer renderer(context.shaders, params_.triangleIds, params_.depthFormat);
     NextView nextView(context.shaders, renderer, drawable,
                       candidateCameras(triangle, params_.views, params_.candidates),
                       outputCameras(triangle, params_.views, kFrames), trialSize);
     std::vector<scene::Camera> cameras;
-    std::vector<depth_images::DepthImage> images;
+    std::vector<kit::DepthImage> images;
     images.reserve(static_cast<std::size_t>(params_.views));
-    std::vector<const depth_images::DepthImage*> imagesSoFar;
+    std::vector<const kit::DepthImage*> imagesSoFar;
     for (int i = 0; i < params_.views; ++i) {
         cameras.push_back(nextView.next(imagesSoFar).camera);
-        images.push_back(renderer.makeImage(depth_images::viewOf(cameras.back(), trialSize)));
+        images.push_back(renderer.makeImage(kit::viewOf(cameras.back(), trialSize)));
         renderer.render(drawable, images.back(), imagesSoFar);
         imagesSoFar.push_back(&images.back());
     }
@@ -112,9 +107,9 @@ Views DepthSampling::makeViews(technique::SetupContext& context) const {
     views.conventional = viewsOf(chooseCameras(context, triangle), size);
     views.images = views.conventional;
     if (params_.method == Method::DepthPeeling) {
-        const depth_images::View view = params_.peeledFrom == PeeledFrom::FirstView
-                                            ? views.conventional.front()
-                                            : depth_images::viewOf(triangle.centre, size);
+        const kit::View view = params_.peeledFrom == PeeledFrom::FirstView
+                                   ? views.conventional.front()
+                                   : kit::viewOf(triangle.centre, size);
         views.images.assign(static_cast<std::size_t>(params_.views), view);
     }
     const glm::ivec2 frameSize = params_.frameSizePx > 0 ? glm::ivec2(params_.frameSizePx) : size;
@@ -123,13 +118,8 @@ Views DepthSampling::makeViews(technique::SetupContext& context) const {
 }
 
 void DepthSampling::setup(technique::SetupContext& context) {
-    if (!context.scene)
-        throw Error("technique 'depth_sampling' needs a scene; the config names none");
-    const scene::Scene& scene = *context.scene;
-    if (scene.triangleCount() == 0) {
-        throw Error(fmt::format("scene '{}' has no triangles to take depth images of", scene.name));
-    }
-    depth_images::requireIdsFor(scene.triangleCount());
+    const scene::Scene& scene = kit::requireTriangles(context, "depth_sampling");
+    kit::requireIdsFor(scene.triangleCount());
     const Views views = makeViews(context);
     views_ = views;
     sceneName_ = scene.name;
@@ -167,7 +157,7 @@ void DepthSampling::record(technique::Recorder& recorder) {
     if (params_.measured == Measured::OutputFrame) {
         const FrameCounts counts = pixelExperiment_->outputFrameCounts();
         if (counts.samples > 0) {
-            recorder.metric("available_pct", percent(counts.available, counts.samples), "%",
+            recorder.metric("available_pct", kit::percent(counts.available, counts.samples), "%",
                             "output_frame");
         }
     }
@@ -189,17 +179,17 @@ void DepthSampling::record(technique::Recorder& recorder) {
 void DepthSampling::recordPictures(technique::Recorder& recorder) const {
     for (std::size_t i = 0; i < measures_->images.size(); ++i) {
         const MarkedImage marked = experiment_->markedImage(i);
-        recorder.image(imageName(i), depth_images::shadingPicture(marked.image),
-                       depth_images::layersOf(marked.image).options());
+        recorder.image(imageName(i), kit::shadingPicture(marked.image),
+                       kit::layersOf(marked.image).options());
         recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks),
-                       depth_images::seenFrom(marked.image.view));
+                       kit::seenFrom(marked.image.view));
     }
     const MarkedImage frame =
         experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
-    recorder.image("output_frame", depth_images::shadingPicture(frame.image),
-                   depth_images::layersOf(frame.image).options());
+    recorder.image("output_frame", kit::shadingPicture(frame.image),
+                   kit::layersOf(frame.image).options());
     recorder.image("unavailable", availabilityPicture(frame.image, frame.marks),
-                   depth_images::seenFrom(frame.image.view));
+                   kit::seenFrom(frame.image.view));
 }
 
 void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels) {
@@ -213,10 +203,11 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
                            "sample", pass);
         };
         recorder.metric("samples", static_cast<double>(counts.samples), "sample", pass);
-        recorder.metric("coverage_pct", percent(counts.samples, pixels), "%", pass);
+        recorder.metric("coverage_pct", kit::percent(counts.samples, pixels), "%", pass);
         if (counts.samples == 0) continue;
         ofSamples("redundant_pct", counts.redundant);
-        recorder.metric("redundant_of_pixels_pct", percent(counts.redundant, pixels), "%", pass);
+        recorder.metric("redundant_of_pixels_pct", kit::percent(counts.redundant, pixels), "%",
+                        pass);
         ofSamples("occluded_pct", counts.occluded);
         ofSamples("occluded_literal_pct", counts.occludedLiterally);
         ofSamples("useful_of_samples_pct", counts.useful);
@@ -227,8 +218,8 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
             recorder.share("useful_pct", static_cast<double>(counts.useful),
                            static_cast<double>(counts.occluded), "sample", pass);
         }
-        occludedSumPct += percent(counts.occluded, counts.samples);
-        usefulSumPct += percent(counts.useful, counts.samples);
+        occludedSumPct += kit::percent(counts.occluded, counts.samples);
+        usefulSumPct += kit::percent(counts.useful, counts.samples);
     }
     recorder.metric("occluded_sum_pct", occludedSumPct, "%");
     recorder.metric("useful_sum_pct", usefulSumPct, "%");

@@ -40,8 +40,8 @@ struct DepthSamplingParams {
     int candidates = 16;
     PeeledFrom peeledFrom = PeeledFrom::Centre;
     ViewTriangleSettings triangle;  // all but the aspect
-    depth_images::TriangleIds triangleIds = depth_images::TriangleIds::PrimitiveId;
-    depth_images::DepthFormat depthFormat = depth_images::DepthFormat::Float32;
+    kit::TriangleIds triangleIds = kit::TriangleIds::PrimitiveId;
+    kit::DepthFormat depthFormat = kit::DepthFormat::Float32;
     MeasureSettings measures;
     int outputFrames = 1000;
     int frameSizePx = 0;  // 0: as the reference images

@@ -31,16 +31,15 @@ constexpr config::Choice<PeeledFrom> kPeeledFrom[] = {
     {PeeledFrom::Centre, "centre", "the centre of the triangle of views"},
     {PeeledFrom::FirstView, "first_view", "V0, as figures 11 and 12 have it"},
 };
-constexpr config::Choice<depth_images::TriangleIds> kTriangleIds[] = {
-    {depth_images::TriangleIds::PrimitiveId, "primitive_id", "gl_PrimitiveID"},
-    {depth_images::TriangleIds::GeometryShader, "geometry_shader",
+constexpr config::Choice<kit::TriangleIds> kTriangleIds[] = {
+    {kit::TriangleIds::PrimitiveId, "primitive_id", "gl_PrimitiveID"},
+    {kit::TriangleIds::GeometryShader, "geometry_shader",
      "by a geometry stage, as the thesis has it"},
 };
-constexpr config::Choice<depth_images::DepthFormat> kDepthFormats[] = {
-    {depth_images::DepthFormat::Unorm24, "unorm24", "24-bit integers"},
-    {depth_images::DepthFormat::Float32, "float32", "32-bit floats, 0 at the near plane"},
-    {depth_images::DepthFormat::ReversedFloat32, "reversed_float32",
-     "32-bit floats, 0 at the far plane"},
+constexpr config::Choice<kit::DepthFormat> kDepthFormats[] = {
+    {kit::DepthFormat::Unorm24, "unorm24", "24-bit integers"},
+    {kit::DepthFormat::Float32, "float32", "32-bit floats, 0 at the near plane"},
+    {kit::DepthFormat::ReversedFloat32, "reversed_float32", "32-bit floats, 0 at the far plane"},
 };
 constexpr config::Choice<Measured> kMeasured[] = {
     {Measured::ReferenceImages, "reference_images", "making the reference images"},
@@ -125,7 +124,7 @@ DepthSamplingParams::DepthSamplingParams(config::Params& params)
                              {"what of earlier images a non-redundant one leaves out"})),
       views(params.getInt("views", 3,
                           {"reference images, or layers of depth peeling", "images", 1,
-                           depth_images::kMaxEarlierImages + 1})),
+                           kit::kMaxEarlierImages + 1})),
       placement(params.getEnum("placement", Placement::Fixed, kPlacements,
                                {"where reference images are taken"})),
       candidates(params.getInt("candidates", 16,
@@ -133,9 +132,9 @@ DepthSamplingParams::DepthSamplingParams(config::Params& params)
       peeledFrom(params.getEnum("peeled_from", PeeledFrom::Centre, kPeeledFrom,
                                 {"the one view of depth_peeling"})),
       triangle(readTriangle(params)),
-      triangleIds(params.getEnum("triangle_ids", depth_images::TriangleIds::PrimitiveId,
-                                 kTriangleIds, {"where triangle ids come from"})),
-      depthFormat(params.getEnum("depth_format", depth_images::DepthFormat::Float32, kDepthFormats,
+      triangleIds(params.getEnum("triangle_ids", kit::TriangleIds::PrimitiveId, kTriangleIds,
+                                 {"where triangle ids come from"})),
+      depthFormat(params.getEnum("depth_format", kit::DepthFormat::Float32, kDepthFormats,
                                  {"what the depth test compares"})),
       outputFrames(params.getInt("output_frames", 1000,
                                  {"views in the hull of the reference views", "frames", 1, 10000})),

@@ -11,7 +11,7 @@
 #include "runner/gl/profiler.h"
 #include "runner/raycast/ray_tracer.h"
 #include "techniques/depth_sampling/pixel_measures.h"
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -20,9 +20,9 @@ enum class Method { Conventional, NonRedundant, DepthPeeling };
 
 /// What a reference image is of, and what it is compared with.
 struct Views {
-    std::vector<depth_images::View> images;        // of the reference images, in their order
-    std::vector<depth_images::View> conventional;  // V₀ … Vₙ₋₁, what "occluded" refers to
-    std::vector<depth_images::View> frames;        // output frames
+    std::vector<kit::View> images;        // of the reference images, in their order
+    std::vector<kit::View> conventional;  // V₀ … Vₙ₋₁, what "occluded" refers to
+    std::vector<kit::View> frames;        // output frames
 };
 
 /// Counts of samples of one reference image ([xie2017] Sec. 2.3.2).
@@ -44,7 +44,7 @@ struct Measures {
 
 /// What the measures found of an image's samples: Mark, one a pixel in the order of `image`.
 struct MarkedImage {
-    depth_images::HostDepthImage image;
+    kit::HostDepthImage image;
     std::vector<std::uint32_t> marks;
 };
 

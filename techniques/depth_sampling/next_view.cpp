@@ -2,10 +2,10 @@
 
 namespace gfxrepro::depth_sampling {
 
-using depth_images::DepthImage;
+using kit::DepthImage;
 
-NextView::NextView(const gl::ShaderLibrary& shaders, depth_images::DepthImageRenderer& renderer,
-                   const depth_images::DrawableScene& scene, std::vector<scene::Camera> candidates,
+NextView::NextView(const gl::ShaderLibrary& shaders, kit::DepthImageRenderer& renderer,
+                   const kit::DrawableScene& scene, std::vector<scene::Camera> candidates,
                    const std::vector<scene::Camera>& outputCameras, glm::ivec2 sizePx)
     : measures_(shaders),
       renderer_(renderer),
@@ -14,7 +14,7 @@ NextView::NextView(const gl::ShaderLibrary& shaders, depth_images::DepthImageRen
       sizePx_(sizePx) {
     GFXREPRO_ASSERT(!candidates_.empty());
     for (const scene::Camera& camera : outputCameras) {
-        outputs_.push_back(renderer_.makeImage(depth_images::viewOf(camera, sizePx)));
+        outputs_.push_back(renderer_.makeImage(kit::viewOf(camera, sizePx)));
         renderer_.render(scene_, outputs_.back());
     }
 }
@@ -22,7 +22,7 @@ NextView::NextView(const gl::ShaderLibrary& shaders, depth_images::DepthImageRen
 NextView::Choice NextView::next(ImageSpan imagesSoFar) {
     Choice best{candidates_.front()};
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-        DepthImage image = renderer_.makeImage(depth_images::viewOf(candidates_[c], sizePx_));
+        DepthImage image = renderer_.makeImage(kit::viewOf(candidates_[c], sizePx_));
         renderer_.render(scene_, image, imagesSoFar);
         const DepthImage* const candidate[] = {&image};
         std::uint64_t gained = 0;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "techniques/depth_sampling/pixel_measures.h"
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -15,8 +15,8 @@ namespace gfxrepro::depth_sampling {
 class NextView {
   public:
     /// Draws the output frames, `sizePx` each; references must outlive this.
-    NextView(const gl::ShaderLibrary& shaders, depth_images::DepthImageRenderer& renderer,
-             const depth_images::DrawableScene& scene, std::vector<scene::Camera> candidates,
+    NextView(const gl::ShaderLibrary& shaders, kit::DepthImageRenderer& renderer,
+             const kit::DrawableScene& scene, std::vector<scene::Camera> candidates,
              const std::vector<scene::Camera>& outputCameras, glm::ivec2 sizePx);
 
     struct Choice {
@@ -24,15 +24,15 @@ class NextView {
         std::size_t candidate = 0;
         std::uint64_t gainedSamples = 0;  // of all output frames; 0: no candidate gains anything
     };
-    /// `imagesSoFar`, of any size, at most depth_images::kMaxEarlierImages. Waits for the device.
+    /// `imagesSoFar`, of any size, at most kit::kMaxEarlierImages. Waits for the device.
     Choice next(ImageSpan imagesSoFar);
 
   private:
     PixelMeasures measures_;
-    depth_images::DepthImageRenderer& renderer_;
-    const depth_images::DrawableScene& scene_;
+    kit::DepthImageRenderer& renderer_;
+    const kit::DrawableScene& scene_;
     std::vector<scene::Camera> candidates_;
-    std::vector<depth_images::DepthImage> outputs_;
+    std::vector<kit::DepthImage> outputs_;
     glm::ivec2 sizePx_;
 };
 

@@ -4,7 +4,7 @@
 
 namespace gfxrepro::depth_sampling {
 
-using depth_images::HostDepthImage;
+using kit::HostDepthImage;
 
 namespace {
 
@@ -27,20 +27,10 @@ glm::vec3 tinted(const glm::vec3& color, const glm::vec3& shading) {
 template <class ColorOf>
 image::ImageF picture(const HostDepthImage& image, std::span<const std::uint32_t> marks,
                       ColorOf&& colorOf) {
-    const glm::ivec2 sizePx = image.view.sizePx;
     GFXREPRO_ASSERT_EQ(marks.size(), image.triangleId.size());
-    image::ImageF result(sizePx.x, sizePx.y, 3);
-    for (int y = 0; y < sizePx.y; ++y) {
-        for (int x = 0; x < sizePx.x; ++x) {
-            const std::size_t index = image.indexOf({x, y});
-            const glm::vec3 color =
-                (marks[index] & kSample) != 0 ? colorOf(index) : kPictureBackground;
-            for (int channel = 0; channel < 3; ++channel) {
-                result.at(x, sizePx.y - 1 - y, channel) = color[channel];
-            }
-        }
-    }
-    return result;
+    return kit::pictureOf(image.view.sizePx, [&](std::size_t index) {
+        return (marks[index] & kSample) != 0 ? colorOf(index) : kPictureBackground;
+    });
 }
 
 }  // namespace

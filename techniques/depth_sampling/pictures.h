@@ -5,7 +5,7 @@
 #include <span>
 
 #include "runner/image/image.h"
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -18,12 +18,12 @@ constexpr glm::vec3 kUnavailableColor{0.85F, 0.03F, 0.03F};
 
 /// A reference image: useful samples yellow, other occluded ones green, the rest grey ([xie2017]
 /// Table 3, Fig. 9). `marks` (Mark) one a pixel in the order of HostDepthImage.
-image::ImageF occludedPicture(const depth_images::HostDepthImage& image,
+image::ImageF occludedPicture(const kit::HostDepthImage& image,
                               std::span<const std::uint32_t> marks);
 
 /// An output frame: samples without kAvailable red, the others in their shading ([xie2017] Fig.
 /// 12).
-image::ImageF availabilityPicture(const depth_images::HostDepthImage& frame,
+image::ImageF availabilityPicture(const kit::HostDepthImage& frame,
                                   std::span<const std::uint32_t> marks);
 
 }  // namespace gfxrepro::depth_sampling

@@ -4,12 +4,12 @@
 
 namespace gfxrepro::depth_sampling {
 
-using depth_images::DepthImage;
-using depth_images::View;
+using kit::DepthImage;
+using kit::View;
 
 PixelExperiment::PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene,
-                                 Method method, depth_images::TriangleIds ids,
-                                 depth_images::DepthFormat format, Views views)
+                                 Method method, kit::TriangleIds ids, kit::DepthFormat format,
+                                 Views views)
     : method_(method),
       views_(std::move(views)),
       scene_(scene),

@@ -9,7 +9,7 @@ class PixelExperiment final : public Experiment {
   public:
     /// `shaders` must outlive this.
     PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene, Method method,
-                    depth_images::TriangleIds ids, depth_images::DepthFormat format, Views views);
+                    kit::TriangleIds ids, kit::DepthFormat format, Views views);
 
     void makeReferenceImages(gl::Profiler& profiler) override;
     Measures measure(const MeasureSettings& settings) override;
@@ -26,22 +26,22 @@ class PixelExperiment final : public Experiment {
   private:
     void drawConventionalImages();
     void drawFrame(std::size_t index);
-    std::vector<const depth_images::DepthImage*> first(
-        const std::vector<depth_images::DepthImage>& images, std::size_t count) const;
-    const std::vector<depth_images::DepthImage>& conventional() const {
+    std::vector<const kit::DepthImage*> first(const std::vector<kit::DepthImage>& images,
+                                              std::size_t count) const;
+    const std::vector<kit::DepthImage>& conventional() const {
         return method_ == Method::Conventional ? images_ : conventional_;
     }
     void markImage(std::size_t index);
 
     Method method_;
     Views views_;
-    depth_images::DrawableScene scene_;
-    depth_images::DepthImageRenderer renderer_;
+    kit::DrawableScene scene_;
+    kit::DepthImageRenderer renderer_;
     PixelMeasures measures_;
-    std::vector<depth_images::DepthImage> images_;
-    std::vector<depth_images::DepthImage> conventional_;   // unless these are the images
-    std::vector<gl::Texture> marks_;                       // of images_
-    std::optional<depth_images::DepthImage> outputFrame_;  // one for all of views_.frames
+    std::vector<kit::DepthImage> images_;
+    std::vector<kit::DepthImage> conventional_;   // unless these are the images
+    std::vector<gl::Texture> marks_;              // of images_
+    std::optional<kit::DepthImage> outputFrame_;  // one for all of views_.frames
 };
 
 }  // namespace gfxrepro::depth_sampling

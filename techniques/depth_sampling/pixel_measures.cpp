@@ -4,7 +4,7 @@
 
 namespace gfxrepro::depth_sampling {
 
-using depth_images::DepthImage;
+using kit::DepthImage;
 
 namespace {
 
@@ -26,17 +26,7 @@ gl::Defines defines() {
 
 gl::Program wholeImageProgram(const gl::ShaderLibrary& shaders, const char* file,
                               const gl::Defines& defines) {
-    return gl::Program(shaders, {"depth_sampling/whole_image.vert.glsl", file}, defines);
-}
-
-void drawWholeImage(const gl::VertexArray& withoutAttributes) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    withoutAttributes.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return gl::Program(shaders, {"kit/whole_image.vert.glsl", file}, defines);
 }
 
 /// What redundancy.glsl reads: the samples of `image` and what they are tested with.
@@ -46,7 +36,7 @@ void bindTest(const gl::Program& program, const DepthImage& image, ImageSpan ima
     for (std::size_t i = 0; i < images.size(); ++i) {
         images[i]->triangleId.bind(static_cast<GLuint>(kFirstTriangleIdsUnit + i));
         program.set(fmt::format("otherFromHere[{}]", i).c_str(),
-                    depth_images::reprojection(image.view, images[i]->view));
+                    kit::reprojection(image.view, images[i]->view));
         program.set(fmt::format("otherSizePx[{}]", i).c_str(), glm::vec2(images[i]->view.sizePx));
     }
 }
@@ -92,7 +82,7 @@ void PixelMeasures::mark(const DepthImage& image, gl::Texture& marks, ImageSpan 
     program.set("among", among);
     program.set("bit", static_cast<unsigned>(bit));
     glTextureBarrier();  // before marks that were drawn are read
-    drawWholeImage(withoutAttributes_);
+    wholeImage_.draw();
 }
 
 std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits) {
@@ -102,7 +92,7 @@ std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits)
     countProgram_.set("bits", bits);
     marks.bind(kMarkUnit);
     countQuery_.begin();
-    drawWholeImage(withoutAttributes_);
+    wholeImage_.draw();
     countQuery_.end();
     return countQuery_.result();
 }
@@ -113,7 +103,7 @@ void PixelMeasures::beginAvailability(const DepthImage& frame, ImageSpan images)
     samplesProgram_.use();
     frame.triangleId.bind(kSampleIdsUnit);
     samplesQuery_.begin();
-    drawWholeImage(withoutAttributes_);
+    wholeImage_.draw();
     samplesQuery_.end();
 
     const gl::Program& program =
@@ -121,7 +111,7 @@ void PixelMeasures::beginAvailability(const DepthImage& frame, ImageSpan images)
     program.use();
     bindTest(program, frame, images);
     availableQuery_.begin();
-    drawWholeImage(withoutAttributes_);
+    wholeImage_.draw();
     availableQuery_.end();
 }
 

@@ -7,11 +7,12 @@
 
 #include "runner/gl/device.h"
 #include "runner/gl/program.h"
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
+#include "techniques/kit/whole_image.h"
 
 namespace gfxrepro::depth_sampling {
 
-using ImageSpan = std::span<const depth_images::DepthImage* const>;
+using ImageSpan = std::span<const kit::DepthImage* const>;
 
 /// What is known of an image's samples: bits of an R32UI texture of the image's size. A pixel
 /// without a sample has none.
@@ -35,13 +36,13 @@ class PixelMeasures {
     explicit PixelMeasures(const gl::ShaderLibrary& shaders);
 
     /// Marks with kSample alone.
-    gl::Texture makeMarks(const depth_images::DepthImage& image);
+    gl::Texture makeMarks(const kit::DepthImage& image);
 
     /// Adds `bit` to the marks of those samples of `image` that have all bits of `among` and that
     /// are redundant (`isRedundant`) with one of `images`, or (else) with none. Samples that
     /// already have the bit are not tested again. At most kMaxImages.
-    void mark(const depth_images::DepthImage& image, gl::Texture& marks, ImageSpan images,
-              bool isRedundant, std::uint32_t among, Mark bit);
+    void mark(const kit::DepthImage& image, gl::Texture& marks, ImageSpan images, bool isRedundant,
+              std::uint32_t among, Mark bit);
 
     /// Pixels whose marks hold all of `bits`; waits for the device.
     std::uint64_t count(const gl::Texture& marks, std::uint32_t bits);
@@ -54,7 +55,7 @@ class PixelMeasures {
         bool operator==(const Availability&) const = default;
     };
     /// Enqueues the test of one frame: the pass that is timed. Forgets the frame before.
-    void beginAvailability(const depth_images::DepthImage& frame, ImageSpan images);
+    void beginAvailability(const kit::DepthImage& frame, ImageSpan images);
     /// Waits for the test of the last frame.
     Availability finishAvailability();
 
@@ -66,7 +67,7 @@ class PixelMeasures {
     const gl::ShaderLibrary& shaders_;
     Variants markPrograms_, availabilityPrograms_;
     gl::Program countProgram_, samplesProgram_;
-    gl::VertexArray withoutAttributes_;
+    kit::WholeImage wholeImage_;
     gl::SampleQuery countQuery_, samplesQuery_, availableQuery_;
 };
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -39,9 +39,7 @@ SurfaceShading::SurfaceShading(const scene::Scene& scene) {
     triangles_ = std::move(mesh.triangles);
     for (const scene::Instance& instance : scene.instances) {
         const scene::Mesh& part = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-        const scene::Material material =
-            part.material < 0 ? scene::Material{}
-                              : scene.materials[static_cast<std::size_t>(part.material)];
+        const scene::Material material = materialOf(scene, part);
         const glm::mat3 normalMatrix =
             glm::transpose(glm::inverse(glm::mat3(instance.worldFromMesh)));
         for (std::size_t v = 0; v < part.positions.size(); ++v) {
@@ -69,13 +67,13 @@ glm::vec3 SurfaceShading::radiance(const SurfacePoint& point, const glm::vec3& e
     if (isDoubleSided_[number] && glm::dot(normal, eyeWorld - point.positionWorld) < 0.0F) {
         normal = -normal;
     }
-    const float light = std::max(glm::dot(normal, depth_images::kLightDirectionWorld), 0.0F);
+    const float light = std::max(glm::dot(normal, kit::kLightDirectionWorld), 0.0F);
     return interpolated(colors_) * (0.3F + 0.7F * light);
 }
 
-depth_images::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
-                                          const SurfaceShading& shading) {
-    depth_images::HostDepthImage image;
+kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
+                                 const SurfaceShading& shading) {
+    kit::HostDepthImage image;
     image.view = sequence.views()[index];
     const glm::ivec2 size = image.view.sizePx;
     const auto pixelCount = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);

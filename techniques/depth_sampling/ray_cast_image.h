@@ -6,7 +6,7 @@
 
 #include "runner/scene/scene.h"
 #include "techniques/depth_sampling/visibility.h"
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -26,7 +26,7 @@ class SurfaceShading {
 };
 
 /// Image `index` of the sequence, all its pixels.
-depth_images::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
-                                          const SurfaceShading& shading);
+kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
+                                 const SurfaceShading& shading);
 
 }  // namespace gfxrepro::depth_sampling

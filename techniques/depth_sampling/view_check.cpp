@@ -17,7 +17,7 @@ bool isDrawn(const raycast::RayTracer& tracer, const glm::vec3& eye, const glm::
 
 }  // namespace
 
-FirstHits firstHits(const raycast::RayTracer& tracer, const depth_images::View& view) {
+FirstHits firstHits(const raycast::RayTracer& tracer, const kit::View& view) {
     constexpr int kRays = 32;  // each way: a tenth of a second for 16 views, and no thin miss
     FirstHits hits;
     for (int y = 0; y < kRays; ++y) {
@@ -34,7 +34,7 @@ FirstHits firstHits(const raycast::RayTracer& tracer, const depth_images::View& 
     return hits;
 }
 
-void checkViews(const raycast::RayTracer& tracer, std::span<const depth_images::View> views) {
+void checkViews(const raycast::RayTracer& tracer, std::span<const kit::View> views) {
     for (std::size_t i = 0; i < views.size(); ++i) {
         const FirstHits hits = firstHits(tracer, views[i]);
         if (2 * hits.ofBacks <= hits.all) continue;

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "runner/raycast/ray_tracer.h"
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -13,12 +13,12 @@ struct FirstHits {
     int all = 0;
     int ofBacks = 0;  // of triangles that are drawn from the front only
 };
-FirstHits firstHits(const raycast::RayTracer& tracer, const depth_images::View& view);
+FirstHits firstHits(const raycast::RayTracer& tracer, const kit::View& view);
 
 /// Throws Error, naming the view and what to change, for the first view more than half of whose
 /// rays that meet anything first meet the back of a single-sided triangle. The eye is then inside
 /// of a closed surface, or looks at an open one from behind: culling would show the scene without
 /// what is nearest, and no measure would mean anything. A view without any hit passes.
-void checkViews(const raycast::RayTracer& tracer, std::span<const depth_images::View> views);
+void checkViews(const raycast::RayTracer& tracer, std::span<const kit::View> views);
 
 }  // namespace gfxrepro::depth_sampling

@@ -10,7 +10,7 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-using depth_images::View;
+using kit::View;
 using raycast::Faces;
 using raycast::TriangleHit;
 

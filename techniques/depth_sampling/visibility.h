@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "runner/raycast/ray_tracer.h"
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -23,7 +23,7 @@ enum class Earlier {
     Samples,  // what the earlier images hold, with what they uncovered
 };
 
-bool isSameView(const depth_images::View& a, const depth_images::View& b);
+bool isSameView(const kit::View& a, const kit::View& b);
 
 /// Which points of the scene images with infinitely many pixels hold; their resolution does not
 /// count. What is outside of an image's frustum, before its near plane or beyond its far plane is
@@ -38,10 +38,10 @@ bool isSameView(const depth_images::View& a, const depth_images::View& b);
 class VisibilitySequence {
   public:
     /// `tracer` is of the scene whose flattened triangles carry the ids; it must outlive this.
-    VisibilitySequence(const raycast::RayTracer& tracer, std::vector<depth_images::View> views,
+    VisibilitySequence(const raycast::RayTracer& tracer, std::vector<kit::View> views,
                        bool isNonRedundant, Earlier earlier = Earlier::Samples);
 
-    const std::vector<depth_images::View>& views() const { return views_; }
+    const std::vector<kit::View>& views() const { return views_; }
 
     /// Whether image `index` holds the point.
     bool holds(std::size_t index, const SurfacePoint& point) const;
@@ -70,7 +70,7 @@ class VisibilitySequence {
     }
 
     const raycast::RayTracer* tracer_;
-    std::vector<depth_images::View> views_;
+    std::vector<kit::View> views_;
     std::vector<std::size_t> nextOfView_;  // the next image of the same view, or views_.size()
     bool isNonRedundant_;
     Earlier earlier_;

@@ -92,7 +92,7 @@ MarkedImage VisibilityExperiment::markedFrame(std::size_t index) {
 
 std::size_t VisibilityExperiment::referenceImageBytes() const {
     std::size_t bytes = 0;
-    for (const depth_images::HostDepthImage& image : images_) {
+    for (const kit::HostDepthImage& image : images_) {
         bytes += image.shading.size() * sizeof(glm::u8vec4) + image.depthM.size() * sizeof(float) +
                  image.triangleId.size() * sizeof(std::uint32_t);
     }

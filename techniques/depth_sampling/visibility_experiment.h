@@ -26,7 +26,7 @@ class VisibilityExperiment final : public Experiment {
     VisibilitySequence conventional_;
     VisibilitySequence frames_;
     VisibilitySequence neededBy_;  // frames_ when usefulness is measured, else none
-    std::vector<depth_images::HostDepthImage> images_;
+    std::vector<kit::HostDepthImage> images_;
 };
 
 }  // namespace gfxrepro::depth_sampling

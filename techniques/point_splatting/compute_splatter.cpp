@@ -50,10 +50,9 @@ ComputeSplatter::ComputeSplatter(const gl::ShaderLibrary& shaders, const ModelFi
     const gl::Defines defines = computeDefines(points_, pixelWords_);
     nearest_ = {shaders, {"point_splatting/nearest_point.comp.glsl"}, defines};
     sum_ = {shaders, {"point_splatting/sum_points.comp.glsl"}, defines};
-    resolve_ = {
-        shaders,
-        {"point_splatting/whole_image.vert.glsl", "point_splatting/resolve_points.frag.glsl"},
-        defines};
+    resolve_ = {shaders,
+                {"kit/whole_image.vert.glsl", "point_splatting/resolve_points.frag.glsl"},
+                defines};
     pixels_ = gl::Buffer(emptyPixels_.sizeBytes());
     output_ = gl::Texture::make2D(GL_RGBA8, sizePx);
     const std::array<const gl::Texture*, 1> output{&output_};
@@ -74,9 +73,7 @@ void ComputeSplatter::upload(std::span<const DrawnPatch> drawn) {
 void ComputeSplatter::dispatch(const gl::Program& program, const PatchView& view) const {
     program.use();
     setView(program, view);
-    if (program.isActive("depthTolerance")) {
-        program.set("depthTolerance", settings_.depthTolerance);
-    }
+    program.setIfActive("depthTolerance", settings_.depthTolerance);
     pixels_.bindStorage(kPixelBinding);
     for (const Batch& batch : drawList_.batches) {
         points_.bind(batch.piece);
@@ -105,14 +102,10 @@ void ComputeSplatter::render(std::span<const DrawnPatch> drawn, const PatchView&
     }
     const gl::GpuScope scope(profiler, "normalization");
     outputTarget_.bind();
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
     resolve_.use();
     setView(resolve_, view);
     resolve_.set("lightDirectionView", settings_.lightDirectionView);
-    noAttributes_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
 }
 
 }  // namespace gfxrepro::point_splatting

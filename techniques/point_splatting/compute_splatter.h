@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runner/gl/profiler.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/point_splatting/device_points.h"
 
 namespace gfxrepro::point_splatting {
@@ -47,7 +48,7 @@ class ComputeSplatter {
     gl::Buffer chunks_, pixels_, emptyPixels_;
     gl::Texture output_;
     gl::Framebuffer outputTarget_;
-    gl::VertexArray noAttributes_;
+    kit::WholeImage wholeImage_;
     DrawList drawList_;
 };
 

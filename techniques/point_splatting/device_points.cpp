@@ -129,22 +129,19 @@ void setView(const gl::Program& program, const PatchView& view) {
     const glm::vec2 size(view.sizePx);
     const glm::vec2 ndcPerSlope(clip[0][0], clip[1][1]);
     const glm::vec2 ndcOffset(-clip[2][0], -clip[2][1]);  // clip w is −z
-    const auto set = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
     glm::mat4 eyeFromView(1.0F);
     eyeFromView[2][2] = -1.0F;
-    set("eyeFromModel", eyeFromView * view.viewFromModel);
-    set("ndcPerSlope", ndcPerSlope);
-    set("ndcOffset", ndcOffset);
-    set("depthFromInverseZ", glm::vec2(clip[3][2], -clip[2][2]));
-    set("nearM", view.nearM);
-    set("focalPx", view.focalPx);
-    set("sizePx", size);
+    program.setIfActive("eyeFromModel", eyeFromView * view.viewFromWorld);
+    program.setIfActive("ndcPerSlope", ndcPerSlope);
+    program.setIfActive("ndcOffset", ndcOffset);
+    program.setIfActive("depthFromInverseZ", glm::vec2(clip[3][2], -clip[2][2]));
+    program.setIfActive("nearM", view.nearM);
+    program.setIfActive("focalPx", view.focalPx);
+    program.setIfActive("sizePx", size);
     // As wide a border as is common for splats of this kind: 0.3 of half the window.
-    set("slopeLimit", 1.3F * (1.0F + glm::abs(ndcOffset)) / ndcPerSlope);
-    set("slopePerPx", 2.0F / (size * ndcPerSlope));
-    set("slopeAtZero", (-1.0F - ndcOffset) / ndcPerSlope);
+    program.setIfActive("slopeLimit", 1.3F * (1.0F + glm::abs(ndcOffset)) / ndcPerSlope);
+    program.setIfActive("slopePerPx", 2.0F / (size * ndcPerSlope));
+    program.setIfActive("slopeAtZero", (-1.0F - ndcOffset) / ndcPerSlope);
 }
 
 }  // namespace gfxrepro::point_splatting

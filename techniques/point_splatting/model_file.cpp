@@ -11,23 +11,21 @@
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "techniques/kit/kept_file.h"
 
 namespace gfxrepro::point_splatting {
 
 namespace {
 
-/// Goes up when the file's layout or the tree's making changes.
 constexpr std::uint32_t kVersion = 1;
-constexpr char kMagic[8] = {'g', 'f', 'x', 'p', 'o', 'i', 'n', 't'};
+constexpr const char* kMagic = "gfxpoint";
 constexpr std::size_t kAlignment = 64;
 
 enum Section { kPatches, kLevels, kCompressed, kPositions, kNormals, kRadii, kColors, kTable };
 constexpr std::size_t kSections = 8;
 
 struct Header {
-    char magic[8];
-    std::uint32_t version;
-    char key[64];
+    kit::FileStamp stamp;
     scene::Box bounds;
     std::uint64_t sizeBytes;  // of the whole file: a cut-off one is known by it
     struct {
@@ -70,9 +68,7 @@ std::string serialized(const PointModel& model, const std::string& key) {
         bytesOf(model.normals), bytesOf(model.radii),  bytesOf(colors), bytesOf(table)};
 
     Header header{};
-    std::memcpy(header.magic, kMagic, sizeof kMagic);
-    header.version = kVersion;
-    std::memcpy(header.key, key.data(), sizeof header.key);
+    header.stamp = {kMagic, kVersion, key};
     header.bounds = model.bounds;
     std::size_t offset = aligned(sizeof header);
     for (std::size_t s = 0; s < kSections; ++s) {
@@ -95,9 +91,7 @@ std::optional<Header> headerOf(std::span<const std::byte> bytes, const std::stri
     Header header;
     if (bytes.size() < sizeof header) return std::nullopt;
     std::memcpy(&header, bytes.data(), sizeof header);
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
-        key.compare(0, key.size(), header.key, sizeof header.key) != 0 ||
-        header.sizeBytes != bytes.size()) {
+    if (header.stamp != kit::FileStamp(kMagic, kVersion, key) || header.sizeBytes != bytes.size()) {
         return std::nullopt;
     }
     for (const auto& section : header.sections) {
@@ -165,6 +159,15 @@ bool isConsistent(const Content& content) {
     return holds(static_cast<std::size_t>(next));
 }
 
+template <class Content>
+std::unique_ptr<Content> built(const scene::PointCloud& points, const TreeSettings& settings,
+                               const std::string& key) {
+    auto content = std::make_unique<Content>();
+    content->memory = serialized(buildModel(points, settings), key);
+    content->header = *headerOf(content->bytes(), key);
+    return content;
+}
+
 /// The mapped file where it is what the key says.
 template <class Content>
 std::unique_ptr<Content> mapped(const std::filesystem::path& path, const std::string& key) {
@@ -197,10 +200,7 @@ std::string ModelFile::keyOf(const scene::PointCloud& points, const TreeSettings
 
 ModelFile ModelFile::build(const scene::PointCloud& points, const TreeSettings& settings) {
     const std::string key = sha256("");  // nothing looks for it
-    auto content = std::make_unique<Content>();
-    content->memory = serialized(buildModel(points, settings), key);
-    content->header = *headerOf(content->bytes(), key);
-    return ModelFile(std::move(content), true);
+    return ModelFile(built<Content>(points, settings, key), true);
 }
 
 ModelFile ModelFile::openOrBuild(const std::filesystem::path& folder,
@@ -209,15 +209,10 @@ ModelFile ModelFile::openOrBuild(const std::filesystem::path& folder,
     const std::filesystem::path path = folder / (key + ".points");
     if (auto content = mapped<Content>(path, key)) return ModelFile(std::move(content), false);
 
-    auto content = std::make_unique<Content>();
-    content->memory = serialized(buildModel(points, settings), key);
-    content->header = *headerOf(content->bytes(), key);
-    try {
-        writeFileAtomic(path, content->memory);
-    } catch (const Error&) {
-        return ModelFile(std::move(content), true);  // isKept() tells
+    auto content = built<Content>(points, settings, key);
+    if (kit::keepFile(path, content->memory)) {
+        if (auto kept = mapped<Content>(path, key)) content = std::move(kept);
     }
-    if (auto kept = mapped<Content>(path, key)) content = std::move(kept);
     return ModelFile(std::move(content), true);
 }
 

@@ -16,9 +16,8 @@ namespace gfxrepro::point_splatting {
 class ModelFile {
   public:
     /// Maps `folder`/<key>.points, made of `points` first where it is not there, is cut off, or is
-    /// another version's. It is written whole under a temporary name and renamed, so that several
-    /// processes may do so at once. Where the folder cannot be written the model stays in memory.
-    /// Throws Error for no points.
+    /// another version's (kit::keepFile). Where the folder cannot be written the model stays in
+    /// memory. Throws Error for no points.
     static ModelFile openOrBuild(const std::filesystem::path& folder,
                                  const scene::PointCloud& points, const TreeSettings& settings);
     /// In memory only.

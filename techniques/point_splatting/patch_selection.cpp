@@ -3,26 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "techniques/point_splatting/splat_math.h"
 
 namespace gfxrepro::point_splatting {
 
 namespace {
-
-/// Planes of the frustum, a·x + b·y + c·z + d ≥ 0 inside, of unit normal: from the rows of the
-/// matrix to clip space (Gribb and Hartmann 2001).
-std::array<glm::vec4, 6> frustumPlanes(const glm::mat4& clipFromModel) {
-    const glm::mat4 rows = glm::transpose(clipFromModel);
-    std::array<glm::vec4, 6> planes;
-    for (int axis = 0; axis < 3; ++axis) {
-        planes[static_cast<std::size_t>(2 * axis)] = rows[3] + rows[axis];
-        planes[static_cast<std::size_t>(2 * axis) + 1] = rows[3] - rows[axis];
-    }
-    for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
-    return planes;
-}
 
 /// Whether the box, grown by the radius of its splats, is outside of one plane.
 bool isOutside(const std::array<glm::vec4, 6>& planes, const scene::Box& box, float radius) {
@@ -62,8 +48,8 @@ float facingCosine(const Patch& patch, const glm::vec3& eye) {
 
 /// Of the nearest of the box's eight corners, at least the near plane's.
 float nearestCornerDistance(const scene::Box& box, const PatchView& view) {
-    const glm::vec3 toMin = glm::abs(box.min - view.eyeModel);
-    const glm::vec3 toMax = glm::abs(box.max - view.eyeModel);
+    const glm::vec3 toMin = glm::abs(box.min - view.eyeWorld);
+    const glm::vec3 toMax = glm::abs(box.max - view.eyeWorld);
     return std::max(glm::length(glm::min(toMin, toMax)), view.nearM);
 }
 
@@ -94,22 +80,16 @@ SplatMode fixedMode(SplatMethod method) {
 }  // namespace
 
 float nearestDepth(const scene::Box& box, const PatchView& view) {
-    const glm::vec4 row = -glm::transpose(view.viewFromModel)[2];
+    const glm::vec4 row = -glm::transpose(view.viewFromWorld)[2];
     const glm::vec3 axis(row);
     const float centre = glm::dot(axis, box.centre()) + row.w;
     return std::max(centre - glm::dot(glm::abs(axis), 0.5F * box.size()), view.nearM);
 }
 
 PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx) {
-    PatchView view;
-    const float aspect = static_cast<float>(sizePx.x) / static_cast<float>(sizePx.y);
-    view.viewFromModel = glm::lookAt(camera.position, camera.target, camera.up);
-    view.clipFromView = glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM);
-    view.eyeModel = camera.position;
-    view.sizePx = sizePx;
+    PatchView view{kit::viewOf(camera, sizePx)};
     view.fovRad = camera.verticalFovRad;
     view.focalPx = 0.5F * static_cast<float>(sizePx.y) / std::tan(0.5F * camera.verticalFovRad);
-    view.nearM = camera.nearM;
     return view;
 }
 
@@ -134,7 +114,7 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
                               std::vector<DrawnPatch>& drawn) {
     drawn.clear();
     SelectionCounts counts;
-    const std::array<glm::vec4, 6> planes = frustumPlanes(view.clipFromView * view.viewFromModel);
+    const std::array<glm::vec4, 6> planes = frustumPlanes(view);
     const auto cEtaOfView = static_cast<float>(cEta(static_cast<double>(view.fovRad)));
     const float sinSilhouette = std::sin(settings.silhouetteRad);
     for (std::uint32_t p = 0; p < patches.size(); ++p) {
@@ -145,12 +125,12 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
             ++counts.outside;
             continue;
         }
-        if (settings.cullsCones && isTurnedAway(patch, view.eyeModel)) {
+        if (settings.cullsCones && isTurnedAway(patch, view.eyeWorld)) {
             ++counts.turnedAway;
             continue;
         }
         const float distance = nearestCornerDistance(patch.bounds, view);
-        const float cosine = facingCosine(patch, view.eyeModel);
+        const float cosine = facingCosine(patch, view.eyeWorld);
         const bool isSilhouette = cosine < sinSilhouette;
         DrawnPatch item;
         item.patch = p;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "techniques/kit/view.h"
 #include "techniques/point_splatting/linear_tree.h"
 
 namespace gfxrepro::point_splatting {
@@ -42,15 +42,10 @@ struct SelectionSettings {
 /// The finest level within `share` of a patch's points, at least the first.
 std::uint32_t arrivedLevel(const Patch& patch, std::span<const Level> levels, float share);
 
-/// A pinhole view of points, in the model's space.
-struct PatchView {
-    glm::mat4 viewFromModel{1.0F};  // looks along −z
-    glm::mat4 clipFromView{1.0F};
-    glm::vec3 eyeModel{0.0F};
-    glm::ivec2 sizePx{0};
+/// A pinhole view of points, whose space is the world.
+struct PatchView : kit::View {
     float focalPx = 1.0F;  // height / (2·tan(fov / 2))
     float fovRad = 0.7F;   // vertical
-    float nearM = 0.01F;
 };
 PatchView patchViewOf(const scene::Camera& camera, glm::ivec2 sizePx);
 

@@ -3,24 +3,13 @@
 #include <vector>
 
 #include "runner/gl/gl.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {
 
 namespace {
 
 constexpr GLuint kPositionLocation = 0;
-/// llvmpipe keeps every primitive of a draw in memory until it is flushed.
-constexpr GLsizei kMaxBatch = 1 << 16;
-
-gl::VertexArray positionArray(const gl::Buffer& positions) {
-    gl::VertexArray array;
-    const GLuint id = array.id();
-    glVertexArrayVertexBuffer(id, 0, positions.id(), 0, sizeof(glm::vec3));
-    glVertexArrayAttribFormat(id, kPositionLocation, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(id, kPositionLocation, 0);
-    glEnableVertexArrayAttrib(id, kPositionLocation);
-    return array;
-}
 
 }  // namespace
 
@@ -32,11 +21,11 @@ PlainPoints::PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& mode
                {"point_splatting/plain_point.vert.glsl", "point_splatting/sprite.frag.glsl"},
                {{"POSITION_LOCATION", static_cast<int>(kPositionLocation)}}),
       positions_(gl::Buffer::of(model.positions())),
-      array_(positionArray(positions_)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       output_(gl::Texture::make2D(GL_RGBA8, sizePx)) {
     const std::vector<const gl::Texture*> output{&output_};
     target_ = gl::Framebuffer(output, &depth_);
+    array_.setAttribute(kPositionLocation, positions_, 3);
 }
 
 void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& view,
@@ -51,7 +40,7 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_TRUE);
     program_.use();
-    program_.set("clipFromModel", view.clipFromView * view.viewFromModel);
+    program_.set("clipFromModel", view.clipFromWorld());
     array_.bind();
     std::vector<GLint> firsts;
     std::vector<GLsizei> counts;
@@ -70,7 +59,7 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
         firsts.push_back(static_cast<GLint>(patch.firstPoint));
         counts.push_back(static_cast<GLsizei>(levels_[patch.firstLevel + item.level].count));
         batch += counts.back();
-        if (batch >= kMaxBatch) issue();
+        if (batch >= static_cast<GLsizei>(kit::kPrimitivesPerFlush)) issue();
     }
     issue();
     glDisable(GL_PROGRAM_POINT_SIZE);

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runner/core/files.h"
+#include "techniques/kit/requirements.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -44,14 +45,13 @@ PointSplatting::PointSplatting(config::Params& params) : params_(params) {
     if (params.isGiven("points")) pointsAt_ = params.locationOf("points");
 }
 
-scene::PointCloud PointSplatting::takePoints(const scene::Scene* scene) {
-    if (!scene) throw Error("technique 'point_splatting' needs a scene");
-    scene::PointCloud points = scene->points;
+scene::PointCloud PointSplatting::takePoints(const scene::Scene& scene) {
+    scene::PointCloud points = scene.points;
     if (points.positions.empty()) {
-        if (scene->triangleCount() == 0) {
+        if (scene.triangleCount() == 0) {
             throw Error("technique 'point_splatting' needs a scene with points or triangles");
         }
-        points = scene::sampledPoints(*scene, static_cast<std::size_t>(params_.points));
+        points = scene::sampledPoints(scene, static_cast<std::size_t>(params_.points));
     } else if (pointsAt_) {
         throw Error(*pointsAt_, "'points' needs a scene without points of its own");
     }
@@ -62,7 +62,7 @@ scene::PointCloud PointSplatting::takePoints(const scene::Scene* scene) {
 void PointSplatting::setup(technique::SetupContext& context) {
     shaders_ = &context.shaders;
     sizePx_ = context.outputSizePx;
-    const scene::PointCloud points = takePoints(context.scene);
+    const scene::PointCloud points = takePoints(kit::requireScene(context, "point_splatting"));
     const auto begin = std::chrono::steady_clock::now();
     model_ = params_.keepsModel
                  ? ModelFile::openOrBuild(cacheFolder() / "points", points, params_.tree)

@@ -65,7 +65,7 @@ class PointSplatting final : public technique::Technique {
 
   private:
     /// The scene's points, or points of its surface.
-    scene::PointCloud takePoints(const scene::Scene* scene);
+    scene::PointCloud takePoints(const scene::Scene& scene);
     scene::Camera cameraAt(int frame, int frameCount) const;
     void draw(gl::Profiler& profiler);
     const gl::Texture& output() const;

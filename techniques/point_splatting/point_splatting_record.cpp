@@ -11,10 +11,11 @@
 #include "runner/metrics/flip.h"
 #include "runner/metrics/image_error.h"
 #include "runner/metrics/statistics.h"
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/point_splatting/compression_errors.h"
 #include "techniques/point_splatting/model_picture.h"
 #include "techniques/point_splatting/point_splatting.h"
-#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -55,7 +56,7 @@ void recordEnlarged(technique::Recorder& recorder, const std::string& name,
 
 /// Unit, world space; 0 where no splat is.
 std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const PatchView& view) {
-    const glm::mat3 modelFromView = glm::transpose(glm::mat3(view.viewFromModel));
+    const glm::mat3 modelFromView = glm::transpose(glm::mat3(view.viewFromWorld));
     const std::vector<float> sums = accumulated.read<float>(GL_RGBA, GL_FLOAT, 4);
     std::vector<glm::vec3> normals;
     normals.reserve(sums.size() / 4);
@@ -65,10 +66,6 @@ std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const Patc
         normals.push_back(length > 0.0F ? modelFromView * (sum / length) : glm::vec3(0.0F));
     }
     return normals;
-}
-
-double percent(double part, double whole) {
-    return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
 
 }  // namespace
@@ -83,7 +80,7 @@ void PointSplatting::record(technique::Recorder& recorder) {
     std::optional<image::ImageF> samples;
     if (params_.measuresErrors) samples = supersampled();
     if (params_.showsPictures) {
-        depth_images::ImageLayers layers(depth_images::viewOf(camera_, sizePx_));
+        kit::ImageLayers layers(view_);
         const bool hasNormals = renderer_ && params_.method != Method::Sprites;
         if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
         if (samples) {
@@ -101,8 +98,7 @@ void PointSplatting::recordModes(technique::Recorder& recorder) const {
     SplatSettings splats = params_.splats;
     splats.showsModes = true;
     const ModelPicture modes(drawnWith(splats, params_.selection, 1));
-    recorder.image("modes", modes.color,
-                   depth_images::seenFrom(depth_images::viewOf(camera_, sizePx_)));
+    recorder.image("modes", modes.color, kit::seenFrom(view_));
     recordEnlarged(recorder, "modes", modes);
 }
 
@@ -135,7 +131,7 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     const auto drawn = static_cast<double>(counts_.points);
     const auto all = static_cast<double>(model_->positions().size());
     recorder.metric("drawn_points", drawn, "point");
-    recorder.metric("drawn_pct", percent(drawn, all), "%");
+    recorder.metric("drawn_pct", kit::percent(drawn, all), "%");
     recorder.metric("facing_pct", facingPct(), "%");
     recorder.metric("patches_drawn", counts_.drawn, "patch");
     recorder.metric("patches_outside", counts_.outside, "patch");
@@ -149,7 +145,7 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     }
     constexpr std::array<const char*, 4> kNames{"full_ewa", "reconstruction", "low_pass", "sprite"};
     for (std::size_t mode = 0; mode < ofMode.size(); ++mode) {
-        recorder.metric("mode_pct", percent(ofMode[mode], drawn), "%", kNames[mode]);
+        recorder.metric("mode_pct", kit::percent(ofMode[mode], drawn), "%", kNames[mode]);
     }
 }
 
@@ -157,9 +153,9 @@ double PointSplatting::facingPct() const {
     const std::span<const glm::vec3> positions = model_->positions(), normals = model_->normals();
     std::size_t facing = 0;
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        facing += glm::dot(normals[i], view_.eyeModel - positions[i]) > 0.0F ? 1 : 0;
+        facing += glm::dot(normals[i], view_.eyeWorld - positions[i]) > 0.0F ? 1 : 0;
     }
-    return percent(static_cast<double>(facing), static_cast<double>(positions.size()));
+    return kit::percent(static_cast<double>(facing), static_cast<double>(positions.size()));
 }
 
 void PointSplatting::recordCompression(technique::Recorder& recorder) const {
@@ -262,14 +258,13 @@ image::ImageF PointSplatting::supersampled() const {
 
 void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
                                   const image::ImageF& samples) const {
-    const depth_images::View view = depth_images::viewOf(camera_, sizePx_);
     const auto compare = [&](const ModelPicture& truth, const ModelPixels& model,
                              const char* name) {
         const image::ImageF flip =
             recordDifference(recorder, truth.color, picture.color, model, name);
         if (!params_.showsPictures) return;
-        recorder.image(name, truth.color, depth_images::seenFrom(view, "image"));
-        recorder.image(fmt::format("flip_{}", name), flip, depth_images::seenFrom(view));
+        recorder.image(name, truth.color, kit::seenFrom(view_, "image"));
+        recorder.image(fmt::format("flip_{}", name), flip, kit::seenFrom(view_));
     };
     const ModelPicture boxed(image::averaged(samples, kSupersampling));
     const ModelPixels model(boxed, picture);

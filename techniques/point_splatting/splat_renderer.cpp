@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -11,8 +12,6 @@ namespace {
 
 /// Quads that 16-bit indices reach.
 constexpr std::uint32_t kMaxRange = 1U << 14;
-/// llvmpipe keeps every primitive of a draw in memory until it is flushed.
-constexpr std::uint32_t kMaxBatch = 1U << 16;
 
 /// Of the low-pass filter's radius, in the visibility pass, as the least. With all of it, surfaces
 /// would grow by the filter over what lies behind and end there at a hard edge, where their faint
@@ -150,9 +149,7 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
     sprites_ = {
         shaders, {"point_splatting/sprite.vert.glsl", "point_splatting/sprite.frag.glsl"}, defines};
     normalization_ = {
-        shaders,
-        {"point_splatting/whole_image.vert.glsl", "point_splatting/normalization.frag.glsl"},
-        defines};
+        shaders, {"kit/whole_image.vert.glsl", "point_splatting/normalization.frag.glsl"}, defines};
 
     depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
     normalSums_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
@@ -196,7 +193,7 @@ void SplatRenderer::upload(std::span<const DrawnPatch> drawn, const PatchView& v
             item.mode = SplatMode::FullEwa;
         }
     }
-    drawList_.assign(points_, items_, kMaxRange, kMaxBatch);
+    drawList_.assign(points_, items_, kMaxRange, kit::kPrimitivesPerFlush);
     if (drawList_.ranges.empty()) return;
     std::vector<Command> commands;
     commands.reserve(drawList_.ranges.size());
@@ -261,8 +258,8 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
         if (inUse != &program) {
             setUp(program, view);
-            if (isVisibility && program.isActive("lowPassRadiusPx")) {
-                program.set("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
+            if (isVisibility) {
+                program.setIfActive("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
             }
             inUse = &program;
         }
@@ -283,12 +280,10 @@ void SplatRenderer::drawSprites(const PatchView& view) {
 
 void SplatRenderer::normalize(const PatchView& view) {
     outputTarget_.bind();
-    glDisable(GL_DEPTH_TEST);
     setUp(normalization_, view);
     normalSums_.bind(kNormalSumUnit);
     if (hasColors_) colorSums_.bind(kColorSumUnit);
-    noAttributes_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
 }
 
 void SplatRenderer::issue(const Batch& batch) const {
@@ -309,14 +304,11 @@ void SplatRenderer::issue(const Batch& batch) const {
 void SplatRenderer::setUp(const gl::Program& program, const PatchView& view) const {
     program.use();
     setView(program, view);
-    const auto set = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
-    set("lowPassRadiusPx", settings_.lowPassRadiusPx);
-    set("splatRadiusPx", settings_.lowPassRadiusPx);
-    set("cutoff", settings_.cutoff);
-    set("visibilityOffset", settings_.visibilityOffset);
-    set("lightDirectionView", settings_.lightDirectionView);
+    program.setIfActive("lowPassRadiusPx", settings_.lowPassRadiusPx);
+    program.setIfActive("splatRadiusPx", settings_.lowPassRadiusPx);
+    program.setIfActive("cutoff", settings_.cutoff);
+    program.setIfActive("visibilityOffset", settings_.visibilityOffset);
+    program.setIfActive("lightDirectionView", settings_.lightDirectionView);
 }
 
 }  // namespace gfxrepro::point_splatting

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runner/gl/profiler.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/point_splatting/device_points.h"
 
 namespace gfxrepro::point_splatting {
@@ -63,7 +64,8 @@ class SplatRenderer {
     std::vector<DrawnPatch> items_;
     DrawList drawList_;
     gl::Buffer quadIndices_, records_, commands_;
-    gl::VertexArray drawnArray_, noAttributes_;
+    gl::VertexArray drawnArray_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::point_splatting

@@ -6,8 +6,8 @@
 
 #include "runner/scene/animation.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
-#include "techniques/shared/reflections/path_view.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -77,7 +77,7 @@ void ReflectionReuse::place(const technique::FrameContext& context) {
                         static_cast<double>(params_.pathFrames);
     const glm::vec2 size(outputSizePx_);
     const scene::Camera camera =
-        reflections::cameraAtTime(scene_->scene(), params_.view, time, size.x / size.y);
+        kit::cameraAtTime(scene_->scene(), params_.view, time, size.x / size.y);
     view_ = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) objects_->setPoses(scene::posesAt(scene_->scene(), time));
 }

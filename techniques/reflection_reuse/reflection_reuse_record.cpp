@@ -5,12 +5,13 @@
 
 #include "runner/image/srgb.h"
 #include "runner/metrics/flip.h"
+#include "techniques/kit/displayed_errors.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/reflection_reuse/linear_fit.h"
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
-#include "techniques/shared/image_layers.h"
-#include "techniques/shared/reflections/displayed_errors.h"
+#include "techniques/shared/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -186,12 +187,12 @@ void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuf
                                    const image::ImageF& picture, const image::ImageF& truth) {
     const std::vector<std::uint8_t> reflective =
         reflections::reflectivePixels(host, params_.supersampling);
-    recorder.metric("channel_error",
-                    meanOf(reflections::channelErrors(picture, truth, &reflective)), "level");
-    recorder.metric("channel_error_image",
-                    meanOf(reflections::channelErrors(picture, truth, nullptr)), "level");
+    recorder.metric("channel_error", meanOf(kit::channelErrors(picture, truth, &reflective)),
+                    "level");
+    recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, truth, nullptr)),
+                    "level");
     recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
-    recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truth), "dB");
+    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truth), "dB");
     if (renderer_) recordUndetected(recorder, host, picture, truth);
 }
 
@@ -215,9 +216,8 @@ void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGB
     recorder.image("result", picture, layers.options());
     if (!truth.empty()) {
         recorder.image("truth", truth, seenFrom(host.view, "result"));
-        recorder.image("error", reflections::errorPicture(picture, truth, 1), seenFrom(host.view));
-        recorder.image("error_60", reflections::errorPicture(picture, truth, 60),
-                       seenFrom(host.view));
+        recorder.image("error", kit::errorPicture(picture, truth, 1), seenFrom(host.view));
+        recorder.image("error_60", kit::errorPicture(picture, truth, 60), seenFrom(host.view));
     }
     composite_->render(gbuffer(), reflection(), true);
     recorder.image("reflection", composite_->read(), seenFrom(host.view));

@@ -28,8 +28,7 @@ glm::vec4 placeOf(const Light& light) {
 /// Element `index` of a uniform array, where the shader reads it.
 template <class T>
 void setElement(const gl::Program& program, const char* name, std::size_t index, const T& value) {
-    const std::string element = fmt::format("{}[{}]", name, index);
-    if (program.isActive(element.c_str())) program.set(element.c_str(), value);
+    program.setIfActive(fmt::format("{}[{}]", name, index).c_str(), value);
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ std::size_t ShadedImage::sizeBytes() const {
            normals.sizeBytes() + depth.sizeBytes();
 }
 
-ShadedImage makeShadedImage(const depth_images::View& view, bool hasTerms) {
+ShadedImage makeShadedImage(const kit::View& view, bool hasTerms) {
     ShadedImage image;
     image.view = view;
     image.colour = gl::Texture::make2D(GL_RGBA16F, view.sizePx);
@@ -99,18 +98,15 @@ const gl::Program& ShadedView::programFor(const Variant& variant) {
 }
 
 void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
-                             const depth_images::View& view) const {
-    const auto setIfActive = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
-    setIfActive("clipFromWorld", view.clipFromWorld());
-    setIfActive("eyeWorld", view.eyeWorld);
-    setIfActive("ambient", lighting_.ambient);
-    setIfActive("diffuse", lighting_.diffuse);
-    setIfActive("specular", lighting_.specular);
-    setIfActive("shininess", lighting_.shininess);
-    setIfActive("epsilon", settings_.bias.constant);
-    setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
+                             const kit::View& view) const {
+    program.setIfActive("clipFromWorld", view.clipFromWorld());
+    program.setIfActive("eyeWorld", view.eyeWorld);
+    program.setIfActive("ambient", lighting_.ambient);
+    program.setIfActive("diffuse", lighting_.diffuse);
+    program.setIfActive("specular", lighting_.specular);
+    program.setIfActive("shininess", lighting_.shininess);
+    program.setIfActive("epsilon", settings_.bias.constant);
+    program.setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
     std::size_t firstView = 0;
     for (std::size_t i = 0; i < maps.maps().size(); ++i) {
         const ShadowMap& map = maps.maps()[i];
@@ -133,7 +129,7 @@ void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer
     }
 }
 
-void ShadedView::render(const depth_images::DrawableScene& scene, const ShadowMapRenderer& maps,
+void ShadedView::render(const kit::DrawableScene& scene, const ShadowMapRenderer& maps,
                         ShadedImage& target) {
     GFXREPRO_ASSERT(maps.steps().back() == step_);
     Variant variant{

@@ -3,8 +3,9 @@
 
 #include <map>
 
+#include "techniques/kit/picture.h"
+#include "techniques/kit/view.h"
 #include "techniques/shadow_mapping/shadow_map.h"
-#include "techniques/shared/view.h"
 
 namespace gfxrepro::shadow_mapping {
 
@@ -14,12 +15,12 @@ struct Lighting {
     float diffuse = 0.75F;
     float specular = 0.2F;
     float shininess = 32.0F;  // exponent of N·H
-    glm::vec3 background{0.18F, 0.20F, 0.24F};
+    glm::vec3 background = kit::kBackground;
 };
 
 /// What the camera sees. The measured frame has colour only; the rest is for errors.
 struct ShadedImage {
-    depth_images::View view;
+    kit::View view;
     gl::Texture colour;  // RGBA16F, linear
     gl::Texture
         shadowTerms;  // RGBA32F: light i in channel i, 1 lit, 0 in shadow; empty without terms
@@ -32,7 +33,7 @@ struct ShadedImage {
     std::size_t sizeBytes() const;
 };
 
-ShadedImage makeShadedImage(const depth_images::View& view, bool hasTerms);
+ShadedImage makeShadedImage(const kit::View& view, bool hasTerms);
 
 class ShadedView {
   public:
@@ -40,7 +41,7 @@ class ShadedView {
                const Lighting& lighting = {});
 
     /// Draws with the maps as they are: `maps` has the settings that this was made with.
-    void render(const depth_images::DrawableScene& scene, const ShadowMapRenderer& maps,
+    void render(const kit::DrawableScene& scene, const ShadowMapRenderer& maps,
                 ShadedImage& target);
 
   private:
@@ -54,7 +55,7 @@ class ShadedView {
     };
     const gl::Program& programFor(const Variant& variant);
     void setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
-                     const depth_images::View& view) const;
+                     const kit::View& view) const;
 
     const gl::ShaderLibrary& shaders_;
     ShadowMapSettings settings_;

@@ -55,7 +55,7 @@ ShadowMapRenderer::ShadowMapRenderer(const gl::ShaderLibrary& shaders,
     if (settings.filter == Filter::Variance) {
         blurProgram_.emplace(
             shaders,
-            std::vector<std::string>{"shadow_mapping/whole_tile.vert.glsl",
+            std::vector<std::string>{"kit/whole_image.vert.glsl",
                                      "shadow_mapping/blur_moments.frag.glsl"},
             gl::Defines{{"kMomentsUnit", kMomentsUnit}, {"FETCHES", settings.blurTexels}});
     }
@@ -86,14 +86,14 @@ ShadowMap ShadowMapRenderer::makeMap(glm::ivec2 sizePx) const {
     return map;
 }
 
-bool ShadowMapRenderer::isCurrent(const depth_images::DrawableScene& scene,
-                                  std::span<const Light> lights, std::uint64_t sceneVersion) const {
+bool ShadowMapRenderer::isCurrent(const kit::DrawableScene& scene, std::span<const Light> lights,
+                                  std::uint64_t sceneVersion) const {
     return scene_ == &scene && sceneVersion_ == sceneVersion &&
            std::equal(lights.begin(), lights.end(), lights_.begin(), lights_.end());
 }
 
-void ShadowMapRenderer::render(const depth_images::DrawableScene& scene,
-                               std::span<const Light> lights, std::uint64_t sceneVersion) {
+void ShadowMapRenderer::render(const kit::DrawableScene& scene, std::span<const Light> lights,
+                               std::uint64_t sceneVersion) {
     if (lights.size() > kMaxLights) {
         throw Error(fmt::format("{} lights with shadows: at most {}", lights.size(), kMaxLights));
     }
@@ -115,8 +115,7 @@ void ShadowMapRenderer::render(const depth_images::DrawableScene& scene,
     sceneVersion_ = sceneVersion;
 }
 
-void ShadowMapRenderer::drawDepth(const depth_images::DrawableScene& scene,
-                                  const ShadowMap& map) const {
+void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowMap& map) const {
     const StepDeclaration& step = steps_.front();
     applyState(step);
     map.framebuffer.bind();
@@ -130,19 +129,14 @@ void ShadowMapRenderer::drawDepth(const depth_images::DrawableScene& scene,
     for (const LightView& view : map.views) {
         glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
         depthProgram_.set("clipFromWorld", view.clipFromWorld);
-        if (depthProgram_.isActive("slopeScale")) {
-            depthProgram_.set("slopeScale", settings_.bias.slopeScale);
-        }
-        if (depthProgram_.isActive("planes")) {
-            depthProgram_.set("planes", glm::vec3(view.nearM, view.farM, view.isPerspective));
-        }
+        depthProgram_.setIfActive("slopeScale", settings_.bias.slopeScale);
+        depthProgram_.setIfActive("planes", glm::vec3(view.nearM, view.farM, view.isPerspective));
         scene.drawDepthOnly();
     }
 }
 
 void ShadowMapRenderer::blur(const ShadowMap& map) const {
     blurProgram_->use();
-    withoutAttributes_.bind();
     const auto pass = [&](const StepDeclaration& step, const gl::Texture& from,
                           const gl::Framebuffer& to, glm::ivec2 along) {
         applyState(step);
@@ -153,7 +147,7 @@ void ShadowMapRenderer::blur(const ShadowMap& map) const {
             glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
             blurProgram_->set("firstTexel", view.tilePx);
             blurProgram_->set("lastTexel", view.tilePx + view.tileSizePx - 1);
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+            wholeImage_.draw();
         }
     };
     pass(steps_[1], map.colour, map.blurredFramebuffer, {1, 0});

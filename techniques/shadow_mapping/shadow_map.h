@@ -4,9 +4,10 @@
 #include <optional>
 #include <span>
 
+#include "techniques/kit/drawable_scene.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/shadow_mapping/lights.h"
 #include "techniques/shadow_mapping/shadow_steps.h"
-#include "techniques/shared/drawable_scene.h"
 
 namespace gfxrepro::shadow_mapping {
 
@@ -36,11 +37,11 @@ class ShadowMapRenderer {
     /// `sceneVersion` is the caller's count of changes to the scene. Throws Error for lights
     /// without a view (viewsOf) and for more than kMaxLights, UnsupportedError for maps beyond the
     /// device's limits.
-    void render(const depth_images::DrawableScene& scene, std::span<const Light> lights,
+    void render(const kit::DrawableScene& scene, std::span<const Light> lights,
                 std::uint64_t sceneVersion = 0);
     /// Whether the maps show this scene and these lights ([zju2005] Sec. 4.1: they are used again
     /// while lights and objects stand still).
-    bool isCurrent(const depth_images::DrawableScene& scene, std::span<const Light> lights,
+    bool isCurrent(const kit::DrawableScene& scene, std::span<const Light> lights,
                    std::uint64_t sceneVersion = 0) const;
 
     const ShadowMapSettings& settings() const { return settings_; }
@@ -51,17 +52,17 @@ class ShadowMapRenderer {
 
   private:
     ShadowMap makeMap(glm::ivec2 sizePx) const;
-    void drawDepth(const depth_images::DrawableScene& scene, const ShadowMap& map) const;
+    void drawDepth(const kit::DrawableScene& scene, const ShadowMap& map) const;
     void blur(const ShadowMap& map) const;
 
     ShadowMapSettings settings_;
     std::vector<StepDeclaration> steps_;
     gl::Program depthProgram_;
     std::optional<gl::Program> blurProgram_;
-    gl::VertexArray withoutAttributes_;
+    kit::WholeImage wholeImage_;
     std::vector<Light> lights_;
     std::vector<ShadowMap> maps_;
-    const depth_images::DrawableScene* scene_ = nullptr;  // compared, never followed
+    const kit::DrawableScene* scene_ = nullptr;  // compared, never followed
     std::uint64_t sceneVersion_ = 0;
 };
 

@@ -1,19 +1,13 @@
 #include "techniques/shadow_mapping/shadow_mapping.h"
 
+#include "techniques/kit/requirements.h"
+
 namespace gfxrepro::shadow_mapping {
 
 ShadowMapping::ShadowMapping(config::Params& params) : params_(params) {}
 
 void ShadowMapping::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'shadow_mapping' needs a scene");
-    const scene::Scene& scene = *context.scene;
-    if (scene.triangleCount() == 0) {
-        throw Error("technique 'shadow_mapping' needs a scene with triangles");
-    }
-    if (glm::length(scene.bounds().size()) == 0.0F) {
-        throw Error(
-            "technique 'shadow_mapping' needs a scene with some extent; all of its points are one");
-    }
+    const scene::Scene& scene = kit::requireTriangles(context, "shadow_mapping");
     shaders_ = &context.shaders;
     lights_ = makeLights(params_, scene);
     tracer_.emplace(scene);
@@ -33,7 +27,7 @@ void ShadowMapping::setup(technique::SetupContext& context) {
     const scene::Camera camera = scene.cameras.empty()
                                      ? scene::framingCamera(scene.bounds(), size.x / size.y)
                                      : scene.cameras.front();
-    image_.emplace(makeShadedImage(depth_images::viewOf(camera, context.outputSizePx), false));
+    image_.emplace(makeShadedImage(kit::viewOf(camera, context.outputSizePx), false));
     // [zju2005] Sec. 4.1: the map is used again while the light and the objects stand still.
     if (params_.isStatic) maps_->render(*drawable_, lights_);
 }

@@ -71,7 +71,7 @@ class ShadowMapping final : public technique::Technique {
     ShadowMappingParams params_;
     const gl::ShaderLibrary* shaders_ = nullptr;
     std::optional<raycast::RayTracer> tracer_;
-    std::optional<depth_images::DrawableScene> drawable_;
+    std::optional<kit::DrawableScene> drawable_;
     std::vector<Light> lights_;
     int lightsWithoutCaster_ = 0;
     std::optional<ShadowMapRenderer> maps_;

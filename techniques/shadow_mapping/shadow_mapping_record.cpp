@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
+#include "techniques/kit/picture.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
-#include "techniques/shared/image_layers.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {
-
-double percent(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 /// Light `light` of the four channels.
 std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light) {
@@ -20,46 +18,24 @@ std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light)
     return channel;
 }
 
-/// Rows from the top; three of the texture's four channels.
-image::ImageF colourPicture(const ShadedImage& image) {
-    const std::vector<float> colours = image.colour.read<float>(GL_RGBA, GL_FLOAT, 4);
-    const glm::ivec2 size = image.view.sizePx;
-    image::ImageF picture(size.x, size.y, 3);
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            const auto pixel = static_cast<std::size_t>(y * size.x + x);
-            for (int c = 0; c < 3; ++c) {
-                picture.at(x, size.y - 1 - y, c) = colours[4 * pixel + static_cast<std::size_t>(c)];
-            }
-        }
-    }
-    return picture;
-}
-
 /// White where lit, grey where in shadow, dark where it is not asked: by the truth, or by `terms`
 /// of the map.
 image::ImageF shadowPicture(const ShadowErrors& errors, const std::vector<float>* terms,
                             glm::ivec2 sizePx) {
-    image::ImageF picture(sizePx.x, sizePx.y, 1);
-    for (int y = 0; y < sizePx.y; ++y) {
-        for (int x = 0; x < sizePx.x; ++x) {
-            const auto i = static_cast<std::size_t>(y * sizePx.x + x);
-            const float lit = terms ? (*terms)[i] : static_cast<float>(errors.truth[i]);
-            const bool isCompared = errors.classes[i] != PixelClass::NotCompared;
-            picture.at(x, sizePx.y - 1 - y, 0) = isCompared ? 0.2F + 0.7F * lit : 0.02F;
-        }
-    }
-    return picture;
+    return kit::pictureOf(sizePx, [&](std::size_t i) {
+        const float lit = terms ? (*terms)[i] : static_cast<float>(errors.truth[i]);
+        return errors.classes[i] != PixelClass::NotCompared ? 0.2F + 0.7F * lit : 0.02F;
+    });
 }
 
 /// With the normals that only an image with terms has.
-depth_images::ImageLayers layersOf(const ShadedImage& image) {
+kit::ImageLayers layersOf(const ShadedImage& image) {
     const std::vector<float> normals = image.normals.read<float>(GL_RGB, GL_FLOAT, 3);
     std::vector<glm::vec3> normalWorld;
     for (std::size_t i = 0; i < normals.size(); i += 3) {
         normalWorld.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
     }
-    depth_images::ImageLayers layers(image.view);
+    kit::ImageLayers layers(image.view);
     layers.windowDepths(image.depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1));
     layers.normals(normalWorld);
     return layers;
@@ -82,8 +58,8 @@ void ShadowMapping::record(technique::Recorder& recorder) {
 
 void ShadowMapping::recordPicture(technique::Recorder& recorder) const {
     const std::vector<float> depths = image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
-    recorder.image("result", colourPicture(*image_),
-                   depth_images::ImageLayers(image_->view).windowDepths(depths).options());
+    recorder.image("result", image_->colour.readImage(3),
+                   kit::ImageLayers(image_->view).windowDepths(depths).options());
 }
 
 // [zju2005] Table 4.3
@@ -124,15 +100,15 @@ void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImag
         const std::string truthName = fmt::format("truth_{}", i);
         recorder.image(name, picture,
                        layersOf(image).errors(picture, truthPicture, truthName).options());
-        recorder.image(truthName, truthPicture, depth_images::seenFrom(image.view, name));
+        recorder.image(truthName, truthPicture, kit::seenFrom(image.view, name));
         recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
-                       depth_images::seenFrom(image.view));
+                       kit::seenFrom(image.view));
     }
     recorder.metric("compared_points", static_cast<double>(compared), "pixel");
-    recorder.metric("wrong_pct", percent(edge + acne + leak, compared), "%");
-    recorder.metric("acne_pct", percent(acne, compared), "%");
-    recorder.metric("leak_pct", percent(leak, compared), "%");
-    recorder.metric("edge_pct", percent(edge, compared), "%");
+    recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared), "%");
+    recorder.metric("acne_pct", kit::percent(acne, compared), "%");
+    recorder.metric("leak_pct", kit::percent(leak, compared), "%");
+    recorder.metric("edge_pct", kit::percent(edge, compared), "%");
 }
 
 // S4: pixels whose shadow differs from that of the other method by more than a filtered fetch may:
@@ -156,7 +132,7 @@ void ShadowMapping::recordDifference(technique::Recorder& recorder, const Shaded
         }
         differing += differs ? 1 : 0;
     }
-    recorder.metric("methods_differ_pct", percent(differing, here.size() / 4), "%");
+    recorder.metric("methods_differ_pct", kit::percent(differing, here.size() / 4), "%");
 }
 
 namespace {

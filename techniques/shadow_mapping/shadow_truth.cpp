@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "techniques/kit/picture.h"
 
 namespace gfxrepro::shadow_mapping {
 
@@ -23,8 +24,7 @@ float TruthLight::texelWidthAt(const glm::vec3& point) const {
     return texel * depth;
 }
 
-std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer,
-                                        const depth_images::View& view) {
+std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer, const kit::View& view) {
     const int width = view.sizePx.x;
     std::vector<VisiblePoint> points(static_cast<std::size_t>(width) *
                                      static_cast<std::size_t>(view.sizePx.y));
@@ -32,7 +32,7 @@ std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer,
     tbb::parallel_for(tbb::blocked_range<int>(0, view.sizePx.y), [&](const auto& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) {
             for (int x = 0; x < width; ++x) {
-                const glm::vec3 ray = depth_images::rayThrough(view, glm::vec2(x, y) + 0.5F);
+                const glm::vec3 ray = kit::rayThrough(view, glm::vec2(x, y) + 0.5F);
                 const float perDepth = 1.0F / glm::dot(ray, forward);
                 const auto hit = tracer.closestHit(view.eyeWorld, ray, view.nearM * perDepth,
                                                    view.farM * perDepth, raycast::Faces::Drawn);
@@ -124,15 +124,9 @@ image::ImageF classPicture(const ShadowErrors& errors, glm::ivec2 sizePx) {
     constexpr glm::vec3 kColours[] = {{0.02F, 0.03F, 0.10F}, {0.55F, 0.55F, 0.55F},
                                       {0.08F, 0.08F, 0.08F}, {0.90F, 0.70F, 0.05F},
                                       {0.85F, 0.03F, 0.03F}, {0.05F, 0.75F, 0.10F}};
-    image::ImageF picture(sizePx.x, sizePx.y, 3);
-    for (int y = 0; y < sizePx.y; ++y) {
-        for (int x = 0; x < sizePx.x; ++x) {
-            const PixelClass pixel = errors.classes[static_cast<std::size_t>(y * sizePx.x + x)];
-            const glm::vec3 colour = kColours[static_cast<std::size_t>(pixel)];
-            for (int c = 0; c < 3; ++c) picture.at(x, sizePx.y - 1 - y, c) = colour[c];
-        }
-    }
-    return picture;
+    return kit::pictureOf(sizePx, [&](std::size_t pixel) {
+        return kColours[static_cast<std::size_t>(errors.classes[pixel])];
+    });
 }
 
 }  // namespace gfxrepro::shadow_mapping

@@ -19,7 +19,7 @@
 
 #include "runner/image/image.h"
 #include "runner/raycast/ray_tracer.h"
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::shadow_mapping {
 
@@ -49,8 +49,7 @@ struct VisiblePoint {
 };
 
 /// Of every pixel, rows from the bottom as GL has them.
-std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer,
-                                        const depth_images::View& view);
+std::vector<VisiblePoint> visiblePoints(const raycast::RayTracer& tracer, const kit::View& view);
 
 enum class PixelClass : std::uint8_t { NotCompared, Lit, Shadowed, Edge, Acne, Leak };
 

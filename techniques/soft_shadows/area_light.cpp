@@ -56,7 +56,7 @@ AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& sett
     return light;
 }
 
-depth_images::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx) {
+kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx) {
     const scene::Box& box = light.casters;
     if (isInside(box, point)) {
         throw Error(fmt::format(
@@ -92,7 +92,7 @@ depth_images::View lightView(const AreaLight& light, const glm::vec3& point, int
     camera.verticalFovRad = 2.0F * std::atan(tangent);
     camera.nearM = std::max(nearest - 0.01F * diagonal, 0.002F * diagonal);
     camera.farM = farthest + 0.01F * diagonal;
-    return depth_images::viewOf(camera, glm::ivec2(sizePx));
+    return kit::viewOf(camera, glm::ivec2(sizePx));
 }
 
 }  // namespace gfxrepro::soft_shadows

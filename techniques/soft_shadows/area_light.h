@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::soft_shadows {
 
@@ -31,6 +31,6 @@ AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& sett
 /// The view from a point on the light towards the centre of the casters; its frustum is as narrow
 /// as holds their box (square image, a margin of two pixels). Throws Error when the point lies
 /// inside the box: the frustum would have to be wider than half of space.
-depth_images::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx);
+kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx);
 
 }  // namespace gfxrepro::soft_shadows

@@ -1,5 +1,7 @@
 #include "techniques/soft_shadows/filtered_shadows.h"
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::soft_shadows {
 namespace {
 
@@ -21,8 +23,8 @@ gl::Defines filterDefines(ShadowFilter filter) {
 }
 
 void dispatch(glm::ivec2 sizePx) {
-    const glm::uvec2 groups((sizePx + kGroupSize - 1) / kGroupSize);
-    glDispatchCompute(groups.x, groups.y, 1);
+    glDispatchCompute(kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize),
+                      1);
 }
 
 }  // namespace
@@ -41,7 +43,7 @@ FilteredShadows::FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter 
     momentPyramid_.setFilter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
 }
 
-void FilteredShadows::makeMoments(const depth_images::View& view) {
+void FilteredShadows::makeMoments(const kit::View& view) {
     moments_.use();
     moments_.set("nearM", view.nearM);
     moments_.set("farM", view.farM);
@@ -55,22 +57,20 @@ void FilteredShadows::makeMoments(const depth_images::View& view) {
 void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
                              std::span<const ShadowCaster* const> casters,
                              const gl::Texture& litShares) {
-    const depth_images::View view = lightView(light, light.centre, settings_.sizePx);
+    const kit::View view = lightView(light, light.centre, settings_.sizePx);
     shadowMap_.drawShadowMap(view, casters);
     if (momentPyramid_.id() != 0) makeMoments(view);
 
     const glm::mat4 clipFromWorld = view.clipFromWorld();
     filter_.use();
     filter_.set("clipFromWorld", clipFromWorld);
-    if (filter_.isActive("worldFromClip")) {
-        filter_.set("worldFromClip", glm::inverse(clipFromWorld));
-    }
+    filter_.setIfActive("worldFromClip", glm::inverse(clipFromWorld));
     filter_.set("lightPosition", light.centre);
     filter_.set("lightForward", forwardOf(view));
     filter_.set("tangent", 1.0F / view.clipFromView[0].x);
     filter_.set("halfLight", glm::length(light.right));
     filter_.set("nearM", view.nearM);
-    if (filter_.isActive("farM")) filter_.set("farM", view.farM);
+    filter_.setIfActive("farM", view.farM);
     filter_.set("biasPerDistance", shadowMap_.biasPerDistance(view));
     shadowMap_.shadowMap().bind(kShadowMapUnit);
     if (momentPyramid_.id() != 0) momentPyramid_.bind(kMomentUnit);

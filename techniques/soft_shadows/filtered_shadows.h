@@ -29,7 +29,7 @@ class FilteredShadows {
     }
 
   private:
-    void makeMoments(const depth_images::View& view);
+    void makeMoments(const kit::View& view);
 
     ShadowMapSettings settings_;
     LightVisibility shadowMap_;

@@ -20,13 +20,13 @@ void setDepthState() {
 }
 
 /// Width of a shadow-map texel at a distance of one along the view's axis.
-float texelWidth(const depth_images::View& view) {
+float texelWidth(const kit::View& view) {
     return 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x));
 }
 
 }  // namespace
 
-glm::vec3 forwardOf(const depth_images::View& view) {
+glm::vec3 forwardOf(const kit::View& view) {
     return -glm::vec3(glm::transpose(view.viewFromWorld)[2]);
 }
 
@@ -34,15 +34,12 @@ std::size_t Receivers::sizeBytes() const {
     return positions.sizeBytes() + normals.sizeBytes() + shading.sizeBytes();
 }
 
-Receivers renderReceivers(const gl::ShaderLibrary& shaders,
-                          const depth_images::DrawableScene& scene,
-                          const depth_images::View& view) {
+Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,
+                          const kit::View& view) {
+    gl::Defines defines = gpu_scene::attributeDefines();
+    defines["BASE_COLOR_UNIT"] = static_cast<int>(kBaseColorUnit);
     const gl::Program program(
-        shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"},
-        {{"POSITION", static_cast<int>(gpu_scene::kPosition)},
-         {"TEXCOORD", static_cast<int>(gpu_scene::kTexcoord)},
-         {"COLOR", static_cast<int>(gpu_scene::kColor)},
-         {"BASE_COLOR_UNIT", static_cast<int>(kBaseColorUnit)}});
+        shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"}, defines);
     Receivers receivers{view, gl::Texture::make2D(GL_RGBA32F, view.sizePx),
                         gl::Texture::make2D(GL_RGBA16F, view.sizePx),
                         gl::Texture::make2D(GL_RGBA8, view.sizePx)};
@@ -68,12 +65,11 @@ LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
       framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
-      test_(shaders, {"soft_shadows/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
+      test_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
             {{"SHADOW_MAP_UNIT", kShadowMapUnit},
              {"POSITION_UNIT", kPositionUnit},
              {"NORMAL_UNIT", kNormalUnit}}),
-      plainPass_(shaders,
-                 {"soft_shadows/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
+      plainPass_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
 
 VisibilityMask LightVisibility::makeMask(glm::ivec2 sizePx, int gridSize) {
     VisibilityMask mask;
@@ -94,8 +90,7 @@ void LightVisibility::accumulate(VisibilityMask& mask, const Receivers& receiver
     for (VisibilityMask::Layer& layer : mask.layers) layer.bits.clearToZero();
     for (int j = 0; j < gridSize; ++j) {
         for (int i = 0; i < gridSize; ++i) {
-            const depth_images::View view =
-                lightView(light, light.sample(i, j, gridSize), settings_.sizePx);
+            const kit::View view = lightView(light, light.sample(i, j, gridSize), settings_.sizePx);
             drawShadowMap(view, casters);
             test(mask, j * gridSize + i, receivers, view);
         }
@@ -115,7 +110,7 @@ void LightVisibility::drawMapsAndPlainPasses(VisibilityMask& mask, const AreaLig
     }
 }
 
-void LightVisibility::drawShadowMap(const depth_images::View& lightView,
+void LightVisibility::drawShadowMap(const kit::View& lightView,
                                     std::span<const ShadowCaster* const> casters) const {
     framebuffer_.bind();
     setDepthState();
@@ -123,12 +118,12 @@ void LightVisibility::drawShadowMap(const depth_images::View& lightView,
     for (const ShadowCaster* caster : casters) caster->draw(lightView);
 }
 
-float LightVisibility::biasPerDistance(const depth_images::View& lightView) const {
+float LightVisibility::biasPerDistance(const kit::View& lightView) const {
     return settings_.biasTexels * texelWidth(lightView);
 }
 
 void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& receivers,
-                           const depth_images::View& lightView) const {
+                           const kit::View& lightView) const {
     test_.use();
     test_.set("clipFromWorld", lightView.clipFromWorld());
     test_.set("lightPosition", lightView.eyeWorld);
@@ -149,16 +144,10 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
 /// A fragment of the program in use for every pixel; the bits that it puts out are added.
 void LightVisibility::drawBits(VisibilityMask& mask, int sample) const {
     mask.layers[static_cast<std::size_t>(sample / 32)].framebuffer.bind();
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     // Bits gather without being read: faster than images in a compute pass on llvmpipe.
     glEnable(GL_COLOR_LOGIC_OP);
     glLogicOp(GL_OR);
-    withoutAttributes_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
     glDisable(GL_COLOR_LOGIC_OP);
 }
 

@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "runner/gl/program.h"
-#include "techniques/shared/drawable_scene.h"
+#include "techniques/kit/drawable_scene.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/soft_shadows/area_light.h"
 
 namespace gfxrepro::soft_shadows {
 
 /// The output samples: what each pixel of the output image shows.
 struct Receivers {
-    depth_images::View view;
+    kit::View view;
     gl::Texture positions;  // RGBA32F, world space; w is 0 where nothing is seen
     gl::Texture normals;    // RGBA16F, unit, geometric, turned to the eye
     gl::Texture shading;    // RGBA8, linear, the surface's colour without light
@@ -21,8 +22,8 @@ struct Receivers {
     std::size_t sizeBytes() const;
 };
 
-Receivers renderReceivers(const gl::ShaderLibrary& shaders,
-                          const depth_images::DrawableScene& scene, const depth_images::View& view);
+Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,
+                          const kit::View& view);
 
 /// One bit a light sample and output pixel: 1 where the pixel sees the sample. Sample (i, j) of an
 /// n × n light is number s = j·n + i, bit s mod 32 of layer s div 32. A pixel without a surface
@@ -37,7 +38,7 @@ struct VisibilityMask {
 };
 
 /// The unit axis of a view.
-glm::vec3 forwardOf(const depth_images::View& view);
+glm::vec3 forwardOf(const kit::View& view);
 
 /// What casts shadows into a shadow map.
 class ShadowCaster {
@@ -45,7 +46,7 @@ class ShadowCaster {
     virtual ~ShadowCaster() = default;
     /// Draws depth only; framebuffer, viewport and depth state are set. Binds its own program and
     /// sets culling.
-    virtual void draw(const depth_images::View& lightView) const = 0;
+    virtual void draw(const kit::View& lightView) const = 0;
     virtual std::uint64_t triangleCount() const = 0;
 };
 
@@ -75,13 +76,13 @@ class LightVisibility {
                                 std::span<const ShadowCaster* const> casters) const;
 
     /// The two halves of one light sample.
-    void drawShadowMap(const depth_images::View& lightView,
+    void drawShadowMap(const kit::View& lightView,
                        std::span<const ShadowCaster* const> casters) const;
     void test(VisibilityMask& mask, int sample, const Receivers& receivers,
-              const depth_images::View& lightView) const;
+              const kit::View& lightView) const;
 
     /// Bias in metres a metre of distance from the light.
-    float biasPerDistance(const depth_images::View& lightView) const;
+    float biasPerDistance(const kit::View& lightView) const;
     /// Window depth (0 near … 1 far) of the last shadow map, Depth32F.
     const gl::Texture& shadowMap() const { return shadowMap_; }
 
@@ -93,7 +94,7 @@ class LightVisibility {
     gl::Framebuffer framebuffer_;
     gl::Program test_;
     gl::Program plainPass_;
-    gl::VertexArray withoutAttributes_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::soft_shadows

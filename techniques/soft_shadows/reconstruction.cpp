@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
@@ -21,7 +22,6 @@ enum StorageBinding : int {
 constexpr int kGroupWidth = 32;
 constexpr int kGroupHeight = 4;
 constexpr int kCountGroupSize = 64;
-constexpr int kScanGroupSize = 256;
 /// Corners that one invocation counts in sequence; short enough for some 10⁴ invocations in a
 /// megapixel, long enough that the scan over the runs costs little.
 constexpr int kRunLength = 32;
@@ -45,7 +45,6 @@ gl::Defines passDefines(const ReconstructionSettings& settings) {
             {"GROUP_WIDTH", kGroupWidth},
             {"GROUP_HEIGHT", kGroupHeight},
             {"COUNT_GROUP_SIZE", kCountGroupSize},
-            {"SCAN_GROUP_SIZE", kScanGroupSize},
             {"RUN_LENGTH", kRunLength}};
 }
 
@@ -57,18 +56,14 @@ gl::Program pass(const gl::ShaderLibrary& shaders, const char* name,
             passDefines(settings)};
 }
 
-GLuint groupsFor(int count, int groupSize) {
-    return static_cast<GLuint>((count + groupSize - 1) / groupSize);
-}
-
 void dispatchCorners(glm::ivec2 cornersSize) {
-    glDispatchCompute(groupsFor(cornersSize.x, kGroupWidth), groupsFor(cornersSize.y, kGroupHeight),
-                      1);
+    glDispatchCompute(kit::groupsFor(cornersSize.x, kGroupWidth),
+                      kit::groupsFor(cornersSize.y, kGroupHeight), 1);
 }
 
 /// H's pixel (x, y) must lie on the lower left corner of I's. 0.01: a hundredth of a pixel, far
 /// above rounding and far below the half pixel that is asked for.
-bool isHalfPixelToLowerLeft(const depth_images::View& offset, const depth_images::View& view) {
+bool isHalfPixelToLowerLeft(const kit::View& offset, const kit::View& view) {
     if (offset.sizePx != view.sizePx || offset.viewFromWorld != view.viewFromWorld) return false;
     const glm::vec2 shift = glm::vec2(offset.clipFromView[2]) - glm::vec2(view.clipFromView[2]);
     const glm::vec2 shiftPx = 0.5F * shift * glm::vec2(view.sizePx);
@@ -81,7 +76,7 @@ std::size_t ReconstructedMesh::sizeBytes() const {
     return vertices.sizeBytes() + indices.sizeBytes();
 }
 
-glm::mat4 worldFromCorner(const depth_images::View& view) {
+glm::mat4 worldFromCorner(const kit::View& view) {
     glm::mat4 matrix = worldFromPixels(view);
     matrix[0] *= 0.5F;
     matrix[1] *= 0.5F;
@@ -93,7 +88,7 @@ Reconstructor::Reconstructor(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       classify_(pass(shaders, "classify", settings)),
       count_(pass(shaders, "count", settings)),
-      scan_(shaders, {"soft_shadows/scan.comp.glsl"}, passDefines(settings)),
+      scan_(shaders, "uvec4", kRunBinding, kit::PrefixSum::Total::Behind),
       emit_(pass(shaders, "emit", settings)) {}
 
 void Reconstructor::resizeScratch(glm::ivec2 imageSizePx) {
@@ -110,23 +105,20 @@ std::size_t Reconstructor::scratchBytes() const {
     return flags_.sizeBytes() + places_.sizeBytes() + runs_.sizeBytes();
 }
 
-void Reconstructor::setGeometry(const gl::Program& program, const depth_images::View& view) const {
-    const auto setIfActive = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
+void Reconstructor::setGeometry(const gl::Program& program, const kit::View& view) const {
     const glm::mat4 rays = worldFromPixels(view);  // of depth 1
-    setIfActive("imageSizePx", view.sizePx);
-    setIfActive("rayOrigin", glm::vec3(rays[2]));
-    setIfActive("rayStepX", glm::vec3(rays[0]));
-    setIfActive("rayStepY", glm::vec3(rays[1]));
-    setIfActive("footprintPerDepth",
-                2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
-    setIfActive("grazingLimitPx", settings_.grazingLimitPx);
-    setIfActive("discontinuityPx", settings_.discontinuityPx);
-    setIfActive("runsPerRow", runsPerRow_);
+    program.setIfActive("imageSizePx", view.sizePx);
+    program.setIfActive("rayOrigin", glm::vec3(rays[2]));
+    program.setIfActive("rayStepX", glm::vec3(rays[0]));
+    program.setIfActive("rayStepY", glm::vec3(rays[1]));
+    program.setIfActive("footprintPerDepth",
+                        2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
+    program.setIfActive("grazingLimitPx", settings_.grazingLimitPx);
+    program.setIfActive("discontinuityPx", settings_.discontinuityPx);
+    program.setIfActive("runsPerRow", runsPerRow_);
 }
 
-glm::uvec4 Reconstructor::countElements(const depth_images::View& view) {
+glm::uvec4 Reconstructor::countElements(const kit::View& view) {
     flags_.bindImage(kFlagsUnit, GL_READ_WRITE);
     places_.bindImage(kPlacesUnit, GL_READ_WRITE);
     runs_.bindStorage(kRunBinding);
@@ -139,13 +131,10 @@ glm::uvec4 Reconstructor::countElements(const depth_images::View& view) {
     const int runCount = runsPerRow_ * cornersSize_.y;
     count_.use();
     setGeometry(count_, view);
-    glDispatchCompute(groupsFor(runCount, kCountGroupSize), 1, 1);
+    glDispatchCompute(kit::groupsFor(runCount, kCountGroupSize), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 
-    scan_.use();
-    scan_.set("runCount", runCount);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    scan_.run(runs_, static_cast<unsigned>(runCount));
     const std::size_t totalsAt = static_cast<std::size_t>(runCount) * sizeof(glm::uvec4);
     return runs_.read<glm::uvec4>(1, totalsAt).front();
 }
@@ -161,10 +150,10 @@ void Reconstructor::emit(const ReconstructedMesh& mesh) {
                     GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-ReconstructedMesh Reconstructor::reconstruct(const depth_images::DepthImage& image,
-                                             const depth_images::DepthImage* offsetImage,
+ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
+                                             const kit::DepthImage* offsetImage,
                                              const gl::Buffer& triangleNormals) {
-    const depth_images::View& view = image.view;
+    const kit::View& view = image.view;
     if (std::max(view.sizePx.x, view.sizePx.y) > kMaxSizePx) {
         throw UnsupportedError(
             fmt::format("a depth image of {} × {} pixels cannot be made a mesh; at most {} a side",

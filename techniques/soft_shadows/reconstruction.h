@@ -7,7 +7,8 @@
 #include "runner/gl/device.h"
 #include "runner/gl/program.h"
 #include "runner/scene/scene.h"
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
+#include "techniques/kit/prefix_sum.h"
 
 namespace gfxrepro::soft_shadows {
 
@@ -45,7 +46,7 @@ static_assert(sizeof(CornerVertex) == 8);
 /// c₀c₁c₂, c₂c₃c₀, counter-clockwise seen from the eye. Order of vertices and triangles follows the
 /// image's rows.
 struct ReconstructedMesh {
-    depth_images::View view;
+    kit::View view;
     gl::Buffer vertices;
     gl::Buffer indices;
     std::uint32_t vertexCount = 0;
@@ -58,7 +59,7 @@ struct ReconstructedMesh {
 };
 
 /// Takes (x·d, y·d, d, 1) of a CornerVertex (x, y in half pixels, d its depth) into the world.
-glm::mat4 worldFromCorner(const depth_images::View& view);
+glm::mat4 worldFromCorner(const kit::View& view);
 
 /// Rebuilds a mesh from depth image I and, for the hybrid method, its offset image H: the same
 /// view, moved by half a pixel to the lower left (viewOf with offset (−½, −½)), so that H's pixel
@@ -71,8 +72,7 @@ class Reconstructor {
 
     /// Waits for the device once, for the counts. Throws UnsupportedError for meshes beyond the
     /// limit of a storage block, std::bad_alloc.
-    ReconstructedMesh reconstruct(const depth_images::DepthImage& image,
-                                  const depth_images::DepthImage* offsetImage,
+    ReconstructedMesh reconstruct(const kit::DepthImage& image, const kit::DepthImage* offsetImage,
                                   const gl::Buffer& triangleNormals);
 
     /// What is kept beside the meshes, of the size of the last image.
@@ -80,13 +80,15 @@ class Reconstructor {
 
   private:
     void resizeScratch(glm::ivec2 imageSizePx);
-    void setGeometry(const gl::Program& program, const depth_images::View& view) const;
+    void setGeometry(const gl::Program& program, const kit::View& view) const;
     /// Vertices, triangles, samples and plane-fitted corners of the mesh.
-    glm::uvec4 countElements(const depth_images::View& view);
+    glm::uvec4 countElements(const kit::View& view);
     void emit(const ReconstructedMesh& mesh);
 
     ReconstructionSettings settings_;
-    gl::Program classify_, count_, scan_, emit_;
+    gl::Program classify_, count_;
+    kit::PrefixSum scan_;
+    gl::Program emit_;
 
     // A texel a corner, where up to four pixels meet: (width + 1) × (height + 1).
     glm::ivec2 cornersSize_{0};

@@ -1,12 +1,9 @@
 #include "techniques/soft_shadows/shadow_casters.h"
 
-#include <algorithm>
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
-
-/// llvmpipe keeps every triangle of a draw in memory until it is flushed.
-constexpr std::uint32_t kTrianglesPerDraw = 1 << 16;
 
 enum VertexLocation : GLuint { kHalfPxLocation = 0, kDepthLocation = 1 };
 
@@ -38,10 +35,10 @@ gl::VertexArray cornerArray(const ReconstructedMesh& mesh) {
 
 }  // namespace
 
-SceneCaster::SceneCaster(const gl::ShaderLibrary& shaders, const depth_images::DrawableScene& scene)
+SceneCaster::SceneCaster(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene)
     : scene_(scene), program_(castProgram(shaders)) {}
 
-void SceneCaster::draw(const depth_images::View& lightView) const {
+void SceneCaster::draw(const kit::View& lightView) const {
     program_.use();
     program_.set("clipFromWorld", lightView.clipFromWorld());
     scene_.drawDepthOnly();
@@ -53,22 +50,18 @@ ReconstructedCaster::ReconstructedCaster(const gl::ShaderLibrary& shaders,
     for (const ReconstructedMesh& mesh : meshes_) vertexArrays_.push_back(cornerArray(mesh));
 }
 
-void ReconstructedCaster::draw(const depth_images::View& lightView) const {
+void ReconstructedCaster::draw(const kit::View& lightView) const {
     glDisable(GL_CULL_FACE);  // a light may see a quad from behind
     program_.use();
     const glm::dmat4 clipFromWorld =
         glm::dmat4(lightView.clipFromView) * glm::dmat4(lightView.viewFromWorld);
+    kit::FlushedDraws draws;
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         const ReconstructedMesh& mesh = meshes_[i];
         program_.set("clipFromCorner",
                      glm::mat4(clipFromWorld * glm::dmat4(worldFromCorner(mesh.view))));
         vertexArrays_[i].bind();
-        for (std::uint32_t first = 0; first < mesh.triangleCount; first += kTrianglesPerDraw) {
-            const std::uint32_t count = std::min(mesh.triangleCount - first, kTrianglesPerDraw);
-            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
-                           reinterpret_cast<const void*>(first * sizeof(glm::uvec3)));
-            glFlush();
-        }
+        draws.draw(0, mesh.triangleCount, kit::drawTriangles);
     }
 }
 
@@ -81,15 +74,13 @@ std::uint64_t ReconstructedCaster::triangleCount() const {
 MeshCaster::MeshCaster(const gl::ShaderLibrary& shaders, const scene::Mesh& mesh)
     : mesh_(mesh), program_(castProgram(shaders)) {}
 
-void MeshCaster::draw(const depth_images::View& lightView) const {
+void MeshCaster::draw(const kit::View& lightView) const {
     glDisable(GL_CULL_FACE);
     program_.use();
     program_.set("clipFromWorld", lightView.clipFromWorld());
-    constexpr int kPiece = static_cast<int>(kTrianglesPerDraw);
-    for (int first = 0; first < mesh_.triangleCount; first += kPiece) {
-        mesh_.draw(first, std::min(mesh_.triangleCount - first, kPiece));
-        glFlush();
-    }
+    mesh_.vertexArray.bind();
+    kit::FlushedDraws().draw(0, static_cast<std::uint32_t>(mesh_.triangleCount),
+                             kit::drawTriangles);
 }
 
 }  // namespace gfxrepro::soft_shadows

@@ -12,12 +12,12 @@ namespace gfxrepro::soft_shadows {
 /// The original geometry. The scene must outlive the caster.
 class SceneCaster final : public ShadowCaster {
   public:
-    SceneCaster(const gl::ShaderLibrary& shaders, const depth_images::DrawableScene& scene);
-    void draw(const depth_images::View& lightView) const override;
+    SceneCaster(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene);
+    void draw(const kit::View& lightView) const override;
     std::uint64_t triangleCount() const override { return scene_.triangleCount(); }
 
   private:
-    const depth_images::DrawableScene& scene_;
+    const kit::DrawableScene& scene_;
     gl::Program program_;
 };
 
@@ -25,7 +25,7 @@ class SceneCaster final : public ShadowCaster {
 class ReconstructedCaster final : public ShadowCaster {
   public:
     ReconstructedCaster(const gl::ShaderLibrary& shaders, std::vector<ReconstructedMesh> meshes);
-    void draw(const depth_images::View& lightView) const override;
+    void draw(const kit::View& lightView) const override;
     std::uint64_t triangleCount() const override;
     const std::vector<ReconstructedMesh>& meshes() const { return meshes_; }
 
@@ -39,7 +39,7 @@ class ReconstructedCaster final : public ShadowCaster {
 class MeshCaster final : public ShadowCaster {
   public:
     MeshCaster(const gl::ShaderLibrary& shaders, const scene::Mesh& mesh);
-    void draw(const depth_images::View& lightView) const override;
+    void draw(const kit::View& lightView) const override;
     std::uint64_t triangleCount() const override {
         return static_cast<std::uint64_t>(mesh_.triangleCount);
     }

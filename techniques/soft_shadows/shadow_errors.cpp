@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "techniques/kit/picture.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
@@ -20,23 +21,6 @@ std::uint32_t validBits(int sampleCount, std::size_t layer) {
 std::size_t layersOf(const HostVisibilityMask& mask) {
     return static_cast<std::size_t>((mask.sampleCount + 31) / 32);
 }
-
-/// A picture with rows from the top of `color(pixel)`, pixels counted from the bottom row.
-template <class Color>
-image::ImageF picture(glm::ivec2 sizePx, Color color) {
-    image::ImageF result(sizePx.x, sizePx.y, 3);
-    for (int y = 0; y < sizePx.y; ++y) {
-        for (int x = 0; x < sizePx.x; ++x) {
-            const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(sizePx.x) +
-                               static_cast<std::size_t>(x);
-            const glm::vec3 value = color(pixel);
-            for (int c = 0; c < 3; ++c) result.at(x, sizePx.y - 1 - y, c) = value[c];
-        }
-    }
-    return result;
-}
-
-constexpr glm::vec3 kBackground{0.18F, 0.20F, 0.24F};
 
 }  // namespace
 
@@ -142,8 +126,8 @@ std::vector<float> litShares(const HostVisibilityMask& mask) {
 }
 
 image::ImageF shadowPicture(const HostReceivers& receivers, const std::vector<float>& litShares) {
-    return picture(receivers.sizePx, [&](std::size_t pixel) {
-        if (receivers.positions[pixel].w == 0.0F) return kBackground;
+    return kit::pictureOf(receivers.sizePx, [&](std::size_t pixel) {
+        if (receivers.positions[pixel].w == 0.0F) return kit::kBackground;
         const glm::vec3 color = glm::vec3(receivers.shading[pixel]) / 255.0F;
         return color * (0.15F + 0.85F * litShares[pixel]);
     });
@@ -151,7 +135,7 @@ image::ImageF shadowPicture(const HostReceivers& receivers, const std::vector<fl
 
 image::ImageF errorPicture(const HostReceivers& receivers,
                            const std::vector<float>& signedIntensity) {
-    return picture(receivers.sizePx, [&](std::size_t pixel) {
+    return kit::pictureOf(receivers.sizePx, [&](std::size_t pixel) {
         constexpr glm::vec3 kLuminance{0.2126F, 0.7152F, 0.0722F};
         const float grey =
             receivers.positions[pixel].w == 0.0F

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "techniques/kit/requirements.h"
+
 namespace gfxrepro::soft_shadows {
 namespace {
 
@@ -33,9 +35,9 @@ void addGround(scene::Scene& scene, float sizeInDiagonals) {
 }
 
 /// The first `count` of a list of images, as the renderer takes them.
-std::vector<const depth_images::DepthImage*> firstOf(
-    const std::vector<depth_images::DepthImage>& images, std::size_t count) {
-    std::vector<const depth_images::DepthImage*> pointers;
+std::vector<const kit::DepthImage*> firstOf(const std::vector<kit::DepthImage>& images,
+                                            std::size_t count) {
+    std::vector<const kit::DepthImage*> pointers;
     for (std::size_t i = 0; i < count; ++i) pointers.push_back(&images[i]);
     return pointers;
 }
@@ -45,16 +47,8 @@ std::vector<const depth_images::DepthImage*> firstOf(
 SoftShadows::SoftShadows(config::Params& params) : params_(params) {}
 
 void SoftShadows::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'soft_shadows' needs a scene");
-    if (context.scene->triangleCount() == 0) {
-        throw Error("technique 'soft_shadows' needs a scene with triangles");
-    }
-    if (glm::length(context.scene->bounds().size()) == 0.0F) {
-        throw Error(
-            "technique 'soft_shadows' needs a scene with some extent; all of its points are one");
-    }
     shaders_ = &context.shaders;
-    scene_ = *context.scene;
+    scene_ = kit::requireTriangles(context, "soft_shadows");
     light_ = makeAreaLight(scene_.bounds(), params_.light);
     for (int corner = 0; corner < 4; ++corner) lightView(light_, light_.corner(corner), 64);
     const glm::vec2 size(context.outputSizePx);
@@ -63,8 +57,8 @@ void SoftShadows::setup(technique::SetupContext& context) {
 
     drawable_.emplace(scene_);
     geometry_.emplace(context.shaders, *drawable_);
-    receivers_ = renderReceivers(context.shaders, *drawable_,
-                                 depth_images::viewOf(camera, context.outputSizePx));
+    receivers_ =
+        renderReceivers(context.shaders, *drawable_, kit::viewOf(camera, context.outputSizePx));
     hostReceivers_ = readReceivers(receivers_);
     mask_ = LightVisibility::makeMask(context.outputSizePx, params_.lightGrid);
     if (params_.method == Method::RayTraced || params_.tracesTruth) tracer_.emplace(scene_);
@@ -78,8 +72,7 @@ void SoftShadows::setup(technique::SetupContext& context) {
     }
     if (!params_.reconstructs()) return;
     triangleNormals_ = triangleNormals(scene::flattened(scene_), context.device.limits());
-    renderer_.emplace(context.shaders, depth_images::TriangleIds::PrimitiveId,
-                      depth_images::DepthFormat::Float32);
+    renderer_.emplace(context.shaders, kit::TriangleIds::PrimitiveId, kit::DepthFormat::Float32);
     reconstructor_.emplace(context.shaders, params_.reconstruction);
     makeReferenceTargets();
 }
@@ -106,11 +99,10 @@ std::vector<glm::vec3> SoftShadows::referencePoints() const {
 void SoftShadows::makeReferenceTargets() {
     const bool isHybrid = params_.reconstruction.method == Reconstruction::Hybrid;
     for (const glm::vec3& point : referencePoints()) {
-        const depth_images::View view = lightView(light_, point, params_.referenceSizePx);
+        const kit::View view = lightView(light_, point, params_.referenceSizePx);
         images_.push_back(renderer_->makeImage(view));
         if (!isHybrid) continue;
-        offsetImages_.push_back(
-            renderer_->makeImage(depth_images::withOffset(view, glm::vec2(-0.5F))));
+        offsetImages_.push_back(renderer_->makeImage(kit::withOffset(view, glm::vec2(-0.5F))));
     }
 }
 
@@ -164,7 +156,7 @@ void SoftShadows::renderReferenceImages() {
 // before it have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
 void SoftShadows::renderOffsetImages() {
     for (std::size_t i = 0; i < offsetImages_.size(); ++i) {
-        std::vector<const depth_images::DepthImage*> earlier;
+        std::vector<const kit::DepthImage*> earlier;
         if (params_.method == Method::NonRedundant) earlier = firstOf(images_, i);
         if (params_.method == Method::DepthPeeling) earlier = firstOf(offsetImages_, i);
         renderer_->render(*drawable_, offsetImages_[i], earlier);
@@ -176,8 +168,7 @@ std::vector<ReconstructedMesh> SoftShadows::reconstructMeshes() {
     std::vector<ReconstructedMesh> meshes;
     meshCounts_.clear();
     for (std::size_t i = 0; i < images_.size(); ++i) {
-        const depth_images::DepthImage* offsetImage =
-            offsetImages_.empty() ? nullptr : &offsetImages_[i];
+        const kit::DepthImage* offsetImage = offsetImages_.empty() ? nullptr : &offsetImages_[i];
         meshes.push_back(reconstructor_->reconstruct(images_[i], offsetImage, triangleNormals_));
         const ReconstructedMesh& mesh = meshes.back();
         meshCounts_.push_back({mesh.sampleCount, mesh.triangleCount, mesh.sizeBytes(),

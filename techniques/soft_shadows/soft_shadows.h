@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/technique/technique.h"
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 #include "techniques/soft_shadows/filtered_shadows.h"
 #include "techniques/soft_shadows/shadow_casters.h"
 #include "techniques/soft_shadows/shadow_errors.h"
@@ -95,7 +95,7 @@ class SoftShadows final : public technique::Technique {
     const gl::ShaderLibrary* shaders_ = nullptr;
     scene::Scene scene_;  // with its ground
     AreaLight light_;
-    std::optional<depth_images::DrawableScene> drawable_;
+    std::optional<kit::DrawableScene> drawable_;
     std::optional<SceneCaster> geometry_;
     std::optional<raycast::RayTracer> tracer_;
     Receivers receivers_;
@@ -107,11 +107,11 @@ class SoftShadows final : public technique::Technique {
     std::optional<HostVisibilityMask> tracedMask_, geometryTruth_, tracedTruth_;
 
     gl::Buffer triangleNormals_;
-    std::optional<depth_images::DepthImageRenderer> renderer_;
+    std::optional<kit::DepthImageRenderer> renderer_;
     std::optional<Reconstructor> reconstructor_;
-    std::vector<depth_images::DepthImage> images_;        // I of Algorithm 4
-    std::vector<depth_images::DepthImage> offsetImages_;  // H, hybrid only
-    std::unique_ptr<ShadowCaster> caster_;                // what casts in this method
+    std::vector<kit::DepthImage> images_;        // I of Algorithm 4
+    std::vector<kit::DepthImage> offsetImages_;  // H, hybrid only
+    std::unique_ptr<ShadowCaster> caster_;       // what casts in this method
     std::vector<MeshCounts> meshCounts_;
     float simplificationErrorM_ = 0.0F;
 };

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "runner/scene/load.h"
-#include "techniques/shared/image_layers.h"
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
+#include "techniques/kit/picture.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 
 namespace gfxrepro::soft_shadows {
@@ -32,18 +34,17 @@ struct LightViewAgreement {
 };
 
 /// Distance along the view's axis from window depth.
-float eyeDepth(const depth_images::View& view, float windowDepth) {
+float eyeDepth(const kit::View& view, float windowDepth) {
     const float ndc = 2.0F * windowDepth - 1.0F;
     return 2.0F * view.nearM * view.farM /
            (view.farM + view.nearM - ndc * (view.farM - view.nearM));
 }
 
 /// Whether what a pixel shows lies in the casters' box: no view has to hold the floor.
-bool isOfCasters(const depth_images::View& view, const scene::Box& casters, std::size_t pixel,
-                 float depth) {
+bool isOfCasters(const kit::View& view, const scene::Box& casters, std::size_t pixel, float depth) {
     const auto width = static_cast<std::size_t>(view.sizePx.x);
     const glm::vec2 position(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
-    const glm::vec3 point = depth_images::unproject(view, position + 0.5F, depth);
+    const glm::vec3 point = kit::unproject(view, position + 0.5F, depth);
     // Half the way down to the floor: window depths are rounded.
     const float margin = 5e-4F * glm::length(casters.size());
     return glm::all(glm::greaterThan(point, casters.min - margin)) &&
@@ -51,39 +52,31 @@ bool isOfCasters(const depth_images::View& view, const scene::Box& casters, std:
 }
 
 /// Two texels of distance: less is the resolution of the reference images.
-float toleranceAt(const depth_images::View& view, float depth, int referenceSizePx) {
+float toleranceAt(const kit::View& view, float depth, int referenceSizePx) {
     return 2.0F * 2.0F * depth / (view.clipFromView[0].x * static_cast<float>(referenceSizePx));
 }
 
 /// Depths lit by the slope of the depth, rows from the top; background where there is nothing.
-image::ImageF depthPicture(const depth_images::View& view, const std::vector<float>& windowDepths) {
+image::ImageF depthPicture(const kit::View& view, const std::vector<float>& windowDepths) {
     const glm::ivec2 size = view.sizePx;
-    image::ImageF picture(size.x, size.y, 3);
     const auto depthAt = [&](int x, int y) {
         x = std::min(x, size.x - 1);
         y = std::min(y, size.y - 1);
         return windowDepths[static_cast<std::size_t>(y * size.x + x)];
     };
     const auto pointAt = [&](int x, int y) {
-        return depth_images::unproject(view, glm::vec2(x, y) + 0.5F, eyeDepth(view, depthAt(x, y)));
+        return kit::unproject(view, glm::vec2(x, y) + 0.5F, eyeDepth(view, depthAt(x, y)));
     };
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            glm::vec3 color(0.18F, 0.20F, 0.24F);
-            if (depthAt(x, y) < 1.0F) {
-                const glm::vec3 normal = glm::cross(pointAt(x + 1, y) - pointAt(x, y),
-                                                    pointAt(x, y + 1) - pointAt(x, y));
-                const float length = glm::length(normal);
-                const float lit =
-                    length > 0.0F
-                        ? std::abs(glm::dot(normal, depth_images::kLightDirectionWorld)) / length
-                        : 0.0F;
-                color = glm::vec3(0.15F + 0.7F * lit);
-            }
-            for (int c = 0; c < 3; ++c) picture.at(x, size.y - 1 - y, c) = color[c];
-        }
-    }
-    return picture;
+    return kit::pictureOf(size, [&](std::size_t pixel) {
+        const int x = static_cast<int>(pixel) % size.x, y = static_cast<int>(pixel) / size.x;
+        if (depthAt(x, y) >= 1.0F) return kit::kBackground;
+        const glm::vec3 normal =
+            glm::cross(pointAt(x + 1, y) - pointAt(x, y), pointAt(x, y + 1) - pointAt(x, y));
+        const float length = glm::length(normal);
+        const float lit =
+            length > 0.0F ? std::abs(glm::dot(normal, kit::kLightDirectionWorld)) / length : 0.0F;
+        return glm::vec3(0.15F + 0.7F * lit);
+    });
 }
 
 }  // namespace
@@ -132,7 +125,7 @@ void SoftShadows::recordPicture(technique::Recorder& recorder) {
     const image::ImageF picture = shadowPicture(hostReceivers_, shares);
     const std::vector<glm::vec3> normals(hostReceivers_.normals.begin(),
                                          hostReceivers_.normals.end());
-    depth_images::ImageLayers layers(receivers_.view);
+    kit::ImageLayers layers(receivers_.view);
     layers.pointDepths(hostReceivers_.positions).normals(normals);
     const auto addErrors = [&](const HostVisibilityMask& truth, const char* name) {
         layers.errors(picture, shadowPicture(hostReceivers_, litShares(truth)), name);
@@ -159,10 +152,10 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
     if (params_.showsPictures) {
         recorder.image(fmt::format("error_{}", truthName),
                        errorPicture(hostReceivers_, errors.signedIntensity),
-                       depth_images::seenFrom(receivers_.view));
+                       kit::seenFrom(receivers_.view));
         recorder.image(fmt::format("truth_{}", truthName),
                        shadowPicture(hostReceivers_, litShares(truth)),
-                       depth_images::seenFrom(receivers_.view, "shadow"));
+                       kit::seenFrom(receivers_.view, "shadow"));
     }
 }
 
@@ -201,7 +194,7 @@ void SoftShadows::recordMeshes(technique::Recorder& recorder) const {
 // outside of it.
 void SoftShadows::recordLightView(technique::Recorder& recorder, const char* name,
                                   const glm::vec3& point) const {
-    const depth_images::View view = lightView(light_, point, params_.shadowMap.sizePx);
+    const kit::View view = lightView(light_, point, params_.shadowMap.sizePx);
     const auto depthsOf = [&](const ShadowCaster& caster) {
         const ShadowCaster* casters[] = {&caster};
         visibility_->drawShadowMap(view, casters);
@@ -220,19 +213,14 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
         agreement.missing += measured[pixel] == 1.0F || difference > tolerance ? 1 : 0;
         agreement.nearer += difference < -tolerance ? 1 : 0;
     }
-    const auto percent = [&](std::size_t count) {
-        return agreement.covered == 0
-                   ? 0.0
-                   : 100.0 * static_cast<double>(count) / static_cast<double>(agreement.covered);
-    };
-    recorder.metric("missing_pct", percent(agreement.missing), "%", name);
-    recorder.metric("nearer_pct", percent(agreement.nearer), "%", name);
+    recorder.metric("missing_pct", kit::percent(agreement.missing, agreement.covered), "%", name);
+    recorder.metric("nearer_pct", kit::percent(agreement.nearer, agreement.covered), "%", name);
     if (!params_.showsPictures) return;
     const std::string casters = fmt::format("casters_{}", name);
     const auto record = [&](const std::string& imageName, const std::vector<float>& windowDepths,
                             const std::string& truthOf) {
         recorder.image(imageName, depthPicture(view, windowDepths),
-                       depth_images::ImageLayers(view).windowDepths(windowDepths).options(truthOf));
+                       kit::ImageLayers(view).windowDepths(windowDepths).options(truthOf));
     };
     record(casters, measured, "");
     record(fmt::format("geometry_{}", name), truth, casters);

@@ -1,6 +1,5 @@
 #include "techniques/template/template.h"
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <numeric>
 #include <optional>
 
@@ -8,6 +7,9 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "runner/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/requirements.h"
+#include "techniques/kit/view.h"
+#include "techniques/kit/whole_image.h"
 
 namespace gfxrepro::template_ {
 
@@ -20,11 +22,6 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::Gradient, "gradient", "a horizontal ramp from black to white"},
     {Method::Silhouette, "silhouette", "white where the scene covers a pixel"},
 };
-
-glm::mat4 clipFromWorld(const scene::Camera& camera, float aspect) {
-    return glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
-           glm::lookAt(camera.position, camera.target, camera.up);
-}
 
 class TemplateTechnique : public technique::Technique {
   public:
@@ -44,19 +41,18 @@ class TemplateTechnique : public technique::Technique {
         const gl::Texture* attachments[] = {&colour_};
         framebuffer_ = gl::Framebuffer(attachments);
         if (method_ == Method::Gradient) {
-            program_ = gl::Program(
-                context.shaders, {"template/fullscreen.vert.glsl", "template/gradient.frag.glsl"});
-            withoutAttributes_.emplace();
+            program_ = gl::Program(context.shaders,
+                                   {"kit/whole_image.vert.glsl", "template/gradient.frag.glsl"});
+            wholeImage_.emplace();
             return;
         }
-        if (!context.scene) throw Error("method 'silhouette' needs a scene");
+        const scene::Scene& scene = kit::requireScene(context, "template");
         const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
-        clipFromWorld_ =
-            clipFromWorld(scene::framingCamera(context.scene->bounds(), aspect), aspect);
-        mesh_.emplace(scene::flattened(*context.scene));
+        view_ = kit::viewOf(scene::framingCamera(scene.bounds(), aspect), size_);
+        mesh_.emplace(scene::flattened(scene));
         program_ = gl::Program(context.shaders,
                                {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
-                               {{"POSITION", static_cast<int>(gpu_scene::kPosition)}});
+                               gpu_scene::attributeDefines());
     }
 
     // One measured iteration. Each pass stands in a scope with the paper's step name.
@@ -70,10 +66,9 @@ class TemplateTechnique : public technique::Technique {
         program_.set("brightness", brightness_);
         if (method_ == Method::Gradient) {
             program_.set("widthPx", static_cast<float>(size_.x));
-            withoutAttributes_->bind();
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+            wholeImage_->draw();
         } else {
-            program_.set("clipFromWorld", clipFromWorld_);
+            program_.set("clipFromWorld", view_.clipFromWorld());
             mesh_->draw();
         }
     }
@@ -92,12 +87,12 @@ class TemplateTechnique : public technique::Technique {
     float brightness_;
 
     glm::ivec2 size_{0};
-    glm::mat4 clipFromWorld_{1.0F};
+    kit::View view_;
     gl::Texture colour_;
     gl::Framebuffer framebuffer_;
     gl::Program program_;
     std::optional<gpu_scene::GpuMesh> mesh_;
-    std::optional<gl::VertexArray> withoutAttributes_;
+    std::optional<kit::WholeImage> wholeImage_;
 };
 
 std::unique_ptr<technique::Technique> create(config::Params& params) {

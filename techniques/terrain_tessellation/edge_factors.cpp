@@ -40,14 +40,14 @@ glm::vec2 edgeEndsM(const TerrainMetadata& metadata, const TileSettings& setting
 }
 
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
-                  const depth_images::View& view, const Patch& patch, Edge edge) {
+                  const kit::View& view, const Patch& patch, Edge edge) {
     const glm::dmat4 clipFromWorld = glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld);
     return edgeFactor(metadata, settings, view, clipFromWorld, patch, edge);
 }
 
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
-                  const depth_images::View& view, const glm::dmat4& clipFromWorld,
-                  const Patch& patch, Edge edge) {
+                  const kit::View& view, const glm::dmat4& clipFromWorld, const Patch& patch,
+                  Edge edge) {
     const int blockSamples = metadata.blockSizeSamples(patch.level);
     const double span = settings.tile.blocksPerPatch * blockSamples;
     const double spacing = metadata.spacingM();

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 #include "techniques/terrain_tessellation/tile_selection.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -47,11 +47,11 @@ glm::vec2 edgeEndsM(const TerrainMetadata& metadata, const TileSettings& setting
 
 /// Eq. (3) and (4).
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
-                  const depth_images::View& view, const Patch& patch, Edge edge);
+                  const kit::View& view, const Patch& patch, Edge edge);
 /// The same for many edges of one view, whose matrix is multiplied out once.
 double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& settings,
-                  const depth_images::View& view, const glm::dmat4& clipFromWorld,
-                  const Patch& patch, Edge edge);
+                  const kit::View& view, const glm::dmat4& clipFromWorld, const Patch& patch,
+                  Edge edge);
 
 /// A patch's factor along a pair of opposite edges, from theirs.
 double innerFactor(InnerFactors inner, double a, double b);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -16,8 +17,7 @@ FactorReplay::FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain
       program_(shaders, {"terrain_tessellation/factor_replay.comp.glsl"},
                terrainDefines(terrain, settings)) {}
 
-std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles,
-                                            const depth_images::View& view) {
+std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles, const kit::View& view) {
     const int side = settings_.factors.tile.patchesPerTile;
     const auto count = tiles.size() * static_cast<std::size_t>(side * side);
     if (count == 0) return {};
@@ -29,7 +29,7 @@ std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles,
     program_.set("patchCount", static_cast<int>(count));
     const gl::Buffer factors(count * sizeof(PatchFactors));
     factors.bindStorage(kCounterBinding);
-    glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
+    glDispatchCompute(kit::groupsFor(count, 64), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return factors.read<PatchFactors>(count);
 }

@@ -14,7 +14,7 @@ class FactorReplay {
   public:
     FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain& terrain,
                  const RenderSettings& settings);
-    std::vector<PatchFactors> run(std::span<const Tile> tiles, const depth_images::View& view);
+    std::vector<PatchFactors> run(std::span<const Tile> tiles, const kit::View& view);
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:

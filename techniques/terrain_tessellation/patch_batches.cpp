@@ -18,19 +18,14 @@ struct PatchCost {
 class PatchCosts {
   public:
     PatchCosts(const TerrainMetadata& metadata, const FactorSettings& settings,
-               const depth_images::View& view, const PatchesToDraw& patches)
+               const kit::View& view, const PatchesToDraw& patches)
         : metadata_(metadata),
           settings_(settings),
           view_(view),
           patches_(patches),
           clipFromWorld_(glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld)),
-          rows_(glm::transpose(view.clipFromWorld())) {
-        // −w ≤ x, y, z ≤ w, a plane each, as the control stage has them.
-        for (int i = 0; i < 6; ++i) {
-            const glm::vec4 plane = rows_[3] + (i % 2 == 0 ? 1.0F : -1.0F) * rows_[i / 2];
-            frustum_[static_cast<std::size_t>(i)] = plane / glm::length(glm::vec3(plane));
-        }
-    }
+          rows_(glm::transpose(view.clipFromWorld())),
+          frustum_(frustumPlanes(view)) {}
 
     std::vector<PatchCost> all() const {
         std::vector<PatchCost> costs;
@@ -134,7 +129,7 @@ class PatchCosts {
 
     const TerrainMetadata& metadata_;
     const FactorSettings& settings_;
-    const depth_images::View& view_;
+    const kit::View& view_;
     const PatchesToDraw& patches_;
     glm::dmat4 clipFromWorld_;
     glm::mat4 rows_;  // the rows of clipFromWorld
@@ -163,7 +158,7 @@ struct OpenBatch {
 }  // namespace
 
 PatchBatches batchPatches(const TerrainMetadata& metadata, const FactorSettings& settings,
-                          const depth_images::View& view, const PatchesToDraw& patches,
+                          const kit::View& view, const PatchesToDraw& patches,
                           const BatchLimits& limits) {
     std::vector<PatchCost> costs = PatchCosts(metadata, settings, view, patches).all();
     // The nearest first: hidden fragments fail the depth test before they are shaded.

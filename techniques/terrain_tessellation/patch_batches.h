@@ -38,7 +38,7 @@ struct PatchBatches {
     std::vector<PatchBatch> batches;
 };
 PatchBatches batchPatches(const TerrainMetadata& metadata, const FactorSettings& settings,
-                          const depth_images::View& view, const PatchesToDraw& patches,
+                          const kit::View& view, const PatchesToDraw& patches,
                           const BatchLimits& limits);
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -34,8 +34,7 @@ HeightErrors heightErrors(const DepthMap& drawn,
         for (int x = 0; x < drawn.view.sizePx.x; ++x) {
             if (!drawn.isCovered({x, y})) continue;
             const float depthM = drawn.depthM[drawn.indexOf({x, y})];
-            const glm::vec3 point =
-                depth_images::unproject(drawn.view, glm::vec2(x, y) + 0.5F, depthM);
+            const glm::vec3 point = kit::unproject(drawn.view, glm::vec2(x, y) + 0.5F, depthM);
             const double errorM = std::abs(double{point.y} - double{heightAt(point.x, point.z)});
             const double errorPx = errorM * pixelsPerRadian / depthM;
             ++errors.pixels;

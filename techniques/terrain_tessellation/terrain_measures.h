@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "runner/image/image.h"
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::terrain_tessellation {
 
 /// Distances along the view axis in metres, rows from the bottom; 0: background, or the underside
 /// of the terrain.
 struct DepthMap {
-    depth_images::View view;
+    kit::View view;
     std::vector<float> depthM;
 
     std::size_t indexOf(glm::ivec2 pixel) const {

@@ -14,19 +14,17 @@
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "techniques/kit/kept_file.h"
 
 namespace gfxrepro::terrain_tessellation {
 
 namespace {
 
-/// Goes up when the file's layout or what a value means changes.
 constexpr std::uint32_t kVersion = 2;
-constexpr char kMagic[8] = {'g', 'f', 'x', 't', 'e', 'r', 'r', 'a'};
+constexpr const char* kMagic = "gfxterra";
 
 struct Header {
-    char magic[8];
-    std::uint32_t version;
-    char key[64];
+    kit::FileStamp stamp;
     char checksum[64];  // sha256 of the blocks
 };
 
@@ -221,8 +219,7 @@ std::optional<std::vector<Block>> blocksIn(const std::filesystem::path& path,
     if (file.bytes().size() != sizeof header + count * sizeof(Block)) return std::nullopt;
     std::memcpy(&header, file.bytes().data(), sizeof header);
     const auto content = file.bytes().subspan(sizeof header);
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
-        key.compare(0, key.size(), header.key, sizeof header.key) != 0 ||
+    if (header.stamp != kit::FileStamp(kMagic, kVersion, key) ||
         sha256(content).compare(0, std::string::npos, header.checksum, sizeof header.checksum) !=
             0) {
         return std::nullopt;
@@ -234,9 +231,7 @@ std::optional<std::vector<Block>> blocksIn(const std::filesystem::path& path,
 
 std::string serialized(std::span<const Block> blocks, const std::string& key) {
     Header header{};
-    std::memcpy(header.magic, kMagic, sizeof kMagic);
-    header.version = kVersion;
-    std::memcpy(header.key, key.data(), sizeof header.key);
+    header.stamp = {kMagic, kVersion, key};
     const std::string checksum = sha256(bytesOf(blocks));
     std::memcpy(header.checksum, checksum.data(), sizeof header.checksum);
     std::string file(sizeof header + blocks.size_bytes(), '\0');
@@ -312,11 +307,7 @@ TerrainMetadata TerrainMetadata::openOrBuild(const std::filesystem::path& folder
         return result;
     }
     result = build(map, settings);
-    try {
-        writeFileAtomic(path, serialized(result.blocks_, key));
-    } catch (const Error&) {
-        // A folder that cannot be written costs the next run its time, no more.
-    }
+    kit::keepFile(path, serialized(result.blocks_, key));
     return result;
 }
 

@@ -1,9 +1,12 @@
 #include "techniques/terrain_tessellation/terrain_renderer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -11,8 +14,6 @@ namespace {
 
 constexpr unsigned kHeightUnit = 0, kColourUnit = 1;
 constexpr unsigned kTileBinding = 0, kBlockBinding = 1, kFirstBlockBinding = 2;
-// llvmpipe keeps a draw's triangles in memory until it is flushed.
-constexpr int kGridTrianglesPerDraw = 1 << 16;
 
 const char* spacingName(Spacing spacing) {
     if (spacing == Spacing::FractionalEven) return "fractional_even_spacing";
@@ -64,39 +65,30 @@ gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers) {
     return buffer;
 }
 
-void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
-                 const depth_images::View& view) {
-    const auto setIfRead = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
+void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain, const kit::View& view) {
     terrain.pages().texture().bind(kHeightUnit);
-    setIfRead("heightOfTexel", terrain.heightOfTexel());
-    setIfRead("spacing", terrain.metadata().spacingM());
-    setIfRead("clipFromWorld", view.clipFromWorld());
+    program.setIfActive("heightOfTexel", terrain.heightOfTexel());
+    program.setIfActive("spacing", terrain.metadata().spacingM());
+    program.setIfActive("clipFromWorld", view.clipFromWorld());
 }
 
 void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
-                 const RenderSettings& settings, const depth_images::View& view) {
-    const auto setIfRead = [&](const char* name, const auto& value) {
-        if (program.isActive(name)) program.set(name, value);
-    };
+                 const RenderSettings& settings, const kit::View& view) {
     terrain.blocks().bindStorage(kBlockBinding);
     terrain.firstBlocks().bindStorage(kFirstBlockBinding);
     const glm::vec2 size(view.sizePx);
-    setIfRead("imageSize", size);
-    setIfRead("eye", view.eyeWorld);
-    setIfRead("focalPx", 0.5F * size * glm::vec2(view.clipFromView[0].x, view.clipFromView[1].y));
-    setIfRead("segmentPx", settings.factors.segmentPx);
-    setIfRead("factorLimits", glm::vec2(settings.factors.smallest, settings.factors.greatest));
-    setIfRead("nearDistance", view.nearM);
-    setIfRead("isCulling", settings.cullsPatches ? 1 : 0);
-    // −w ≤ x, y, z ≤ w, a plane each.
-    static constexpr std::array kNames{"frustumPlanes[0]", "frustumPlanes[1]", "frustumPlanes[2]",
-                                       "frustumPlanes[3]", "frustumPlanes[4]", "frustumPlanes[5]"};
-    const glm::mat4 rows = glm::transpose(view.clipFromWorld());
-    for (int i = 0; i < 6; ++i) {
-        const glm::vec4 plane = i % 2 == 0 ? rows[3] + rows[i / 2] : rows[3] - rows[i / 2];
-        setIfRead(kNames[static_cast<std::size_t>(i)], plane / glm::length(glm::vec3(plane)));
+    program.setIfActive("imageSize", size);
+    program.setIfActive("eye", view.eyeWorld);
+    program.setIfActive("focalPx",
+                        0.5F * size * glm::vec2(view.clipFromView[0].x, view.clipFromView[1].y));
+    program.setIfActive("segmentPx", settings.factors.segmentPx);
+    program.setIfActive("factorLimits",
+                        glm::vec2(settings.factors.smallest, settings.factors.greatest));
+    program.setIfActive("nearDistance", view.nearM);
+    program.setIfActive("isCulling", settings.cullsPatches ? 1 : 0);
+    const std::array<glm::vec4, 6> planes = frustumPlanes(view);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        program.setIfActive(fmt::format("frustumPlanes[{}]", i).c_str(), planes[i]);
     }
 }
 
@@ -134,12 +126,8 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
     if (hasColourMap(settings_.shading)) settings_.colourMap->bind(kColourUnit);
-    if (program.isActive("lastSample")) {
-        program.set("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
-    }
-    if (program.isActive("heightExtent")) {
-        program.set("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
-    }
+    program.setIfActive("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
+    program.setIfActive("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
 }
 
 template <class Draw>
@@ -187,7 +175,7 @@ int TerrainRenderer::drawBatches(const PatchBatches& patches) const {
 }
 
 DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                                        const depth_images::View& view, Parts parts) const {
+                                        const kit::View& view, Parts parts) const {
     const int m = settings_.factors.tile.patchesPerTile;
     const bool hasSkirts = parts == Parts::Skirts || (parts == Parts::AsSet && settings_.hasSkirts);
     const int patchesPerTile = m * m + (hasSkirts ? 4 * m : 0);
@@ -217,7 +205,7 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<c
     return counts;
 }
 
-void TerrainRenderer::bindTessellated(const depth_images::View& view) {
+void TerrainRenderer::bindTessellated(const kit::View& view) {
     bindShading(tessellated_);
     bindTerrain(tessellated_, *terrain_, view);
     bindFactors(tessellated_, *terrain_, settings_, view);
@@ -226,8 +214,7 @@ void TerrainRenderer::bindTessellated(const depth_images::View& view) {
     glPatchParameteri(GL_PATCH_VERTICES, 4);
 }
 
-DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles,
-                                            const depth_images::View& view,
+DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles, const kit::View& view,
                                             const gl::Framebuffer& target) {
     target.bind();
     bindTessellated(view);
@@ -248,7 +235,7 @@ void TerrainRenderer::bindNothing() const {
 }
 
 std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
-                                                   const depth_images::View& view) {
+                                                   const kit::View& view) {
     bindTessellated(view);
     bindNothing();
     const DrawCounts counts =
@@ -259,7 +246,7 @@ std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
 }
 
 std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles,
-                                                     const depth_images::View& view) {
+                                                     const kit::View& view) {
     GFXREPRO_ASSERT(settings_.capturesVertices);
     bindTessellated(view);
     bindNothing();
@@ -293,7 +280,7 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     program.set("tileIndex", tile);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
-    const int step = std::max(1, kGridTrianglesPerDraw / (2 * side));
+    const int step = std::max(1, static_cast<int>(kit::kPrimitivesPerFlush) / (2 * side));
     int draws = 0;
     for (int first = 0; first < side; first += step, ++draws) {
         program.set("firstRow", first);
@@ -303,7 +290,7 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     return draws;
 }
 
-DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const depth_images::View& view,
+DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& view,
                                      const gl::Framebuffer& target) {
     target.bind();
     bindShading(grid_);
@@ -319,8 +306,7 @@ DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const depth_im
 }
 
 DrawCounts TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
-                                        const depth_images::View& view,
-                                        const gl::Framebuffer& target) {
+                                        const kit::View& view, const gl::Framebuffer& target) {
     target.bind();
     bindShading(morphed_);
     bindTerrain(morphed_, *terrain_, view);

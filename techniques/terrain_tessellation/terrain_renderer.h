@@ -71,10 +71,9 @@ struct MorphRanges {
 
 /// Sets up what terrain.glsl and factors.glsl read; the buffers must live until the draw is done.
 gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers);
-void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain,
-                 const depth_images::View& view);
+void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain, const kit::View& view);
 void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
-                 const RenderSettings& settings, const depth_images::View& view);
+                 const RenderSettings& settings, const kit::View& view);
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings);
 constexpr unsigned kCounterBinding = 3;
 
@@ -86,19 +85,18 @@ class TerrainRenderer {
                     const RenderSettings& settings);
 
     /// [zhang2012] Sec. 3.2, 4.2 and 5.
-    DrawCounts drawTessellated(std::span<const Tile> tiles, const depth_images::View& view,
+    DrawCounts drawTessellated(std::span<const Tile> tiles, const kit::View& view,
                                const gl::Framebuffer& target);
     /// Of these, the triangles of skirts; draws nothing.
-    std::uint64_t countSkirtTriangles(std::span<const Tile> tiles, const depth_images::View& view);
+    std::uint64_t countSkirtTriangles(std::span<const Tile> tiles, const kit::View& view);
     /// Three vertices a triangle of what drawTessellated() draws, without skirts; draws nothing.
     /// Needs RenderSettings::capturesVertices.
-    std::vector<CapturedVertex> capture(std::span<const Tile> tiles,
-                                        const depth_images::View& view);
+    std::vector<CapturedVertex> capture(std::span<const Tile> tiles, const kit::View& view);
     /// Every sample of each tile's level: of level 0, the full resolution (the truth).
-    DrawCounts drawGrid(std::span<const Tile> tiles, const depth_images::View& view,
+    DrawCounts drawGrid(std::span<const Tile> tiles, const kit::View& view,
                         const gl::Framebuffer& target);
     DrawCounts drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
-                           const depth_images::View& view, const gl::Framebuffer& target);
+                           const kit::View& view, const gl::Framebuffer& target);
 
     const RenderSettings& settings() const { return settings_; }
     void setShowsUnderside(bool isShown) { settings_.showsUnderside = isShown; }
@@ -110,8 +108,8 @@ class TerrainRenderer {
     DrawCounts drawInTurns(std::span<const Tile> tiles, const Draw& draw);
     enum class Parts { AsSet, Surface, Skirts };
     DrawCounts drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                           const depth_images::View& view, Parts parts = Parts::AsSet) const;
-    void bindTessellated(const depth_images::View& view);
+                           const kit::View& view, Parts parts = Parts::AsSet) const;
+    void bindTessellated(const kit::View& view);
     void bindNothing() const;
     int drawBatches(const PatchBatches& patches) const;
     int drawGridTile(const gl::Program& program, int tile) const;

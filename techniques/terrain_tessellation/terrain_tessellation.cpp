@@ -8,6 +8,7 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/gl.h"
+#include "techniques/kit/requirements.h"
 #include "techniques/terrain_tessellation/ground_picture.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -20,7 +21,7 @@ double secondsSince(Clock::time_point begin) {
 }
 
 /// The horizontal angle of view has the same pixels per tangent.
-TileView tileViewOf(const depth_images::View& view) {
+TileView tileViewOf(const kit::View& view) {
     return {view.eyeWorld, view.clipFromWorld(),
             0.5F * static_cast<float>(view.sizePx.x) * view.clipFromView[0].x};
 }
@@ -69,11 +70,10 @@ void TerrainTessellation::Target::clear() const {
 TerrainTessellation::TerrainTessellation(config::Params& params) : params_(params) {}
 
 void TerrainTessellation::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'terrain_tessellation' needs a scene");
-    if (!context.scene->heights || context.scene->heights->isEmpty()) {
+    scene_ = &kit::requireScene(context, "terrain_tessellation");
+    if (!scene_->heights || scene_->heights->isEmpty()) {
         throw Error("technique 'terrain_tessellation' needs a scene with a height map");
     }
-    scene_ = context.scene;
     shaders_ = &context.shaders;
     device_ = &context.device;
     sizePx_ = context.outputSizePx;
@@ -138,7 +138,7 @@ MorphRanges TerrainTessellation::morphRanges() const {
 }
 
 DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selection,
-                                     const depth_images::View& view, const Target& target) {
+                                     const kit::View& view, const Target& target) {
     target.clear();
     switch (method) {
         case Method::UniformGrid:
@@ -154,8 +154,8 @@ DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selecti
 
 void TerrainTessellation::render(technique::FrameContext& context) {
     const glm::vec2 size(sizePx_);
-    view_ = depth_images::viewOf(
-        camera_->camera(context.frame, context.frameCount, size.x / size.y), sizePx_);
+    view_ =
+        kit::viewOf(camera_->camera(context.frame, context.frameCount, size.x / size.y), sizePx_);
     tileView_ = tileViewOf(view_);
     {
         const gl::CpuScope scope(context.profiler, "tile_walk");

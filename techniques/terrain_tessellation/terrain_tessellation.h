@@ -80,7 +80,7 @@ class TerrainTessellation final : public technique::Technique {
     /// Every visible tile in full resolution.
     TileSelection selectAll() const;
     MorphRanges morphRanges() const;
-    DrawCounts draw(Method method, const TileSelection& selection, const depth_images::View& view,
+    DrawCounts draw(Method method, const TileSelection& selection, const kit::View& view,
                     const Target& target);
     /// The frame again, `params_.supersampling` times as large, with the tiles and the factors that
     /// it was drawn with; with the underside of terrain, which frames cull, or without.
@@ -108,7 +108,7 @@ class TerrainTessellation final : public technique::Technique {
     std::optional<TerrainRenderer> yardstick_;  // patches as they come
     std::optional<Target> target_;
 
-    depth_images::View view_;  // of the last frame
+    kit::View view_;  // of the last frame
     TileView tileView_;
     TileSelection selection_;
     DrawCounts counts_;

@@ -7,8 +7,9 @@
 
 #include "runner/image/resample.h"
 #include "runner/metrics/flip.h"
-#include "techniques/shared/image_layers.h"
-#include "techniques/shared/reflections/displayed_errors.h"
+#include "techniques/kit/displayed_errors.h"
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/terrain_tessellation/culling_picture.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "techniques/terrain_tessellation/seam_check.h"
@@ -19,11 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double percent(double part, double whole) {
-    return whole > 0.0 ? 100.0 * part / whole : 0.0;
-}
-
-DepthMap readDepths(const gl::Texture& depth, const depth_images::View& view) {
+DepthMap readDepths(const gl::Texture& depth, const kit::View& view) {
     DepthMap map{view, depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)};
     const double n = view.nearM, f = view.farM;
     for (float& value : map.depthM) {
@@ -42,7 +39,7 @@ void TerrainTessellation::record(technique::Recorder& recorder) {
     if (params_.measuresErrors) truth = drawnAgain(Method::UniformGrid, selectAll(), true);
     if (params_.showsPictures) {
         const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
-        depth_images::ImageLayers layers(drawn.depths.view, params_.supersampling);
+        kit::ImageLayers layers(drawn.depths.view, params_.supersampling);
         layers.depths(drawn.depths.depthM);
         if (truth) {
             layers.errors(picture, image::averaged(truth->picture, params_.supersampling));
@@ -76,7 +73,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     if (!hasPatches) return;
     count("patches", counts_.patches, "patch");
     count("culled_patches", counts_.culledPatches, "patch");
-    count("culled_patches_pct", percent(counts_.culledPatches, counts_.patches), "%");
+    count("culled_patches_pct", kit::percent(counts_.culledPatches, counts_.patches), "%");
     if (params_.method != Method::Adaptive) return;
     const auto skirts =
         params_.render.hasSkirts
@@ -101,7 +98,8 @@ void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
     replay.setSegmentPx(2.0F * factors.segmentPx);
     const FactorHalving halving =
         compareHalving(factors, drawn, replay.run(selection_.tiles, view_));
-    recorder.metric("edges_at_greatest_pct", percent(halving.greatestEdges, halving.edges), "%");
+    recorder.metric("edges_at_greatest_pct", kit::percent(halving.greatestEdges, halving.edges),
+                    "%");
     recorder.metric("unclamped_edges", halving.unclampedEdges, "edge");
     recorder.metric("unhalved_edges", halving.unhalvedEdges, "edge");
     if (params_.render.spacing != Spacing::FractionalEven ||
@@ -163,7 +161,7 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
                                                            const TileSelection& selection,
                                                            bool showsUnderside) {
     const int scale = params_.supersampling;
-    depth_images::View view = view_;
+    kit::View view = view_;
     view.sizePx *= scale;
     const Target target(view.sizePx);
     // Lengths in pixels are `scale` times as large: the factors stay as they were.
@@ -206,18 +204,17 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
 
     const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
     const image::ImageF truthPicture = image::averaged(truth.picture, params_.supersampling);
-    const glm::dvec3 channels = reflections::channelErrors(picture, truthPicture, nullptr);
+    const glm::dvec3 channels = kit::channelErrors(picture, truthPicture, nullptr);
     recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "1");
-    recorder.metric("psnr_db", reflections::shownPsnrDb(picture, truthPicture), "dB");
+    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");
     recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
     if (!params_.showsPictures) return;
     recorder.image("truth", truthPicture,
-                   depth_images::ImageLayers(truth.depths.view, params_.supersampling)
+                   kit::ImageLayers(truth.depths.view, params_.supersampling)
                        .depths(truth.depths.depthM)
                        .options("image"));
-    recorder.image("error", reflections::errorPicture(picture, truthPicture, 8),
-                   depth_images::seenFrom(view_));
-    recorder.image("cracks", withMarks(drawn.picture, cracks), depth_images::seenFrom(view_));
+    recorder.image("error", kit::errorPicture(picture, truthPicture, 8), kit::seenFrom(view_));
+    recorder.image("cracks", withMarks(drawn.picture, cracks), kit::seenFrom(view_));
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -9,7 +9,7 @@
 
 #include "runner/core/error.h"
 #include "runner/scene/animation.h"
-#include "techniques/shared/reflections/path_view.h"
+#include "techniques/kit/path_view.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -153,8 +153,8 @@ TerrainView::TerrainView(const scene::Scene& scene, const std::string& name)
 
 scene::Camera TerrainView::camera(int frame, int frameCount, float aspect) const {
     if (still_) return *still_;
-    if (flight_) return scene::cameraAt(*flight_, reflections::frameTime(frame, frameCount));
-    return reflections::cameraFor(*scene_, name_, frame, frameCount, aspect);
+    if (flight_) return scene::cameraAt(*flight_, kit::frameTime(frame, frameCount));
+    return kit::cameraFor(*scene_, name_, frame, frameCount, aspect);
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "techniques/kit/draws.h"
 #include "techniques/voxelization/bindings.h"
 #include "techniques/voxelization/lattice.h"
 
 namespace gfxrepro::voxelization {
 namespace {
-
-/// llvmpipe keeps every triangle of a draw until it is flushed, about 80 bytes each, twice.
-constexpr int kTrianglesPerDraw = 1 << 16;
 
 void checkFits(const char* what, std::size_t sizeBytes, const gl::DeviceLimits& limits) {
     if (static_cast<long long>(sizeBytes) > limits.maxStorageBlockBytes) {
@@ -56,13 +52,8 @@ void DeviceMesh::update(const AxisSplit& split) {
 
 void DeviceMesh::drawIndexed(TriangleRange range) const {
     vertexArray.bind();
-    for (int first = 0; first < range.count; first += kTrianglesPerDraw) {
-        const std::size_t offsetBytes =
-            static_cast<std::size_t>(range.first + first) * sizeof(glm::uvec3);
-        glDrawElements(GL_TRIANGLES, 3 * std::min(range.count - first, kTrianglesPerDraw),
-                       GL_UNSIGNED_INT, reinterpret_cast<const void*>(offsetBytes));
-        glFlush();
-    }
+    kit::FlushedDraws().draw(static_cast<std::uint32_t>(range.first),
+                             static_cast<std::uint32_t>(range.count), kit::drawTriangles);
 }
 
 std::size_t DeviceMesh::sizeBytes() const {

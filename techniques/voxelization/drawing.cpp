@@ -1,7 +1,6 @@
 #include "techniques/voxelization/drawing.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-
+#include "techniques/kit/image_layers.h"
 #include "techniques/voxelization/phantom.h"
 
 namespace gfxrepro::voxelization {
@@ -69,9 +68,7 @@ void Drawing::setup(technique::SetupContext& context, const WorksheetLayout& lay
                                   : scene::Box{shown.centre() - half, shown.centre() + half};
     const scene::Camera camera =
         orbitCamera(framed, settings_.azimuthDeg, settings_.elevationDeg, aspect);
-    camera_ = {glm::lookAt(camera.position, camera.target, camera.up),
-               glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM),
-               camera.nearM, camera.farM};
+    view_ = kit::viewOf(camera, context.outputSizePx);
     renderer_.emplace(context.shaders, layout, box, camera, context.outputSizePx, settings_.draw);
     if (settings_.draw.mode == DrawMode::Mixed) {
         head_ = makeHeadTexture(kHeadResolution, context.seed);
@@ -86,7 +83,7 @@ void Drawing::render(gl::Profiler& profiler, const VoxelGrid& grid, const VoxelG
 
 void Drawing::record(technique::Recorder& recorder) const {
     recorder.metric("planes", renderer_->planeCount(), "plane");
-    recorder.image("draw", renderer_->readImage(), {.camera = camera_});
+    recorder.image("draw", renderer_->readImage(), kit::seenFrom(view_));
 }
 
 }  // namespace gfxrepro::voxelization

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "techniques/kit/view.h"
 #include "techniques/voxelization/volume_renderer.h"
 
 namespace gfxrepro::voxelization {
@@ -38,7 +39,7 @@ class Drawing {
   private:
     DrawingSettings settings_;
     std::optional<VolumeRenderer> renderer_;
-    technique::ImageCamera camera_;
+    kit::View view_;
     gl::Texture head_;
 };
 

@@ -17,10 +17,7 @@ bool isPlain(const scene::Scene& scene) {
 scene::Scene coloured(scene::Scene scene) {
     for (scene::Mesh& mesh : scene.meshes) {
         if (!mesh.colors.empty()) continue;
-        const scene::Material material =
-            mesh.material < 0 ? scene::Material{}
-                              : scene.materials[static_cast<std::size_t>(mesh.material)];
-        mesh.colors.assign(mesh.positions.size(), glm::vec3(material.baseColor));
+        mesh.colors.assign(mesh.positions.size(), glm::vec3(materialOf(scene, mesh).baseColor));
     }
     return scene;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::voxelization {
 
 namespace {
@@ -131,7 +133,7 @@ std::vector<glm::vec3> ParametricSource::samplePoints(const gl::ShaderLibrary& s
     program.use();
     program.set("domain", domain_);
     points.bindStorage(kPointsBuffer);
-    glDispatchCompute(static_cast<GLuint>((count + kGroupSize - 1) / kGroupSize), 1, 1);
+    glDispatchCompute(kit::groupsFor(count, kGroupSize), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return points.read<glm::vec3>(count);
 }

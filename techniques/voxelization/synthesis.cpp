@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "techniques/kit/draws.h"
 #include "techniques/voxelization/bindings.h"
 
 namespace gfxrepro::voxelization {
@@ -84,8 +85,8 @@ void Synthesis::run(const DirectionalSheets& sheets, const VoxelGrid& grid, cons
         glDispatchCompute(groups.x, groups.y, static_cast<unsigned>(grid.layout.layers()));
     } else if (merging_ == Merging::Sparse) {
         tiles.buffer.bindStorage(kTileBinding);
-        const auto sets = static_cast<unsigned>((tiles.capacity + perGroup - 1) / perGroup);
-        glDispatchCompute(std::min(sets, kMaxSparseGroups), 1, 1);
+        glDispatchCompute(std::min(kit::groupsFor(tiles.capacity, perGroup), kMaxSparseGroups), 1,
+                          1);
     } else {
         const auto slabs = static_cast<unsigned>(grid.layout.slabCount());
         glDispatchCompute(slabs, slabs, slabs / perGroup);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "techniques/kit/draws.h"
 #include "techniques/voxelization/bindings.h"
 
 namespace gfxrepro::voxelization {
@@ -62,7 +63,7 @@ void Texelization::run(const FragmentList& fragments, DirectionalSheets& sheets,
         fragments.bind(axis);
         program_.set("axis", static_cast<int>(axis));
         program_.set("fragmentCapacity", capacity);
-        glDispatchCompute(std::min((capacity + kGroupSize - 1) / kGroupSize, kMaxGroups), 1, 1);
+        glDispatchCompute(std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1);
     }
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }

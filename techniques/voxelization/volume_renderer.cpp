@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runner/core/error.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::voxelization {
 
@@ -23,11 +24,6 @@ glm::mat3 frameOf(const scene::Camera& camera) {
 /// From the upper left behind the eye.
 glm::vec3 headlight(const scene::Camera& camera) {
     return frameOf(camera) * glm::normalize(glm::vec3(-0.5F, 0.7F, 1.0F));
-}
-
-glm::mat4 clipFromWorld(const scene::Camera& camera, float aspect) {
-    return glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
-           glm::lookAt(camera.position, camera.target, camera.up);
 }
 
 }  // namespace
@@ -80,7 +76,8 @@ PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int re
     if (towardsCentre.z > std::max(towardsCentre.x, towardsCentre.y)) view.axis = Axis::Z;
     view.eye = localFromVolume(view.axis, eye);
     GFXREPRO_ASSERT(view.eye.z < 0.0F || view.eye.z > static_cast<float>(resolution));
-    view.clipFromVoxel = clipFromWorld(camera, aspect) * glm::translate(glm::mat4(1.0F), box.min) *
+    view.clipFromVoxel = kit::viewOf(camera, sizePx).clipFromWorld() *
+                         glm::translate(glm::mat4(1.0F), box.min) *
                          glm::scale(glm::mat4(1.0F), glm::vec3(voxelSize));
 
     const glm::mat3 frame = frameOf(camera);
@@ -125,8 +122,7 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
     colorTarget_ = gl::Framebuffer(color);
     if (!isOpaque) return;
     shade_ = gl::Program(
-        shaders, {"voxelization/fullscreen.vert.glsl", "voxelization/volume_shade.frag.glsl"},
-        defines);
+        shaders, {"kit/whole_image.vert.glsl", "voxelization/volume_shade.frag.glsl"}, defines);
     hits_ = gl::Texture::make2D(GL_R32UI, sizePx);
     depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
     const std::array<const gl::Texture*, 1> hits{&hits_};
@@ -160,11 +156,10 @@ void VolumeRenderer::drawOpaque() {
     drawPlanes(planes_);
 
     colorTarget_.bind();
-    glDisable(GL_DEPTH_TEST);
     hits_.bind(kHitsUnit);
     shade_.use();
     setView(shade_);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    wholeImage_.draw();
 }
 
 // [zju2005] Sec. 2.4.2: alpha blending, back to front; premultiplied, since a slice may blend
@@ -193,15 +188,13 @@ void VolumeRenderer::drawPlanes(const gl::Program& program) const {
 
 /// What the shaders use, each its part.
 void VolumeRenderer::setView(const gl::Program& program) const {
-    if (program.isActive("light")) program.set("light", light_);
-    if (program.isActive("eyeVolume")) program.set("eyeVolume", eyeVolume_);
-    if (program.isActive("opacity")) program.set("opacity", settings_.opacity);
+    program.setIfActive("light", light_);
+    program.setIfActive("eyeVolume", eyeVolume_);
+    program.setIfActive("opacity", settings_.opacity);
     if (!settings_.cut) return;
     const auto n = static_cast<float>(layout_.resolution());
-    if (program.isActive("cutLow"))
-        program.set("cutLow", glm::ivec3(glm::round(settings_.cut->min * n)));
-    if (program.isActive("cutHigh"))
-        program.set("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
+    program.setIfActive("cutLow", glm::ivec3(glm::round(settings_.cut->min * n)));
+    program.setIfActive("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
 }
 
 std::vector<std::uint32_t> VolumeRenderer::readHits() const {

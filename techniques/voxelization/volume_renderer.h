@@ -7,6 +7,7 @@
 #include "runner/gl/program.h"
 #include "runner/image/image.h"
 #include "runner/scene/scene.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/voxelization/grid_source.h"
 
 namespace gfxrepro::voxelization {
@@ -79,6 +80,7 @@ class VolumeRenderer {
     gl::Texture hits_, depth_, color_;
     gl::Framebuffer hitTarget_, colorTarget_;
     gl::VertexArray vertexArray_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::voxelization

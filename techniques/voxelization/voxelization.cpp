@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "techniques/kit/requirements.h"
 #include "techniques/voxelization/binvox.h"
 #include "techniques/voxelization/implicit.h"
 #include "techniques/voxelization/parametric.h"
@@ -63,9 +64,7 @@ void Voxelization::setup(technique::SetupContext& context) {
 void Voxelization::setupMesh(technique::SetupContext& context) {
     const MeshVoxelizerSettings& settings = params_.voxelizer;
     const WorksheetLayout& layout = settings.grid.layout;
-    if (!context.scene)
-        throw Error("technique 'voxelization' needs a scene; the config names none");
-    input_.emplace(*context.scene, settings.grid.value);
+    input_.emplace(kit::requireScene(context, "voxelization"), settings.grid.value);
     scene::Box bounds = input_->mesh().bounds();
     if (params_.combination.needsSecond()) {
         bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));

@@ -198,6 +198,7 @@ void main() {
     EXPECT_TRUE(sum.isActive("m"));
     EXPECT_FALSE(sum.isActive("unused"));
     EXPECT_FALSE(sum.isActive("absent"));
+    sum.setIfActive("absent", 1);
 
     const gl::Buffer result(40);
     result.bindStorage(2);

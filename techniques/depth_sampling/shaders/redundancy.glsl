@@ -7,10 +7,10 @@
 //         && J.triangleId[ivec2(landedPx)] == triangleId;
 //
 // Both projections are linear in (x·d, y·d, d, 1), (x, y) being pixel coordinates and d the depth, so
-// that one matrix, multiplied out in double precision (depth_images::reprojection), does for both.
+// that one matrix, multiplied out in double precision (kit::reprojection), does for both.
 // The renderer's fragments are tested by the same function on the same numbers.
 
-#include "shared/pixel_redundancy.glsl"
+#include "kit/pixel_redundancy.glsl"
 
 layout(binding = SAMPLE_IDS_UNIT) uniform usampler2D sampleTriangleIds;
 

@@ -6,8 +6,8 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/kit/view.h"
 #include "techniques/shared/reflections/gpu_objects.h"
-#include "techniques/shared/view.h"
 
 namespace gfxrepro::reflections {
 

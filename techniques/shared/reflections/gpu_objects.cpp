@@ -58,12 +58,9 @@ struct LightsRecord {
 static_assert(offsetof(LightsRecord, lightCount) == kMaxLights * sizeof(LightRecord));
 static_assert(sizeof(LightsRecord) % 16 == 0);
 
-/// The inverse transpose up to a positive factor, by cofactors: singular matrices have them, too
-/// (an instance flattened to a plane). Scaled so that small instances do not underflow.
+/// scene::normalMatrix(), scaled so that small instances do not underflow.
 glm::mat4 normalMatrix(const glm::mat4& worldFromMesh) {
-    const glm::mat3 m(worldFromMesh);
-    glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    if (glm::determinant(m) < 0.0F) cofactors = -cofactors;
+    const glm::mat3 cofactors = scene::normalMatrix(glm::mat3(worldFromMesh));
     float largest = 0.0F;
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) {

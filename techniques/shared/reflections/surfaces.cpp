@@ -22,11 +22,6 @@ constexpr float kPlanarTolerance = 1e-3F;  // see Object::isPlanar
 constexpr float kHangingBelowTop = 0.05F;  // of the box's height: the light that is made up
 constexpr float kMadeUpLightIntensity = 0.9F;
 
-scene::Material materialOf(const scene::Scene& scene, const scene::Mesh& mesh) {
-    return mesh.material < 0 ? scene::Material{}
-                             : scene.materials[static_cast<std::size_t>(mesh.material)];
-}
-
 const scene::Mesh& meshOf(const scene::Scene& scene, const scene::Instance& instance) {
     return scene.meshes[static_cast<std::size_t>(instance.mesh)];
 }

@@ -1,9 +1,9 @@
 #version 450 core
 // What the output image shows: the points whose shadows are measured. In: world-space vertices.
 
-layout(location = POSITION) in vec3 positionWorld;
-layout(location = TEXCOORD) in vec2 texcoord;
-layout(location = COLOR) in vec3 color;
+layout(location = kPosition) in vec3 positionWorld;
+layout(location = kTexcoord) in vec2 texcoord;
+layout(location = kColor) in vec3 color;
 
 uniform mat4 clipFromWorld;
 

@@ -1,7 +1,7 @@
 #version 450 core
-// Takes the mesh to clip space. POSITION is the attribute location that gpu_scene uses.
+// Takes the mesh to clip space. kPosition is gpu_scene's location.
 
-layout(location = POSITION) in vec3 positionWorld;
+layout(location = kPosition) in vec3 positionWorld;
 
 uniform mat4 clipFromWorld;
 

@@ -13,8 +13,7 @@ namespace gfxrepro::depth_sampling {
 
 class BruteVisibility {
   public:
-    BruteVisibility(const scene::Scene& scene, std::vector<depth_images::View> views,
-                    bool isNonRedundant)
+    BruteVisibility(const scene::Scene& scene, std::vector<kit::View> views, bool isNonRedundant)
         : mesh_(flattened(scene)), views_(std::move(views)), isNonRedundant_(isNonRedundant) {
         for (const scene::Instance& instance : scene.instances) {
             const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -64,7 +63,7 @@ class BruteVisibility {
     }
 
     bool isInFrustum(std::size_t index, const glm::dvec3& point) {
-        const depth_images::View& view = views_[index];
+        const kit::View& view = views_[index];
         const glm::dvec4 clip =
             glm::dmat4(view.clipFromView) * glm::dmat4(view.viewFromWorld) * glm::dvec4(point, 1.0);
         if (clip.w <= 0.0) return false;
@@ -76,7 +75,7 @@ class BruteVisibility {
 
     /// Drawn faces within the image's near and far planes, nearest first.
     std::vector<Found> hitsAlong(std::size_t index, const glm::dvec3& direction) {
-        const depth_images::View& view = views_[index];
+        const kit::View& view = views_[index];
         const glm::dvec3 eye(view.eyeWorld);
         const glm::dvec3 unit = glm::normalize(direction);
         std::vector<Found> found;
@@ -127,7 +126,7 @@ class BruteVisibility {
 
     scene::Mesh mesh_;
     std::vector<bool> isDoubleSided_;
-    std::vector<depth_images::View> views_;
+    std::vector<kit::View> views_;
     bool isNonRedundant_;
     bool isUnclear_ = false;
 };

@@ -123,10 +123,10 @@ TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
 
 TEST_F(DepthSamplingTest, NeedsASceneWithTriangles) {
     EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
-              "technique 'depth_sampling' needs a scene; the config names none");
+              "technique 'depth_sampling' needs a scene");
     const scene::Scene empty{.name = "void"};
     EXPECT_EQ(errorText([&] { recorded("{}", &empty); }),
-              "scene 'void' has no triangles to take depth images of");
+              "technique 'depth_sampling' needs a scene with triangles");
 }
 
 // All views coincide: an image after the first is the next layer. The card covers 32 of 96 pixels

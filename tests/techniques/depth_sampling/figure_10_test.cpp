@@ -11,9 +11,9 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-using depth_images::DepthImage;
-using depth_images::HostDepthImage;
-using depth_images::View;
+using kit::DepthImage;
+using kit::HostDepthImage;
+using kit::View;
 
 constexpr float kEyeZ = 8.0F;
 constexpr float kOccluderZ = 1.0F;
@@ -62,10 +62,10 @@ class Figure10Test : public test::GlTest {
     }
 
     bool isPixelRedundant(const HostDepthImage& s1) {
-        DepthImage here(s1.view, depth_images::DepthFormat::Float32);
-        DepthImage there(i0.view, depth_images::DepthFormat::Float32);
-        depth_images::writeDepthImage(s1, here);
-        depth_images::writeDepthImage(i0, there);
+        DepthImage here(s1.view, kit::DepthFormat::Float32);
+        DepthImage there(i0.view, kit::DepthFormat::Float32);
+        kit::writeDepthImage(s1, here);
+        kit::writeDepthImage(i0, there);
         gl::Texture marks = measures.makeMarks(here);
         const DepthImage* const earlier[] = {&there};
         measures.mark(here, marks, earlier, true, kSample, kRedundant);

@@ -7,8 +7,8 @@
 
 namespace gfxrepro::test {
 
-using depth_images::HostDepthImage;
-using depth_images::View;
+using kit::HostDepthImage;
+using kit::View;
 
 std::vector<Triangle> randomTriangles(int count, unsigned seed) {
     std::mt19937 generator(seed);
@@ -36,7 +36,7 @@ View viewFrom(const glm::vec3& eye, glm::ivec2 sizePx, const glm::vec3& target) 
     camera.verticalFovRad = glm::radians(45.0F);
     camera.nearM = 0.05F;
     camera.farM = 20.0F;
-    return depth_images::viewOf(camera, sizePx);
+    return kit::viewOf(camera, sizePx);
 }
 
 HostDepthImage filledImage(const View& view, float depthM, std::uint32_t triangleId) {
@@ -54,7 +54,7 @@ HostDepthImage emptyImage(const View& view) {
 }
 
 bool isPixelRedundant(const HostDepthImage& image, glm::ivec2 pixel, const HostDepthImage& other) {
-    const auto landed = depth_images::pixelOf(other.view, image.pointWorld(pixel));
+    const auto landed = kit::pixelOf(other.view, image.pointWorld(pixel));
     return landed &&
            other.triangleId[other.indexOf(*landed)] == image.triangleId[image.indexOf(pixel)];
 }
@@ -67,7 +67,7 @@ bool isRedundantWithAny(const HostDepthImage& image, glm::ivec2 pixel, HostImage
 
 bool isBorderline(const HostDepthImage& image, glm::ivec2 pixel, const HostDepthImage& other) {
     constexpr float kTolerancePx = 1e-3F;
-    const auto landed = depth_images::project(other.view, image.pointWorld(pixel));
+    const auto landed = kit::project(other.view, image.pointWorld(pixel));
     if (!landed) return false;
     for (int axis = 0; axis < 2; ++axis) {
         const float border = std::round((*landed)[axis]);
@@ -94,7 +94,7 @@ HostDepthImage castImage(const View& view, std::span<const Triangle> triangles,
         for (int x = 0; x < view.sizePx.x; ++x) {
             // Of depth 1 along the view axis: distances along it are depths.
             const glm::vec3 direction =
-                depth_images::unproject(view, glm::vec2(x, y) + 0.5F, 1.0F) - view.eyeWorld;
+                kit::unproject(view, glm::vec2(x, y) + 0.5F, 1.0F) - view.eyeWorld;
             std::vector<Met> all;
             for (std::size_t t = 0; t < triangles.size(); ++t) {
                 glm::vec2 barycentric;

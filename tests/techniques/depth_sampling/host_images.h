@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 
 namespace gfxrepro::test {
 
@@ -16,34 +16,30 @@ using Triangle = std::array<glm::vec3, 3>;
 std::vector<Triangle> randomTriangles(int count, unsigned seed);
 
 /// A view towards `target`, of 45 degrees.
-depth_images::View viewFrom(const glm::vec3& eye, glm::ivec2 sizePx,
-                            const glm::vec3& target = glm::vec3(0.0F));
+kit::View viewFrom(const glm::vec3& eye, glm::ivec2 sizePx,
+                   const glm::vec3& target = glm::vec3(0.0F));
 
 /// An image without samples.
-depth_images::HostDepthImage emptyImage(const depth_images::View& view);
+kit::HostDepthImage emptyImage(const kit::View& view);
 /// All samples at one depth and of one triangle.
-depth_images::HostDepthImage filledImage(const depth_images::View& view, float depthM,
-                                         std::uint32_t triangleId);
+kit::HostDepthImage filledImage(const kit::View& view, float depthM, std::uint32_t triangleId);
 
-using HostImages = std::span<const depth_images::HostDepthImage>;
+using HostImages = std::span<const kit::HostDepthImage>;
 
 /// [xie2017] Algorithm 3, word by word.
-bool isPixelRedundant(const depth_images::HostDepthImage& image, glm::ivec2 pixel,
-                      const depth_images::HostDepthImage& other);
-bool isRedundantWithAny(const depth_images::HostDepthImage& image, glm::ivec2 pixel,
-                        HostImages others);
+bool isPixelRedundant(const kit::HostDepthImage& image, glm::ivec2 pixel,
+                      const kit::HostDepthImage& other);
+bool isRedundantWithAny(const kit::HostDepthImage& image, glm::ivec2 pixel, HostImages others);
 
 /// Whether the pixel in which the sample lands depends on rounding: a border of pixels of `other`
 /// is within 1e-3 px, ten times the difference seen between single and double precision here.
-bool isBorderline(const depth_images::HostDepthImage& image, glm::ivec2 pixel,
-                  const depth_images::HostDepthImage& other);
-bool isBorderlineWithAny(const depth_images::HostDepthImage& image, glm::ivec2 pixel,
-                         HostImages others);
+bool isBorderline(const kit::HostDepthImage& image, glm::ivec2 pixel,
+                  const kit::HostDepthImage& other);
+bool isBorderlineWithAny(const kit::HostDepthImage& image, glm::ivec2 pixel, HostImages others);
 
 /// [xie2017] Algorithm 1: on the ray of each pixel the nearest triangle that no earlier image holds
 /// where it lands. Both sides of triangles are seen.
-depth_images::HostDepthImage castImage(const depth_images::View& view,
-                                       std::span<const Triangle> triangles,
-                                       HostImages earlier = {});
+kit::HostDepthImage castImage(const kit::View& view, std::span<const Triangle> triangles,
+                              HostImages earlier = {});
 
 }  // namespace gfxrepro::test

@@ -30,16 +30,16 @@ scene::Scene wallAndHiddenBlock() {
 
 class NextViewTest : public test::GlTest {
   protected:
-    depth_images::DepthImage conventional(const scene::Camera& camera) {
-        auto image = renderer.makeImage(depth_images::viewOf(camera, {48, 48}));
+    kit::DepthImage conventional(const scene::Camera& camera) {
+        auto image = renderer.makeImage(kit::viewOf(camera, {48, 48}));
         renderer.render(scene, image);
         return image;
     }
 
     gl::ShaderLibrary programShaders{dataFolder("shaders")};
-    depth_images::DepthImageRenderer renderer{
-        programShaders, depth_images::TriangleIds::PrimitiveId, depth_images::DepthFormat::Float32};
-    depth_images::DrawableScene scene{wallAndHiddenBlock()};
+    kit::DepthImageRenderer renderer{programShaders, kit::TriangleIds::PrimitiveId,
+                                     kit::DepthFormat::Float32};
+    kit::DrawableScene scene{wallAndHiddenBlock()};
 
     const scene::Camera front = cameraFrom({0, 0, 8});
     const scene::Camera frontAbove = cameraFrom({0, 0.5F, 8});
@@ -53,15 +53,15 @@ class NextViewTest : public test::GlTest {
 TEST_F(NextViewTest, IsTheOnlyOneThatSeesTheHiddenBlock) {
     NextView nextView(programShaders, renderer, scene, {away, front, frontAbove, right}, outputs,
                       {48, 48});
-    const depth_images::DepthImage first = conventional(front);
-    const depth_images::DepthImage* const soFar[] = {&first};
+    const kit::DepthImage first = conventional(front);
+    const kit::DepthImage* const soFar[] = {&first};
     const NextView::Choice choice = nextView.next(soFar);
     EXPECT_EQ(choice.candidate, 3U);
     EXPECT_EQ(choice.camera.position, right.position);
     EXPECT_GT(choice.gainedSamples, 100U);
     // With that image at hand, no candidate gains more than rims that its resolution missed.
-    const depth_images::DepthImage second = conventional(right);
-    const depth_images::DepthImage* const both[] = {&first, &second};
+    const kit::DepthImage second = conventional(right);
+    const kit::DepthImage* const both[] = {&first, &second};
     EXPECT_LT(nextView.next(both).gainedSamples, choice.gainedSamples / 10);
 }
 
@@ -69,14 +69,14 @@ TEST_F(NextViewTest, CountsWhatOutputFramesNeedAndNoImageHas) {
     // The front shows the wall, which the output frame needs, but the image so far has it already.
     NextView nextView(programShaders, renderer, scene, {front}, {front}, {48, 48});
     const NextView::Choice before = nextView.next({});
-    const depth_images::HostDepthImage frame = readDepthImage(conventional(front));
+    const kit::HostDepthImage frame = readDepthImage(conventional(front));
     const auto samples = static_cast<std::uint64_t>(
         std::count_if(frame.triangleId.begin(), frame.triangleId.end(),
                       [](std::uint32_t triangleId) { return triangleId != 0; }));
     EXPECT_GT(samples, 100U);
     EXPECT_EQ(before.gainedSamples, samples);
-    const depth_images::DepthImage first = conventional(front);
-    const depth_images::DepthImage* const soFar[] = {&first};
+    const kit::DepthImage first = conventional(front);
+    const kit::DepthImage* const soFar[] = {&first};
     EXPECT_EQ(nextView.next(soFar).gainedSamples, 0U);
 }
 

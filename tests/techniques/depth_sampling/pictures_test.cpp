@@ -17,7 +17,7 @@ void expectColor(const glm::vec3& actual, const glm::vec3& expected) {
 }
 
 /// 2 × 3 pixels, white but for pixel (1, 0), which is pure green of half intensity.
-depth_images::HostDepthImage smallImage() {
+kit::HostDepthImage smallImage() {
     auto image = test::filledImage(test::viewFrom({0, 0, 1}, {2, 3}), 1.0F, 1);
     image.shading[1] = {0, 51, 0, 255};
     return image;

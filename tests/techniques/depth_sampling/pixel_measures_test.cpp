@@ -12,10 +12,10 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-using depth_images::DepthFormat;
-using depth_images::DepthImage;
-using depth_images::HostDepthImage;
-using depth_images::View;
+using kit::DepthFormat;
+using kit::DepthImage;
+using kit::HostDepthImage;
+using kit::View;
 using test::HostImages;
 
 class PixelMeasuresTest : public test::GlTest {
@@ -30,7 +30,7 @@ class PixelMeasuresTest : public test::GlTest {
         OnDevice all;
         for (const HostDepthImage& host : hosts) {
             all.images.emplace_back(host.view, DepthFormat::Float32);
-            depth_images::writeDepthImage(host, all.images.back());
+            kit::writeDepthImage(host, all.images.back());
         }
         for (const DepthImage& image : all.images) all.pointers.push_back(&image);
         return all;
@@ -245,7 +245,7 @@ TEST_F(PixelMeasuresTest, SamplesBehindTheEyeAreNotRedundant) {
 TEST_F(PixelMeasuresTest, SamplesOutsideOfTheOtherImageAreNotRedundant) {
     scene::Camera camera;
     camera.position = {0, 0, 1};
-    const auto image = test::filledImage(depth_images::viewOf(camera, {20, 10}), 2.0F, 1);
+    const auto image = test::filledImage(kit::viewOf(camera, {20, 10}), 2.0F, 1);
     struct Shift {
         glm::vec2 offsetPx;
         std::uint64_t inside;
@@ -257,7 +257,7 @@ TEST_F(PixelMeasuresTest, SamplesOutsideOfTheOtherImageAreNotRedundant) {
                                {{1, -1}, 19 * 9},
                                {{20, 0}, 0}}) {
         const auto other =
-            test::filledImage(depth_images::viewOf(camera, {20, 10}, shift.offsetPx), 2.0F, 1);
+            test::filledImage(kit::viewOf(camera, {20, 10}, shift.offsetPx), 2.0F, 1);
         EXPECT_EQ(redundantCount(image, {&other, 1}), shift.inside)
             << shift.offsetPx.x << ", " << shift.offsetPx.y;
     }

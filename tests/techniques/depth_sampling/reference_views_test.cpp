@@ -5,7 +5,7 @@
 
 #include <glm/gtc/constants.hpp>
 
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::depth_sampling {
@@ -62,7 +62,7 @@ TEST(ReferenceViewsTest, PlanesHoldTheBoxFromEverywhereInTheTriangle) {
             const ViewTriangle triangle = makeViewTriangle(scene, {.spread = spread});
             const float diagonal = glm::length(scene.bounds().size());
             for (const scene::Camera& camera : outputCameras(triangle, 3, 300)) {
-                const glm::mat4 view = depth_images::viewOf(camera, {8, 8}).viewFromWorld;
+                const glm::mat4 view = kit::viewOf(camera, {8, 8}).viewFromWorld;
                 for (int corner = 0; corner < 8; ++corner) {
                     const glm::vec3 at((corner & 1) != 0 ? high.x : -1.0F,
                                        (corner & 2) != 0 ? high.y : 0.0F,

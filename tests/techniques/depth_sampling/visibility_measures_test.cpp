@@ -11,7 +11,7 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-using depth_images::View;
+using kit::View;
 using raycast::RayTracer;
 
 /// A square of half size 1 at z = 0 and one of half size 0.5 behind it at z = −1.
@@ -30,7 +30,7 @@ View viewFrom(float x, int sizePx = 32) {
     camera.verticalFovRad = 2.0F * std::atan(2.0F / glm::length(camera.position));
     camera.nearM = 0.5F;
     camera.farM = 50.0F;
-    return depth_images::viewOf(camera, {sizePx, sizePx});
+    return kit::viewOf(camera, {sizePx, sizePx});
 }
 
 TEST(VisibilityMeasures, CountTwoSquares) {

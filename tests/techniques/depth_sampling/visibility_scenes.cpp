@@ -57,8 +57,8 @@ scene::Scene clutter(std::uint64_t seed) {
     return scene;
 }
 
-std::vector<depth_images::View> threeViews(int sizePx) {
-    std::vector<depth_images::View> views;
+std::vector<kit::View> threeViews(int sizePx) {
+    std::vector<kit::View> views;
     for (const glm::vec3 eye :
          {glm::vec3(-1.3F, -0.4F, 4), glm::vec3(1.2F, -0.3F, 3.9F), glm::vec3(0.1F, 1.1F, 3.8F)}) {
         scene::Camera camera;
@@ -67,7 +67,7 @@ std::vector<depth_images::View> threeViews(int sizePx) {
         camera.verticalFovRad = 0.42F;
         camera.nearM = 3.4F;
         camera.farM = 4.9F;
-        views.push_back(depth_images::viewOf(camera, glm::ivec2(sizePx)));
+        views.push_back(kit::viewOf(camera, glm::ivec2(sizePx)));
     }
     return views;
 }
@@ -86,13 +86,13 @@ FourObjects::FourObjects() {
     for (int mesh = 0; mesh < 4; ++mesh) scene.instances.push_back({mesh, glm::mat4(1.0F)});
 }
 
-depth_images::View FourObjects::viewFrom(float side) const {
+kit::View FourObjects::viewFrom(float side) const {
     scene::Camera camera;
     camera.position = {3.0F * side, 0, 10};
     camera.target = {0, 0, 0};
     camera.nearM = 1.0F;
     camera.farM = 30.0F;
-    return depth_images::viewOf(camera, {32, 32});
+    return kit::viewOf(camera, {32, 32});
 }
 
 }  // namespace gfxrepro::depth_sampling

@@ -14,7 +14,7 @@ scene::Scene clutter(std::uint64_t seed);
 
 /// Three views of clutter() from the corners of a triangle before it; their frustums cut it at the
 /// sides, in front and behind.
-std::vector<depth_images::View> threeViews(int sizePx);
+std::vector<kit::View> threeViews(int sizePx);
 
 /// A square of half size `half` facing +z.
 scene::Mesh squareAt(const glm::vec3& centre, float half);
@@ -26,7 +26,7 @@ struct FourObjects {
 
     FourObjects();
     /// From 10 m before the axis, 3 m · `side` beside it.
-    depth_images::View viewFrom(float side) const;
+    kit::View viewFrom(float side) const;
     SurfacePoint middleOfA() const { return {{0.03F, 0.05F, 2.0F}, 2}; }
     SurfacePoint middleOfB() const { return {{0.03F, 0.05F, 0.0F}, 4}; }
     SurfacePoint middleOfC() const { return {{0.03F, 0.05F, -2.0F}, 6}; }

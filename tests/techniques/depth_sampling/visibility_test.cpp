@@ -11,7 +11,7 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-using depth_images::View;
+using kit::View;
 using raycast::Faces;
 using raycast::RayTracer;
 
@@ -264,7 +264,7 @@ TEST(Visibility, SurfacesSeenAtASlantDoNotHideThemselves) {
     camera.position = {-1.5F, 0.1F, 0.01F};
     camera.target = {0.3F, 0.2F, 0};
     camera.up = {0, 0, 1};
-    const View view = depth_images::viewOf(camera, {16, 16});
+    const View view = kit::viewOf(camera, {16, 16});
     const VisibilitySequence images(tracer, {view, view}, true);
     // Rounded to 1 µm behind the surface, the ray meets it 0.2 mm before the point.
     const SurfacePoint point{{0.3F, 0.2F, -1e-6F}, 1};

@@ -61,8 +61,8 @@ double angleToNormalDeg(const Patch& patch, const glm::vec3& eye) {
 /// Whether the point faces the eye and its disc's centre is inside of the frustum.
 bool isSeen(const PointModel& model, std::uint32_t point, const PatchView& view) {
     const glm::vec3& p = model.positions[point];
-    if (glm::dot(model.normals[point], view.eyeModel - p) <= 0.0F) return false;
-    const glm::vec4 clip = view.clipFromView * view.viewFromModel * glm::vec4(p, 1.0F);
+    if (glm::dot(model.normals[point], view.eyeWorld - p) <= 0.0F) return false;
+    const glm::vec4 clip = view.clipFromWorld() * glm::vec4(p, 1.0F);
     return std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && std::abs(clip.z) <= clip.w;
 }
 
@@ -111,7 +111,7 @@ TEST(PatchSelection, LevelsProjectSmallEnoughAndNoFinerThanNeeded) {
         former = pointsAPatch;
         for (const DrawnPatch& item : drawn) {
             const Patch& patch = model.patches[item.patch];
-            const bool isFine = angleToNormalDeg(patch, view.eyeModel) < 90.0 - kSilhouetteDeg
+            const bool isFine = angleToNormalDeg(patch, view.eyeWorld) < 90.0 - kSilhouetteDeg
                                     ? patch.curvature > settings.curvedAbove ||
                                           patch.coneRad > settings.wideAboveRad
                                     : true;
@@ -119,7 +119,7 @@ TEST(PatchSelection, LevelsProjectSmallEnoughAndNoFinerThanNeeded) {
             const float target = isFine ? settings.fineRadiusPx : settings.targetRadiusPx;
             const auto radiusPx = [&](std::uint32_t level) {
                 return model.levels[patch.firstLevel + level].maxRadius * view.focalPx /
-                       nearestCorner(patch.bounds, view.eyeModel);
+                       nearestCorner(patch.bounds, view.eyeWorld);
             };
             if (item.level + 1 < patch.levelCount) {
                 EXPECT_LE(radiusPx(item.level), target * 1.001F);
@@ -177,7 +177,7 @@ TEST(PatchSelection, SilhouettesAreFullEwa) {
         selectPatches(model.patches, model.levels, view, settings, drawn);
         int atSilhouette = 0, within = 0;
         for (const DrawnPatch& item : drawn) {
-            const double angle = angleToNormalDeg(model.patches[item.patch], view.eyeModel);
+            const double angle = angleToNormalDeg(model.patches[item.patch], view.eyeWorld);
             if (angle > 90.0 - kSilhouetteDeg) {
                 ++atSilhouette;
                 EXPECT_EQ(item.mode, SplatMode::FullEwa);

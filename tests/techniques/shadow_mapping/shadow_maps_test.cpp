@@ -58,12 +58,12 @@ class ShadowMapsTest : public test::GlTest {
   protected:
     Terms termsOf(const ShadowMapSettings& settings, const std::vector<Light>& lights,
                   bool hasSquare = true) {
-        const depth_images::DrawableScene scene(floorAndSquare(hasSquare));
+        const kit::DrawableScene scene(floorAndSquare(hasSquare));
         scene::Camera camera = scene::framingCamera(scene.bounds(), 4.0F / 3.0F);
         ShadowMapRenderer maps(shaders, settings);
         maps.render(scene, lights);
         ShadedView view(shaders, settings);
-        ShadedImage image = makeShadedImage(depth_images::viewOf(camera, kSize), true);
+        ShadedImage image = makeShadedImage(kit::viewOf(camera, kSize), true);
         view.render(scene, maps, image);
         return {image.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
                 image.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1)};
@@ -268,7 +268,7 @@ TEST_F(ShadowMapsTest, VarianceOfTwoParallelPlanesIsTheLitShareOfTheBlur) {
 }
 
 TEST_F(ShadowMapsTest, MapsAreKeptWhileNothingMoves) {
-    const depth_images::DrawableScene scene(floorAndSquare());
+    const kit::DrawableScene scene(floorAndSquare());
     ShadowMapRenderer maps(shaders, {.sizePx = 32});
     std::vector<Light> lights{spotLight()};
     EXPECT_FALSE(maps.isCurrent(scene, lights));
@@ -280,7 +280,7 @@ TEST_F(ShadowMapsTest, MapsAreKeptWhileNothingMoves) {
 }
 
 TEST_F(ShadowMapsTest, MapsBeyondTheDeviceAndTooManyLightsAreRefused) {
-    const depth_images::DrawableScene scene(floorAndSquare());
+    const kit::DrawableScene scene(floorAndSquare());
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     ShadowMapRenderer maps(shaders, {.sizePx = limit + 1});

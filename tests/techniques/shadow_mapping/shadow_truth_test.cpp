@@ -34,7 +34,7 @@ class ShadowTruthTest : public testing::Test {
         camera.position = {0.0F, 0.45F, 3.5F};  // below the plate: sees all of its shadow
         camera.target = {0.0F, 0.0F, 0.0F};
         camera.verticalFovRad = 0.9F;
-        points_ = visiblePoints(tracer_, depth_images::viewOf(camera, glm::ivec2(kSizePx)));
+        points_ = visiblePoints(tracer_, kit::viewOf(camera, glm::ivec2(kSizePx)));
     }
 
     /// Above the middle of the plate, 64 texels across a right angle.

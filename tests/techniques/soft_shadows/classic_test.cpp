@@ -9,7 +9,7 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-using depth_images::HostDepthImage;
+using kit::HostDepthImage;
 namespace shapes = voxelization::shapes;
 
 using ClassicTest = ReconstructionTest;

@@ -7,8 +7,8 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-using depth_images::HostDepthImage;
-using depth_images::View;
+using kit::HostDepthImage;
+using kit::View;
 
 /// A flat ellipse, slanted in depth; its left and right half are two triangles' worth of ids.
 struct Ellipse {

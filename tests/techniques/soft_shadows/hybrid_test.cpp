@@ -13,10 +13,10 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-using depth_images::DepthFormat;
-using depth_images::DepthImage;
-using depth_images::HostDepthImage;
-using depth_images::View;
+using kit::DepthFormat;
+using kit::DepthImage;
+using kit::HostDepthImage;
+using kit::View;
 namespace shapes = voxelization::shapes;
 
 using HybridTest = ReconstructionTest;
@@ -110,9 +110,9 @@ TEST_F(HybridTest, IsTheReferencesMeshForNonRedundantImages) {
     const scene::Mesh mesh =
         shapes::joined(shapes::randomTriangles(300, 5), shapes::sphere(glm::vec3(0.5F), 0.4F, 4));
     const scene::Scene scene = scene::sceneOf(mesh);
-    const depth_images::DrawableScene drawable(scene);
-    depth_images::DepthImageRenderer renderer(shaders(), depth_images::TriangleIds::PrimitiveId,
-                                              DepthFormat::Float32);
+    const kit::DrawableScene drawable(scene);
+    kit::DepthImageRenderer renderer(shaders(), kit::TriangleIds::PrimitiveId,
+                                     DepthFormat::Float32);
     scene::Camera camera = scene::framingCamera(mesh.bounds(), 1.0F);
     DepthImage first = renderer.makeImage(viewOf(camera, {120, 120}));
     renderer.render(drawable, first);
@@ -303,7 +303,7 @@ TEST_F(HybridTest, MergedRowsCoverTheSameSamplesInTheSamePlanes) {
 
 TEST_F(HybridTest, AWallOfOneTriangleIsAQuadARow) {
     ImagePair images = emptyPair({40, 30});
-    for (depth_images::HostDepthImage* image : {&images.image, &images.offset}) {
+    for (kit::HostDepthImage* image : {&images.image, &images.offset}) {
         std::ranges::fill(image->depthM, 10.0F);
         std::ranges::fill(image->triangleId, 1U);
     }

@@ -52,7 +52,7 @@ class LightVisibilityTest : public testing::Test {
 
     Receivers render() const {
         scene::Camera camera = scene::framingCamera(scene.bounds(), 4.0F / 3.0F);
-        return renderReceivers(shaders, drawable, depth_images::viewOf(camera, kSize));
+        return renderReceivers(shaders, drawable, kit::viewOf(camera, kSize));
     }
     HostVisibilityMask byShadowMaps(const AreaLight& light, int sizePx) const {
         const LightVisibility visibility(shaders, {.sizePx = sizePx});
@@ -90,7 +90,7 @@ class LightVisibilityTest : public testing::Test {
     gl::Device device = gl::Device::open({"software", gl::DebugOutput::Fatal});
     gl::ShaderLibrary shaders{dataFolder("shaders")};
     scene::Scene scene;
-    depth_images::DrawableScene drawable;
+    kit::DrawableScene drawable;
     Receivers receivers;
     HostReceivers host;
 };
@@ -162,11 +162,11 @@ TEST(AreaLight, ItsViewsHoldTheCastersWhole) {
     for (const float ratio : {0.0F, 1.0F, 4.0F}) {
         const AreaLight light = makeAreaLight(box, {.sizeRatio = ratio});
         for (int c = 0; c < 4; ++c) {
-            const depth_images::View view = lightView(light, light.corner(c), 256);
+            const kit::View view = lightView(light, light.corner(c), 256);
             for (int i = 0; i < 8; ++i) {
                 const glm::vec3 corner((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : 0,
                                        (i & 4) != 0 ? 1 : -1);
-                EXPECT_TRUE(depth_images::pixelOf(view, corner)) << "ratio " << ratio;
+                EXPECT_TRUE(kit::pixelOf(view, corner)) << "ratio " << ratio;
                 const glm::vec4 clip = view.clipFromWorld() * glm::vec4(corner, 1.0F);
                 EXPECT_LT(std::abs(clip.z), clip.w);
             }

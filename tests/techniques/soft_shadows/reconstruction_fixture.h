@@ -7,18 +7,18 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/device.h"
-#include "techniques/shared/depth_image_renderer.h"
+#include "techniques/kit/depth_image_renderer.h"
 #include "techniques/soft_shadows/reconstruction.h"
 #include "tests/techniques/soft_shadows/reference_mesh.h"
 
 namespace gfxrepro::soft_shadows {
 
-using depth_images::viewOf;
+using kit::viewOf;
 
 /// An image and its offset image, in the host's memory.
 struct ImagePair {
-    depth_images::HostDepthImage image;
-    depth_images::HostDepthImage offset;
+    kit::HostDepthImage image;
+    kit::HostDepthImage offset;
 };
 
 /// A reconstruction, read back.
@@ -44,8 +44,8 @@ class ReconstructionTest : public testing::Test {
 
     static HostMesh reconstruct(const ImagePair& images, std::span<const glm::vec3> normals,
                                 const ReconstructionSettings& settings) {
-        using depth_images::DepthFormat;
-        using depth_images::DepthImage;
+        using kit::DepthFormat;
+        using kit::DepthImage;
         DepthImage image(images.image.view, DepthFormat::Float32);
         DepthImage offset(images.offset.view, DepthFormat::Float32);
         writeDepthImage(images.image, image);
@@ -69,7 +69,7 @@ class ReconstructionTest : public testing::Test {
 };
 
 /// An image without samples.
-depth_images::HostDepthImage emptyImage(const depth_images::View& view);
+kit::HostDepthImage emptyImage(const kit::View& view);
 /// Both without samples, seen from the origin.
 ImagePair emptyPair(glm::ivec2 sizePx);
 /// By ray casting: the nearest triangle, of either side, through the middle of each

@@ -8,8 +8,8 @@
 
 namespace gfxrepro::soft_shadows {
 
-using depth_images::HostDepthImage;
-using depth_images::View;
+using kit::HostDepthImage;
+using kit::View;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "techniques/shared/depth_image.h"
+#include "techniques/kit/depth_image.h"
 #include "techniques/soft_shadows/reconstruction.h"
 
 namespace gfxrepro::soft_shadows::reference {
@@ -15,10 +15,10 @@ namespace gfxrepro::soft_shadows::reference {
 std::vector<glm::vec3> normalsOf(const scene::Mesh& mesh);
 
 /// Width of a pixel at a depth.
-double footprintM(const depth_images::View& view, double depthM);
+double footprintM(const kit::View& view, double depthM);
 
 /// Where the ray through a position meets the plane of a pixel's sample; nothing where it does not.
-std::optional<double> depthOnPlane(const depth_images::HostDepthImage& image, glm::ivec2 pixel,
+std::optional<double> depthOnPlane(const kit::HostDepthImage& image, glm::ivec2 pixel,
                                    std::span<const glm::vec3> normals, glm::dvec2 positionPx);
 
 struct Corner {
@@ -32,13 +32,12 @@ struct Quad {
 };
 
 /// [xie2017] Algorithm 4: a quad a sample, in row order.
-std::vector<Quad> hybridQuads(const depth_images::HostDepthImage& image,
-                              const depth_images::HostDepthImage& offset,
+std::vector<Quad> hybridQuads(const kit::HostDepthImage& image, const kit::HostDepthImage& offset,
                               std::span<const glm::vec3> normals,
                               const ReconstructionSettings& settings);
 
 /// Whether no discontinuity lies between two samples of one image.
-bool areJoined(const depth_images::HostDepthImage& image, glm::ivec2 a, glm::ivec2 b,
+bool areJoined(const kit::HostDepthImage& image, glm::ivec2 a, glm::ivec2 b,
                std::span<const glm::vec3> normals, const ReconstructionSettings& settings);
 
 /// Euler characteristic and the number of parts that hang together by vertices: equal for a mesh

@@ -8,7 +8,7 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-using depth_images::View;
+using kit::View;
 namespace shapes = voxelization::shapes;
 
 class ShadowCastersTest : public ReconstructionTest {
@@ -39,7 +39,7 @@ std::size_t countDrawn(const std::vector<float>& depths) {
 
 TEST_F(ShadowCastersTest, TheSceneCasterDrawsTheScene) {
     const scene::Mesh mesh = shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 60, 30);
-    const depth_images::DrawableScene scene(scene::sceneOf(mesh));
+    const kit::DrawableScene scene(scene::sceneOf(mesh));
     const SceneCaster caster(shaders(), scene);
     EXPECT_EQ(caster.triangleCount(), mesh.triangles.size());
     const scene::Camera camera = scene::framingCamera(mesh.bounds(), 1.0F);
@@ -56,7 +56,7 @@ TEST_F(ShadowCastersTest, TheSceneCasterDrawsTheScene) {
 
 TEST_F(ShadowCastersTest, AMeshCasterDrawsLikeTheScene) {
     const scene::Mesh mesh = shapes::randomTriangles(300, 4);
-    const depth_images::DrawableScene scene(scene::sceneOf(mesh));
+    const kit::DrawableScene scene(scene::sceneOf(mesh));
     const MeshCaster caster(shaders(), mesh);
     EXPECT_EQ(caster.triangleCount(), mesh.triangles.size());
     const View view = viewOf(scene::framingCamera(mesh.bounds(), 1.0F), {64, 64});

@@ -19,7 +19,7 @@ TEST_F(TerrainTest, ReplayedFactorsAreThoseOfTheDoublePrecisionReference) {
         set.factors.segmentPx = 3.0F;
         FactorReplay replay(shaders, *terrain, set);
         for (const auto& [eye, target] : kViews) {
-            const depth_images::View view = viewAt(eye, target);
+            const kit::View view = viewAt(eye, target);
             const std::vector<Tile> tiles = tilesOf(0);
             const auto factors = replay.run(tiles, view);
             ASSERT_EQ(factors.size(), tiles.size() * 16);
@@ -42,7 +42,7 @@ TEST_F(TerrainTest, AKnownEdgeHasItsFactorByHand) {
     set.factors.segmentPx = 1.0F;
     // Level 0, D = 16. The eye is 40 in front of the midpoint (8, 0, 0) of the first north edge:
     // F = 16 · (height / 2) / tan(0.45) / 40 pixels.
-    const depth_images::View view = viewAt({8, 0, -40}, {8, 0, 0});
+    const kit::View view = viewAt({8, 0, -40}, {8, 0, 0});
     const double expected = 16.0 * 50.0 / std::tan(0.45) / 40.0;
     EXPECT_NEAR(edgeFactor(*metadata, set.factors, view, {0, {0, 0}}, kNorth), expected, 1e-3);
 }
@@ -58,7 +58,7 @@ TEST_F(TerrainTest, ASlopingEdgeIsAsLongAsInSpace) {
     set.cullsPatches = false;
     // From (0, 0, 0) to (16, 12, 0): D = 20, more than the 12 between the heights. Seen from 40 in
     // front of its middle.
-    const depth_images::View view = viewAt({8, 6, -40}, {8, 6, 0});
+    const kit::View view = viewAt({8, 6, -40}, {8, 6, 0});
     const double expected = 20.0 * 50.0 / std::tan(0.45) / 40.0;
     EXPECT_NEAR(edgeFactor(*metadata, set.factors, view, {0, {0, 0}}, kNorth), expected, 1e-3);
     const std::vector<Tile> tiles = tilesOf(0);
@@ -74,7 +74,7 @@ TEST_F(TerrainTest, TwiceTheDeltaSHalvesFactorsThatMeetNoLimit) {
     RenderSettings set = settings();
     FactorReplay replay(shaders, *terrain, set);
     const std::vector<Tile> tiles = tilesOf(0);
-    const depth_images::View view = viewAt(kViews[0][0], kViews[0][1]);
+    const kit::View view = viewAt(kViews[0][0], kViews[0][1]);
     const auto factorsAt = [&](float segmentPx) {
         replay.setSegmentPx(segmentPx);
         return replay.run(tiles, view);

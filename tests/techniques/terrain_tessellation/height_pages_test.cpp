@@ -94,8 +94,7 @@ TEST_F(TerrainTest, FewPagesDrawThePictureOfMany) {
     }
     std::size_t mostTiles = 0;
     for (int frame = 0; frame < 12; ++frame) {
-        const depth_images::View view =
-            depth_images::viewOf(flight.camera(frame, 12, 1.6F), {80, 50});
+        const kit::View view = kit::viewOf(flight.camera(frame, 12, 1.6F), {80, 50});
         const TileView tileView{view.eyeWorld, view.clipFromWorld(), 50.0F};
         const std::vector<Tile> tiles = tree.select(tileView, 1.0F).tiles;
         mostTiles = std::max(mostTiles, tiles.size());

@@ -21,12 +21,12 @@ class PatchBatchesTest : public testing::Test {
           tree(metadata, {4, 2}) {
         settings.tile = {4, 2};
     }
-    std::vector<Tile> tilesFrom(const depth_images::View& view) const {
+    std::vector<Tile> tilesFrom(const kit::View& view) const {
         return tree.select({view.eyeWorld, view.clipFromWorld(), 50.0F}, 4.0F, false).tiles;
     }
     /// Whether all samples of a patch or a skirt's part, as patches.glsl numbers them, are inside.
     bool isInside(const std::vector<Tile>& tiles, std::uint32_t number,
-                  const depth_images::View& view) const {
+                  const kit::View& view) const {
         const Tile& tile = tiles[number / 32];
         const int local = static_cast<int>(number % 32), span = 16 << tile.level;
         const bool isSkirt = local >= 16;
@@ -62,7 +62,7 @@ class PatchBatchesTest : public testing::Test {
 
 TEST_F(PatchBatchesTest, HaveEveryPatchOnceAndOnlySmallOnesAreClipped) {
     int large = 0, small = 0;
-    for (const depth_images::View& view : terrainViews()) {
+    for (const kit::View& view : terrainViews()) {
         const std::vector<Tile> tiles = tilesFrom(view);
         const BatchLimits limits{4000, 500};
         const PatchBatches patches =
@@ -88,7 +88,7 @@ TEST_F(PatchBatchesTest, HaveEveryPatchOnceAndOnlySmallOnesAreClipped) {
 }
 
 TEST_F(PatchBatchesTest, CulledPatchesCostNothing) {
-    const depth_images::View away = viewAt({128, 60, 128}, {140, 400, 128});
+    const kit::View away = viewAt({128, 60, 128}, {140, 400, 128});
     const std::vector<Tile> tiles = tilesFrom(away);
     const PatchBatches patches =
         batchPatches(metadata, settings, away, {tiles, true, kFootM, true}, {});

@@ -21,18 +21,18 @@ class SeamCheckTest : public TerrainTest {
         return set;
     }
     std::vector<PatchFactors> factorsOf(const RenderSettings& set, const std::vector<Tile>& tiles,
-                                        const depth_images::View& view) {
+                                        const kit::View& view) {
         return FactorReplay(shaders, *terrain, set).run(tiles, view);
     }
     Seams seamsOf(const RenderSettings& set, const std::vector<Tile>& tiles,
-                  const depth_images::View& view) {
+                  const kit::View& view) {
         TerrainRenderer renderer(shaders, *terrain, set);
         return checkSeams(tiles, tile, factorsOf(set, tiles, view), renderer.capture(tiles, view));
     }
 };
 
 TEST_F(SeamCheckTest, NoEdgeIsOpenWithinAndBetweenTilesOfOneLevel) {
-    for (const depth_images::View& view : terrainViews()) {
+    for (const kit::View& view : terrainViews()) {
         for (int level = 0; level < 2; ++level) {
             for (const Spacing spacing : {Spacing::FractionalEven, Spacing::Equal}) {
                 RenderSettings set = capturing();
@@ -53,7 +53,7 @@ TEST_F(SeamCheckTest, NoEdgeIsOpenWithinAndBetweenTilesOfOneLevel) {
 TEST_F(SeamCheckTest, NorWhereTilesOfSeveralLevelsMeetWhichIsSkirtsWork) {
     const TileTree tree(*metadata, tile);
     int mixed = 0;
-    for (const depth_images::View& view : terrainViews()) {
+    for (const kit::View& view : terrainViews()) {
         const std::vector<Tile> tiles =
             tree.select({view.eyeWorld, view.clipFromWorld(), 62.0F}, 2.0F).tiles;
         mixed += std::any_of(tiles.begin(), tiles.end(),
@@ -64,7 +64,7 @@ TEST_F(SeamCheckTest, NorWhereTilesOfSeveralLevelsMeetWhichIsSkirtsWork) {
 }
 
 TEST_F(SeamCheckTest, UnequalFactorsLeaveEdgesOpen) {
-    const depth_images::View view = terrainViews()[0];
+    const kit::View view = terrainViews()[0];
     EXPECT_GT(seamsOf(capturing(EdgeRule::OwnPatch), tilesOf(0), view).openEdges, 100U);
 }
 
@@ -86,7 +86,7 @@ TEST_F(SeamCheckTest, OneBitOfOneVertexIsFound) {
 
 TEST_F(SeamCheckTest, CapturesTheTrianglesThatAreDrawn) {
     const std::vector<Tile> tiles = tilesOf(0);
-    const depth_images::View view = terrainViews()[1];
+    const kit::View view = terrainViews()[1];
     RenderSettings set = capturing();
     TerrainRenderer renderer(shaders, *terrain, set);
     const std::vector<CapturedVertex> vertices = renderer.capture(tiles, view);
@@ -114,7 +114,7 @@ TEST_F(SeamCheckTest, PatchesHaveTheVerticesOfTheirFactors) {
         RenderSettings set = capturing();
         set.factors.inner = inner;
         std::size_t fan = 0;
-        for (const depth_images::View& view : terrainViews()) {
+        for (const kit::View& view : terrainViews()) {
             const Seams seams = seamsOf(set, tiles, view);
             int most = 0;
             FactorReplay replay(shaders, *terrain, set);
@@ -135,7 +135,7 @@ TEST_F(SeamCheckTest, PatchesHaveTheVerticesOfTheirFactors) {
 
 TEST_F(SeamCheckTest, SkirtsAreCountedApart) {
     const std::vector<Tile> tiles = tilesOf(0);
-    const depth_images::View view = terrainViews()[1];
+    const kit::View view = terrainViews()[1];
     for (const bool hasBatches : {true, false}) {
         std::vector<std::uint64_t> counts;
         for (const bool hasSkirts : {true, false}) {

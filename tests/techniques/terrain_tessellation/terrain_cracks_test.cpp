@@ -13,7 +13,7 @@ class TerrainCracksTest : public TerrainTest {
     TerrainCracksTest() { makeTerrain(roughMap(257, 60.0F)); }
 
     /// From 8 to 80 m above the ground or beside the map, in any direction but upwards.
-    depth_images::View randomView(std::mt19937& random) const {
+    kit::View randomView(std::mt19937& random) const {
         glm::vec3 eye(anywhere(random, -60, 316), 0.0F, anywhere(random, -60, 316));
         float ground = 0.0F;
         for (int i = -8; i <= 8; ++i) {
@@ -28,7 +28,7 @@ class TerrainCracksTest : public TerrainTest {
         return viewAt(eye, eye + ahead, kSize);
     }
     template <class Draw>
-    DepthMap coverage(const depth_images::View& view, const Draw& draw) {
+    DepthMap coverage(const kit::View& view, const Draw& draw) {
         DepthMap result{view, {}};
         for (const glm::vec4& pixel : picture(kSize, draw)) result.depthM.push_back(pixel.a);
         return result;
@@ -48,7 +48,7 @@ class TerrainCracksTest : public TerrainTest {
         std::mt19937 random(21);
         Found found;
         for (int i = 0; i < views; ++i) {
-            const depth_images::View view = randomView(random);
+            const kit::View view = randomView(random);
             const TileView tileView{view.eyeWorld, view.clipFromWorld(), 62.0F};
             const std::vector<Tile> tiles = tree.select(tileView, 2.0F).tiles;
             const std::vector<Tile> finest = tree.select(tileView, 0.0F).tiles;

@@ -20,7 +20,7 @@ DepthMap fromAbove(float planeM, glm::ivec2 sizePx = {16, 12}) {
     camera.up = {0.0F, 0.0F, -1.0F};
     camera.nearM = 1.0F;
     camera.farM = 1000.0F;
-    DepthMap map{depth_images::viewOf(camera, sizePx), {}};
+    DepthMap map{kit::viewOf(camera, sizePx), {}};
     map.depthM.assign(static_cast<std::size_t>(sizePx.x * sizePx.y), 100.0F - planeM);
     return map;
 }

@@ -34,7 +34,7 @@ TEST_F(TerrainTest, HeightsAtSamplesAreTheMaps) {
     TerrainRenderer renderer(shaders, *terrain, set);
     // From straight above, half a metre a pixel at an even height would need an orthographic view:
     // scale the clip space of one directly, sample (i, j) in the middle of pixel (i, 63 − j).
-    depth_images::View view = viewAt({0, 0, 0}, {0, -1, -0.001F}, {64, 64});
+    kit::View view = viewAt({0, 0, 0}, {0, -1, -0.001F}, {64, 64});
     view.eyeWorld = {32, 500, 32};
     view.viewFromWorld = glm::mat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
     view.clipFromView = glm::mat4(2.0F / 64, 0, 0, 0, 0, 2.0F / 64, 0, 0, 0, 0, 1.0F / 200, 0,
@@ -58,7 +58,7 @@ TEST_F(TerrainTest, FlatTerrainIsThePlane) {
     RenderSettings set = settings();
     set.hasSkirts = false;
     TerrainRenderer renderer(shaders, *terrain, set);
-    const depth_images::View view = viewAt({128, 30, 300}, {128, 0, 100}, kSize);
+    const kit::View view = viewAt({128, 30, 300}, {128, 0, 100}, kSize);
     const auto pixels = picture(kSize, [&](const gl::Framebuffer& target) {
         renderer.drawTessellated(tilesOf(0), view, target);
     });
@@ -68,7 +68,7 @@ TEST_F(TerrainTest, FlatTerrainIsThePlane) {
     for (int y = 0; y < kSize.y; ++y) {
         for (int x = 0; x < kSize.x; ++x) {
             const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-            const glm::vec3 ray = depth_images::rayThrough(view, px);
+            const glm::vec3 ray = kit::rayThrough(view, px);
             const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
             const glm::vec3 hit = view.eyeWorld + away * ray;
             const float inside =
@@ -94,7 +94,7 @@ TEST_F(TerrainTest, CullingChangesNoPixelAndDropsPatches) {
     const auto anywhere = [&] { return static_cast<float>(random() % 256U); };
     int culled = 0;
     for (int i = 0; i < 6; ++i) {
-        const depth_images::View view =
+        const kit::View view =
             viewAt({anywhere(), 70.0F, anywhere()}, {anywhere(), 10.0F, anywhere()}, kSize);
         DrawCounts fewer, all;
         const auto a = picture(kSize, [&](const gl::Framebuffer& target) {
@@ -133,7 +133,7 @@ TEST_F(TerrainTest, SkirtsHideTheCracksBetweenTilesOfDifferentLevels) {
                 return low + (high - low) * static_cast<float>(random() % 1000U) / 1000.0F;
             };
             const glm::vec3 eye(about(40, 216), about(70, 110), about(40, 216));
-            const depth_images::View view =
+            const kit::View view =
                 viewAt(eye, eye + glm::vec3(about(-30, 30), -about(60, 90), 20.0F), kSize);
             holes += holesBelowSilhouette(picture(kSize,
                                                   [&](const gl::Framebuffer& target) {
@@ -152,7 +152,7 @@ TEST_F(TerrainTest, SkirtsHideTheCracksBetweenTilesOfDifferentLevels) {
 TEST_F(TerrainTest, SplittingChangesNoPixel) {
     makeTerrain(roughMap(257, 40.0F));
     RenderSettings set = settings();
-    const depth_images::View view = viewAt({128, 70, 300}, {128, 0, 100}, kSize);
+    const kit::View view = viewAt({128, 70, 300}, {128, 0, 100}, kSize);
     std::vector<std::vector<glm::vec4>> pictures;
     std::vector<DrawCounts> counts;
     for (const int limit : {0, 1500}) {

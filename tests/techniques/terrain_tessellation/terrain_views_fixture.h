@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "techniques/shared/view.h"
+#include "techniques/kit/view.h"
 #include "techniques/terrain_tessellation/tile_selection.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -28,7 +28,7 @@ inline scene::HeightMap roughMap(int side, float reliefM) {
     return map;
 }
 
-inline depth_images::View viewAt(glm::vec3 eye, glm::vec3 target, glm::ivec2 sizePx = {160, 100}) {
+inline kit::View viewAt(glm::vec3 eye, glm::vec3 target, glm::ivec2 sizePx = {160, 100}) {
     scene::Camera camera;
     camera.position = eye;
     camera.target = target;
@@ -36,7 +36,7 @@ inline depth_images::View viewAt(glm::vec3 eye, glm::vec3 target, glm::ivec2 siz
     camera.verticalFovRad = 0.9F;
     camera.nearM = 0.5F;
     camera.farM = 2000.0F;
-    return depth_images::viewOf(camera, sizePx);
+    return kit::viewOf(camera, sizePx);
 }
 
 /// A number of [low, high), the same on every machine.
@@ -45,7 +45,7 @@ inline float anywhere(std::mt19937& random, float low, float high) {
 }
 
 /// Over roughMap(257, 40): from above it, within it, low along it and from straight above.
-inline std::vector<depth_images::View> terrainViews() {
+inline std::vector<kit::View> terrainViews() {
     return {viewAt({-20, 60, 300}, {128, 10, 100}), viewAt({100, 55, 120}, {200, 10, 60}),
             viewAt({10, 50, 10}, {250, 30, 240}), viewAt({128, 300, 128}, {129, 0, 127})};
 }

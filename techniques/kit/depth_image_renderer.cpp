@@ -1,0 +1,125 @@
+#include "techniques/kit/depth_image_renderer.h"
+
+#include <fmt/format.h>
+
+#include "runner/core/error.h"
+#include "runner/gpu_scene/gpu_mesh.h"
+
+namespace gfxrepro::kit {
+
+namespace {
+
+/// Texture units of the fragment stage: the earlier images' ids, one each, then the base colours.
+/// Sixteen in all, as many as every OpenGL 4.5 has.
+constexpr unsigned kEarlierIdsUnit = 0;
+constexpr unsigned kBaseColorUnit = kMaxEarlierImages;
+static_assert(kBaseColorUnit < 16);
+
+/// Outputs in the order of the framebuffer's attachments.
+enum Target { kShadingTarget = 0, kDepthTarget = 1, kTriangleIdTarget = 2 };
+
+bool isReversed(DepthFormat format) {
+    return format == DepthFormat::ReversedFloat32;
+}
+
+/// The view's projection; reversed, with clip z from w (near) to 0 (far). That row is built from
+/// the planes: taken from the other projection, it would have that one's rounding errors, which are
+/// what reversing is to avoid.
+glm::mat4 clipFromView(const View& view, DepthFormat format) {
+    glm::mat4 clip = view.clipFromView;
+    if (!isReversed(format)) return clip;
+    const float range = view.farM - view.nearM;
+    clip[0].z = 0.0F;
+    clip[1].z = 0.0F;
+    clip[2].z = view.nearM / range;
+    clip[3].z = view.farM * view.nearM / range;
+    return clip;
+}
+
+/// From (x·d, y·d, d, 1) of a view's pixels to view space.
+glm::mat4 viewFromPixels(const View& view) {
+    View own = view;
+    own.viewFromWorld = glm::mat4(1.0F);
+    return worldFromPixels(own);
+}
+
+void clear(const DepthImage& target, DepthFormat format) {
+    constexpr GLuint kNoTriangle[4] = {};
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    target.framebuffer.clearColour(kShadingTarget, glm::vec4(0.0F));
+    target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
+    glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kTriangleIdTarget, kNoTriangle);
+    target.framebuffer.clearDepth(isReversed(format) ? 0.0F : 1.0F);
+}
+
+/// What [xie2017] Algorithm 3 reads of the earlier images.
+void bindEarlier(const gl::Program& program, const View& view,
+                 std::span<const DepthImage* const> earlier) {
+    for (std::size_t j = 0; j < earlier.size(); ++j) {
+        const DepthImage& image = *earlier[j];
+        image.triangleId.bind(kEarlierIdsUnit + static_cast<unsigned>(j));
+        program.set(fmt::format("earlierFromHere[{}]", j).c_str(), reprojection(view, image.view));
+        program.set(fmt::format("earlierSizePx[{}]", j).c_str(), glm::vec2(image.view.sizePx));
+    }
+}
+
+}  // namespace
+
+DepthImageRenderer::DepthImageRenderer(const gl::ShaderLibrary& shaders, TriangleIds ids,
+                                       DepthFormat format)
+    : shaders_(shaders), ids_(ids), format_(format) {}
+
+const gl::Program& DepthImageRenderer::programFor(const Variant& variant) {
+    const auto found = programs_.find(variant);
+    if (found != programs_.end()) return found->second;
+    const bool hasGeometryStage = ids_ == TriangleIds::GeometryShader;
+    gl::Defines defines = gpu_scene::attributeDefines();
+    defines["ALPHA_TEST"] = variant.isAlphaTested ? 1 : 0;
+    defines["EARLIER_COUNT"] = variant.earlierCount;
+    defines["FLAT_PARTS"] = variant.hasFlatParts ? 1 : 0;
+    defines["GEOMETRY_STAGE"] = hasGeometryStage ? 1 : 0;
+    defines["TEXTURES"] = variant.hasTextures ? 1 : 0;
+    defines["kBaseColorUnit"] = static_cast<int>(kBaseColorUnit);
+    defines["kDepthTarget"] = kDepthTarget;
+    defines["kEarlierIdsUnit"] = static_cast<int>(kEarlierIdsUnit);
+    defines["kShadingTarget"] = kShadingTarget;
+    defines["kTriangleIdTarget"] = kTriangleIdTarget;
+    std::vector<std::string> files = {"kit/depth_image.vert.glsl", "kit/depth_image.frag.glsl"};
+    if (hasGeometryStage) files.push_back("kit/depth_image.geom.glsl");
+    return programs_.emplace(variant, gl::Program(shaders_, files, defines)).first->second;
+}
+
+void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
+                                std::span<const DepthImage* const> earlier) {
+    GFXREPRO_ASSERT(earlier.size() <= kMaxEarlierImages);
+    const View& view = target.view;
+    const gl::Program& program = programFor({static_cast<int>(earlier.size()), scene.hasTextures(),
+                                             scene.isAlphaTested(), scene.hasFlatParts()});
+    program.use();
+    const glm::mat4 clipFromWorld = clipFromView(view, format_) * view.viewFromWorld;
+    program.set("clipFromWorld", clipFromWorld);
+    program.set("viewFromWorld", view.viewFromWorld);
+    program.set("lightDirectionView",
+                glm::normalize(glm::mat3(view.viewFromWorld) * kLightDirectionWorld));
+    program.setIfActive("viewFromPixels", viewFromPixels(view));
+    bindEarlier(program, view, earlier);
+
+    clear(target, format_);
+    target.framebuffer.bind();
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+    if (isReversed(format_)) {
+        glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+        glDepthFunc(GL_GREATER);
+    } else {
+        glDepthFunc(GL_LESS);
+    }
+    scene.draw(program, kBaseColorUnit);
+    // The defaults, which other passes take for granted.
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glDepthFunc(GL_LESS);
+}
+
+}  // namespace gfxrepro::kit

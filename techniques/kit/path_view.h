@@ -1,0 +1,23 @@
+// Which camera a frame of an experiment is seen with.
+#pragma once
+
+#include <string>
+
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::kit {
+
+/// The middle of frame `frame` in a time of 0 … 1: (frame + 0.5) / frameCount. Objects are posed
+/// for it, too.
+double frameTime(int frame, int frameCount);
+
+/// The camera at a time of 0 … 1. `view` names a path of the scene or, where none is called so, a
+/// camera; empty: the first path, else the first camera, else one that frames the scene at `aspect`
+/// (width / height). Throws Error for a name that the scene has not.
+scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, double time,
+                           float aspect);
+/// The camera of a frame, at its frameTime().
+scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int frame,
+                        int frameCount, float aspect);
+
+}  // namespace gfxrepro::kit

@@ -1,0 +1,88 @@
+// What the tests of depth images share: views, a scene of random triangles, drawing.
+#pragma once
+
+#include <algorithm>
+
+#include "runner/core/files.h"
+#include "runner/core/random.h"
+#include "techniques/kit/depth_image_renderer.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::kit {
+
+inline scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
+    scene::Camera camera;
+    camera.position = position;
+    camera.target = target;
+    camera.nearM = 0.5F;
+    camera.farM = 20.0F;
+    return camera;
+}
+
+/// Three views of [−1, 1]³ from the corners of a triangle before it.
+inline std::vector<View> threeViews(int sizePx) {
+    std::vector<View> views;
+    for (const glm::vec2 corner : {glm::vec2(0.0F, 1.0F), {-0.9F, -0.6F}, {0.9F, -0.6F}}) {
+        views.push_back(viewOf(cameraAt({corner, 4.5F}, glm::vec3(0.0F)), glm::ivec2(sizePx)));
+    }
+    return views;
+}
+
+/// Unconnected triangles in [−1, 1]³, facing anywhere.
+inline scene::Mesh randomTriangles(int count, float size, std::uint64_t seed) {
+    Random random(seed);
+    const auto vector = [&](float extent) {
+        const float x = random.uniform(-extent, extent);
+        const float y = random.uniform(-extent, extent);
+        return glm::vec3(x, y, random.uniform(-extent, extent));
+    };
+    scene::Mesh mesh;
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+        const glm::vec3 centre = vector(1.0F - size);
+        for (int corner = 0; corner < 3; ++corner) {
+            mesh.positions.push_back(centre + vector(size));
+        }
+        mesh.triangles.push_back(glm::uvec3(3 * i) + glm::uvec3(0, 1, 2));
+    }
+    return mesh;
+}
+
+class DepthImageTest : public test::GlTest {
+  protected:
+    DepthImageRenderer makeRenderer(DepthFormat format = DepthFormat::Float32,
+                                    TriangleIds ids = TriangleIds::PrimitiveId) const {
+        return {shaders, ids, format};
+    }
+
+    /// Images from `views`, each tested against those before it, or all conventional.
+    static std::vector<DepthImage> draw(DepthImageRenderer& renderer, const DrawableScene& scene,
+                                        const std::vector<View>& views, bool isNonRedundant) {
+        std::vector<DepthImage> images;
+        for (const View& view : views) {
+            DepthImage image = renderer.makeImage(view);
+            std::vector<const DepthImage*> earlier;
+            if (isNonRedundant) {
+                for (const DepthImage& before : images) earlier.push_back(&before);
+            }
+            renderer.render(scene, image, earlier);
+            images.push_back(std::move(image));
+        }
+        return images;
+    }
+    std::vector<HostDepthImage> drawn(const scene::Scene& scene, const std::vector<View>& views,
+                                      bool isNonRedundant,
+                                      DepthFormat format = DepthFormat::Float32,
+                                      TriangleIds ids = TriangleIds::PrimitiveId) const {
+        DepthImageRenderer renderer = makeRenderer(format, ids);
+        const DrawableScene drawable(scene);
+        std::vector<HostDepthImage> hosts;
+        for (const DepthImage& image : draw(renderer, drawable, views, isNonRedundant)) {
+            hosts.push_back(readDepthImage(image));
+        }
+        return hosts;
+    }
+
+    gl::ShaderLibrary shaders{dataFolder("shaders")};
+};
+
+}  // namespace gfxrepro::kit

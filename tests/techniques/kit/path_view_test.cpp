@@ -1,0 +1,64 @@
+#include "techniques/kit/path_view.h"
+
+#include "scenes/shared/mesh_builder.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::kit {
+namespace {
+
+scene::Camera cameraAtX(const std::string& name, float x) {
+    scene::Camera camera;
+    camera.name = name;
+    camera.position = {x, 0, 0};
+    return camera;
+}
+
+scene::Scene box() {
+    scene::MeshBuilder builder;
+    builder.addBox({0, 0, 0}, {1, 1, 1});
+    return scene::sceneOf(builder.take("box", -1));
+}
+
+scene::Scene boxWithViews() {
+    scene::Scene scene = box();
+    scene.cameras = {cameraAtX("front", 10), cameraAtX("side", 11), cameraAtX("round", 12)};
+    scene.paths.push_back({"round", {cameraAtX("", 0), cameraAtX("", 1)}});
+    scene.paths.push_back({"through", {cameraAtX("", 4), cameraAtX("", 8)}});
+    return scene;
+}
+
+TEST(PathView, TakesTheMiddleOfAFramesTime) {
+    EXPECT_EQ(frameTime(0, 1), 0.5);
+    EXPECT_EQ(frameTime(0, 4), 0.125);
+    EXPECT_EQ(frameTime(3, 4), 0.875);
+}
+
+TEST(PathView, FindsPathsBeforeCamerasByName) {
+    const scene::Scene scene = boxWithViews();
+    EXPECT_EQ(cameraFor(scene, "side", 0, 1, 1.0F).position.x, 11.0F);
+    EXPECT_FLOAT_EQ(cameraFor(scene, "through", 0, 1, 1.0F).position.x, 6.0F);
+    EXPECT_FLOAT_EQ(cameraFor(scene, "round", 0, 1, 1.0F).position.x, 0.5F);
+    EXPECT_GT(cameraFor(scene, "through", 3, 4, 1.0F).position.x,
+              cameraFor(scene, "through", 2, 4, 1.0F).position.x);
+}
+
+TEST(PathView, WithoutANameTakesTheFirstThatThereIs) {
+    scene::Scene scene = boxWithViews();
+    EXPECT_FLOAT_EQ(cameraFor(scene, "", 0, 1, 1.0F).position.x, 0.5F);
+    scene.paths.clear();
+    EXPECT_EQ(cameraFor(scene, "", 0, 1, 1.0F).position.x, 10.0F);
+    scene.cameras.clear();
+    EXPECT_EQ(cameraFor(scene, "", 0, 1, 1.5F).position,
+              scene::framingCamera(scene.bounds(), 1.5F).position);
+}
+
+TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
+    EXPECT_EQ(test::errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
+              "the scene has no path or camera 'back'; paths: 'round', 'through'; cameras: "
+              "'front', 'side', 'round'");
+    EXPECT_EQ(test::errorText([] { cameraFor(box(), "back", 0, 1, 1.0F); }),
+              "the scene has no path or camera 'back'; paths: none; cameras: none");
+}
+
+}  // namespace
+}  // namespace gfxrepro::kit
