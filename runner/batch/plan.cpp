@@ -133,7 +133,6 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);
         requireCaseCount(plan.cases.size() + cases.size(), experiment);
-        plan.cases.reserve(plan.cases.size() + cases.size());
         for (Case& item : cases) {
             if (!item.scene.isNull()) {
                 std::string& known = plan.sceneKeys[item.scene.text()];
@@ -144,7 +143,11 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
                 throw Error(experiment.file.string() + ": the sweep gives the case '" +
                             item.title() + "' twice");
             }
-            plan.cases.push_back(std::move(item));
+        }
+        if (plan.cases.empty()) {
+            plan.cases = std::move(cases);  // of 100,000 cases a second list counts
+        } else {
+            std::ranges::move(cases, std::back_inserter(plan.cases));
         }
     }
     std::vector<fs::path> files;

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -79,21 +81,22 @@ void requireCaseCount(std::size_t count, const config::Experiment& experiment) {
                             experiment.file.string(), count, kMostCases));
 }
 
-std::vector<Case> resolveParameters(const config::Experiment& experiment,
-                                    const scene::Catalog& catalog,
-                                    std::span<const technique::TechniqueInfo> techniques,
-                                    std::uint64_t seed) {
-    if (experiment.technique.empty()) return {};  // only printed
+namespace {
+
+/// Gives each case of the sweep to `take`, without what takes a scene's place: there may be
+/// 100,000.
+void forEachCase(const config::Experiment& experiment, const scene::Catalog& catalog,
+                 std::span<const technique::TechniqueInfo> techniques, std::uint64_t seed,
+                 const std::function<void(Case)>& take) {
+    if (experiment.technique.empty()) return;  // only printed
     const config::Node* named = experiment.document.find("technique");
     const technique::TechniqueInfo& info = technique::findTechnique(
         techniques, experiment.technique,
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
     std::vector<config::CaseSpec> specs = config::expandCases(experiment);
     requireCaseCount(specs.size(), experiment);
-    std::vector<Case> cases;
-    cases.reserve(specs.size());
     for (config::CaseSpec& given : specs) {
-        const config::CaseSpec spec = std::move(given);  // there may be 100,000: one at a time
+        const config::CaseSpec spec = std::move(given);
         Case item;
         takeInstead(spec, experiment.paramsInstead, item);
         config::Params params(item.given, "technique '" + std::string(info.name) + "'");
@@ -115,8 +118,19 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
-        cases.push_back(std::move(item));
+        take(std::move(item));
     }
+}
+
+}  // namespace
+
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed) {
+    std::vector<Case> cases;
+    forEachCase(experiment, catalog, techniques, seed,
+                [&](Case item) { cases.push_back(std::move(item)); });
     return cases;
 }
 
@@ -124,12 +138,9 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
     std::vector<Case> cases;
-    std::vector<Case> resolved = resolveParameters(experiment, catalog, techniques, seed);
-    cases.reserve(resolved.size());
-    for (Case& one : resolved) {
-        const Case item = std::move(one);
-        for (Case& taken : withScenes(item, experiment, catalog)) cases.push_back(std::move(taken));
-    }
+    forEachCase(experiment, catalog, techniques, seed, [&](const Case& item) {
+        std::ranges::move(withScenes(item, experiment, catalog), std::back_inserter(cases));
+    });
     requireTaken(experiment, cases, catalog);
     requireSceneNames(experiment, cases, catalog);
     requireDistinct(experiment, cases);

@@ -115,7 +115,7 @@ bool ClaimReader::readsTime() const {
                 read, [&](std::size_t row) { return table_.rows[row].cells[column].isTime; });
         });
     };
-    return std::ranges::any_of(operands_, isTime);
+    return std::ranges::any_of(operands_, isTime) || std::ranges::any_of(overColumn_, isTime);
 }
 
 /// By which factor the operand grows as all times double, where its cells are `base` and above; a
@@ -149,8 +149,10 @@ bool ClaimReader::asksForATimeAsSuch() {
         if (isOfValues) growths.push_back(1.0);
         for (Operand& operand : operands_) {
             if (isOfEach) growths.clear();
-            for (const double base : {1.0, 100.0}) {  // a sum with a number grows by less
-                const std::optional<double> growth = growthAsTimesDouble(operand, row, base);
+            // A sum with a number grows by less somewhere, a comparison with one at its number.
+            for (int exponent = -10; exponent <= 30; ++exponent) {
+                const std::optional<double> growth =
+                    growthAsTimesDouble(operand, row, std::ldexp(1.0, exponent));
                 if (growth) growths.push_back(*growth);
             }
             if (!areAlike(growths)) return true;

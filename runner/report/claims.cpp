@@ -274,10 +274,18 @@ bool isReadable(const ClaimSpec& claim, const Table& table) {
     }
 }
 
+/// Fewer than an interval takes decide no time on any device.
+int processesOfPaper(const config::Experiment& experiment) {
+    if (experiment.paperDocument.isNull()) return config::kFewestRounds;
+    return config::experimentFromDocument(experiment.paperDocument, experiment.file)
+        .measure.processes;
+}
+
 }  // namespace
 
 void requireProvenance(const config::Experiment& experiment, const Table& table) {
     const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
+    const int paperProcesses = processesOfPaper(experiment);
     Table read;  // outlives its reader
     for (const ClaimSpec& claim : experiment.claims) {
         const auto complain = [&](const std::string& what) {
@@ -296,6 +304,11 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
             complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
         }
         if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
+        if (isOfDocument && claim.timeKind && paperProcesses < config::kFewestRounds) {
+            complain(
+                fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",
+                            config::kFewestRounds, paperProcesses));
+        }
         if (claim.timeKind == ClaimSpec::TimeKind::Algorithmic && reader.asksForATimeAsSuch()) {
             complain(
                 "holds a time against a number, which no count of work decides; its 'kind' "

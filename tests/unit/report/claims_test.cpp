@@ -248,6 +248,10 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(provenanceError("order: a / n < 2 * a / n" + ofTime), "no error");
     EXPECT_EQ(provenanceError("order: 0 < a - a / 2" + ofTime), "no error");
     EXPECT_EQ(provenanceError("trend: a - 5, over: n, direction: increasing" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("bound: a > 20, below: 1, bound_from: text" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("trend: n, over: a, direction: increasing, at: {e: slow}, origin: "
+                              "document"),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
     EXPECT_EQ(
         provenanceError("across: e, order: slow < often, origin: document, kind: algorithmic"),
         isAbsolute);
