@@ -1,6 +1,8 @@
 // Measurements in long form: one row a number, append-only, readable by any data frame library.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -61,8 +63,12 @@ class RecordWriter {
     /// that is not whole.
     explicit RecordWriter(const std::filesystem::path& path);
     /// One write, then flushed to the disk; of a unit, all rows. Throws Error, leaving the file as
-    /// it was.
+    /// it was; also as requireOurs().
     void append(const std::vector<Record>& rows);
+
+    /// Throws Error where the file is not what was written: somebody removed, replaced or changed
+    /// it.
+    void requireOurs() const;
 
     ~RecordWriter();
     RecordWriter(const RecordWriter&) = delete;
@@ -73,6 +79,7 @@ class RecordWriter {
 
     std::filesystem::path path_;
     int fd_ = -1;
+    off_t endBytes_ = 0;
 };
 
 /// Reads records.csv, also of schema 2, whose rows had the parameters. A header or a last unit
