@@ -121,16 +121,15 @@ class Scheduler {
             if (!outcome_.stopReason.empty()) break;
         }
         workers_.clear();
+        records_.requireOurs();
         outcome_.warnings = rounds_.warnings();
         return std::move(outcome_);
     }
 
   private:
-    using Workers = std::vector<std::unique_ptr<WorkerHandle>>;
-
     int busyCount() const {
         return static_cast<int>(
-            std::count_if(workers_.begin(), workers_.end(), [](auto& w) { return w->isBusy(); }));
+            std::ranges::count_if(workers_, [](auto& w) { return w->isBusy(); }));
     }
 
     /// Whether a unit waits that may run now. When a table of times is through, another round of it
@@ -356,7 +355,7 @@ class Scheduler {
     Observer& observer_;
     Expectations expectations_;
     report::RecordWriter records_;
-    Workers workers_;
+    std::vector<std::unique_ptr<WorkerHandle>> workers_;
     int lostInARow_ = 0;  // units that ended device-lost
     RunOutcome outcome_;
 };

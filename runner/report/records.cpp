@@ -248,7 +248,8 @@ RecordWriter::RecordWriter(const fs::path& path) : path_(path) {
         const MappedFile file(path);
         const bool isNew = header != file.text() && header.starts_with(file.text());
         const std::size_t length = isNew ? 0 : readWholeUnits(path, file.text(), kHeader).endBytes;
-        if (::ftruncate(fd_, static_cast<off_t>(length)) != 0) failWriting(path, errno);
+        endBytes_ = static_cast<off_t>(length);
+        if (::ftruncate(fd_, endBytes_) != 0) failWriting(path, errno);
         if (isNew) writeBlock(header);
     } catch (...) {
         ::close(fd_);
@@ -268,8 +269,15 @@ void RecordWriter::append(const std::vector<Record>& rows) {
     if (!block.empty()) writeBlock(block);
 }
 
+void RecordWriter::requireOurs() const {
+    if (isStillAt(path_, fd_) && ::lseek(fd_, 0, SEEK_END) == endBytes_) return;
+    throw Error(path_.string() +
+                ": was removed, replaced or changed while a run wrote to it: rows are lost; "
+                "nothing more is measured into it");
+}
+
 void RecordWriter::writeBlock(std::string_view block) {
-    const off_t before = ::lseek(fd_, 0, SEEK_END);
+    requireOurs();
     ssize_t written = 0;
     do {
         written = ::write(fd_, block.data(), block.size());
@@ -277,14 +285,16 @@ void RecordWriter::writeBlock(std::string_view block) {
     if (written != static_cast<ssize_t>(block.size())) {
         // A full disk takes a part of the block: give it back, so that no half case stays.
         const int reason = written < 0 ? errno : ENOSPC;
-        if (::ftruncate(fd_, before) != 0) failWriting(path_, errno);
+        if (::ftruncate(fd_, endBytes_) != 0) failWriting(path_, errno);
         failWriting(path_, reason);
     }
+    endBytes_ += written;
     if (::fdatasync(fd_) != 0) failWriting(path_, errno);
 }
 
 std::vector<Record> readRecords(const fs::path& path) {
     const MappedFile file(path);
+    if (std::string_view(kHeader).starts_with(file.text())) return {};  // killed while it was made
     const bool isOlder = file.text().starts_with(kOlderHeader);
     return readWholeUnits(path, file.text(), isOlder ? kOlderHeader : kHeader).records;
 }

@@ -1,6 +1,8 @@
 // Measurements in long form: one row a number, append-only, readable by any data frame library.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -61,8 +63,12 @@ class RecordWriter {
     /// that is not whole.
     explicit RecordWriter(const std::filesystem::path& path);
     /// One write, then flushed to the disk; of a unit, all rows. Throws Error, leaving the file as
-    /// it was.
+    /// it was; also as requireOurs().
     void append(const std::vector<Record>& rows);
+
+    /// Throws Error where the file is not what was written: somebody removed, replaced or changed
+    /// it.
+    void requireOurs() const;
 
     ~RecordWriter();
     RecordWriter(const RecordWriter&) = delete;
@@ -73,12 +79,13 @@ class RecordWriter {
 
     std::filesystem::path path_;
     int fd_ = -1;
+    off_t endBytes_ = 0;
 };
 
-/// Reads records.csv, also of schema 2, whose rows had the parameters. A last unit whose write was
-/// cut, be it at a line's end, is left out. Throws Error with file and line for any other unit
-/// without all of its rows, for a malformed row, and for a value (case, process, frame, repeat,
-/// pass, metric) that is there twice.
+/// Reads records.csv, also of schema 2, whose rows had the parameters. A header or a last unit
+/// whose write was cut, be it at a line's end, is left out. Throws Error with file and line for any
+/// other unit without all of its rows, for a malformed row, and for a value (case, process, frame,
+/// repeat, pass, metric) that is there twice.
 std::vector<Record> readRecords(const std::filesystem::path& path);
 
 }  // namespace gfxrepro::report

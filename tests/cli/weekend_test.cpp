@@ -126,6 +126,34 @@ TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
     EXPECT_EQ(rowsOf(locked, "number").size(), 4U);
 }
 
+/// While the first unit runs, and while the last does.
+TEST(Weekend, RecordsThatAreGoneAreNoticed) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "params: {pause_ms: 600}\nsweep: {number: [1, 2]}\n");
+    const auto replaced = [](const std::string& file) { writeFileAtomic(file, readShared(file)); };
+    const auto removed = [](const std::string& file) { fs::remove(file); };
+    const auto emptied = [](const std::string& file) { fs::resize_file(file, 0); };
+    const std::function<void(const std::string&)> disturbances[] = {replaced, removed, emptied};
+    for (const std::size_t start : {1U, 2U}) {
+        for (const auto& disturb : disturbances) {
+            const std::string dir =
+                folder.path() /
+                (std::to_string(start) + std::to_string(&disturb - std::begin(disturbances)));
+            BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
+                                   "--jobs", "1", "--out", dir});
+            waitForStarts(dir, start);
+            disturb(dir + "/records.csv");
+            const ProcessResult result = run.wait();
+            EXPECT_EQ(result.exitCode, 2) << dir << result.out;
+            EXPECT_EQ(result.out, "");
+            EXPECT_THAT(result.err, HasSubstr("gfxrepro: " + dir + "/records.csv: was removed, "));
+            EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+            EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
+        }
+    }
+}
+
 TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     const TemporaryFolder folder;
     const std::string config =

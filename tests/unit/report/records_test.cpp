@@ -146,6 +146,9 @@ TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
               "DIR/records.csv:1: expected the header "
               "'schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,"
               "unit,value,status,message,rows', found 'a,b'");
+    for (const std::size_t length : {0U, 10U}) {  // the write of the header was cut
+        EXPECT_EQ(error(std::string(kHeader).substr(0, length)), "no error");
+    }
     EXPECT_EQ(error(kHeader + good + "3,c,t\n"), "DIR/records.csv:3: expected 17 columns, found 3");
     EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:3: expected records of schema 3, found 2");
