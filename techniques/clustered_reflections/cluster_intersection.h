@@ -41,7 +41,7 @@ class ClusterIntersection {
     CameraSettings settings_;
     gl::Program all_, one_;
     gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
-    reflections::WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::clustered_reflections

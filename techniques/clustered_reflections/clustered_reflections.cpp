@@ -4,6 +4,7 @@
 
 #include "runner/scene/animation.h"
 #include "techniques/kit/path_view.h"
+#include "techniques/kit/requirements.h"
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
 #include "techniques/shared/reflections/screen_space_tracer.h"
 
@@ -12,9 +13,9 @@ namespace gfxrepro::clustered_reflections {
 ClusteredReflections::ClusteredReflections(config::Params& params) : params_(params) {}
 
 void ClusteredReflections::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'clustered_reflections' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
+    scene_.emplace(kit::requireScene(context, "clustered_reflections"), params_.reflectors,
+                   params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);

@@ -7,6 +7,7 @@
 #include "runner/scene/animation.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/kit/path_view.h"
+#include "techniques/kit/requirements.h"
 #include "techniques/shared/reflections/gpu_ray_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -14,9 +15,9 @@ namespace gfxrepro::reflection_reuse {
 ReflectionReuse::ReflectionReuse(config::Params& params) : params_(params) {}
 
 void ReflectionReuse::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'reflection_reuse' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
+    scene_.emplace(kit::requireScene(context, "reflection_reuse"), params_.reflectors,
+                   params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);

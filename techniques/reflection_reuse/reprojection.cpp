@@ -68,8 +68,7 @@ Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionS
       project_(shaders,
                {"reflection_reuse/project.vert.glsl", "reflection_reuse/project.frag.glsl"},
                passDefines()),
-      wantAll_(shaders,
-               {"reflections/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
+      wantAll_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
                passDefines()),
       depthBuffer_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {

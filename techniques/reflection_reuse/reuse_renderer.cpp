@@ -52,7 +52,7 @@ struct ReuseRenderer::Impl {
     std::optional<ShiftedImage> shifted;  // of two steps
     gl::Texture wanted;
     gl::SampleQuery recomputed;
-    reflections::WholeImage wholeImage;
+    kit::WholeImage wholeImage;
     bool hasFrame = false;
     bool isKeyForgotten = false;
     bool isKeyFrame = false;  // the last frame
@@ -70,7 +70,7 @@ struct ReuseRenderer::Impl {
           matcher(shaders, settings.matching),
           reprojection(shaders, settings.reprojection, sizePx),
           movedObjects(shaders, sizePx),
-          mend(shaders, {"reflections/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"},
+          mend(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"},
                mendDefines()),
           key(emptyView(sizePx), diagonalM),
           gbuffer(emptyView(sizePx)),

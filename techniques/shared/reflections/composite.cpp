@@ -15,7 +15,7 @@ constexpr unsigned kReflectedUnit = kGBufferUnit + 4;
 
 Composite::Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling,
                      Blend blend)
-    : program_(shaders, {"reflections/whole_image.vert.glsl", "reflections/composite.frag.glsl"},
+    : program_(shaders, {"kit/whole_image.vert.glsl", "reflections/composite.frag.glsl"},
                {{"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
                 {"REFLECTED_UNIT", static_cast<int>(kReflectedUnit)}}),
       output_(gl::Texture::make2D(GL_RGBA16F, outputSizePx)),

@@ -4,8 +4,8 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "runner/image/image.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
@@ -35,7 +35,7 @@ class Composite {
     gl::Program program_;
     gl::Texture output_;
     gl::Framebuffer framebuffer_;
-    WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
     int supersampling_;
     Blend blend_;
 };

@@ -5,8 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runner/core/error.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/shared/reflections/kept_colour.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
@@ -139,8 +139,7 @@ EnvironmentTracer::EnvironmentTracer(const gl::ShaderLibrary& shaders, Environme
     : map_(map),
       lobe_(lobe),
       diagonalM_(diagonalM),
-      program_(shaders,
-               {"reflections/whole_image.vert.glsl", "reflections/environment_trace.frag.glsl"},
+      program_(shaders, {"kit/whole_image.vert.glsl", "reflections/environment_trace.frag.glsl"},
                tracerDefines()) {}
 
 void EnvironmentTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {

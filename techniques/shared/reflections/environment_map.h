@@ -5,8 +5,8 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
@@ -64,7 +64,7 @@ class EnvironmentTracer final : public ReflectionTracer {
     LobeSettings lobe_;
     float diagonalM_;
     gl::Program program_;
-    WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
     std::vector<glm::mat4> poses_;  // in which the map was drawn
 };
 

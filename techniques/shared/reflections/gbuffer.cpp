@@ -101,10 +101,8 @@ void GBuffer::bind(const gl::Program& program, unsigned firstUnit) const {
     normal.bind(firstUnit + 1);
     depth.bind(firstUnit + 2);
     surface.bind(firstUnit + 3);
-    if (program.isActive("gbufferWorldFromPixels")) {
-        program.set("gbufferWorldFromPixels", depth_images::worldFromPixels(view));
-    }
-    if (program.isActive("gbufferEyeWorld")) program.set("gbufferEyeWorld", view.eyeWorld);
+    program.setIfActive("gbufferWorldFromPixels", depth_images::worldFromPixels(view));
+    program.setIfActive("gbufferEyeWorld", view.eyeWorld);
 }
 
 std::size_t GBuffer::sizeBytes() const {

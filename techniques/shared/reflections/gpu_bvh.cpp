@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::reflections {
 
 namespace {
@@ -33,7 +35,7 @@ gl::Program pass(const gl::ShaderLibrary& shaders, const char* file) {
 }
 
 void dispatchOver(std::uint32_t count) {
-    glDispatchCompute((count + kGroupSize - 1) / kGroupSize, 1, 1);
+    glDispatchCompute(kit::groupsFor(count, kGroupSize), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

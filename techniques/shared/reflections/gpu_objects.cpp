@@ -7,12 +7,12 @@
 
 #include "runner/core/error.h"
 #include "runner/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::reflections {
 
 namespace {
 
-constexpr std::uint32_t kTrianglesPerSplitDraw = 1U << 16;
 /// Of a draw that is not split: indices are counted by signed numbers.
 constexpr std::uint32_t kMostTriangles = (1U << 31) / 3;
 
@@ -176,7 +176,7 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
       valueLayers_(layersTexture(scene.valueLevels(), GL_RGBA8)),
       objectCount_(static_cast<std::uint32_t>(scene.objects().size())),
       triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())),
-      mostTrianglesPerDraw_(splitsDraws ? kTrianglesPerSplitDraw : kMostTriangles) {
+      mostTrianglesPerDraw_(splitsDraws ? kit::kPrimitivesPerFlush : kMostTriangles) {
     std::vector<std::uint32_t> indices(objectCount_);
     std::iota(indices.begin(), indices.end(), 0U);
     objectIndices_ = gl::Buffer::of(indices);
@@ -221,23 +221,15 @@ void GpuObjects::bind() const {
 
 void GpuObjects::draw(std::span<const std::uint32_t> objects) const {
     vertexArray_.bind();
-    std::uint32_t unflushed = 0;  // small objects share a batch
+    kit::FlushedDraws draws(mostTrianglesPerDraw_);
     for (const std::uint32_t index : objects) {
         const Object& object = scene_->objects()[index];
-        for (std::uint32_t done = 0; done < object.triangleCount; done += mostTrianglesPerDraw_) {
-            const std::uint32_t count =
-                std::min(object.triangleCount - done, mostTrianglesPerDraw_);
-            const std::size_t offsetBytes =
-                static_cast<std::size_t>(object.firstTriangle + done) * sizeof(glm::uvec3);
-            glDrawElementsInstancedBaseInstance(
-                GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
-                reinterpret_cast<const void*>(offsetBytes), 1, index);
-            unflushed += count;
-            if (unflushed >= mostTrianglesPerDraw_) {
-                glFlush();
-                unflushed = 0;
-            }
-        }
+        draws.draw(object.firstTriangle, object.triangleCount,
+                   [&](std::uint32_t first, std::uint32_t count) {
+                       glDrawElementsInstancedBaseInstance(
+                           GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                           kit::indexOffset(first), 1, index);
+                   });
     }
 }
 

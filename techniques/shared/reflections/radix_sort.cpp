@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::reflections {
 
@@ -12,11 +13,10 @@ namespace {
 enum Storage : unsigned { kPairs = 0, kSortedPairs = 1, kCounts = 2 };
 
 constexpr std::uint32_t kDigits = 1U << RadixSort::kDigitBits;
-constexpr std::uint32_t kScanGroupSize = 256;
 static_assert(kDigits == RadixSort::kGroupSize, "an invocation scans one digit of its tile");
 
 std::uint32_t tilesOf(std::uint32_t count) {
-    return (count + RadixSort::kTileSize - 1) / RadixSort::kTileSize;
+    return kit::groupsFor(count, RadixSort::kTileSize);
 }
 
 gl::Program pass(const gl::ShaderLibrary& shaders, const char* file) {
@@ -27,15 +27,14 @@ gl::Program pass(const gl::ShaderLibrary& shaders, const char* file) {
              {"COUNTS_BINDING", static_cast<unsigned>(kCounts)},
              {"GROUP_SIZE", RadixSort::kGroupSize},
              {"KEYS_PER_INVOCATION", RadixSort::kKeysPerInvocation},
-             {"DIGITS", kDigits},
-             {"SCAN_GROUP_SIZE", kScanGroupSize}}};
+             {"DIGITS", kDigits}}};
 }
 
 }  // namespace
 
 RadixSort::RadixSort(const gl::ShaderLibrary& shaders, std::uint32_t capacity)
     : count_(pass(shaders, "reflections/sort_count.comp.glsl")),
-      scan_(pass(shaders, "reflections/sort_scan.comp.glsl")),
+      scan_(shaders, "uint", kCounts, kit::PrefixSum::Total::None),
       scatter_(pass(shaders, "reflections/sort_scatter.comp.glsl")),
       otherPairs_(std::max(capacity, 1U) * sizeof(glm::uvec2)),
       counts_(std::max(tilesOf(capacity), 1U) * kDigits * sizeof(std::uint32_t)) {}
@@ -54,10 +53,7 @@ void RadixSort::sort(gl::Buffer& pairs, std::uint32_t count, std::uint32_t keyBi
         count_.set("shift", shift);
         glDispatchCompute(tiles, 1, 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-        scan_.use();
-        scan_.set("countCount", tiles * kDigits);
-        glDispatchCompute(1, 1, 1);
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        scan_.run(counts_, tiles * kDigits);
         scatter_.use();
         scatter_.set("pairCount", count);
         scatter_.set("shift", shift);

@@ -5,6 +5,7 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/kit/prefix_sum.h"
 
 namespace gfxrepro::reflections {
 
@@ -28,7 +29,9 @@ class RadixSort {
     std::size_t sizeBytes() const;
 
   private:
-    gl::Program count_, scan_, scatter_;
+    gl::Program count_;
+    kit::PrefixSum scan_;
+    gl::Program scatter_;
     gl::Buffer otherPairs_, counts_;
 };
 

@@ -47,12 +47,10 @@ float fadeOf(const LobeSettings& lobe, float glossiness, float distanceM, float 
 }
 
 void setLobe(const gl::Program& program, const LobeSettings& lobe, float diagonalM) {
-    if (program.isActive("lobeRays")) program.set("lobeRays", lobe.rays);
-    if (program.isActive("lobeMaxHalfAngle")) {
-        program.set("lobeMaxHalfAngle", lobe.maxHalfAngleRad);
-    }
-    if (program.isActive("lobeFarExponent")) program.set("lobeFarExponent", lobe.farExponent);
-    if (program.isActive("lobeDiagonal")) program.set("lobeDiagonal", diagonalM);
+    program.setIfActive("lobeRays", lobe.rays);
+    program.setIfActive("lobeMaxHalfAngle", lobe.maxHalfAngleRad);
+    program.setIfActive("lobeFarExponent", lobe.farExponent);
+    program.setIfActive("lobeDiagonal", diagonalM);
 }
 
 ReflectionTarget::ReflectionTarget(glm::ivec2 sizePx)

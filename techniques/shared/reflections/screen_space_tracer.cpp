@@ -18,7 +18,7 @@ ScreenSpaceTracer::ScreenSpaceTracer(const gl::ShaderLibrary& shaders, const Env
       lobe_(lobe),
       diagonalM_(diagonalM),
       thicknessM_(thicknessM),
-      program_(shaders, {"reflections/whole_image.vert.glsl", "reflections/screen_space.frag.glsl"},
+      program_(shaders, {"kit/whole_image.vert.glsl", "reflections/screen_space.frag.glsl"},
                {{"ENVIRONMENT_UNIT", kEnvironmentUnit},
                 {"GBUFFER_UNIT", kGBufferUnit},
                 {"WANTED_UNIT", kWantedUnit}}) {}

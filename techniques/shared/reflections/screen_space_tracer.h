@@ -1,9 +1,9 @@
 // Screen-space reflection: the modern comparator that needs no more than the eye's own image.
 #pragma once
 
+#include "techniques/kit/whole_image.h"
 #include "techniques/shared/reflections/environment_map.h"
 #include "techniques/shared/reflections/reflection_tracer.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflections {
 
@@ -25,7 +25,7 @@ class ScreenSpaceTracer final : public ReflectionTracer {
     LobeSettings lobe_;
     float diagonalM_, thicknessM_;
     gl::Program program_;
-    WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflections
