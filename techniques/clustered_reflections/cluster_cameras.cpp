@@ -85,7 +85,7 @@ void ClusterCameras::overClusters(const gl::Program& program, const reflections:
     program.use();
     gbuffer.bind(program, kGBufferUnit);
     reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
-    const depth_images::View& view = gbuffer.view;
+    const kit::View& view = gbuffer.view;
     const glm::mat3 eyeAxes = glm::transpose(glm::mat3(view.viewFromWorld));
     program.setIfActive("eyeWorld", view.eyeWorld);
     program.setIfActive("eyeRight", eyeAxes[0]);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
-#include "techniques/shared/reflections/kept_colour.h"
+#include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -5,8 +5,8 @@
 #include "runner/scene/animation.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/requirements.h"
-#include "techniques/shared/reflections/gpu_ray_tracer.h"
-#include "techniques/shared/reflections/screen_space_tracer.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
+#include "techniques/reflections/screen_space_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -29,7 +29,7 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     map_.emplace(shaders, *scene_);
     map_->render(*objects_);
     gbufferRenderer_.emplace(shaders, *scene_);
-    gbuffer_.emplace(depth_images::viewOf(camera, samplesPx));
+    gbuffer_.emplace(kit::viewOf(camera, samplesPx));
     target_.emplace(samplesPx);
     tracer_ = makeTracer(shaders);
     composite_.emplace(shaders, outputSizePx_, params_.supersampling);
@@ -76,7 +76,7 @@ void ClusteredReflections::render(technique::FrameContext& context) {
     const glm::vec2 size(outputSizePx_);
     const scene::Camera camera = kit::cameraFor(scene_->scene(), params_.view, context.frame,
                                                 context.frameCount, size.x / size.y);
-    gbuffer_->view = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
+    gbuffer_->view = kit::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) {
         const double time = kit::frameTime(context.frame, context.frameCount);
         objects_->setPoses(scene::posesAt(scene_->scene(), time));

@@ -14,11 +14,11 @@
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::clustered_reflections {
 
-using depth_images::seenFrom;
+using kit::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
@@ -27,7 +27,7 @@ double meanOf(const glm::dvec3& channels) {
     return (channels.x + channels.y + channels.z) / 3.0;
 }
 
-bool isSameView(const depth_images::View& a, const depth_images::View& b) {
+bool isSameView(const kit::View& a, const kit::View& b) {
     return a.eyeWorld == b.eyeWorld && a.viewFromWorld == b.viewFromWorld &&
            a.clipFromView == b.clipFromView && a.sizePx == b.sizePx;
 }
@@ -46,8 +46,7 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 
     const image::ImageF picture = composite_->read();
     if (params_.showsPictures) {
-        depth_images::ImageLayers layers =
-            reflections::surfaceLayers(gbuffer, params_.supersampling);
+        kit::ImageLayers layers = reflections::surfaceLayers(gbuffer, params_.supersampling);
         if (params_.measuresErrors) layers.errors(picture, truthOf(gbuffer).picture);
         recorder.image("result", picture, layers.options());
         recorder.image("reflectors",

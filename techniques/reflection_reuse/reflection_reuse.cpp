@@ -8,7 +8,7 @@
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/requirements.h"
-#include "techniques/shared/reflections/gpu_ray_tracer.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -79,7 +79,7 @@ void ReflectionReuse::place(const technique::FrameContext& context) {
     const glm::vec2 size(outputSizePx_);
     const scene::Camera camera =
         kit::cameraAtTime(scene_->scene(), params_.view, time, size.x / size.y);
-    view_ = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
+    view_ = kit::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) objects_->setPoses(scene::posesAt(scene_->scene(), time));
 }
 

@@ -12,11 +12,11 @@
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflection_reuse {
 
-using depth_images::seenFrom;
+using kit::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
@@ -208,7 +208,7 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
 
 void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGBuffer& host,
                                      const image::ImageF& picture, const image::ImageF& truth) {
-    depth_images::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
+    kit::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
     if (!truth.empty()) layers.errors(picture, truth);
     recorder.image("result", picture, layers.options());
     if (!truth.empty()) {

@@ -111,10 +111,9 @@ void Reprojection::bindNewView(const gl::Program& program, const ReflectionDepth
     key.gbuffer.depth.bind(kKeyDepthUnit);
     key.gbuffer.surface.bind(kKeySurfaceUnit);
     gbuffer.bind(program, kGBufferUnit);
-    program.set(
-        "clipFromKeyPixels",
-        glm::mat4(glm::dmat4(gbuffer.view.clipFromView) * glm::dmat4(gbuffer.view.viewFromWorld) *
-                  glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
+    program.set("clipFromKeyPixels", glm::mat4(glm::dmat4(gbuffer.view.clipFromView) *
+                                               glm::dmat4(gbuffer.view.viewFromWorld) *
+                                               glm::dmat4(kit::worldFromPixels(key.gbuffer.view))));
     program.set("maxGrowth", settings_.maxGrowth);
     program.set("depthTolerance", settings_.depthTolerance);
 }

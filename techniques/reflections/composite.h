@@ -5,7 +5,7 @@
 #include "runner/gl/program.h"
 #include "runner/image/image.h"
 #include "techniques/kit/whole_image.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflections {
 

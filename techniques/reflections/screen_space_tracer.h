@@ -2,8 +2,8 @@
 #pragma once
 
 #include "techniques/kit/whole_image.h"
-#include "techniques/shared/reflections/environment_map.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/environment_map.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflections {
 

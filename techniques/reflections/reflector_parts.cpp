@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/reflector_parts.h"
+#include "techniques/reflections/reflector_parts.h"
 
 #include <algorithm>
 #include <array>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "runner/raycast/ray_tracer.h"
-#include "techniques/shared/reflections/environment_map.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/environment_map.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflections {
 

@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/screen_space_tracer.h"
+#include "techniques/reflections/screen_space_tracer.h"
 
 #include "runner/core/error.h"
 
@@ -36,7 +36,7 @@ void ScreenSpaceTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
         wanted->bind(kWantedUnit);
     }
     program_.set("pixelsFromWorld",
-                 glm::mat4(glm::inverse(glm::dmat4(depth_images::worldFromPixels(gbuffer.view)))));
+                 glm::mat4(glm::inverse(glm::dmat4(kit::worldFromPixels(gbuffer.view)))));
     program_.set("nearM", gbuffer.view.nearM);
     program_.set("thicknessM", thicknessM_);
     setLobe(program_, lobe_, diagonalM_);

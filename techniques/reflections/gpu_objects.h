@@ -7,7 +7,7 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::reflections {
 

@@ -6,7 +6,7 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "techniques/kit/whole_image.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflections {
 

@@ -1,9 +1,9 @@
 // Ray tracing on the same GL device: the baseline that a speed-up is fair against.
 #pragma once
 
-#include "techniques/shared/reflections/environment_map.h"
-#include "techniques/shared/reflections/gpu_bvh.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/environment_map.h"
+#include "techniques/reflections/gpu_bvh.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflections {
 

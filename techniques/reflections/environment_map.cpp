@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/environment_map.h"
+#include "techniques/reflections/environment_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "runner/core/error.h"
 #include "techniques/kit/whole_image.h"
-#include "techniques/shared/reflections/kept_colour.h"
+#include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::reflections {
 

@@ -10,8 +10,8 @@
 
 #include "runner/image/image.h"
 #include "runner/scene/scene.h"
-#include "techniques/shared/reflections/texture_filter.h"
-#include "techniques/shared/reflections/texture_layer.h"
+#include "techniques/reflections/texture_filter.h"
+#include "techniques/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
 

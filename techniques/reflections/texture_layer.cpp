@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/texture_layer.h"
+#include "techniques/reflections/texture_layer.h"
 
 #include <algorithm>
 #include <array>

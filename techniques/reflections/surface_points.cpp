@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::reflections {
 

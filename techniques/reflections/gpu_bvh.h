@@ -4,8 +4,8 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/profiler.h"
 #include "runner/gl/program.h"
-#include "techniques/shared/reflections/gpu_objects.h"
-#include "techniques/shared/reflections/radix_sort.h"
+#include "techniques/reflections/gpu_objects.h"
+#include "techniques/reflections/radix_sort.h"
 
 namespace gfxrepro::reflections {
 

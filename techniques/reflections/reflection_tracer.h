@@ -6,7 +6,7 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/profiler.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::reflections {
 

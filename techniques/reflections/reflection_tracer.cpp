@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 #include <algorithm>
 #include <array>

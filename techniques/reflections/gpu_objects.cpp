@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/gpu_objects.h"
+#include "techniques/reflections/gpu_objects.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "techniques/shared/reflections/gpu_ray_tracer.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
 
 #include "runner/core/error.h"
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 
 namespace gfxrepro::reflections {
 

@@ -1,11 +1,11 @@
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "runner/core/error.h"
-#include "techniques/shared/reflections/kept_colour.h"
+#include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::reflections {
 
@@ -86,7 +86,7 @@ glm::vec3 directionFromOctahedral(const glm::vec2& e) {
     return v;
 }
 
-GBuffer::GBuffer(const depth_images::View& ofView)
+GBuffer::GBuffer(const kit::View& ofView)
     : view(ofView),
       diffuse(gl::Texture::make2D(kKeptColourFormat, view.sizePx)),
       normal(gl::Texture::make2D(GL_RG32F, view.sizePx)),
@@ -101,7 +101,7 @@ void GBuffer::bind(const gl::Program& program, unsigned firstUnit) const {
     normal.bind(firstUnit + 1);
     depth.bind(firstUnit + 2);
     surface.bind(firstUnit + 3);
-    program.setIfActive("gbufferWorldFromPixels", depth_images::worldFromPixels(view));
+    program.setIfActive("gbufferWorldFromPixels", kit::worldFromPixels(view));
     program.setIfActive("gbufferEyeWorld", view.eyeWorld);
 }
 
@@ -131,7 +131,7 @@ void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
 HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     HostGBuffer host;
     host.view = gbuffer.view;
-    host.worldFromPixels = depth_images::worldFromPixels(gbuffer.view);
+    host.worldFromPixels = kit::worldFromPixels(gbuffer.view);
     const std::vector<float> diffuse = gbuffer.diffuse.read<float>(GL_RGB, GL_FLOAT, 3);
     const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);

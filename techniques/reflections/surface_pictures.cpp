@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflections {
 
@@ -32,13 +32,13 @@ image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
     return picture;
 }
 
-depth_images::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling) {
+kit::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling) {
     std::vector<std::uint32_t> reflectors;
     reflectors.reserve(gbuffer.surface.size());
     for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
         reflectors.push_back(static_cast<std::uint32_t>(gbuffer.reflector(i)));
     }
-    depth_images::ImageLayers layers(gbuffer.view, supersampling);
+    kit::ImageLayers layers(gbuffer.view, supersampling);
     layers.depths(gbuffer.depthM).normals(gbuffer.normalWorld).ids("id", reflectors);
     return layers;
 }

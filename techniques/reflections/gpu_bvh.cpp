@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/gpu_bvh.h"
+#include "techniques/reflections/gpu_bvh.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/composite.h"
+#include "techniques/reflections/composite.h"
 
 #include <array>
 

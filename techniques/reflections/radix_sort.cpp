@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/radix_sort.h"
+#include "techniques/reflections/radix_sort.h"
 
 #include <algorithm>
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/surfaces.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "runner/core/error.h"
-#include "techniques/shared/reflections/reflector_parts.h"
+#include "techniques/reflections/reflector_parts.h"
 
 namespace gfxrepro::reflections {
 

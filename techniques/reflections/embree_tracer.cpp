@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

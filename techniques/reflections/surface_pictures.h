@@ -7,7 +7,7 @@
 
 #include "runner/image/image.h"
 #include "techniques/kit/image_layers.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::reflections {
 
@@ -19,7 +19,7 @@ image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
                               const std::function<glm::vec3(std::size_t)>& colorOf);
 
 /// Depths, normals and reflectors ("id", 0: none) for the EXR file of a frame's picture.
-depth_images::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling);
+kit::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling);
 
 /// [xie2017] Fig. 27, 28 and 40: `picture`, a little darker, with marked samples red.
 image::ImageF markedPicture(const image::ImageF& picture, const std::vector<std::uint8_t>& marks,

@@ -7,14 +7,14 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "techniques/kit/view.h"
-#include "techniques/shared/reflections/gpu_objects.h"
+#include "techniques/reflections/gpu_objects.h"
 
 namespace gfxrepro::reflections {
 
 /// 24 bytes a sample with the depth buffer. Positions are not kept: a sample lies at
-/// depth_images::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
+/// kit::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
 struct GBuffer {
-    depth_images::View view;
+    kit::View view;
     gl::Texture diffuse;  // keptColour(): rgb_d of Algorithm 6, as shadeDiffuse() gives it
     gl::Texture normal;   // RG32F, octahedral, unit world normal turned to the eye
     gl::Texture depth;    // R32F, d: distance along the view axis in metres; 0: nothing there
@@ -22,7 +22,7 @@ struct GBuffer {
     gl::Texture depthBuffer;
     gl::Framebuffer framebuffer;
 
-    explicit GBuffer(const depth_images::View& view);
+    explicit GBuffer(const kit::View& view);
     /// For shaders that include gbuffer.glsl with GBUFFER_UNIT = firstUnit: four textures, and the
     /// uniforms of `program`, which is in use.
     void bind(const gl::Program& program, unsigned firstUnit) const;
@@ -42,7 +42,7 @@ class GBufferRenderer {
 
 /// The same on the host, rows from the bottom. The shaders read it by shaders/gbuffer.glsl.
 struct HostGBuffer {
-    depth_images::View view;
+    kit::View view;
     glm::mat4 worldFromPixels{1.0F};
     std::vector<glm::vec3> diffuse;
     std::vector<glm::vec3> normalWorld;
