@@ -51,10 +51,6 @@ gl::Program pass(const gl::ShaderLibrary& shaders, const char* name, int groupSi
     return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines};
 }
 
-void setIfActive(const gl::Program& program, const char* name, const auto& value) {
-    if (program.isActive(name)) program.set(name, value);
-}
-
 }  // namespace
 
 ClusterCameras::ClusterCameras(const gl::ShaderLibrary& shaders, const CameraSettings& settings)
@@ -80,7 +76,7 @@ void ClusterCameras::overChunks(const gl::Program& program, const reflections::G
     program.use();
     gbuffer.bind(program, kGBufferUnit);
     reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
-    setIfActive(program, "maxSlope", settings_.maxSlope);
+    program.setIfActive("maxSlope", settings_.maxSlope);
     glDispatchComputeIndirect(0);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -89,16 +85,16 @@ void ClusterCameras::overClusters(const gl::Program& program, const reflections:
     program.use();
     gbuffer.bind(program, kGBufferUnit);
     reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
-    const depth_images::View& view = gbuffer.view;
+    const kit::View& view = gbuffer.view;
     const glm::mat3 eyeAxes = glm::transpose(glm::mat3(view.viewFromWorld));
-    setIfActive(program, "eyeWorld", view.eyeWorld);
-    setIfActive(program, "eyeRight", eyeAxes[0]);
-    setIfActive(program, "eyeUp", eyeAxes[1]);
-    setIfActive(program, "eyeForward", -eyeAxes[2]);
-    setIfActive(program, "leastHeight", kLeastHeight * settings_.diagonalM);
-    setIfActive(program, "leastRoom", kLeastRoom * settings_.diagonalM);
-    setIfActive(program, "pixelPitch", glm::length(glm::vec3(worldFromPixels(view)[0])));
-    setIfActive(program, "isNearAtFarthest", settings_.isNearAtFarthestSample ? 1 : 0);
+    program.setIfActive("eyeWorld", view.eyeWorld);
+    program.setIfActive("eyeRight", eyeAxes[0]);
+    program.setIfActive("eyeUp", eyeAxes[1]);
+    program.setIfActive("eyeForward", -eyeAxes[2]);
+    program.setIfActive("leastHeight", kLeastHeight * settings_.diagonalM);
+    program.setIfActive("leastRoom", kLeastRoom * settings_.diagonalM);
+    program.setIfActive("pixelPitch", glm::length(glm::vec3(worldFromPixels(view)[0])));
+    program.setIfActive("isNearAtFarthest", settings_.isNearAtFarthestSample ? 1 : 0);
     glDispatchComputeIndirect(kClustersArguments);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

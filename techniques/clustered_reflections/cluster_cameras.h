@@ -5,7 +5,7 @@
 
 #include "techniques/clustered_reflections/clustering.h"
 #include "techniques/kit/view.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
 

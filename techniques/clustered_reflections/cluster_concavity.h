@@ -2,7 +2,7 @@
 #pragma once
 
 #include "techniques/clustered_reflections/cluster_images.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::clustered_reflections {
 

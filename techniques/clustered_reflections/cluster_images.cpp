@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "runner/core/error.h"
-#include "techniques/shared/reflections/kept_colour.h"
+#include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -76,7 +76,7 @@ ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx
     if (hasPyramid) {
         pyramid_ = gl::Program(
             shaders,
-            {"reflections/whole_image.vert.glsl", "clustered_reflections/nearest_depths.frag.glsl"},
+            {"kit/whole_image.vert.glsl", "clustered_reflections/nearest_depths.frag.glsl"},
             imageDefines());
     }
 }

@@ -7,7 +7,7 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
-#include "techniques/shared/reflections/gpu_objects.h"
+#include "techniques/reflections/gpu_objects.h"
 
 namespace gfxrepro::clustered_reflections {
 

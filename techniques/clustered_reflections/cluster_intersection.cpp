@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::clustered_reflections {
 
 ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
@@ -13,9 +15,9 @@ ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
     defines["MARCH"] = march == March::Hierarchical ? 1 : 0;
     defines["SEES_OWN"] = mayShowOwn ? 1 : 0;
     defines["OF_TRIANGLES"] = content == TexelContent::Triangles ? 1 : 0;
-    all_ = gl::Program(
-        shaders, {"reflections/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
-        defines);
+    all_ = gl::Program(shaders,
+                       {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
+                       defines);
     one_ = gl::Program(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
 }
 
@@ -65,7 +67,7 @@ void ClusterIntersection::intersectCluster(std::uint32_t cluster, const glm::uve
     one_.set("cluster", cluster);
     one_.set("firstSample", range.x);
     one_.set("sampleCount", sampleCount);
-    glDispatchCompute((sampleCount + kGroupSize - 1) / kGroupSize, 1, 1);
+    glDispatchCompute(kit::groupsFor(sampleCount, kGroupSize), 1, 1);
 }
 
 void ClusterIntersection::endClusters() {

@@ -3,7 +3,7 @@
 
 #include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/clustered_reflections/depth_image_marcher.h"
-#include "techniques/shared/reflections/environment_map.h"
+#include "techniques/reflections/environment_map.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -41,7 +41,7 @@ class ClusterIntersection {
     CameraSettings settings_;
     gl::Program all_, one_;
     gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
-    reflections::WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::clustered_reflections

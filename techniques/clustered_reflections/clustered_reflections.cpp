@@ -4,17 +4,18 @@
 
 #include "runner/scene/animation.h"
 #include "techniques/kit/path_view.h"
-#include "techniques/shared/reflections/gpu_ray_tracer.h"
-#include "techniques/shared/reflections/screen_space_tracer.h"
+#include "techniques/kit/requirements.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
+#include "techniques/reflections/screen_space_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
 
 ClusteredReflections::ClusteredReflections(config::Params& params) : params_(params) {}
 
 void ClusteredReflections::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'clustered_reflections' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
+    scene_.emplace(kit::requireScene(context, "clustered_reflections"), params_.reflectors,
+                   params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
@@ -28,7 +29,7 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     map_.emplace(shaders, *scene_);
     map_->render(*objects_);
     gbufferRenderer_.emplace(shaders, *scene_);
-    gbuffer_.emplace(depth_images::viewOf(camera, samplesPx));
+    gbuffer_.emplace(kit::viewOf(camera, samplesPx));
     target_.emplace(samplesPx);
     tracer_ = makeTracer(shaders);
     composite_.emplace(shaders, outputSizePx_, params_.supersampling);
@@ -75,7 +76,7 @@ void ClusteredReflections::render(technique::FrameContext& context) {
     const glm::vec2 size(outputSizePx_);
     const scene::Camera camera = kit::cameraFor(scene_->scene(), params_.view, context.frame,
                                                 context.frameCount, size.x / size.y);
-    gbuffer_->view = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
+    gbuffer_->view = kit::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) {
         const double time = kit::frameTime(context.frame, context.frameCount);
         objects_->setPoses(scene::posesAt(scene_->scene(), time));

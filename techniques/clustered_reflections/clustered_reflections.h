@@ -7,8 +7,8 @@
 
 #include "runner/technique/technique.h"
 #include "techniques/clustered_reflections/reflection_params.h"
-#include "techniques/shared/reflections/composite.h"
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/composite.h"
+#include "techniques/reflections/embree_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -26,7 +26,7 @@ class ClusteredReflections final : public technique::Technique {
   private:
     /// What Embree says of the last frame; with the picture that it makes of it.
     struct Truth {
-        depth_images::View view;
+        kit::View view;
         std::vector<glm::mat4> poses;
         std::vector<reflections::TracedSample> samples;
         image::ImageF picture;

@@ -13,24 +13,21 @@
 #include "techniques/clustered_reflections/reflection_pictures.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/kit/percent.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::clustered_reflections {
 
-using depth_images::seenFrom;
+using kit::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
-
-double percent(std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 double meanOf(const glm::dvec3& channels) {
     return (channels.x + channels.y + channels.z) / 3.0;
 }
 
-bool isSameView(const depth_images::View& a, const depth_images::View& b) {
+bool isSameView(const kit::View& a, const kit::View& b) {
     return a.eyeWorld == b.eyeWorld && a.viewFromWorld == b.viewFromWorld &&
            a.clipFromView == b.clipFromView && a.sizePx == b.sizePx;
 }
@@ -49,8 +46,7 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 
     const image::ImageF picture = composite_->read();
     if (params_.showsPictures) {
-        depth_images::ImageLayers layers =
-            reflections::surfaceLayers(gbuffer, params_.supersampling);
+        kit::ImageLayers layers = reflections::surfaceLayers(gbuffer, params_.supersampling);
         if (params_.measuresErrors) layers.errors(picture, truthOf(gbuffer).picture);
         recorder.image("result", picture, layers.options());
         recorder.image("reflectors",
@@ -87,8 +83,8 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
         visible.insert(wholes[reflector]);
         visibleParts.insert(reflector);
     }
-    recorder.metric("reflective_pct", percent(reflective, gbuffer.surface.size()), "%");
-    if (reflective > 0) recorder.metric("planar_pct", percent(planar, reflective), "%");
+    recorder.metric("reflective_pct", kit::percent(reflective, gbuffer.surface.size()), "%");
+    if (reflective > 0) recorder.metric("planar_pct", kit::percent(planar, reflective), "%");
     // Objects, as the thesis counts them; parts are what the clusters are made of.
     recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
     recorder.metric("visible_parts", static_cast<double>(visibleParts.size()), "reflector");
@@ -177,7 +173,7 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
     const auto fallen = static_cast<std::size_t>(
         std::ranges::count_if(environment, [](std::uint8_t mark) { return mark != 0; }));
     recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
-    if (clustered > 0) recorder.metric("environment_pct", percent(fallen, clustered), "%");
+    if (clustered > 0) recorder.metric("environment_pct", kit::percent(fallen, clustered), "%");
     const ClusteredTracer::Drawn drawn = clusteredTracer_->drawn();
     recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles), "triangle");
     recorder.metric("drawn_left_out", static_cast<double>(drawn.leftOut), "triangle");
@@ -231,7 +227,7 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
         {gbuffer, truthOf(gbuffer).samples, clusterOfSample, clusteredTracer_->cameras(), *scene_,
          truthTracer_->rays(), params_.lobe, reflectorFamilies(*scene_)});
     const auto share = [&](const char* name, std::size_t samples) {
-        recorder.metric(name, percent(samples, errors.reflective), "%");
+        recorder.metric(name, kit::percent(samples, errors.reflective), "%");
     };
     if (errors.reflective == 0) return;
     share("occlusion_error_pct", errors.missing());
@@ -240,8 +236,8 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
     share("occlusion_side_pct", errors.of(Sight::Beside));
     share("occlusion_self_pct", errors.of(Sight::Self));
     if (errors.planar > 0) {
-        recorder.metric("occlusion_error_planar_pct", percent(errors.planarMissing, errors.planar),
-                        "%");
+        recorder.metric("occlusion_error_planar_pct",
+                        kit::percent(errors.planarMissing, errors.planar), "%");
     }
     if (!params_.showsPictures) return;
     recorder.image(

@@ -8,7 +8,7 @@
 #include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/clustered_reflections/clustering.h"
 #include "techniques/clustered_reflections/depth_image_marcher.h"
-#include "techniques/shared/reflections/environment_map.h"
+#include "techniques/reflections/environment_map.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -9,6 +9,7 @@
 #include "runner/core/error.h"
 #include "techniques/clustered_reflections/bin_tables.h"
 #include "techniques/clustered_reflections/kd_clustering.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
@@ -81,13 +82,8 @@ gl::Program compute(const gl::ShaderLibrary& shaders, const char* name, int grou
 
 gl::Program wholeImage(const gl::ShaderLibrary& shaders, const char* name) {
     return {shaders,
-            {"clustered_reflections/whole_image.vert.glsl",
-             fmt::format("clustered_reflections/{}.frag.glsl", name)},
+            {"kit/whole_image.vert.glsl", fmt::format("clustered_reflections/{}.frag.glsl", name)},
             defines(kGroupSize)};
-}
-
-GLuint groupsFor(int count, int perGroup) {
-    return static_cast<GLuint>((count + perGroup - 1) / perGroup);
 }
 
 gl::Framebuffer framebufferOf(const gl::Texture& target) {
@@ -185,7 +181,8 @@ void ClusterBuilder::NormalBinPasses::findBins(const reflections::GBuffer& gbuff
     areaOfReflector.clear();
     areaOfReflector.bindStorage(kAreasBinding);
     areas.use();
-    glDispatchCompute(groupsFor(sizePx.x, kGroupSize), groupsFor(sizePx.y, kStripLength), 1);
+    glDispatchCompute(kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kStripLength),
+                      1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 
     leastScale.bindStorage(kThresholdsBinding);
@@ -217,17 +214,17 @@ void ClusterBuilder::NormalBinPasses::sortSamples(const Clusters& clusters) {
     clusters.ranges.bindStorage(kRangesBinding);
     clusters.samples.bindStorage(kSamplesBinding);
     count.use();
-    glDispatchCompute(groupsFor(kMaxBlocks, kGroupSize), 1, 1);
+    glDispatchCompute(kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     scan.use();
-    glDispatchCompute(groupsFor(kMatrixEntries, kPieceLength), 1, 1);
+    glDispatchCompute(kit::groupsFor(kMatrixEntries, kPieceLength), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     number.use();
     number.set("leastSamples", leastSamples);
     glDispatchCompute(1, 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     sort.use();
-    glDispatchCompute(groupsFor(kMaxBlocks, kGroupSize), 1, 1);
+    glDispatchCompute(kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1);
 
     label.use();
     clusterTarget.bind();

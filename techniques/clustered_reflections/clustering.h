@@ -8,7 +8,7 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/profiler.h"
 #include "runner/gl/program.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::clustered_reflections {
 

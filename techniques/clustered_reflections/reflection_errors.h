@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "techniques/clustered_reflections/cluster_images.h"
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runner/image/image.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::clustered_reflections {
 

@@ -7,11 +7,6 @@
 
 #include "runner/scene/scene.h"
 
-namespace gfxrepro {
-namespace kit {}
-namespace depth_images = kit;  // the name that the reflections still use
-}  // namespace gfxrepro
-
 namespace gfxrepro::kit {
 
 /// Pixel coordinates are continuous; pixel (x, y) covers [x, x + 1) × [y, y + 1), its sample lies

@@ -52,8 +52,7 @@ int ceilDivided(int count, int size) {
 CellList::CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool splitsDraws)
     : sizePx_(sizePx),
       splitsDraws_(splitsDraws),
-      classify_(shaders,
-                {"reflections/whole_image.vert.glsl", "reflection_reuse/classify_cells.frag.glsl"},
+      classify_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/classify_cells.frag.glsl"},
                 passDefines()),
       list_(shaders, {"reflection_reuse/list_cells.comp.glsl"}, passDefines()),
       cells_(gl::Texture::make2D(GL_R8UI, sizePx)),

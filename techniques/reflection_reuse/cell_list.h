@@ -3,8 +3,8 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/reflection_depth_image.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -50,7 +50,7 @@ class CellList {
     gl::Buffer triangles_, points_, commands_;
     gl::VertexArray triangleVertices_, pointVertices_;
     Counts drawn_;  // with splitsDraws_
-    reflections::WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflection_reuse

@@ -37,10 +37,9 @@ gl::Defines passDefines() {
 }  // namespace
 
 MovedObjects::MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
-    : then_(shaders,
-            {"reflections/whole_image.vert.glsl", "reflection_reuse/doubt_moved.frag.glsl"},
+    : then_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/doubt_moved.frag.glsl"},
             passDefines()),
-      now_(shaders, {"reflections/whole_image.vert.glsl", "reflection_reuse/want_moved.frag.glsl"},
+      now_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_moved.frag.glsl"},
            passDefines()),
       doubtful_(gl::Texture::make2D(GL_R8UI, sizePx)),
       framebuffer_(std::array<const gl::Texture*, 1>{&doubtful_}) {}

@@ -8,8 +8,8 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/reflection_depth_image.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -41,7 +41,7 @@ class MovedObjects {
     std::vector<scene::Box> keyBounds_;
     gl::Buffer moved_;
     unsigned movedCount_ = 0;
-    reflections::WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflection_reuse

@@ -1,8 +1,8 @@
 // A key frame's reflections ([xie2017] Sec. 5.3): what eye and reflected rays sampled.
 #pragma once
 
-#include "techniques/shared/reflections/gbuffer.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/gbuffer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -14,7 +14,7 @@ struct ReflectionDepthImage {
     reflections::ReflectionTarget reflection;
     float diagonalM = 1.0F;
 
-    ReflectionDepthImage(const depth_images::View& view, float sceneDiagonalM)
+    ReflectionDepthImage(const kit::View& view, float sceneDiagonalM)
         : gbuffer(view), reflection(view.sizePx), diagonalM(sceneDiagonalM) {}
     std::size_t sizeBytes() const { return gbuffer.sizeBytes() + reflection.sizeBytes(); }
 };

@@ -7,16 +7,17 @@
 #include "runner/scene/animation.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/kit/path_view.h"
-#include "techniques/shared/reflections/gpu_ray_tracer.h"
+#include "techniques/kit/requirements.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
 
 ReflectionReuse::ReflectionReuse(config::Params& params) : params_(params) {}
 
 void ReflectionReuse::setup(technique::SetupContext& context) {
-    if (!context.scene) throw Error("technique 'reflection_reuse' needs a scene");
     const gl::ShaderLibrary& shaders = context.shaders;
-    scene_.emplace(*context.scene, params_.reflectors, params_.textureFilter);
+    scene_.emplace(kit::requireScene(context, "reflection_reuse"), params_.reflectors,
+                   params_.textureFilter);
     scene_->printWarnings();
     scene_->requireReflectors();
     if (params_.glossiness) scene_->setGlossiness(*params_.glossiness);
@@ -78,7 +79,7 @@ void ReflectionReuse::place(const technique::FrameContext& context) {
     const glm::vec2 size(outputSizePx_);
     const scene::Camera camera =
         kit::cameraAtTime(scene_->scene(), params_.view, time, size.x / size.y);
-    view_ = depth_images::viewOf(camera, params_.supersampling * outputSizePx_);
+    view_ = kit::viewOf(camera, params_.supersampling * outputSizePx_);
     if (params_.hasMotion) objects_->setPoses(scene::posesAt(scene_->scene(), time));
 }
 

@@ -8,7 +8,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/reflection_reuse/reflection_reuse_params.h"
 #include "techniques/reflection_reuse/resting_tracer.h"
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -60,7 +60,7 @@ class ReflectionReuse final : public technique::Technique {
     std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
     std::optional<FullTracing> fullTracing_;  // of `ray_traced`
     std::optional<reflections::Composite> composite_;
-    depth_images::View view_;
+    kit::View view_;
     int frame_ = -1;         // last rendered
     int lastKeyFrame_ = -1;  // last recorded key frame
     int frameCount_ = 0;

@@ -6,8 +6,8 @@
 
 #include "runner/config/params.h"
 #include "techniques/reflection_reuse/reuse_renderer.h"
-#include "techniques/shared/reflections/composite.h"
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/composite.h"
+#include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::reflection_reuse {
 

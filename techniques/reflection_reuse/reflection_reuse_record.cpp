@@ -7,22 +7,19 @@
 #include "runner/metrics/flip.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
 #include "techniques/reflection_reuse/linear_fit.h"
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/reflection_reuse/reuse_pictures.h"
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflection_reuse {
 
-using depth_images::seenFrom;
+using kit::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
-
-double percent(std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 double meanOf(const glm::dvec3& channels) {
     return (channels.x + channels.y + channels.z) / 3.0;
@@ -88,7 +85,7 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
     std::size_t reflective = 0;
     for (std::size_t i = 0; i < host.surface.size(); ++i)
         reflective += host.isReflective(i) ? 1 : 0;
-    recorder.metric("reflective_pct", percent(reflective, host.surface.size()), "%");
+    recorder.metric("reflective_pct", kit::percent(reflective, host.surface.size()), "%");
     if (reflective == 0) scene_->printEmptyView();
     const std::size_t frameBytes =
         renderer_ ? renderer_->sizeBytes()
@@ -111,7 +108,7 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
 
 void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
     const ReuseCounts counts = renderer_->counts();
-    const double recomputedPct = percent(counts.recomputedSamples, counts.reflectiveSamples);
+    const double recomputedPct = kit::percent(counts.recomputedSamples, counts.reflectiveSamples);
     recorder.metric("is_key_frame", counts.isKeyFrame ? 1.0 : 0.0, "1");
     recorder.metric("recomputed_samples", counts.recomputedSamples, "sample");
     if (counts.reflectiveSamples > 0) recorder.metric("saved_pct", 100.0 - recomputedPct, "%");
@@ -153,19 +150,19 @@ void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
     }
     if (reflective == 0) return;
     recorder.metric("matching_steps", renderer_->counts().matchingSteps, "step");
-    recorder.metric("unmatched_pct", percent(unmatched, reflective), "%");
+    recorder.metric("unmatched_pct", kit::percent(unmatched, reflective), "%");
     if (renderer_->shifted()) {
         const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
         std::size_t unshifted = 0;
         for (std::size_t i = 0; i < shifted.size(); ++i) {
             unshifted += key.gbuffer.isReflective(i) && shifted[i].a <= 0.5F ? 1 : 0;
         }
-        recorder.metric("unshifted_pct", percent(unshifted, reflective), "%");
+        recorder.metric("unshifted_pct", kit::percent(unshifted, reflective), "%");
     }
     if (params_.exhaustiveSamples == 0) return;
     const MatchCheck check = checkMatches(key, offsets, view_.eyeWorld, params_.reuse.matching,
                                           params_.exhaustiveSamples);
-    recorder.metric("wrong_minimum_pct", percent(check.wrong, check.checked), "%");
+    recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked), "%");
 }
 
 /// The same composite makes a picture of Embree's rays, so that nothing but the reflections
@@ -201,8 +198,8 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
     const std::vector<std::uint8_t> marks =
         undetectedErrors(host, readRecomputed(*renderer_), picture, truth);
     const auto undetected = static_cast<std::size_t>(std::ranges::count(marks, 1));
-    recorder.metric("undetected_pct", percent(undetected, renderer_->counts().reflectiveSamples),
-                    "%");
+    recorder.metric("undetected_pct",
+                    kit::percent(undetected, renderer_->counts().reflectiveSamples), "%");
     if (!params_.showsPictures) return;
     recorder.image("undetected",
                    reflections::markedPicture(picture, marks, host, params_.supersampling),
@@ -211,7 +208,7 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
 
 void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGBuffer& host,
                                      const image::ImageF& picture, const image::ImageF& truth) {
-    depth_images::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
+    kit::ImageLayers layers = reflections::surfaceLayers(host, params_.supersampling);
     if (!truth.empty()) layers.errors(picture, truth);
     recorder.image("result", picture, layers.options());
     if (!truth.empty()) {

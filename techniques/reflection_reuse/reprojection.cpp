@@ -68,8 +68,7 @@ Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionS
       project_(shaders,
                {"reflection_reuse/project.vert.glsl", "reflection_reuse/project.frag.glsl"},
                passDefines()),
-      wantAll_(shaders,
-               {"reflections/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
+      wantAll_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
                passDefines()),
       depthBuffer_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {
@@ -112,10 +111,9 @@ void Reprojection::bindNewView(const gl::Program& program, const ReflectionDepth
     key.gbuffer.depth.bind(kKeyDepthUnit);
     key.gbuffer.surface.bind(kKeySurfaceUnit);
     gbuffer.bind(program, kGBufferUnit);
-    program.set(
-        "clipFromKeyPixels",
-        glm::mat4(glm::dmat4(gbuffer.view.clipFromView) * glm::dmat4(gbuffer.view.viewFromWorld) *
-                  glm::dmat4(depth_images::worldFromPixels(key.gbuffer.view))));
+    program.set("clipFromKeyPixels", glm::mat4(glm::dmat4(gbuffer.view.clipFromView) *
+                                               glm::dmat4(gbuffer.view.viewFromWorld) *
+                                               glm::dmat4(kit::worldFromPixels(key.gbuffer.view))));
     program.set("maxGrowth", settings_.maxGrowth);
     program.set("depthTolerance", settings_.depthTolerance);
 }

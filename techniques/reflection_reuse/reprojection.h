@@ -4,9 +4,9 @@
 
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/cell_list.h"
 #include "techniques/reflection_reuse/pixel_matcher.h"
-#include "techniques/shared/reflections/whole_image.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -91,7 +91,7 @@ class Reprojection {
     gl::Texture depthBuffer_;  // of the warped image
     gl::Texture noDoubts_;     // one texel of 0
     gl::SampleQuery reflective_;
-    reflections::WholeImage wholeImage_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflection_reuse

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
 

@@ -5,7 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "techniques/reflection_reuse/match_check.h"
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflection_reuse {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "runner/image/image.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::reflection_reuse {
 

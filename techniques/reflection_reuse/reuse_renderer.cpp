@@ -27,8 +27,8 @@ gl::Defines mendDefines() {
             {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)}};
 }
 
-depth_images::View emptyView(glm::ivec2 sizePx) {
-    depth_images::View view;
+kit::View emptyView(glm::ivec2 sizePx) {
+    kit::View view;
     view.sizePx = sizePx;
     return view;
 }
@@ -52,7 +52,7 @@ struct ReuseRenderer::Impl {
     std::optional<ShiftedImage> shifted;  // of two steps
     gl::Texture wanted;
     gl::SampleQuery recomputed;
-    reflections::WholeImage wholeImage;
+    kit::WholeImage wholeImage;
     bool hasFrame = false;
     bool isKeyForgotten = false;
     bool isKeyFrame = false;  // the last frame
@@ -70,7 +70,7 @@ struct ReuseRenderer::Impl {
           matcher(shaders, settings.matching),
           reprojection(shaders, settings.reprojection, sizePx),
           movedObjects(shaders, sizePx),
-          mend(shaders, {"reflections/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"},
+          mend(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"},
                mendDefines()),
           key(emptyView(sizePx), diagonalM),
           gbuffer(emptyView(sizePx)),
@@ -96,7 +96,7 @@ struct ReuseRenderer::Impl {
         return recomputedSamples() > share * reprojection.reflectiveSamples();
     }
 
-    void drawDiffuse(const depth_images::View& view, gl::Profiler& profiler) {
+    void drawDiffuse(const kit::View& view, gl::Profiler& profiler) {
         const gl::GpuScope scope(profiler, "diffuse");
         gbuffer.view = view;
         gbufferRenderer.render(objects, gbuffer);
@@ -181,7 +181,7 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
 
 ReuseRenderer::~ReuseRenderer() = default;
 
-void ReuseRenderer::render(const depth_images::View& view, gl::Profiler& profiler,
+void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
                            gl::Profiler* recomputeTimes) {
     GFXREPRO_ASSERT(view.sizePx == impl_->gbuffer.view.sizePx);
     // First what every frame needs: the device draws it while the count of the frame before, by

@@ -6,7 +6,7 @@
 
 #include "techniques/reflection_reuse/pixel_matcher.h"
 #include "techniques/reflection_reuse/reprojection.h"
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -50,7 +50,7 @@ class ReuseRenderer {
 
     /// The objects are posed and the tracer is updated. The first frame is a key frame. A profiler
     /// for `recomputeTimes` gets a scope of its own within `recompute`, between key frames.
-    void render(const depth_images::View& view, gl::Profiler& profiler,
+    void render(const kit::View& view, gl::Profiler& profiler,
                 gl::Profiler* recomputeTimes = nullptr);
     /// Takes the last render() back but for what gbuffer() and the others hold: the next one
     /// decides and starts as it did, so that a frame can be rendered again.

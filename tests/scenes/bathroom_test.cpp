@@ -127,7 +127,7 @@ TEST(Bathroom, LightsLeaveWhiteBelowSaturation) {
     ASSERT_GE(scene.lights.size(), 2U);
     ASSERT_LE(scene.lights.size(), 4U);  // as many as the techniques take
     // Irradiance of the floor and the walls by the formula in scene.h, with the ambient term of
-    // techniques/shared/reflections/surfaces.h.
+    // techniques/reflections/surfaces.h.
     const auto irradianceAt = [&](const glm::vec3& position, const glm::vec3& normal) {
         glm::vec3 sum(0.30F + 0.10F * normal.y);
         for (const PointLight& light : scene.lights) {

@@ -19,7 +19,7 @@ struct Case {
 
 class ClusterCamerasTest : public ClusterTest {
   protected:
-    Case build(const reflections::ReflectiveScene& scene, const depth_images::View& view,
+    Case build(const reflections::ReflectiveScene& scene, const kit::View& view,
                const CameraSettings& settings, const BinSettings& bins = {},
                const std::vector<std::uint8_t>* wanted = nullptr) {
         const reflections::GBuffer gbuffer = render(scene, view);
@@ -281,8 +281,7 @@ TEST_F(ClusterCamerasTest, EdgeOnMirrorKeepsAThinImage) {
         const glm::mat4 pose = glm::rotate(kIdentity, -1.5707964F, {1, 0, 0});
         const reflections::ReflectiveScene scene = MirrorScene().add(square(), pose).get();
         const CameraSettings settings{.diagonalM = 10.0F};
-        const depth_images::View view =
-            viewFrom({0, height, 1.5F}, {0, 0, 0}, {16, 256}, 3.0F * height);
+        const kit::View view = viewFrom({0, height, 1.5F}, {0, 0, 0}, {16, 256}, 3.0F * height);
         const Case c = build(scene, view, settings);
         ASSERT_EQ(c.cameras.size(), 1U);
         const std::uint32_t behind = height < 1e-3F ? kEyeBehind : 0U;
@@ -308,7 +307,7 @@ TEST_F(ClusterCamerasTest, ClustersOfOneSampleHaveAnImageOfOneTexelAtLeast) {
 
 TEST_F(ClusterCamerasTest, LobesWidenTheImageAndPullTheFarPlaneIn) {
     reflections::ReflectiveScene scene = MirrorScene().add(square(), kIdentity).get();
-    const depth_images::View view = viewFrom({0, 0, 4}, {0, 0, 0}, {160, 120});
+    const kit::View view = viewFrom({0, 0, 4}, {0, 0, 0}, {160, 120});
     const CameraSettings settings{.diagonalM = 10.0F};
     const Case mirror = build(scene, view, settings);
     for (const float glossiness : {0.2F, 0.6F}) {
@@ -349,7 +348,7 @@ TEST_F(ClusterCamerasTest, NoClustersNeedNoCameras) {
 
 TEST_F(ClusterCamerasTest, TwoRunsGiveTheSameBits) {
     const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
-    const depth_images::View view = viewFrom({1, 0.8F, 3.5F}, {0, 0, 0}, {200, 200});
+    const kit::View view = viewFrom({1, 0.8F, 3.5F}, {0, 0, 0}, {200, 200});
     const Case a = build(scene, view, {.diagonalM = 10.0F});
     const Case b = build(scene, view, {.diagonalM = 10.0F});
     ASSERT_EQ(a.cameras.size(), b.cameras.size());

@@ -74,8 +74,8 @@ class MirrorScene {
     scene::Scene scene_;
 };
 
-inline depth_images::View viewFrom(const glm::vec3& eye, const glm::vec3& target, glm::ivec2 sizePx,
-                                   float verticalFovRad = 0.7F) {
+inline kit::View viewFrom(const glm::vec3& eye, const glm::vec3& target, glm::ivec2 sizePx,
+                          float verticalFovRad = 0.7F) {
     scene::Camera camera;
     camera.position = eye;
     camera.target = target;
@@ -83,7 +83,7 @@ inline depth_images::View viewFrom(const glm::vec3& eye, const glm::vec3& target
     camera.farM = 50.0F;
     camera.verticalFovRad = verticalFovRad;
     if (std::abs(glm::normalize(target - eye).y) > 0.99F) camera.up = {0.0F, 0.0F, -1.0F};
-    return depth_images::viewOf(camera, sizePx);
+    return kit::viewOf(camera, sizePx);
 }
 
 class ClusterTest : public test::GlTest {
@@ -91,7 +91,7 @@ class ClusterTest : public test::GlTest {
     gl::ShaderLibrary shaders{dataFolder("shaders")};
 
     reflections::GBuffer render(const reflections::ReflectiveScene& scene,
-                                const depth_images::View& view) const {
+                                const kit::View& view) const {
         reflections::GpuObjects objects(scene);
         reflections::GBuffer gbuffer(view);
         reflections::GBufferRenderer(shaders, scene).render(objects, gbuffer);

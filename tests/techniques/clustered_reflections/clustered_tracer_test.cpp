@@ -56,7 +56,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     rooms::addFurniture(behind);
     const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
     const reflections::GpuObjects objects(mirrored);
-    reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(128)));
+    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(128)));
     reflections::GBufferRenderer(shaders(), mirrored).render(objects, truth);
     const reflections::HostGBuffer expected = readGBuffer(truth);
 
@@ -117,7 +117,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorIsShownAsRaysShowItAtThePrintedSize) {
     scene::Scene behind = rooms::room(false);
     rooms::addFurniture(behind);
     const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
-    reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(kSizePx)));
+    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(kSizePx)));
     reflections::GBufferRenderer(shaders(), mirrored)
         .render(reflections::GpuObjects(mirrored), truth);
     const reflections::HostGBuffer expected = readGBuffer(truth);
@@ -133,7 +133,7 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
     scene::Scene source = rooms::room(false);
     addPattern(source);
     const reflections::ReflectiveScene mirrored(rooms::mirroredInZ(source, -2.0F));
-    reflections::GBuffer truth(depth_images::viewOf(frontCamera(), glm::ivec2(128)));
+    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(128)));
     reflections::GBufferRenderer(shaders(), mirrored)
         .render(reflections::GpuObjects(mirrored), truth);
     const reflections::HostGBuffer expected = readGBuffer(truth);

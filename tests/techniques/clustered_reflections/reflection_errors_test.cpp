@@ -106,8 +106,8 @@ TEST_F(OcclusionTest, CountsSamplesByTheirClusters) {
     // Two samples in a view from (0, 0, 4) down to the mirror; its pixels see (∓1, 0, 0).
     scene::Camera eye{.position = {0, 0, 4}, .target = {0, 0, 0}};
     eye.verticalFovRad = 2.0F * std::atan(0.25F);
-    gbuffer_.view = depth_images::viewOf(eye, {4, 2});
-    gbuffer_.worldFromPixels = depth_images::worldFromPixels(gbuffer_.view);
+    gbuffer_.view = kit::viewOf(eye, {4, 2});
+    gbuffer_.worldFromPixels = kit::worldFromPixels(gbuffer_.view);
     gbuffer_.depthM.assign(8, 4.0F);
     gbuffer_.normalWorld.assign(8, {0, 0, 1});
     gbuffer_.surface.assign(8, 1U | 255U << 16);

@@ -10,7 +10,7 @@
 #include "runner/gl/device.h"
 #include "runner/image/srgb.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/reflections/gl_calls.h"
 
@@ -66,7 +66,7 @@ class TracerTest : public testing::Test {
     static Traced trace(const reflections::ReflectiveScene& scene, const scene::Camera& camera,
                         const ClusteredSettings& settings, int sizePx = 128) {
         const reflections::GpuObjects objects(scene);
-        reflections::GBuffer gbuffer(depth_images::viewOf(camera, glm::ivec2(sizePx)));
+        reflections::GBuffer gbuffer(kit::viewOf(camera, glm::ivec2(sizePx)));
         reflections::GBufferRenderer(shaders(), scene).render(objects, gbuffer);
         reflections::EnvironmentMap map(shaders(), scene);
         map.render(objects);

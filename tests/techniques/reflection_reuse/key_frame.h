@@ -5,7 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "techniques/reflection_reuse/pixel_matcher.h"
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -24,7 +24,7 @@ struct KeyFrame {
         : scene(source),
           objects(scene),
           map(shaders, scene),
-          image(depth_images::viewOf(camera, sizePx), scene.diagonalM()) {
+          image(kit::viewOf(camera, sizePx), scene.diagonalM()) {
         map.render(objects);
         reflections::GBufferRenderer(shaders, scene).render(objects, image.gbuffer);
         gl::Profiler profiler(true);

@@ -165,7 +165,7 @@ TEST_F(MatchingSearchTest, SecondOrderFindsMatchesBetweenSamples) {
             matchOnHost(key.host, pixel, eye, {}, {.matching = Matching::SecondOrder})};
         ASSERT_TRUE(matches[0].offset && matches[1].offset);
         const glm::vec2 expected =
-            depth_images::project(
+            kit::project(
                 key.host.gbuffer.view,
                 seenInBall({0.0, 0.9, 0.0}, 0.6, key.host.reflectedPositionWorld(pixel), eye))
                 .value();

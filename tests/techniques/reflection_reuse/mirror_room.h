@@ -98,7 +98,7 @@ class ReuseTest : public reflections::ReflectionsTest {
             tracer.update(objects, profiler);
         }
         Frame render(const scene::Camera& camera) {
-            renderer.render(depth_images::viewOf(camera, kSize), profiler);
+            renderer.render(kit::viewOf(camera, kSize), profiler);
             Frame frame;
             frame.gbuffer = readGBuffer(renderer.gbuffer());
             frame.radiance = renderer.reflection().radiance.read<glm::vec3>(GL_RGB, GL_FLOAT, 1);

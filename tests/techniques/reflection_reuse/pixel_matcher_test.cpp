@@ -26,7 +26,7 @@ glm::vec3 seenInPlane(float height, const glm::vec3& reflected, const glm::vec3&
 glm::vec2 reflectionInFloor(const KeyFrame& key, const glm::vec3& reflected,
                             const glm::vec3& eyeWorld) {
     const glm::vec3 point = seenInPlane(0.0F, reflected, eyeWorld);
-    return depth_images::project(key.image.gbuffer.view, glm::vec3(point)).value();
+    return kit::project(key.image.gbuffer.view, glm::vec3(point)).value();
 }
 
 /// How many of the samples within `radiusPx` of a position, a square, are of a reflector.
@@ -177,7 +177,7 @@ TEST_F(PixelMatcherTest, SearchesDoNotCrossASilhouette) {
         glm::vec3 image = key.host.reflectedPositionWorld(pixel);
         image.z = 2.0F * planeZ - image.z;
         const glm::vec3 point = image + (eye - image) * ((planeZ - image.z) / (eye.z - image.z));
-        const glm::vec2 expected = depth_images::project(key.image.gbuffer.view, point).value();
+        const glm::vec2 expected = kit::project(key.image.gbuffer.view, point).value();
         if (countNear(key.host, expected, 0, 1) == 0) return;
         const std::size_t there = gbuffer.indexOf(glm::ivec2(glm::floor(expected)));
         if (offsets.isValid(index)) {

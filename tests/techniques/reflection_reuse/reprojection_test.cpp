@@ -44,9 +44,8 @@ struct Samples {
 
 class ReprojectionTest : public reflections::ReflectionsTest {
   protected:
-    static depth_images::View view(const glm::vec3& eyeWorld = glm::vec3(0.0F)) {
-        return depth_images::viewOf(reflections::camera(eyeWorld, eyeWorld - glm::vec3(0, 0, 1)),
-                                    kSize);
+    static kit::View view(const glm::vec3& eyeWorld = glm::vec3(0.0F)) {
+        return kit::viewOf(reflections::camera(eyeWorld, eyeWorld - glm::vec3(0, 0, 1)), kSize);
     }
 
     void upload(const Samples& samples) {
@@ -79,7 +78,7 @@ class ReprojectionTest : public reflections::ReflectionsTest {
         }
     };
     /// The key frame's own colours, to a view where each sample is of `surface` at `depthM`.
-    Warped warped(const Samples& samples, const depth_images::View& to,
+    Warped warped(const Samples& samples, const kit::View& to,
                   const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
                   const ReprojectionSettings& settings = {}) {
         return moved(samples, to, surface, depthM, settings,
@@ -89,7 +88,7 @@ class ReprojectionTest : public reflections::ReflectionsTest {
     }
 
     /// The key frame's own colours by the offsets, to `to` at once.
-    Warped projected(const Samples& samples, const depth_images::View& to,
+    Warped projected(const Samples& samples, const kit::View& to,
                      const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
                      const ReprojectionSettings& settings = {},
                      const gl::Texture* doubtful = nullptr) {
@@ -100,7 +99,7 @@ class ReprojectionTest : public reflections::ReflectionsTest {
     }
 
     template <class Move>
-    Warped moved(const Samples& samples, const depth_images::View& to,
+    Warped moved(const Samples& samples, const kit::View& to,
                  const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
                  const ReprojectionSettings& settings, Move&& move) {
         upload(samples);
@@ -315,7 +314,7 @@ TEST_F(ReprojectionTest, TheSameViewReusesEverySample) {
 TEST_F(ReprojectionTest, AWallMovesWithTheEye) {
     // 4 pixels to the right at 2 m: from (x·d, y·d, d) to the world.
     const Samples samples;
-    const glm::mat4 worldFromPixels = depth_images::worldFromPixels(view());
+    const glm::mat4 worldFromPixels = kit::worldFromPixels(view());
     const glm::vec3 step(worldFromPixels * glm::vec4(4.0F * 2.0F, 0, 0, 0));
     const Warped result = warped(samples, view(step), samples.surface, samples.depthM);
     forEachPixel([&](int x, int y) {
@@ -355,7 +354,7 @@ TEST_F(ReprojectionTest, WarpingKeepsTheRuleOfGrowthToo) {
     // Four pixels' width of the wall, from 2 m to 0.4 m: 25 times the area.
     const Samples samples;
     const std::vector<float> depthM(samples.depthM.size(), 0.4F);
-    const depth_images::View near = view({0, 0, -1.6F});
+    const kit::View near = view({0, 0, -1.6F});
     EXPECT_EQ(warped(samples, near, samples.surface, depthM).wantedCount(), depthM.size());
     EXPECT_EQ(warped(samples, near, samples.surface, depthM, {.maxGrowth = 26.0F}).wantedCount(),
               0U);
@@ -364,8 +363,7 @@ TEST_F(ReprojectionTest, WarpingKeepsTheRuleOfGrowthToo) {
 TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
     constexpr glm::ivec2 kLarge{300, 260};  // 461,000 indices: three draws
     const std::size_t count = 300 * 260;
-    const depth_images::View view =
-        depth_images::viewOf(reflections::camera({0, 0, 0}, {0, 0, -1}), kLarge);
+    const kit::View view = kit::viewOf(reflections::camera({0, 0, 0}, {0, 0, -1}), kLarge);
     ReflectionDepthImage large(view, 10.0F);
     const std::vector<std::uint32_t> surface(count, 1);
     const std::vector<float> depthM(count, 2.0F);
@@ -399,8 +397,8 @@ TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
 }
 
 /// The eye one whole pixel of a wall at 2 m to the right, `pixels` times.
-glm::vec3 stepOf(const depth_images::View& view, float pixels) {
-    return glm::vec3(depth_images::worldFromPixels(view) * glm::vec4(pixels * 2.0F, 0, 0, 0));
+glm::vec3 stepOf(const kit::View& view, float pixels) {
+    return glm::vec3(kit::worldFromPixels(view) * glm::vec4(pixels * 2.0F, 0, 0, 0));
 }
 
 TEST_F(ReprojectionTest, AtOnceOffsetsAndTheEyesMotionAddUp) {
@@ -424,7 +422,7 @@ TEST_F(ReprojectionTest, AtOnceFractionsOfAPixelAreResampledOnce) {
     // steps either half mixes neighbours.
     Samples samples;
     for (glm::vec2& offset : samples.offset) offset = {0.5F, 0.0F};
-    const depth_images::View to = view(stepOf(view(), 0.5F));
+    const kit::View to = view(stepOf(view(), 0.5F));
     const Warped result = projected(samples, to, samples.surface, samples.depthM);
     for (int y = 1; y + 1 < kSize.y; ++y) {
         for (int x = 1; x + 1 < kSize.x; ++x) {

@@ -119,7 +119,7 @@ TEST_F(ReuseTest, OnlyWhatTheKeyFrameDidNotSeeIsRecomputed) {
         const glm::vec3 reflected = frame.gbuffer.positionWorld(pixel) +
                                     truth[i].distanceM * frame.gbuffer.mirrorDirection(pixel);
         const glm::vec3 image(reflected.x, reflected.y, -4.0F - reflected.z);
-        const auto seenAt = depth_images::pixelOf(key.gbuffer.view, image);
+        const auto seenAt = kit::pixelOf(key.gbuffer.view, image);
         if (!seenAt) return;
         // Two samples around, all mirroring the same object at the same distance: the image was
         // seen, and no edge is near.
@@ -233,7 +233,7 @@ TEST_F(ReuseTest, TheDeviceHasAFrameToDrawWhileTheLastOnesCountIsWaitedFor) {
     world.render(front(0.02F));
     gl::Profiler untimed(false);
     reflections::glCalls().clear();
-    world.renderer.render(depth_images::viewOf(front(0.04F), kSize), untimed);
+    world.renderer.render(kit::viewOf(front(0.04F), kSize), untimed);
     const std::vector<reflections::GlCall>& calls = reflections::glCalls();
     const auto firstWait = std::ranges::find(calls, reflections::GlCall::Wait);
     EXPECT_EQ(std::count(calls.begin(), firstWait, reflections::GlCall::DrawObject),

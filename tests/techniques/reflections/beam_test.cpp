@@ -4,7 +4,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -26,7 +26,7 @@ class BeamTest : public ReflectionsTest {
         camera.target = {0, 0, 0};
         camera.nearM = 0.1F;
         camera.farM = 10.0F;
-        GBuffer gbuffer(depth_images::viewOf(camera, kSize));
+        GBuffer gbuffer(kit::viewOf(camera, kSize));
         GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         return gbuffer;
     }

@@ -1,5 +1,5 @@
 // Composite against its formula on the host.
-#include "techniques/shared/reflections/composite.h"
+#include "techniques/reflections/composite.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ class CompositeTest : public ReflectionsTest {
     /// its reflected colour is not a number.
     void fill(int supersampling) {
         const glm::ivec2 size = kOutputSize * supersampling;
-        gbuffer.emplace(depth_images::viewOf({}, size));
+        gbuffer.emplace(kit::viewOf({}, size));
         target.emplace(size);
         Random random(9);
         diffuse.clear();

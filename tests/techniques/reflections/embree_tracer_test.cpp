@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -75,9 +75,9 @@ glm::vec3 shown(const scene::Scene& scene, const WallHit& hit) {
 struct FloorRay {
     glm::dvec3 origin, direction;
 };
-FloorRay floorRay(const depth_images::View& view, glm::ivec2 pixel) {
+FloorRay floorRay(const kit::View& view, glm::ivec2 pixel) {
     const glm::dvec3 eye(view.eyeWorld);
-    glm::dvec3 direction(depth_images::rayThrough(view, glm::vec2(pixel) + 0.5F));
+    glm::dvec3 direction(kit::rayThrough(view, glm::vec2(pixel) + 0.5F));
     const glm::dvec3 origin = eye + direction * (-eye.y / direction.y);
     direction.y = -direction.y;
     return {origin, direction};

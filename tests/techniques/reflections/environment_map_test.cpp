@@ -1,12 +1,12 @@
 // Environment maps in a room whose walls glow in known colours.
-#include "techniques/shared/reflections/environment_map.h"
+#include "techniques/reflections/environment_map.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -140,12 +140,12 @@ TEST_F(EnvironmentMapTest, ShowsTheBackgroundWhereNothingIs) {
 class EnvironmentTracerTest : public ReflectionsTest {
   protected:
     /// The mirror, seen from the middle of the room.
-    static depth_images::View mirrorView() {
+    static kit::View mirrorView() {
         scene::Camera camera;
         camera.position = {0.0F, 0.1F, 0.0F};
         camera.target = {1.2F, 0.2F, -2.5F};
         camera.verticalFovRad = 0.4F;
-        return depth_images::viewOf(camera, {32, 24});
+        return kit::viewOf(camera, {32, 24});
     }
 
     gl::Profiler profiler{true};

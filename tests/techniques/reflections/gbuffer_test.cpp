@@ -1,5 +1,5 @@
 // The G-buffer against rays of Embree through the pixels' centres.
-#include "techniques/shared/reflections/gbuffer.h"
+#include "techniques/reflections/gbuffer.h"
 
 #include <gtest/gtest.h>
 
@@ -40,13 +40,13 @@ std::vector<glm::mat4> posesOf(const scene::Scene& scene) {
             ball({1, 0.6F, 0.4F}, -1.9F, {0.6F, -0.8F, 0.4F})};
 }
 
-depth_images::View viewOfScene() {
+kit::View viewOfScene() {
     scene::Camera camera;
     camera.position = {0.5F, 2.5F, 5.0F};
     camera.target = {0, 0.5F, 0};
     camera.nearM = 0.5F;
     camera.farM = 20.0F;
-    return depth_images::viewOf(camera, kSize);
+    return kit::viewOf(camera, kSize);
 }
 
 class GBufferTest : public ReflectionsTest {
@@ -241,7 +241,7 @@ struct Halves {
         scene::Camera camera;
         camera.position = {0, 0, 5.0F * side};
         camera.target = {0, 0, 0};
-        GBuffer gbuffer(depth_images::viewOf(camera, kSize));
+        GBuffer gbuffer(kit::viewOf(camera, kSize));
         GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         host = readGBuffer(gbuffer);
         left = host.indexOf({kSize.x / 2 - static_cast<int>(9 * side), kSize.y / 2});

@@ -1,5 +1,5 @@
 // The device's BVH: a tree with boxes that hold what is below, and Embree's hits.
-#include "techniques/shared/reflections/gpu_bvh.h"
+#include "techniques/reflections/gpu_bvh.h"
 
 #include <fmt/format.h>
 

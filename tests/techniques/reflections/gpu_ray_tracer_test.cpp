@@ -1,5 +1,5 @@
 // The device's ray tracer against Embree's.
-#include "techniques/shared/reflections/gpu_ray_tracer.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "runner/core/files.h"
 #include "runner/scene/animation.h"
 #include "scenes/shared/mesh_builder.h"
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/reflections/gl_calls.h"
 
@@ -92,7 +92,7 @@ class GpuRayTracerTest : public test::GlTest {
         EnvironmentMap map(shaders_, scene);
         map.render(objects);
         objects.setPoses(scene::posesAt(scene.scene(), time));
-        GBuffer gbuffer(depth_images::viewOf(from.cameras.front(), kSizePx));
+        GBuffer gbuffer(kit::viewOf(from.cameras.front(), kSizePx));
         GBufferRenderer(shaders_, scene).render(objects, gbuffer);
         ReflectionTarget target(kSizePx);
         GpuRayTracer tracer(shaders_, objects, map, lobe, scene.diagonalM());
@@ -211,7 +211,7 @@ TEST_F(GpuRayTracerTest, TracesOnlyWhatIsWanted) {
     EnvironmentMap map(shaders_, scene);
     map.render(objects);
     const glm::ivec2 size(65, 47);  // no multiple of a group's
-    GBuffer gbuffer(depth_images::viewOf(scene.scene().cameras.front(), size));
+    GBuffer gbuffer(kit::viewOf(scene.scene().cameras.front(), size));
     GBufferRenderer(shaders_, scene).render(objects, gbuffer);
     GpuRayTracer tracer(shaders_, objects, map, {}, scene.diagonalM());
     ReflectionTarget all(size), some(size);

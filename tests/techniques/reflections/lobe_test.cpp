@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "techniques/shared/reflections/reflection_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {

@@ -8,7 +8,7 @@
 #include "runner/core/files.h"
 #include "runner/core/random.h"
 #include "scenes/shared/mesh_builder.h"
-#include "techniques/shared/reflections/gpu_objects.h"
+#include "techniques/reflections/gpu_objects.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::reflections {

@@ -1,5 +1,5 @@
 // Objects cut into smooth parts that bend to one side.
-#include "techniques/shared/reflections/reflector_parts.h"
+#include "techniques/reflections/reflector_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scenes/shared/mesh_builder.h"
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::reflections {
 namespace {

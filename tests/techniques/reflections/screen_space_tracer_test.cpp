@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/screen_space_tracer.h"
+#include "techniques/reflections/screen_space_tracer.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ class ScreenSpaceTracerTest : public TracerTest {
 
 /// Whether the eye sees a point, and the side that a ray comes from.
 bool isSeen(const HostGBuffer& gbuffer, const glm::vec3& point, const glm::vec3& direction) {
-    const std::optional<glm::ivec2> pixel = depth_images::pixelOf(gbuffer.view, point);
+    const std::optional<glm::ivec2> pixel = kit::pixelOf(gbuffer.view, point);
     if (!pixel) return false;
     const std::size_t index = gbuffer.indexOf(*pixel);
     if (gbuffer.depthM[index] == 0.0F) return false;
@@ -122,7 +122,7 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
         if (truth[index].object != 2 || !isSeen(gbuffer, point, direction)) return;
         // In this symmetric image rays go straight up.
         bool isBehind = false;
-        const int wallY = depth_images::pixelOf(gbuffer.view, point)->y;
+        const int wallY = kit::pixelOf(gbuffer.view, point)->y;
         for (int y = pixel.y; y < wallY; ++y) {
             const float depth = gbuffer.depthM[gbuffer.indexOf({pixel.x, y})];
             isBehind = isBehind || (depth > 0.0F && depth < 1.2F);
@@ -151,7 +151,7 @@ TEST_F(ScreenSpaceTracerTest, TakesTheEnvironmentForWhatIsOutsideOfTheImage) {
         const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
         const glm::vec3 point = gbuffer.positionWorld(pixel) + truth[index].distanceM * direction;
         const bool isOnPillar = truth[index].object > 1;
-        if (isOnPillar && depth_images::pixelOf(gbuffer.view, point)) return;
+        if (isOnPillar && kit::pixelOf(gbuffer.view, point)) return;
         EXPECT_EQ(traced.distanceM[index], 0.0F);
         EXPECT_LT(largestDifference(traced.radiance[index], environment.radianceFrom(direction)),
                   2e-3F);

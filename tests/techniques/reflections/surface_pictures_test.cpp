@@ -1,4 +1,4 @@
-#include "techniques/shared/reflections/surface_pictures.h"
+#include "techniques/reflections/surface_pictures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Scenes prepared for reflections: what reflects, what is repaired and left out, how it is shaded.
-#include "techniques/shared/reflections/surfaces.h"
+#include "techniques/reflections/surfaces.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "techniques/shared/reflections/embree_tracer.h"
+#include "techniques/reflections/embree_tracer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -120,7 +120,7 @@ struct Prepared {
           objects(scene),
           map(shaders, scene),
           renderer(shaders, scene),
-          gbuffer(depth_images::viewOf(from, sizePx)) {
+          gbuffer(kit::viewOf(from, sizePx)) {
         map.render(objects);
         renderer.render(objects, gbuffer);
     }

@@ -1,0 +1,60 @@
+// Ray tracing on the CPU: the truth, and the CPU's baseline.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runner/raycast/ray_tracer.h"
+#include "techniques/reflections/environment_map.h"
+#include "techniques/reflections/reflection_tracer.h"
+
+namespace gfxrepro::reflections {
+
+/// What a sample's mirror ray meets.
+struct TracedSample {
+    glm::vec3 radiance{0.0F};  // weighted mean over the lobe, as ReflectionTarget has it
+    float distanceM = 0.0F;    // of the mirror ray; 0: it left the scene
+    std::uint32_t object = 0;  // 1 + object that the mirror ray meets; 0: none
+};
+
+/// Embree over the posed scene, its BVH rebuilt by every update() (the scenes are dynamic). Rays
+/// start from the G-buffer's samples. Passes: `bvh_build`, `intersection` (CPU), and `transfer`
+/// (CPU) for reading the G-buffer and the environment map and for writing the result.
+class EmbreeTracer final : public ReflectionTracer {
+  public:
+    /// Rays start this far from their surface, in diagonals of the scene's box: less would meet the
+    /// surface that they leave.
+    static constexpr float kStart = 1e-4F;
+
+    /// Both must outlive this.
+    EmbreeTracer(const ReflectiveScene& scene, const EnvironmentMap& map, const LobeSettings& lobe);
+    void update(const GpuObjects& objects, gl::Profiler& profiler) override;
+    void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
+               gl::Profiler& profiler) override;
+    std::size_t sizeBytes() const override { return 0; }
+
+    /// On the host, a sample a pixel of the G-buffer, rows from the bottom, in parallel. Needs an
+    /// update() before.
+    std::vector<TracedSample> trace(const HostGBuffer& gbuffer,
+                                    const std::vector<std::uint8_t>* wanted = nullptr) const;
+    /// Of the last update().
+    const raycast::RayTracer& rays() const { return *rays_; }
+
+  private:
+    void readEnvironment();
+    TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel) const;
+    glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction, float beamArea) const;
+
+    const ReflectiveScene& scene_;
+    const EnvironmentMap& map_;
+    LobeSettings lobe_;
+    scene::Scene posed_;  // the triangles alone: all that a BVH is built of
+    std::vector<glm::mat3> normalFromMesh_;
+    std::optional<raycast::RayTracer> rays_;
+    EnvironmentMap::Host environment_;
+    std::uint64_t environmentVersion_ = 0;
+};
+
+}  // namespace gfxrepro::reflections

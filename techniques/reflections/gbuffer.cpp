@@ -1,0 +1,180 @@
+#include "techniques/reflections/gbuffer.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "runner/core/error.h"
+#include "techniques/reflections/kept_colour.h"
+
+namespace gfxrepro::reflections {
+
+namespace {
+
+/// Outputs in the order of the framebuffer's attachments.
+enum Target { kDiffuseTarget = 0, kNormalTarget = 1, kDepthTarget = 2, kSurfaceTarget = 3 };
+
+gl::Defines gbufferDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = surfaceDefines(scene);
+    defines["kDepthTarget"] = kDepthTarget;
+    defines["kDiffuseTarget"] = kDiffuseTarget;
+    defines["kNormalTarget"] = kNormalTarget;
+    defines["kSurfaceTarget"] = kSurfaceTarget;
+    return defines;
+}
+
+void clear(const GBuffer& target) {
+    constexpr GLuint kNoSurface[4] = {};
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    target.framebuffer.clearColour(kDiffuseTarget, glm::vec4(keptColour(kBackground), 0.0F));
+    target.framebuffer.clearColour(kNormalTarget, glm::vec4(0.0F));
+    target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
+    glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kSurfaceTarget, kNoSurface);
+    target.framebuffer.clearDepth(1.0F);
+}
+
+/// besideMirror() of shaders/beam.glsl.
+struct BesideMirror {
+    glm::vec3 begin{0.0F}, perMetre{0.0F};
+};
+BesideMirror besideMirror(const HostGBuffer& gbuffer, glm::ivec2 pixel, glm::ivec2 axis) {
+    const std::size_t index = gbuffer.indexOf(pixel);
+    const glm::vec3& eye = gbuffer.view.eyeWorld;
+    const auto viewDirection = [&](glm::ivec2 through) {
+        const glm::vec4 place((glm::vec2(through) + 0.5F), 1.0F, 1.0F);
+        return glm::normalize(glm::vec3(gbuffer.worldFromPixels * place) - eye);
+    };
+    const glm::vec3 normal = gbuffer.normalWorld[index];
+    float least = std::numeric_limits<float>::max();
+    int side = 1;
+    glm::vec3 besideNormal = normal;
+    for (const int i : {-1, 1}) {
+        const glm::ivec2 beside = pixel + i * axis;
+        if (glm::any(glm::lessThan(beside, glm::ivec2(0))) ||
+            glm::any(glm::greaterThanEqual(beside, gbuffer.view.sizePx)))
+            continue;
+        const std::size_t there = gbuffer.indexOf(beside);
+        if (gbuffer.reflector(there) != gbuffer.reflector(index)) continue;
+        const glm::vec3 difference = gbuffer.normalWorld[there] - normal;
+        const float bend = glm::dot(difference, difference);
+        if (bend >= least) continue;
+        least = bend;
+        side = i;
+        besideNormal = gbuffer.normalWorld[there];
+    }
+    const glm::vec3 view = viewDirection(pixel), besideView = viewDirection(pixel + side * axis);
+    const float distanceM = glm::distance(gbuffer.positionWorld(pixel), eye);
+    const auto sign = static_cast<float>(side);
+    return {sign * distanceM * glm::reflect(besideView - view, normal),
+            sign * (glm::reflect(besideView, besideNormal) - glm::reflect(view, normal))};
+}
+
+float signNotZero(float value) {
+    return value >= 0.0F ? 1.0F : -1.0F;
+}
+
+}  // namespace
+
+glm::vec3 directionFromOctahedral(const glm::vec2& e) {
+    glm::vec3 v(e, 1.0F - std::abs(e.x) - std::abs(e.y));
+    if (v.z < 0.0F) {
+        v = glm::vec3((1.0F - std::abs(v.y)) * signNotZero(v.x),
+                      (1.0F - std::abs(v.x)) * signNotZero(v.y), v.z);
+    }
+    return v;
+}
+
+GBuffer::GBuffer(const kit::View& ofView)
+    : view(ofView),
+      diffuse(gl::Texture::make2D(kKeptColourFormat, view.sizePx)),
+      normal(gl::Texture::make2D(GL_RG32F, view.sizePx)),
+      depth(gl::Texture::make2D(GL_R32F, view.sizePx)),
+      surface(gl::Texture::make2D(GL_R32UI, view.sizePx)),
+      depthBuffer(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx)),
+      framebuffer(std::array<const gl::Texture*, 4>{&diffuse, &normal, &depth, &surface},
+                  &depthBuffer) {}
+
+void GBuffer::bind(const gl::Program& program, unsigned firstUnit) const {
+    diffuse.bind(firstUnit);
+    normal.bind(firstUnit + 1);
+    depth.bind(firstUnit + 2);
+    surface.bind(firstUnit + 3);
+    program.setIfActive("gbufferWorldFromPixels", kit::worldFromPixels(view));
+    program.setIfActive("gbufferEyeWorld", view.eyeWorld);
+}
+
+std::size_t GBuffer::sizeBytes() const {
+    return diffuse.sizeBytes() + normal.sizeBytes() + depth.sizeBytes() + surface.sizeBytes() +
+           depthBuffer.sizeBytes();
+}
+
+GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
+    : program_(shaders, {"reflections/surface.vert.glsl", "reflections/gbuffer.frag.glsl"},
+               gbufferDefines(scene)) {}
+
+void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
+    clear(target);
+    target.framebuffer.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    program_.use();
+    program_.set("clipFromWorld", target.view.clipFromWorld());
+    program_.set("eyeWorld", target.view.eyeWorld);
+    objects.bind();
+    objects.drawAll();
+}
+
+HostGBuffer readGBuffer(const GBuffer& gbuffer) {
+    HostGBuffer host;
+    host.view = gbuffer.view;
+    host.worldFromPixels = kit::worldFromPixels(gbuffer.view);
+    const std::vector<float> diffuse = gbuffer.diffuse.read<float>(GL_RGB, GL_FLOAT, 3);
+    const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
+    host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
+    host.surface = gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    for (std::size_t i = 0; i < host.depthM.size(); ++i) {
+        host.diffuse.push_back(
+            linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]}));
+        host.normalOctahedral.emplace_back(normals[2 * i], normals[2 * i + 1]);
+        host.normalWorld.push_back(
+            glm::normalize(directionFromOctahedral(host.normalOctahedral.back())));
+    }
+    return host;
+}
+
+float HostGBuffer::reflectivity(std::size_t index) const {
+    return static_cast<float>((surface[index] >> 16) & 0xFFU) / 255.0F;
+}
+
+float HostGBuffer::glossiness(std::size_t index) const {
+    return static_cast<float>(surface[index] >> 24) / 255.0F;
+}
+
+glm::vec3 HostGBuffer::positionWorld(glm::ivec2 pixel) const {
+    const float depth = depthM[indexOf(pixel)];
+    return glm::vec3(worldFromPixels * glm::vec4((glm::vec2(pixel) + 0.5F) * depth, depth, 1.0F));
+}
+
+glm::vec3 HostGBuffer::mirrorDirection(glm::ivec2 pixel) const {
+    return glm::normalize(
+        glm::reflect(positionWorld(pixel) - view.eyeWorld, normalWorld[indexOf(pixel)]));
+}
+
+glm::vec3 HostGBuffer::beam(glm::ivec2 pixel) const {
+    const BesideMirror a = besideMirror(*this, pixel, {1, 0});
+    const BesideMirror b = besideMirror(*this, pixel, {0, 1});
+    const glm::vec3 mirror = mirrorDirection(pixel);
+    return {glm::dot(mirror, glm::cross(a.begin, b.begin)),
+            glm::dot(mirror, glm::cross(a.begin, b.perMetre) + glm::cross(a.perMetre, b.begin)),
+            glm::dot(mirror, glm::cross(a.perMetre, b.perMetre))};
+}
+
+float beamArea(const glm::vec3& beam, float distanceM) {
+    return std::abs(beam.x + distanceM * (beam.y + distanceM * beam.z));
+}
+
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,76 @@
+// Step 1 of [xie2017] Algorithm 6: what the eye sees, a sample a pixel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/program.h"
+#include "techniques/kit/view.h"
+#include "techniques/reflections/gpu_objects.h"
+
+namespace gfxrepro::reflections {
+
+/// 24 bytes a sample with the depth buffer. Positions are not kept: a sample lies at
+/// kit::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
+struct GBuffer {
+    kit::View view;
+    gl::Texture diffuse;  // keptColour(): rgb_d of Algorithm 6, as shadeDiffuse() gives it
+    gl::Texture normal;   // RG32F, octahedral, unit world normal turned to the eye
+    gl::Texture depth;    // R32F, d: distance along the view axis in metres; 0: nothing there
+    gl::Texture surface;  // R32UI: reflector id | s in 255ths << 16 | g in 255ths << 24
+    gl::Texture depthBuffer;
+    gl::Framebuffer framebuffer;
+
+    explicit GBuffer(const kit::View& view);
+    /// For shaders that include gbuffer.glsl with GBUFFER_UNIT = firstUnit: four textures, and the
+    /// uniforms of `program`, which is in use.
+    void bind(const gl::Program& program, unsigned firstUnit) const;
+    std::size_t sizeBytes() const;
+};
+
+class GBufferRenderer {
+  public:
+    GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
+    /// `objects` are of the constructor's scene. Clears and draws; no culling, so that a surface is
+    /// seen from both sides.
+    void render(const GpuObjects& objects, GBuffer& target) const;
+
+  private:
+    gl::Program program_;
+};
+
+/// The same on the host, rows from the bottom. The shaders read it by shaders/gbuffer.glsl.
+struct HostGBuffer {
+    kit::View view;
+    glm::mat4 worldFromPixels{1.0F};
+    std::vector<glm::vec3> diffuse;
+    std::vector<glm::vec3> normalWorld;
+    std::vector<glm::vec2> normalOctahedral;  // as stored: for replays that must be exact
+    std::vector<float> depthM;
+    std::vector<std::uint32_t> surface;
+
+    std::size_t indexOf(glm::ivec2 pixel) const {
+        return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
+               static_cast<std::size_t>(pixel.x);
+    }
+    bool isReflective(std::size_t index) const { return reflector(index) != 0; }
+    int reflector(std::size_t index) const { return static_cast<int>(surface[index] & 0xFFFFU); }
+    float reflectivity(std::size_t index) const;
+    float glossiness(std::size_t index) const;
+    glm::vec3 positionWorld(glm::ivec2 pixel) const;
+    /// The mirror direction at a sample: unit.
+    glm::vec3 mirrorDirection(glm::ivec2 pixel) const;
+    /// What a sample's reflected rays cover t metres on, in m²: |x + y·t + z·t²|, as
+    /// shaders/beam.glsl has it.
+    glm::vec3 beam(glm::ivec2 pixel) const;
+};
+float beamArea(const glm::vec3& beam, float distanceM);
+
+/// As shaders/octahedral.glsl has it: not of unit length, but the same as on the device.
+glm::vec3 directionFromOctahedral(const glm::vec2& e);
+
+/// Reads back; waits for the device.
+HostGBuffer readGBuffer(const GBuffer& gbuffer);
+
+}  // namespace gfxrepro::reflections

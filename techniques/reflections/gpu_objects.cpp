@@ -1,0 +1,250 @@
+#include "techniques/reflections/gpu_objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "runner/core/error.h"
+#include "runner/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/draws.h"
+
+namespace gfxrepro::reflections {
+
+namespace {
+
+/// Of a draw that is not split: indices are counted by signed numbers.
+constexpr std::uint32_t kMostTriangles = (1U << 31) / 3;
+
+/// Object of shaders/objects.glsl.
+struct ObjectRecord {
+    glm::mat4 worldFromMesh;
+    glm::mat4 normalFromMesh;
+    glm::vec4 baseColor;
+    glm::vec4 emissive;
+    glm::vec4 boundsCentre;
+    glm::vec4 boundsHalfSize;
+    std::uint32_t firstTriangle;
+    std::uint32_t triangleCount;
+    std::int32_t textureLayer;
+    std::uint32_t surface;
+    glm::ivec4 layers;
+    glm::vec4 reflection;
+};
+static_assert(offsetof(ObjectRecord, normalFromMesh) == 64);
+static_assert(offsetof(ObjectRecord, baseColor) == 128);
+static_assert(offsetof(ObjectRecord, emissive) == 144);
+static_assert(offsetof(ObjectRecord, boundsCentre) == 160);
+static_assert(offsetof(ObjectRecord, boundsHalfSize) == 176);
+static_assert(offsetof(ObjectRecord, firstTriangle) == 192);
+static_assert(offsetof(ObjectRecord, triangleCount) == 196);
+static_assert(offsetof(ObjectRecord, textureLayer) == 200);
+static_assert(offsetof(ObjectRecord, surface) == 204);
+static_assert(offsetof(ObjectRecord, layers) == 208);
+static_assert(offsetof(ObjectRecord, reflection) == 224);
+static_assert(sizeof(ObjectRecord) == 240);
+
+/// Lights of shaders/shading.glsl, std140.
+struct LightRecord {
+    glm::vec4 position;
+    glm::vec4 intensity;
+};
+static_assert(sizeof(LightRecord) == 32);
+struct LightsRecord {
+    LightRecord lights[kMaxLights];
+    std::int32_t lightCount;
+    std::int32_t padding[3];
+};
+static_assert(offsetof(LightsRecord, lightCount) == kMaxLights * sizeof(LightRecord));
+static_assert(sizeof(LightsRecord) % 16 == 0);
+
+/// scene::normalMatrix(), scaled so that small instances do not underflow.
+glm::mat4 normalMatrix(const glm::mat4& worldFromMesh) {
+    const glm::mat3 cofactors = scene::normalMatrix(glm::mat3(worldFromMesh));
+    float largest = 0.0F;
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            largest = std::max(largest, std::abs(cofactors[column][row]));
+        }
+    }
+    return glm::mat4(largest > 0.0F ? cofactors / largest : cofactors);
+}
+
+scene::Box transformed(const scene::Box& box, const glm::mat4& matrix) {
+    scene::Box result;
+    if (box.isEmpty()) return result;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 point((corner & 1) != 0 ? box.max.x : box.min.x,
+                              (corner & 2) != 0 ? box.max.y : box.min.y,
+                              (corner & 4) != 0 ? box.max.z : box.min.z);
+        result.add(glm::vec3(matrix * glm::vec4(point, 1.0F)));
+    }
+    return result;
+}
+
+std::uint32_t in255ths(float value) {
+    return static_cast<std::uint32_t>(std::lround(255.0F * value));
+}
+
+ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::Box& bounds) {
+    ObjectRecord record{};
+    record.worldFromMesh = pose;
+    record.normalFromMesh = normalMatrix(pose);
+    record.baseColor = glm::vec4(object.baseColor, object.isPlanar ? 1.0F : 0.0F);
+    record.emissive = glm::vec4(object.emissive, object.normalScale);
+    if (!bounds.isEmpty()) {
+        record.boundsCentre = glm::vec4(bounds.centre(), 1.0F);
+        record.boundsHalfSize = glm::vec4(0.5F * bounds.size(), 0.0F);
+    }
+    record.firstTriangle = object.firstTriangle;
+    record.triangleCount = object.triangleCount;
+    record.textureLayer = object.textureLayer;
+    record.layers = {object.metallicRoughnessLayer, object.normalLayer, object.emissiveLayer,
+                     object.hasOneGlossiness ? 1 : 0};
+    record.reflection = {object.metallic, object.roughness, object.headOnReflectivity,
+                         object.maxRoughness};
+    if (object.reflector != 0) {
+        record.surface = static_cast<std::uint32_t>(object.reflector) |
+                         in255ths(object.reflectivity) << 16 | in255ths(object.glossiness) << 24;
+    }
+    return record;
+}
+
+gl::Buffer lightsBuffer(std::span<const scene::PointLight> lights) {
+    GFXREPRO_ASSERT(lights.size() <= kMaxLights);
+    LightsRecord record{};
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        record.lights[i] = {glm::vec4(lights[i].position, lights[i].radiusM),
+                            glm::vec4(lights[i].intensity, 0.0F)};
+    }
+    record.lightCount = static_cast<std::int32_t>(lights.size());
+    return gl::Buffer::of(std::span<const LightsRecord>(&record, 1));
+}
+
+gl::Texture layersTexture(const TextureLevels& levels, GLenum format) {
+    // A sampler needs a texture, also where no object asks for one.
+    const bool isEmpty = levels.front().empty();
+    const int sizePx = isEmpty ? 1 : levels.front().front().width();
+    const auto layerCount = isEmpty ? 1 : static_cast<int>(levels.front().size());
+    gl::Texture texture = gl::Texture::make2DArray(format, glm::ivec2(sizePx), layerCount,
+                                                   static_cast<int>(levels.size()));
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+        std::vector<std::uint8_t> texels;
+        for (const image::Image8& layer : levels[level]) {
+            texels.insert(texels.end(), layer.values().begin(), layer.values().end());
+        }
+        if (isEmpty) texels.assign(4, 255);
+        texture.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data(), static_cast<int>(level));
+    }
+    // Shaders mix levels themselves: shaders/footprint.glsl.
+    texture.setFilter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
+    texture.setWrap(GL_REPEAT);
+    return texture;
+}
+
+}  // namespace
+
+gl::Defines objectDefines() {
+    gl::Defines defines = gpu_scene::attributeDefines();
+    defines["LIGHTS_BINDING"] = static_cast<int>(kLightsBinding);
+    defines["MAX_LIGHTS"] = kMaxLights;
+    defines["OBJECTS_BINDING"] = static_cast<int>(kObjectsBinding);
+    defines["TEXTURE_LAYERS_UNIT"] = static_cast<int>(kTextureLayersUnit);
+    defines["VALUE_LAYERS_UNIT"] = static_cast<int>(kValueLayersUnit);
+    defines["kObjectIndex"] = static_cast<int>(kObjectIndexAttribute);
+    return defines;
+}
+
+gl::Defines surfaceDefines(const ReflectiveScene& scene) {
+    gl::Defines defines = objectDefines();
+    defines["FILTERS_TEXTURES"] = scene.textureFilter() == TextureFilter::Footprint ? 1 : 0;
+    defines["MATERIAL_TEXTURES"] = scene.hasMaterialTextures() ? 1 : 0;
+    return defines;
+}
+
+GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
+    : scene_(&scene),
+      positions_(gl::Buffer::of(scene.geometry().positions)),
+      normals_(gl::Buffer::of(scene.geometry().normals)),
+      texcoords_(gl::Buffer::of(scene.geometry().texcoords)),
+      colors_(gl::Buffer::of(scene.geometry().colors)),
+      indices_(gl::Buffer::of(scene.geometry().triangles)),
+      objectOfTriangle_(gl::Buffer::of(scene.geometry().objectOfTriangle)),
+      records_(scene.objects().size() * sizeof(ObjectRecord)),
+      lights_(lightsBuffer(scene.lights())),
+      textureLayers_(layersTexture(scene.textureLevels(), GL_SRGB8_ALPHA8)),
+      valueLayers_(layersTexture(scene.valueLevels(), GL_RGBA8)),
+      objectCount_(static_cast<std::uint32_t>(scene.objects().size())),
+      triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())),
+      mostTrianglesPerDraw_(splitsDraws ? kit::kPrimitivesPerFlush : kMostTriangles) {
+    std::vector<std::uint32_t> indices(objectCount_);
+    std::iota(indices.begin(), indices.end(), 0U);
+    objectIndices_ = gl::Buffer::of(indices);
+    vertexArray_ = makeVertexArray(objectIndices_);
+    std::vector<glm::mat4> restPose;
+    for (const scene::Instance& instance : scene.scene().instances) {
+        restPose.push_back(instance.worldFromMesh);
+    }
+    setPoses(restPose);
+}
+
+gl::VertexArray GpuObjects::makeVertexArray(const gl::Buffer& objectIndices) const {
+    gl::VertexArray vertexArray;
+    vertexArray.setAttribute(gpu_scene::kPosition, positions_, 3);
+    vertexArray.setAttribute(gpu_scene::kNormal, normals_, 3);
+    vertexArray.setAttribute(gpu_scene::kTexcoord, texcoords_, 2);
+    vertexArray.setAttribute(gpu_scene::kColor, colors_, 3);
+    vertexArray.setInstanceIndex(kObjectIndexAttribute, objectIndices);
+    vertexArray.setIndices(indices_);
+    return vertexArray;
+}
+
+void GpuObjects::setPoses(std::span<const glm::mat4> poses) {
+    GFXREPRO_ASSERT_EQ(poses.size(), scene_->objects().size());
+    poses_.assign(poses.begin(), poses.end());
+    boundsWorld_.clear();
+    std::vector<ObjectRecord> records;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const Object& object = scene_->objects()[i];
+        boundsWorld_.push_back(transformed(object.boundsMesh, poses[i]));
+        records.push_back(recordOf(object, poses[i], boundsWorld_.back()));
+    }
+    records_.write(std::span<const ObjectRecord>(records));
+}
+
+void GpuObjects::bind() const {
+    records_.bindStorage(kObjectsBinding);
+    lights_.bindUniform(kLightsBinding);
+    textureLayers_.bind(kTextureLayersUnit);
+    valueLayers_.bind(kValueLayersUnit);
+}
+
+void GpuObjects::draw(std::span<const std::uint32_t> objects) const {
+    vertexArray_.bind();
+    kit::FlushedDraws draws(mostTrianglesPerDraw_);
+    for (const std::uint32_t index : objects) {
+        const Object& object = scene_->objects()[index];
+        draws.draw(object.firstTriangle, object.triangleCount,
+                   [&](std::uint32_t first, std::uint32_t count) {
+                       glDrawElementsInstancedBaseInstance(
+                           GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                           kit::indexOffset(first), 1, index);
+                   });
+    }
+}
+
+void GpuObjects::drawAll() const {
+    std::vector<std::uint32_t> all(objectCount_);
+    std::iota(all.begin(), all.end(), 0U);
+    draw(all);
+}
+
+std::size_t GpuObjects::sizeBytes() const {
+    return positions_.sizeBytes() + normals_.sizeBytes() + texcoords_.sizeBytes() +
+           colors_.sizeBytes() + indices_.sizeBytes() + objectOfTriangle_.sizeBytes() +
+           records_.sizeBytes() + lights_.sizeBytes() + objectIndices_.sizeBytes() +
+           textureLayers_.sizeBytes() +
+           (scene_->valueLevels().front().empty() ? 0 : valueLayers_.sizeBytes());
+}
+
+}  // namespace gfxrepro::reflections

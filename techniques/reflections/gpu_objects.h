@@ -1,0 +1,82 @@
+// A ReflectiveScene on the device: one set of vertex buffers, a record an object.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "runner/gl/objects.h"
+#include "runner/gl/program.h"
+#include "techniques/reflections/surfaces.h"
+
+namespace gfxrepro::reflections {
+
+/// Where shaders find the scene; the names are injected as defines by objectDefines().
+enum Binding : unsigned {
+    kObjectsBinding = 0,     // storage: Object objects[] of shaders/objects.glsl
+    kLightsBinding = 0,      // uniform block of shaders/shading.glsl
+    kTextureLayersUnit = 0,  // sampler2DArray of base colours and emission, sRGB
+    kValueLayersUnit = 1     // sampler2DArray of roughness and metalness, and of normals, linear
+};
+/// Storage bindings and texture units below these belong to the scene and to traversal.
+constexpr unsigned kFirstFreeStorage = 8;
+constexpr unsigned kFirstFreeUnit = 2;
+
+/// Attribute location of the object's index: an instanced unsigned integer, so that one draw names
+/// its object by base instance, and a multi-draw gives each its own.
+constexpr unsigned kObjectIndexAttribute = 4;
+
+/// Defines of gpu_scene::attributeDefines() and of the bindings above.
+gl::Defines objectDefines();
+/// Those, and what shading.glsl asks of the scene.
+gl::Defines surfaceDefines(const ReflectiveScene& scene);
+
+class GpuObjects {
+  public:
+    /// `splitsDraws`: of a software device, which keeps every triangle of a draw until it is
+    /// flushed.
+    explicit GpuObjects(const ReflectiveScene& scene, bool splitsDraws = false);
+
+    /// Puts the objects where they are now: one matrix an object, worldFromMesh.
+    void setPoses(std::span<const glm::mat4> poses);
+
+    /// Binds objects, lights and textures for shaders that include objects.glsl and shading.glsl.
+    void bind() const;
+    /// Draws objects with the program in use, in pieces of mostTrianglesPerDraw(). Culling, depth
+    /// test and target are the caller's.
+    void draw(std::span<const std::uint32_t> objects) const;
+    void drawAll() const;
+    /// The vertex array with all attributes and indices, for indirect draws; the object index comes
+    /// from `objectIndices` (one unsigned an instance) instead of 0, 1, 2, ….
+    gl::VertexArray makeVertexArray(const gl::Buffer& objectIndices) const;
+
+    const ReflectiveScene& scene() const { return *scene_; }
+    std::uint32_t objectCount() const { return objectCount_; }
+    std::uint32_t triangleCount() const { return triangleCount_; }
+    std::uint32_t mostTrianglesPerDraw() const { return mostTrianglesPerDraw_; }
+    std::span<const glm::mat4> poses() const { return poses_; }
+    std::span<const scene::Box> boundsWorld() const { return boundsWorld_; }  // in the present pose
+    std::size_t sizeBytes() const;
+
+    // For building acceleration structures on the device: tightly packed floats and 32-bit indices,
+    // the object of each triangle, and the objects' records (objects.glsl).
+    const gl::Buffer& positions() const { return positions_; }
+    const gl::Buffer& normals() const { return normals_; }
+    const gl::Buffer& texcoords() const { return texcoords_; }
+    const gl::Buffer& colors() const { return colors_; }
+    const gl::Buffer& indices() const { return indices_; }
+    const gl::Buffer& objectOfTriangle() const { return objectOfTriangle_; }
+    const gl::Buffer& records() const { return records_; }
+
+  private:
+    const ReflectiveScene* scene_;  // outlives this
+    gl::Buffer positions_, normals_, texcoords_, colors_, indices_, objectOfTriangle_;
+    gl::Buffer records_, lights_, objectIndices_;
+    gl::Texture textureLayers_, valueLayers_;
+    gl::VertexArray vertexArray_;
+    std::vector<glm::mat4> poses_;
+    std::vector<scene::Box> boundsWorld_;
+    std::uint32_t objectCount_ = 0, triangleCount_ = 0, mostTrianglesPerDraw_;
+};
+
+}  // namespace gfxrepro::reflections

@@ -1,0 +1,305 @@
+#include "techniques/reflections/reflector_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace gfxrepro::reflections {
+namespace {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+using glm::dvec3;
+
+/// Two triangles side by side.
+struct Border {
+    std::uint32_t a = 0, b = 0;
+    double lengthM = 0.0;
+    double bend = 0.0;  // the angle from plane to plane, positive where convex
+    bool isCrease = false;
+};
+
+/// Places closer than this part of the mesh's diagonal are one vertex: seams, where turned shapes
+/// close up to rounding.
+constexpr double kWeld = 1e-6;
+/// Angles below are flat: rounding of positions bends planes by as much.
+constexpr double kFlatRad = 1e-3;
+/// How often each triangle goes with most of its neighbours: its own three edges may differ in sign
+/// from those beside it along a curve that is drawn with few triangles.
+constexpr int kRounds = 3;
+
+class Joined {
+  public:
+    explicit Joined(std::size_t count) : parent_(count) {
+        std::iota(parent_.begin(), parent_.end(), 0U);
+    }
+    std::uint32_t of(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = of(a);
+        b = of(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<std::uint32_t> parent_;
+};
+
+class Division {
+  public:
+    explicit Division(const scene::Mesh& mesh) : mesh_(mesh), joined_(mesh.triangles.size()) {
+        measureTriangles();
+        findBorders();
+        sides_ = bendingSides();
+        for (const Border& border : borders_) {
+            if (!border.isCrease && sides_[border.a] == sides_[border.b])
+                joined_.join(border.a, border.b);
+        }
+        joinSmallOnes();
+    }
+    Parts parts() {
+        Parts parts;
+        std::map<std::uint32_t, std::uint32_t> numberOf;
+        std::vector<double> bentArea;  // convex less concave, by part
+        for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const auto next = static_cast<std::uint32_t>(numberOf.size());
+            const std::uint32_t part = numberOf.emplace(joined_.of(t), next).first->second;
+            if (part == bentArea.size()) bentArea.push_back(0.0);
+            bentArea[part] += sides_[t] * areas_[t];
+            parts.ofTriangle.push_back(part);
+        }
+        for (const double area : bentArea) parts.isConcave.push_back(area < 0.0 ? 1 : 0);
+        return parts;
+    }
+
+  private:
+    dvec3 corner(std::uint32_t triangle, int k) const {
+        return dvec3(mesh_.positions[mesh_.triangles[triangle][k]]);
+    }
+    void measureTriangles();
+    void findBorders();
+    Border borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from, const dvec3& to) const;
+    std::vector<std::int8_t> bendingSides() const;
+    void joinSmallOnes();
+
+    const scene::Mesh& mesh_;
+    std::vector<dvec3> normals_;  // of triangles, turned as their vertices'; 0: degenerate
+    std::vector<double> areas_;
+    std::vector<Border> borders_;
+    std::vector<std::int8_t> sides_;  // −1: concave
+    Joined joined_;
+};
+
+void Division::measureTriangles() {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+        dvec3 normal = glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
+        const double twice = glm::length(normal);
+        normal = twice > 0.0 ? normal / twice : dvec3(0.0);
+        if (!mesh_.normals.empty()) {
+            dvec3 wanted(0.0);
+            for (int k = 0; k < 3; ++k) wanted += dvec3(mesh_.normals[mesh_.triangles[t][k]]);
+            if (glm::dot(wanted, normal) < 0.0) normal = -normal;
+        }
+        normals_.push_back(normal);
+        areas_.push_back(0.5 * twice);
+    }
+}
+
+Border Division::borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from,
+                          const dvec3& to) const {
+    Border border{a, b, glm::distance(from, to)};
+    if (normals_[a] == dvec3(0.0) || normals_[b] == dvec3(0.0)) return border;
+    const double cosine = std::clamp(glm::dot(normals_[a], normals_[b]), -1.0, 1.0);
+    border.isCrease = cosine < double{kCreaseCosine};
+    const double angle = std::acos(cosine);
+    if (angle < kFlatRad) return border;
+    // The corner of b that is not on the edge lies below the plane of a where they are convex.
+    double height = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const double at = glm::dot(corner(b, k) - from, normals_[a]);
+        if (std::abs(at) > std::abs(height)) height = at;
+    }
+    border.bend = height < 0.0 ? angle : -angle;
+    return border;
+}
+
+void Division::findBorders() {
+    const double cell = std::max(kWeld * double{glm::length(mesh_.bounds().size())}, 1e-30);
+    std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::uint32_t> vertexAt;
+    std::vector<std::uint32_t> welded;
+    for (const glm::vec3& position : mesh_.positions) {
+        const dvec3 at = glm::round(dvec3(position) / cell);
+        const std::tuple key(static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y),
+                             static_cast<std::int64_t>(at.z));
+        const auto next = static_cast<std::uint32_t>(vertexAt.size());
+        welded.push_back(vertexAt.emplace(key, next).first->second);
+    }
+    std::map<Edge, std::uint32_t> triangleAt;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t from = mesh_.triangles[t][k];
+            const std::uint32_t to = mesh_.triangles[t][(k + 1) % 3];
+            if (welded[from] == welded[to]) continue;
+            const auto [other, isNew] =
+                triangleAt.emplace(std::minmax(welded[from], welded[to]), t);
+            if (isNew || other->second == t) continue;
+            borders_.push_back(borderOf(other->second, t, dvec3(mesh_.positions[from]),
+                                        dvec3(mesh_.positions[to])));
+        }
+    }
+}
+
+/// −1 where the surface is concave, else 1.
+std::vector<std::int8_t> Division::bendingSides() const {
+    std::vector<double> bends(areas_.size(), 0.0);
+    for (const Border& border : borders_) {
+        if (border.isCrease) continue;
+        bends[border.a] += border.bend * border.lengthM;
+        bends[border.b] += border.bend * border.lengthM;
+    }
+    std::vector<int> sides;
+    for (const double bend : bends) sides.push_back(bend < 0.0 ? -1 : bend > 0.0 ? 1 : 0);
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<int> votes = sides;
+        for (const Border& border : borders_) {
+            if (border.isCrease) continue;
+            votes[border.a] += sides[border.b];
+            votes[border.b] += sides[border.a];
+        }
+        for (std::size_t t = 0; t < sides.size(); ++t) {
+            if (votes[t] != 0) sides[t] = votes[t] < 0 ? -1 : 1;
+        }
+    }
+    std::vector<std::int8_t> result;
+    for (const int side : sides) result.push_back(side < 0 ? std::int8_t{-1} : std::int8_t{1});
+    return result;
+}
+
+/// Smallest first, each with what it has the longest border with; those without any with each
+/// other.
+void Division::joinSmallOnes() {
+    double total = 0.0;
+    for (const double area : areas_) total += area;
+    for (bool hasJoined = true; hasJoined;) {
+        hasJoined = false;
+        std::map<std::uint32_t, double> areaOf;
+        for (std::uint32_t t = 0; t < areas_.size(); ++t) areaOf[joined_.of(t)] += areas_[t];
+        std::map<Edge, double> lengthOf;
+        for (const Border& border : borders_) {
+            const std::uint32_t a = joined_.of(border.a), b = joined_.of(border.b);
+            if (a == b) continue;
+            lengthOf[{a, b}] += border.lengthM;
+            lengthOf[{b, a}] += border.lengthM;
+        }
+        std::vector<std::pair<double, std::uint32_t>> small;
+        for (const auto& [part, area] : areaOf) {
+            if (area < double{kLeastPartShare} * total) small.emplace_back(area, part);
+        }
+        std::ranges::sort(small);
+        for (const auto& [area, part] : small) {
+            if (joined_.of(part) != part) continue;  // in this round, with a smaller one
+            double longest = 0.0;
+            std::uint32_t best = part;
+            for (auto at = lengthOf.lower_bound({part, 0});
+                 at != lengthOf.end() && at->first.first == part; ++at) {
+                if (at->second > longest)
+                    std::tie(longest, best) = std::pair(at->second, at->first.second);
+            }
+            if (best == part) continue;
+            joined_.join(part, best);
+            hasJoined = true;
+        }
+        if (hasJoined) continue;
+        for (std::size_t i = 1; i < small.size(); ++i) {
+            joined_.join(small[0].second, small[i].second);
+        }
+    }
+}
+
+/// The triangles of one part, with the vertices that they use.
+scene::Mesh partOf(const scene::Mesh& mesh, const std::vector<std::uint32_t>& parts,
+                   std::uint32_t part) {
+    scene::Mesh result;
+    result.name = mesh.name;
+    result.material = mesh.material;
+    std::map<std::uint32_t, std::uint32_t> newVertex;
+    for (std::size_t t = 0; t < parts.size(); ++t) {
+        if (parts[t] != part) continue;
+        glm::uvec3 corners(0);
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = mesh.triangles[t][k];
+            const auto [at, isNew] =
+                newVertex.emplace(vertex, static_cast<std::uint32_t>(newVertex.size()));
+            corners[k] = at->second;
+            if (!isNew) continue;
+            result.positions.push_back(mesh.positions[vertex]);
+            if (!mesh.normals.empty()) result.normals.push_back(mesh.normals[vertex]);
+            if (!mesh.texcoords.empty()) result.texcoords.push_back(mesh.texcoords[vertex]);
+            if (!mesh.colors.empty()) result.colors.push_back(mesh.colors[vertex]);
+        }
+        result.triangles.push_back(corners);
+    }
+    return result;
+}
+
+}  // namespace
+
+Parts partsOf(const scene::Mesh& mesh) {
+    return Division(mesh).parts();
+}
+
+std::vector<PartOrigin> splitIntoParts(scene::Scene& scene,
+                                       const std::function<bool(const scene::Mesh&)>& splits) {
+    using NewMeshes = std::vector<std::pair<int, bool>>;  // and whether they are concave
+    std::map<int, NewMeshes> partsOfMesh;
+    const auto split = [&](int index) -> const NewMeshes& {
+        const auto [at, isNew] = partsOfMesh.emplace(index, NewMeshes{{index, false}});
+        if (!isNew) return at->second;
+        // A copy: it grows the list that it is in. Normals are the whole's, also where it has none.
+        scene::Mesh mesh = scene.meshes[static_cast<std::size_t>(index)];
+        if (mesh.normals.size() != mesh.positions.size()) mesh.normals = scene::vertexNormals(mesh);
+        const Parts parts = partsOf(mesh);
+        const auto count = static_cast<std::uint32_t>(parts.isConcave.size());
+        if (count < 2) return at->second;
+        at->second.clear();
+        for (std::uint32_t part = 0; part < count; ++part) {
+            at->second.emplace_back(static_cast<int>(scene.meshes.size()),
+                                    parts.isConcave[part] != 0);
+            scene.meshes.push_back(partOf(mesh, parts.ofTriangle, part));
+        }
+        scene.meshes[static_cast<std::size_t>(index)] = {};  // all its instances are split
+        return at->second;
+    };
+    std::vector<bool> isSplit;  // by mesh, before any of them is
+    for (const scene::Mesh& mesh : scene.meshes) isSplit.push_back(splits(mesh));
+    std::vector<scene::Instance> instances;
+    std::vector<PartOrigin> origins;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const scene::Instance whole = scene.instances[i];
+        const NewMeshes meshes = isSplit[static_cast<std::size_t>(whole.mesh)]
+                                     ? split(whole.mesh)
+                                     : NewMeshes{{whole.mesh, false}};
+        for (const auto& [mesh, isConcave] : meshes) {
+            instances.push_back({mesh, whole.worldFromMesh});
+            origins.push_back({static_cast<int>(i), isConcave});
+        }
+    }
+    std::vector<scene::Motion> motions;
+    for (const scene::Motion& motion : scene.motions) {
+        for (std::size_t i = 0; i < origins.size(); ++i) {
+            if (origins[i].instance != motion.instance) continue;
+            motions.push_back(motion);
+            motions.back().instance = static_cast<int>(i);
+        }
+    }
+    scene.instances = std::move(instances);
+    scene.motions = std::move(motions);
+    return origins;
+}
+
+}  // namespace gfxrepro::reflections
