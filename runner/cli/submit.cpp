@@ -370,8 +370,9 @@ int submit(const Context& context, const SubmitOptions& options) {
     if (options.selection.names.empty() || options.out.empty()) {
         throw UsageError("submit: give config files and --out DIR, or --status DIR");
     }
-    if (fs::exists(options.out) && !fs::is_directory(options.out)) {
-        throw Error(options.out + ": is a file; --out names a folder");
+    for (fs::path at = fs::absolute(options.out); at.has_relative_path(); at = at.parent_path()) {
+        if (!fs::exists(at) || fs::is_directory(at)) continue;
+        throw Error(at.string() + ": is a file; --out names a folder");
     }
     const Cut cut = cutPlan(context, options);
     const Submission& s = cut.submission;

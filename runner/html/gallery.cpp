@@ -35,6 +35,14 @@ bool isCurrent(const fs::path& made, const fs::path& source) {
     return !isAbsent && madeAt >= fs::last_write_time(source);
 }
 
+void makeFolderOf(const fs::path& file) {
+    std::error_code failure;
+    fs::create_directories(file.parent_path(), failure);
+    if (failure) {
+        throw Error("cannot create " + file.parent_path().string() + ": " + failure.message());
+    }
+}
+
 /// A path as a link: its parts may hold what an address may not.
 std::string encodedAddress(const fs::path& path) {
     std::string address;
@@ -129,7 +137,7 @@ class Gallery {
         if (longerPx <= kThumbnailPx) return runDir_ / png;
         const fs::path place = madeDir_ / besides(png, "thumbnails", "");
         if (!isCurrent(place, runDir_ / png)) {
-            fs::create_directories(place.parent_path());
+            makeFolderOf(place);
             image::writePng(
                 place,
                 image::resizedTo(image, std::max(1, kThumbnailPx * image.width() / longerPx)));
@@ -154,7 +162,7 @@ class Gallery {
             std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
         const fs::path place = madeDir_ / besides(entry.png, "images", "-flip");
         if (!isCurrent(place, runDir_ / entry.png)) {
-            fs::create_directories(place.parent_path());
+            makeFolderOf(place);
             image::writePng(place, metrics::flipPicture(map));
         }
         shot.flip = addressOf(place);

@@ -572,10 +572,12 @@ TEST(Submit, SaysWhatItNeeds) {
               "gfxrepro: " + folder.path().string() + ": holds no submission\n");
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const std::string file = folder.write("file", "words");
-    const ProcessResult result = mockGfxrepro(
-        {"submit", config, "--device", "software", "--out", file, "--engine", "commands"});
-    EXPECT_EQ(result.exitCode, 2);
-    EXPECT_EQ(result.err, "gfxrepro: " + file + ": is a file; --out names a folder\n");
+    for (const std::string& out : {file, file + "/in/it"}) {
+        const ProcessResult result = mockGfxrepro(
+            {"submit", config, "--device", "software", "--out", out, "--engine", "commands"});
+        EXPECT_EQ(result.exitCode, 2);
+        EXPECT_EQ(result.err, "gfxrepro: " + file + ": is a file; --out names a folder\n");
+    }
     EXPECT_EQ(readFile(file), "words");
 }
 

@@ -480,6 +480,10 @@ TEST_F(Untrusted, WhatIsWrittenElsewhereLeavesTheRunAsItIs) {
     const std::string flip = "/images/sweep-mock/" + rowsOf(dir, "number")[0].caseId + "-flat-flip";
     written({"report", dir}, out + "-files/A" + flip + ".png");
     written({"report", dir, dir}, out + "-files/B" + flip + ".png");
+    const std::string file = folder.write("file", "words");
+    EXPECT_EQ(mockGfxrepro({"report", dir, "--out", file + "/r.html"}).err,
+              "gfxrepro: cannot create " + file + "/r-files/A" +
+                  fs::path(flip).parent_path().string() + ": Not a directory\n");
 }
 
 TEST_F(Untrusted, ResultsElsewhereDoNotGoOverThoseOfAnotherRun) {
