@@ -248,7 +248,7 @@ TEST_F(GpuRayTracerTest, TheHostNeitherWritesNorWaitsWhileItTraces) {
     const ReflectiveScene scene(mirrors());
     GpuObjects objects(scene);
     EnvironmentMap map(shaders_, scene);
-    GBuffer gbuffer(depth_images::viewOf(scene.scene().cameras.front(), kSizePx));
+    GBuffer gbuffer(kit::viewOf(scene.scene().cameras.front(), kSizePx));
     GBufferRenderer(shaders_, scene).render(objects, gbuffer);
     GpuRayTracer tracer(shaders_, objects, map, {}, scene.diagonalM());
     tracer.update(objects, profiler_);
