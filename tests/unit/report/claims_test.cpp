@@ -202,9 +202,11 @@ TEST(Claims, KnownVerdictsAndNews) {
     EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
 }
 
-std::string provenanceError(const std::string& claim, bool isSweep = false) {
+std::string provenanceError(const std::string& claim, bool isSweep = false, int processes = 6) {
     config::Experiment experiment = experimentFrom(
-        "sweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: {metric: "
+        "measure: {lane: timing, processes: " + std::to_string(processes) +
+        "}\nsweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: "
+        "{metric: "
         "bytes}, often: {metric: frame_rate}}}, rows: [scene, e], columns: {a: {pass: p}, n: "
         "{metric: bytes}}}\nclaims:\n  C: {says: s, " +
         claim + "}\n");
@@ -241,6 +243,8 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(provenanceError("bound: a, below: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime), "no error");
+    EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime, false, 5),
+              "claim 'C' is of a time: the paper profile needs processes: 6 or more, has 5");
     // What would come out otherwise if all times were twice as long.
     EXPECT_EQ(provenanceError("bound: a / n, below: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < n" + ofTime), isAbsolute);
