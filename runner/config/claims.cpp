@@ -106,7 +106,8 @@ class ClaimReader {
             claim_.profile = name;
         }
         if (const Node* across = node_.find("across")) readAcross(*across);
-        if (const Node* at = node_.find("at")) claim_.at = readRowFilter(*at, what_, names_);
+        if (const Node* at = node_.find("at"))
+            claim_.at = readRowFilter(*at, what_ + ": at", names_);
     }
 
     /// From here on the axis and the columns have changed places.

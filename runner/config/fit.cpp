@@ -59,6 +59,13 @@ std::string methodOf(const Experiment& experiment, const Selection& cell) {
     return fixed && fixed->isScalar() ? fixed->text() : "";
 }
 
+/// Whether a value of a filter is the label of a row or column.
+bool isLabel(const Node& value, const std::string& label) {
+    const std::string text = value.isScalar() ? value.text() : value.toFlowText();
+    const auto number = parseDouble(text), other = parseDouble(label);
+    return text == label || (number && other && *number == *other);
+}
+
 /// Whether the paper holds the method against a usual one, as the table says.
 bool isCompared(const Experiment& table, const std::string& method) {
     const Node* printed = table.document.find("printed");
@@ -119,6 +126,29 @@ void requireSameMeasure(const Selection& ours, const Selection& theirs, const st
 
 }  // namespace
 
+bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
+                  const std::string& column) {
+    const Node* printed = table.document.find("printed");
+    const Node* calibrated = printed ? printed->find("calibrated") : nullptr;
+    if (!calibrated) return false;
+    const auto labelOf = [&](const std::string& axis) -> const std::string* {
+        for (std::size_t i = 0; i < table.layout.rows.size(); ++i) {
+            if (table.layout.rows[i].name == axis) return &row[i];
+        }
+        return axis == kColumnAxis ? &column : nullptr;
+    };
+    return std::ranges::any_of(calibrated->items(), [&](const Node& cells) {
+        return std::ranges::all_of(cells.entries(), [&](const auto& entry) {
+            const std::string* label = labelOf(entry.first);
+            if (!label) return false;
+            const Node& values = entry.second;
+            if (!values.isSequence()) return isLabel(values, *label);
+            return std::ranges::any_of(values.items(),
+                                       [&](const Node& one) { return isLabel(one, *label); });
+        });
+    });
+}
+
 Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
                      const Experiment& table) {
     const std::string what = "fit: '" + column + "'";
@@ -149,6 +179,12 @@ Node withPrintedCell(const Node& entry, const std::string& column, const Experim
                                 what, table.id, method));
     }
     requireSameMeasure(own, cell, what, theirs.location());
+    if (!isCalibrated(table, row, theirs.text())) {
+        throw Error(theirs.location(),
+                    fmt::format("{}: {} does not mark the cell as one that was fitted "
+                                "('printed.calibrated')",
+                                what, table.id));
+    }
     Node result = entry;
     result.set("printed", Node::number(printedValue(table.printed, table.layout, row, theirs, what),
                                        theirs.location()));

@@ -1,4 +1,5 @@
-// `fit:` — columns of a table that are held against printed cells of other tables: a calibration.
+// `fit:` — columns of a table that are held against printed cells of other tables: a calibration;
+// and what the other tables say of such cells (`printed.calibrated`).
 #pragma once
 
 #include <string>
@@ -18,9 +19,15 @@ struct FitTarget {
 /// The `fit:` of an experiment; empty where it has none.
 std::vector<FitTarget> fitTargets(const Experiment& experiment);
 
+/// Whether the table says of the cell that an input of ours was fitted so that it comes out
+/// (`printed.calibrated`). `row` has the labels beside the row axes.
+bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
+                  const std::string& column);
+
 /// An entry of `fit` with the printed number that it names, of `table`. So no other number of the
 /// table reaches the experiment. Throws Error for a cell that is not there, is of another measure
-/// than the column, or of another method than the fit's cases: what compares methods is not seen.
+/// than the column, or of another method than the fit's cases: what compares methods is not seen;
+/// and for one that its table does not mark as calibrated.
 Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
                      const Experiment& table);
 

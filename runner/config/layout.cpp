@@ -218,7 +218,7 @@ TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary) {
 }
 
 RowFilter readRowFilter(const Node& at, const std::string& what, const TableNames& names) {
-    requireKeys(at, what + ": at", names.rowAxes);
+    requireKeys(at, what, names.rowAxes);
     RowFilter filter;
     for (const auto& [axis, value] : at.entries()) {
         const Node::Sequence wanted = value.isSequence() ? value.items() : Node::Sequence{value};
@@ -228,7 +228,7 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
             if (matchesAny(item, Node::sequence(known->second))) continue;
             Names texts;
             for (const Node& one : known->second) texts.push_back(one.toFlowText());
-            throwNotAllowed(item, fmt::format("{}: at.{}", what, axis), joined(texts, " | "));
+            throwNotAllowed(item, fmt::format("{}.{}", what, axis), joined(texts, " | "));
         }
         filter.emplace_back(axis, wanted);
     }

@@ -46,7 +46,8 @@ class PlotReader {
                 plot_.panels.push_back(readAxis(axis, "panels"));
             }
         }
-        if (const Node* at = node_.find("at")) plot_.at = readRowFilter(*at, what_, names_);
+        if (const Node* at = node_.find("at"))
+            plot_.at = readRowFilter(*at, what_ + ": at", names_);
         if (const Node* log = node_.find("log")) readLog(*log);
         requirePlaces();
         return std::move(plot_);

@@ -94,6 +94,21 @@ std::vector<std::pair<std::string, Node>> readAt(const Node& at) {
     return values;
 }
 
+/// Cells go by row axes and, as a claim across rows calls it, `column`.
+void requireCells(const Node& calibrated, const TableNames& names) {
+    const std::string what = "printed.calibrated";
+    if (!calibrated.isSequence())
+        throwNotAllowed(calibrated, what, "[{row axis: value, column: name}]");
+    TableNames all = names;
+    all.rowAxes.emplace_back(kColumnAxis);
+    if (names.hasAllColumns) {
+        for (const std::string& column : names.columns) {
+            all.rowValues[kColumnAxis].push_back(Node::scalar(column, {}, true));
+        }
+    }
+    for (const Node& cells : calibrated.items()) readRowFilter(cells, what, all);
+}
+
 }  // namespace
 
 Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names) {
@@ -105,6 +120,13 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     if (const Node* compared = node.find("compared")) {
         if (!compared->isSequence()) throwNotAllowed(*compared, "printed: compared", "[methods]");
         for (const Node& method : compared->items()) lineOf(method, "printed: compared");
+    }
+    if (const Node* calibrated = node.find("calibrated")) {
+        if (!names) {
+            throw Error(node.keyLocation("calibrated"),
+                        "printed: 'calibrated' without 'technique'");
+        }
+        requireCells(*calibrated, *names);
     }
     if (const Node* at = node.find("at")) {
         if (!layout) throw Error(node.keyLocation("at"), "printed: 'at' without 'technique'");

@@ -195,6 +195,10 @@ SchemaSection printed() {
              {"compared", "[method]", "[]",
               "methods that the paper compares with a usual one: no fit reads their cells",
               listOf(text())},
+             {"calibrated", "[{row axis: value, column: name}]", "[]",
+              "cells for which an input of ours was fitted, so that they come out: marked in every "
+              "form of the table. Each value may be a list; what is left out is any",
+              listOf(pairs())},
              {"at", "{parameter: value}", "{}",
               "what the paper measured at, where the profile paper departs from it: a parameter, "
               "scene, output.width, output.height, measure.frames",

@@ -53,7 +53,7 @@ void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim)
 
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names);
 
-/// `at` of a claim or a plot; `what` begins the messages.
+/// `at` of a claim or a plot, or the like; `what` begins the messages.
 RowFilter readRowFilter(const Node& at, const std::string& what, const TableNames& names);
 
 /// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".

@@ -134,8 +134,9 @@ std::string ratioHtml(const Cell& cell) {
 
 /// What pointing at a cell tells: why it has no value, or why it is no multiple of what is printed.
 std::string titleOf(const Cell& cell) {
-    if (!cell.message.empty() || cell.departures.empty()) return cell.message;
-    return "at " + report::departuresText(cell.departures);
+    if (!cell.message.empty()) return cell.message;
+    if (!cell.departures.empty()) return "at " + report::departuresText(cell.departures);
+    return cell.openParameters.empty() ? "" : "not given: " + report::openText(cell.openParameters);
 }
 
 std::string cellHtml(const Cell* cell, std::size_t run) {
@@ -153,6 +154,9 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
                            escapeXml(cell->measured));
     }
     std::string html = fmt::format("<td class=\"num\"{}>{}", attributes, escapeXml(cell->measured));
+    if (cell->isCalibrated) {
+        html += fmt::format(" <abbr title=\"calibrated\">{}</abbr>", report::kCalibratedMark);
+    }
     std::string below;
     if (cell->hasShownBounds()) {
         const bool isInterval = cell->bounds() == report::Bounds::Interval;
@@ -228,8 +232,14 @@ std::string tableHtml(const Page& page, const Model& model) {
             "<p class=\"soft small\">Under a number: its 95 % interval a–b (of a share that was "
             "counted once: by its count alone, other scenes may differ by more), or, of too few "
             "processes for one, the range a … b; and, where it was measured at the printed "
-            "parameters, × what is printed. Point at a row for its cases; click to keep "
+            "parameters, as far as they are given, × what is printed. Point at a row for its "
+            "cases; click to keep "
             "them.</p>\n";
+    }
+    const auto isMarked = [&](std::size_t run) { return page.parts[run].table.hasCalibrated(); };
+    if (std::ranges::any_of(overlay.runs(), isMarked)) {
+        html += fmt::format("<p class=\"soft small\">{} {}.</p>\n", report::kCalibratedMark,
+                            report::kCalibratedLegend);
     }
     if (hasStandIn) {
         html +=

@@ -118,6 +118,18 @@ bool ClaimReader::readsTime() const {
     return std::ranges::any_of(operands_, isTime) || std::ranges::any_of(overColumn_, isTime);
 }
 
+bool ClaimReader::readsCalibrated() const {
+    const Rows read = rows();
+    return std::ranges::all_of(operands_, [&](const Operand& operand) {
+        return std::ranges::all_of(operand.columns(), [&](std::size_t column) {
+            return std::ranges::all_of(read, [&](std::size_t row) {
+                const Cell& cell = table_.rows[row].cells[column];
+                return cell.isCalibrated || !cell.isPlanned;
+            });
+        });
+    });
+}
+
 /// By which factor the operand grows as all times double, where its cells are `base` and above; a
 /// zero by any.
 std::optional<double> ClaimReader::growthAsTimesDouble(Operand& operand, std::size_t row,

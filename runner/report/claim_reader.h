@@ -48,6 +48,8 @@ class ClaimReader {
     bool isAtPrintedParameters() const;
     /// Whether some cell that it may read is a time or a rate of time.
     bool readsTime() const;
+    /// Whether all cells that it may read are marked as calibrated.
+    bool readsCalibrated() const;
     /// Whether what it asks could come out otherwise on a machine on which every time is twice as
     /// long: a time held against a number, or compared with what is no time.
     bool asksForATimeAsSuch();

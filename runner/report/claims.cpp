@@ -297,9 +297,24 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
         if (isOfDocument && claim.hasBound() && !claim.boundFrom) {
             complain("requires a number and needs 'bound_from': print | text | ours");
         }
+        for (const ClaimSpec::Known& known : claim.because) {
+            if (claim.device == ClaimSpec::Device::Gpu && known.device == "software") {
+                complain("has a reason for software ('because'), and a GPU alone judges it");
+            }
+            if (claim.profile && known.profile && known.profile != claim.profile) {
+                complain(fmt::format("has a reason in the profile {}, and is judged in {} alone",
+                                     *known.profile, *claim.profile));
+            }
+        }
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
         ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
+        if (table.isPublished && claim.origin == ClaimSpec::Origin::Calibrated &&
+            !reader.readsCalibrated()) {
+            complain(
+                "is of a calibrated input, and reads cells that 'printed.calibrated' does not "
+                "mark");
+        }
         if (reader.readsTime() && !claim.timeKind) {
             complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
         }

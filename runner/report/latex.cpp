@@ -22,6 +22,9 @@ constexpr std::string_view kMacros =
     "\\csname gfxrepro/#1\\endcsname\\else\\errmessage{gfxrepro: no number #1}\\fi}\n"
     "\\fi\n";
 
+/// Of calibrated cells, as TeX sets it.
+constexpr const char* kMark = "\\textsuperscript{\\ddag}";
+
 std::string oneLine(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
@@ -65,6 +68,9 @@ class LatexWriter {
         for (std::size_t row = 0; row < table_.rows.size(); ++row) writeRow(row);
         text_ += "\\bottomrule\n\\end{tabular}\n";
         writeParameters();
+        if (table_.hasCalibrated()) {
+            text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kMark, kCalibratedLegend);
+        }
         return std::move(text_);
     }
 
@@ -110,6 +116,7 @@ class LatexWriter {
         if (cell.printed) set(key + "/printed", *cell.printed);
         if (!cell.isPlanned) return;
         set(key, cell.measured);
+        if (cell.isCalibrated) set(key + "/calibrated", "yes");
         if (!cell.low.empty()) {
             set(key + "/low", cell.low);
             set(key + "/high", cell.high);
@@ -163,11 +170,12 @@ class LatexWriter {
 
     static std::string measuredCell(const Cell& cell, const std::string& key) {
         if (!cell.isPlanned) return "";
-        if (!cell.hasShownBounds()) return cite(key);
+        const std::string number = cite(key) + (cell.isCalibrated ? kMark : "");
+        if (!cell.hasShownBounds()) return number;
         return fmt::format(fmt::runtime(cell.bounds() == Bounds::Interval
                                             ? "{} {{\\scriptsize[{}, {}]}}"
                                             : "{} {{\\scriptsize({} \\ldots\\ {})}}"),
-                           cite(key), cite(key + "/low"), cite(key + "/high"));
+                           number, cite(key + "/low"), cite(key + "/high"));
     }
 
     /// Below the table, in its own paragraph.

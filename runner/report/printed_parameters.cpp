@@ -174,14 +174,17 @@ bool hasRun(const CaseRecords& item) {
 /// What a sentence about cells is made from.
 struct Tally {
     int same = 0;
+    int asGiven = 0;  // likewise, but for what the document does not give
     int different = 0;
     int alone = 0;  // without a counterpart in the profile `paper`
+    std::vector<std::string> open;
     std::vector<Departure> departures;
 
-    int count() const { return same + different + alone; }
+    int count() const { return same + asGiven + different + alone; }
     void add(const Cell& cell) {
+        for (const std::string& name : cell.openParameters) addOnce(name, open);
         if (cell.isAtPrintedParameters) {
-            ++same;
+            ++(cell.openParameters.empty() ? same : asGiven);
         } else if (cell.departures.empty()) {
             ++alone;
         } else {
@@ -224,12 +227,18 @@ std::string sentence(const Tally& tally) {
         return "Measured where the profile paper has no case";
     }
     std::string text = "Measured at ";
-    if (tally.same > 0) text += "the printed parameters";
-    if (tally.same > 0 && tally.same < tally.count()) {
-        text += fmt::format(" in {} of {} cells", tally.same, tally.count());
-    }
+    const auto add = [&](int cells, const std::string& at) {
+        if (cells == 0) return;
+        text += at;
+        if (cells < tally.count()) text += fmt::format(" in {} of {} cells", cells, tally.count());
+    };
+    add(tally.same, "the printed parameters");
+    if (tally.same > 0 && tally.asGiven > 0) text += ", ";
+    add(tally.asGiven, fmt::format("the printed parameters as far as they are given (not: {})",
+                                   openText(tally.open)));
     if (tally.different > 0) {
-        text += (tally.same > 0 ? ", in the others at " : "") + departuresText(tally.departures);
+        text += (tally.same + tally.asGiven > 0 ? ", in the others at " : "") +
+                departuresText(tally.departures);
     }
     if (tally.alone > 0) {
         text += fmt::format("; {} cell{} where the profile paper has no case", tally.alone,
@@ -250,6 +259,12 @@ std::string line(const Table& table, std::span<const TableRow> rows) {
 }
 
 }  // namespace
+
+std::string openText(const std::vector<std::string>& parameters) {
+    if (parameters.size() <= kSaidValues + 1) return joined(parameters);
+    const std::vector<std::string> said(parameters.begin(), parameters.begin() + kSaidValues);
+    return fmt::format("{} and {} more", joined(said), parameters.size() - kSaidValues);
+}
 
 std::string departuresText(const std::vector<Departure>& departures) {
     std::vector<std::string> parts;
@@ -291,7 +306,15 @@ void PrintedParameters::compare(const config::Layout& layout, const Key& row, co
         settingsOf(casesAt(whereOf(layout_, row, column), cases_), cases_.frameCount, printed_);
     if (printed.empty()) return;
     cell.isAtPrintedParameters = areSameCases(measured, printed);
-    if (!cell.isAtPrintedParameters) cell.departures = departuresOf(measured, printed, open_);
+    if (!cell.isAtPrintedParameters) {
+        cell.departures = departuresOf(measured, printed, open_);
+        return;
+    }
+    for (const Settings& settings : printed) {
+        for (const auto& [name, value] : settings) {
+            if (name != "scene" && open_.contains(name)) addOnce(name, cell.openParameters);
+        }
+    }
 }
 
 void PrintedCells::add(const config::Experiment& experiment, const Table& table) {
@@ -302,7 +325,9 @@ void PrintedCells::add(const config::Experiment& experiment, const Table& table)
                 if (!cell.printed) continue;
                 ++printed;
                 if (!cell.values.empty()) ++measured;
-                if (cell.isAtPrintedParameters) ++atPrinted;
+                if (cell.isAtPrintedParameters) {
+                    ++(cell.openParameters.empty() ? atPrinted : asGiven);
+                }
             }
         }
     }
@@ -318,9 +343,11 @@ PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
 
 std::string printedCellsLine(const PrintedCells& count) {
     if (count.printed == 0) return "";
+    const auto of = [&](int cells) { return fmt::format("{} of {}", cells, count.printed); };
     return fmt::format(
-        "cells measured at the printed parameters: {} of {}, beside a measurement: {} of {}",
-        count.atPrinted, count.printed, count.measured, count.printed);
+        "cells measured at the printed parameters: {}, as far as they are given: {}, beside a "
+        "measurement: {}",
+        of(count.atPrinted), of(count.asGiven), of(count.measured));
 }
 
 std::string parametersLine(const Table& table) {

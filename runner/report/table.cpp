@@ -185,6 +185,13 @@ bool Table::hasSources() const {
                        [](const TableRow& row) { return row.source != SceneSource::Unknown; });
 }
 
+bool Table::hasCalibrated() const {
+    return std::ranges::any_of(rows, [](const TableRow& row) {
+        return std::ranges::any_of(
+            row.cells, [](const Cell& cell) { return cell.isCalibrated && cell.isPlanned; });
+    });
+}
+
 bool Table::hasShown(Bounds bounds) const {
     return std::ranges::any_of(rows, [&](const TableRow& row) {
         return std::ranges::any_of(row.cells, [&](const Cell& cell) {
@@ -265,6 +272,12 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
     table.isPublished = experiment.isPublished();
     table.knowsPrintedParameters = printed.isKnown();
     buildCells(layout, cases, printed, columns, table);
+    for (TableRow& row : table.rows) {
+        for (std::size_t i = 0; i < row.cells.size(); ++i) {
+            row.cells[i].isCalibrated =
+                config::isCalibrated(experiment, row.labels, table.columns[i].label);
+        }
+    }
     addTimes(experiment, records, table);
     layPrintedBeside(experiment, columns, table);
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {

@@ -23,6 +23,12 @@ struct Measured : Summary {
 
 /// What a metric does as all times double: 1 doubles, -1 halves (a rate), 0 stays.
 int timePower(std::string_view metric);
+/// Beside each calibrated cell, and what it says below the table.
+inline constexpr const char* kCalibratedMark = "‡";
+inline constexpr const char* kCalibratedLegend =
+    "calibrated: an input of ours was fitted so that this comes out, which tells nothing of the "
+    "method";
+
 /// Whether a metric is a time or a number per time: what claims of a `kind` are about.
 bool isTimeMetric(std::string_view metric);
 
@@ -61,8 +67,13 @@ struct Cell {
     /// It was measured at what the paper measured at (printed_parameters.h). Never without a
     /// measurement, nor in a run whose plan does not know the printed parameters.
     bool isAtPrintedParameters = false;
+    /// Of what it was measured at, then: what the document does not give, by the name of its
+    /// parameter; the profile `paper` has a value of ours for it. Its scene is told by its source.
+    std::vector<std::string> openParameters;
     /// Why it was not; empty also for a cell that has no counterpart in the profile `paper`.
     std::vector<Departure> departures;
+    /// An input was fitted so that it comes out (config::isCalibrated).
+    bool isCalibrated = false;
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, not formatted.
     /// Empty where it was not recorded: on a GPU, or of a time that a technique tells itself.
     std::vector<Measured> byProcess;
@@ -113,6 +124,8 @@ struct Table {
     std::optional<double> wallNoise, processNoise;
 
     bool hasSources() const;
+    /// Whether a measured cell is marked as calibrated.
+    bool hasCalibrated() const;
     /// Whether a cell shows such bounds.
     bool hasShown(Bounds bounds) const;
     std::optional<double> noise(Clock clock) const {

@@ -33,7 +33,13 @@ std::vector<std::string> statisticsOf(const Table& table, std::size_t column) {
 /// Nothing where there is nothing to say it of.
 std::string_view atPrintedWord(const Table& table, const Cell& cell) {
     if (cell.values.empty() || !table.knowsPrintedParameters) return "";
-    return cell.isAtPrintedParameters ? "yes" : "no";
+    if (!cell.isAtPrintedParameters) return "no";
+    return cell.openParameters.empty() ? "yes" : "as far as given";
+}
+
+bool hasCalibrated(const Table& table, std::size_t column) {
+    return std::ranges::any_of(table.rows,
+                               [&](const TableRow& row) { return row.cells[column].isCalibrated; });
 }
 
 std::string tableCsv(const Table& table) {
@@ -53,6 +59,7 @@ std::string tableCsv(const Table& table) {
         }
         header.text(label + "_status");
         if (table.isPublished) header.text(label + "_at_printed");
+        if (hasCalibrated(table, i)) header.text(label + "_calibrated");
     }
     if (table.isPublished) header.text("parameters");
     header.end();
@@ -75,6 +82,7 @@ std::string tableCsv(const Table& table) {
             }
             line.text(cell.isPlanned ? statusName(cell.status) : "");
             if (table.isPublished) line.text(atPrintedWord(table, cell));
+            if (hasCalibrated(table, i)) line.text(cell.isCalibrated ? "yes" : "no");
         }
         if (table.isPublished) line.text(parametersLine(table, row));
         line.end();
@@ -86,6 +94,7 @@ std::string markdownCell(const Cell& cell, bool isOnlyPrinted) {
     std::string text;
     if (cell.printed) text += escapeMarkdown(*cell.printed) + (isOnlyPrinted ? "" : " → ");
     text += cell.isPlanned ? escapeMarkdown(cell.measured) : "";
+    if (cell.isPlanned && cell.isCalibrated) text += kCalibratedMark;
     if (cell.hasShownBounds()) {
         const bool isInterval = cell.bounds() == Bounds::Interval;
         text += fmt::format(fmt::runtime(isInterval ? " [{}, {}]" : " ({} … {})"),
@@ -144,6 +153,9 @@ std::string tableMarkdown(const Table& table) {
         for (const Cell& cell : row.cells)
             text += fmt::format(" {} |", markdownCell(cell, table.isOnlyPrinted));
         text += "\n";
+    }
+    if (table.hasCalibrated()) {
+        text += fmt::format("\n{} {}.\n", kCalibratedMark, kCalibratedLegend);
     }
     if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
     for (const std::string& note : table.notes)

@@ -121,7 +121,8 @@ TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
     EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the printed parameters.");
     EXPECT_EQ(gfxrepro({"table", whole}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "cells measured at the printed parameters: 2 of 2, beside a measurement: 2 of 2\n");
+              "cells measured at the printed parameters: 2 of 2, as far as they are given: 0 of 2, "
+              "beside a measurement: 2 of 2\n");
     EXPECT_EQ(parametersOf(config, folder.path() / "quick", {"--profile", "quick"}),
               "Measured at output 4×8 (printed 8×8), pause\\_ms 1 (2).");
     EXPECT_EQ(parametersOf(config, folder.path() / "set", {"--set", "pause_ms=3"}),
@@ -150,7 +151,8 @@ TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
     writeFileAtomic(dir + "/plan.json", plan.dump());
     EXPECT_EQ(gfxrepro({"table", dir}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "cells measured at the printed parameters: 0 of 2, beside a measurement: 2 of 2\n"
+              "cells measured at the printed parameters: 0 of 2, as far as they are given: 0 of 2, "
+              "beside a measurement: 2 of 2\n"
               "warning: plan.json has no frozen_hash, as those of older versions have none: that "
               "its assumptions and published parameters are those that were planned cannot be "
               "verified\n");

@@ -24,11 +24,15 @@ class FitTest : public ExperimentTest {
                      "    ours: {where: {method: better}, metric: redundant_pct}\n"
                      "    both: {metric: redundant_pct}\n"
                      "    plain_min: {where: {method: conventional}, metric: min_pct}\n"
-                     "printed:\n  values: |\n    scene,plain,ours,both,plain_min\n"
-                     "    grass," +
+                     "printed:\n  calibrated: [" +
+                         calibrated_ +
+                         "]\n"
+                         "  values: |\n    scene,plain,ours,both,plain_min\n"
+                         "    grass," +
                          conventional + "," + others + "," + others + "," + others + "\n    tree," +
                          others + "," + others + "," + others + ",lost\n");
     }
+    std::string calibrated_ = "{column: [plain, ours, both, plain_min]}";
     std::string text(const std::string& row, const std::string& column,
                      const std::string& method = "params: {method: conventional}") const {
         return "sweep_of: c\ntitle: t\ntechnique: x\n" + method +
@@ -57,6 +61,24 @@ TEST_F(FitTest, SeesTheNamedCellAlone) {
     const Experiment again = experimentFromDocument(fit.document, fit.file);
     EXPECT_EQ(fitTargets(again).at(0).printed, 70.0) << "a plan has what it needs";
     EXPECT_TRUE(fitTargets(load("sweep_of: c\ntitle: t\ntechnique: x\n")).empty());
+}
+
+TEST_F(FitTest, RefusesCellsThatTheirTableDoesNotMark) {
+    const std::string error =
+        "DIR/zju/a.yaml:9:57: fit: 'a': p/1 does not mark the cell as one that was fitted "
+        "('printed.calibrated')";
+    for (const char* marked :
+         {"", "{column: ours}", "{scene: tree}", "{scene: tree, column: plain}"}) {
+        calibrated_ = marked;
+        writeTable("70");
+        EXPECT_EQ(errorOf("grass", "plain"), error) << marked;
+    }
+    for (const char* marked : {"{column: plain}", "{scene: [tree, grass]}",
+                               "{column: ours}, {scene: grass, column: [both, plain]}"}) {
+        calibrated_ = marked;
+        writeTable("70");
+        EXPECT_EQ(errorOf("grass", "plain"), "no error") << marked;
+    }
 }
 
 TEST_F(FitTest, RefusesWhatComparesMethods) {

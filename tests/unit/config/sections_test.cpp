@@ -122,6 +122,24 @@ TEST_F(ExperimentTest, BadPrintedValues) {
               "DIR/zju/a.yaml:7:11: printed: values has no rows");
 }
 
+TEST_F(ExperimentTest, CalibratedCellsAreTheTables) {
+    const auto error = [&](const std::string& calibrated) {
+        return errorWith(
+            "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {aa: m, bb: m}}\n"
+            "printed: {calibrated: " +
+            calibrated + "}");
+    };
+    const std::string head = "DIR/zju/a.yaml:6:";
+    EXPECT_EQ(error("[{column: aa}, {scene: [s, t], column: [aa, bb]}, {scene: s}]"), "no error");
+    EXPECT_EQ(error("[{column: cc}]"),
+              head + "33: printed.calibrated.column is cc; allowed: aa | bb");
+    EXPECT_EQ(error("[{scene: u}]"), head + "32: printed.calibrated.scene is u; allowed: s | t");
+    EXPECT_EQ(error("[{scen: s}]"),
+              head + "25: printed.calibrated: unknown key 'scen'; did you mean 'scene'?");
+    EXPECT_EQ(error("aa"),
+              head + "23: printed.calibrated is aa; allowed: [{row axis: value, column: name}]");
+}
+
 TEST_F(ExperimentTest, PrintedParameters) {
     const std::string table =
         "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], grid: [4, 8]}\n"

@@ -98,7 +98,8 @@ TEST(Report, IsOneSafeFile) {
              "gfxrepro reproduce zju2005/9.9 --profile quick",
              "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
              "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
-             "<p class=\"parameters\">cells measured at the printed parameters: 2 of 2, beside a "
+             "<p class=\"parameters\">cells measured at the printed parameters: 2 of 2, as far as "
+             "they are given: 0 of 2, beside a "
              "measurement: 2 of 2</p>",
              "<p class=\"parameters\">Measured at the printed parameters.</p>\n<div",
          }) {
@@ -108,6 +109,29 @@ TEST(Report, IsOneSafeFile) {
                                   "href=\"http", "url(http", "@import", "<link rel=\"style"}) {
         EXPECT_THAT(html, Not(HasSubstr(forbidden)));
     }
+}
+
+/// What an input was fitted to is no finding.
+TEST(Report, MarksWhatIsCalibrated) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    const std::string legend = "‡ calibrated: an input of ours was fitted";
+    writeReport(folder.path() / "report.html", {&run, 1});
+    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr(legend)));
+    run.experiments[0] = report::withPaperCases(report::experimentFrom(R"(
+sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
+layout:
+  rows: scene
+  columns: {draw_ms: {metric: gpu_time_ms, format: "{median:.1f}"}}
+printed: {calibrated: [{scene: models/duck}], values: "scene,draw_ms\nmodels/duck,16.0"}
+)"),
+                                                {{"models/duck", "{}"}});
+    run.planned = report::planOf(run.experiments[0], records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr(">8.0 <abbr title=\"calibrated\">‡</abbr>"));
+    EXPECT_THAT(html, Not(HasSubstr(">0.3 <abbr")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">" + legend));
 }
 
 /// A number of other parameters is no multiple of what is printed.
@@ -121,7 +145,11 @@ TEST(Report, NoRatioAtOtherParameters) {
     EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light_grid none (printed "
                                 "16).</p>\n<div"));
     EXPECT_THAT(html, HasSubstr(" title=\"at light_grid none (printed 16)\">8.0"));
-    EXPECT_THAT(html, HasSubstr("printed parameters: 0 of 2, beside a measurement: 2 of 2</p>"));
+    EXPECT_THAT(
+        html,
+        HasSubstr(
+            "printed parameters: 0 of 2, as far as they are given: 0 of 2, beside a measurement: "
+            "2 of 2</p>"));
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
     writeReport(folder.path() / "report.html", {&run, 1});

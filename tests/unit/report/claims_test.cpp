@@ -259,6 +259,21 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(
         provenanceError("across: e, order: slow < often, origin: document, kind: algorithmic"),
         isAbsolute);
+    // A reason for where it is not judged is of an earlier claim.
+    const std::string ofGpu =
+        "order: a < 2 * a, at: {e: slow}, origin: document, kind: architectural, because: "
+        "{verdict: "
+        "fails, reason: r";
+    EXPECT_EQ(provenanceError(ofGpu + ", device: software}"),
+              "claim 'C' has a reason for software ('because'), and a GPU alone judges it");
+    EXPECT_EQ(provenanceError(ofGpu + ", device: gpu}"), "no error");
+    EXPECT_EQ(provenanceError(ofGpu + "}"), "no error");
+    EXPECT_EQ(provenanceError("profile: paper, " + ofGpu + ", profile: quick}"),
+              "claim 'C' has a reason in the profile quick, and is judged in paper alone");
+    EXPECT_EQ(provenanceError("profile: paper, " + ofGpu + ", profile: paper}"), "no error");
+    EXPECT_EQ(provenanceError("order: n < 2 * n, origin: calibrated"),
+              "claim 'C' is of a calibrated input, and reads cells that 'printed.calibrated' does "
+              "not mark");
     // A sweep's are ours, and its times no others.
     EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}", true), "no error");
     EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}", true),

@@ -108,6 +108,29 @@ TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
               "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (50).");
 }
 
+/// What the document does not give is the paper profile's, and no printed parameter.
+TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
+    const std::string open =
+        "assumptions: {bias: {why: not given}, scene: {why: ours}, output: {why: not given}}\n";
+    const char* params = R"({"bias": 1, "n": 2, "output": {"width": 8, "height": 8}})";
+    const Cell cell = cellAt(params, params, open);
+    EXPECT_TRUE(cell.isAtPrintedParameters);
+    EXPECT_THAT(cell.openParameters, ElementsAre("output", "bias")) << "its source tells the scene";
+    EXPECT_THAT(cellAt(R"({"n": 2})", R"({"n": 2})", open).openParameters, IsEmpty());
+    EXPECT_THAT(cellAt(R"({"n": 1})", params, open).openParameters, IsEmpty()) << "departs";
+
+    RecordMaker maker;
+    maker.beginCase("models/duck", params).add("gpu_time_ms", {8.0});
+    const config::Experiment experiment =
+        withPaperCases(experimentFrom(kDuck + open), {{"models/duck", params}});
+    const Table table = buildTable(experiment, maker.records());
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters as far as they are given (not: output, bias).");
+    EXPECT_EQ(printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
+              "cells measured at the printed parameters: 0 of 1, as far as they are given: 1 of 1, "
+              "beside a measurement: 1 of 1");
+}
+
 constexpr const char* kGrid = R"(
 sweep: {scene: [models/duck], light_grid: [4, 16]}
 layout: {rows: light_grid, columns: {ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
@@ -139,7 +162,8 @@ TEST(PrintedParameters, RowsAreComparedWithTheSameRow) {
     PrintedCells count;
     count.add(experimentFrom(kGrid), table);
     EXPECT_EQ(printedCellsLine(count),
-              "cells measured at the printed parameters: 1 of 3, beside a measurement: 2 of 3");
+              "cells measured at the printed parameters: 1 of 3, as far as they are given: 0 of 3, "
+              "beside a measurement: 2 of 3");
 }
 
 /// A table of one row of measured cells beside printed values, which depart so.
@@ -157,6 +181,30 @@ std::string lineOf(const std::vector<std::vector<Departure>>& cells) {
     return parametersLine(table);
 }
 
+TEST(PrintedParameters, LinesCountWhatIsGiven) {
+    Table table;
+    table.isPublished = table.knowsPrintedParameters = true;
+    table.rows.resize(1);
+    const auto add = [&](const std::vector<std::string>& open) {
+        Cell& cell = table.rows[0].cells.emplace_back();
+        cell.values.resize(1);
+        cell.isAtPrintedParameters = true;
+        cell.openParameters = open;
+    };
+    add({});
+    add({"bias"});
+    add({"bias", "view"});
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters in 1 of 3 cells, the printed parameters as far "
+              "as they are given (not: bias, view) in 2 of 3 cells.");
+    table.rows[0].cells.emplace_back().values.resize(1);
+    table.rows[0].cells.back().departures = {{"n", {"1"}, {"2"}}};
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters in 1 of 4 cells, the printed parameters as far "
+              "as they are given (not: bias, view) in 2 of 4 cells, in the others at n 1 (printed "
+              "2).");
+}
+
 TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
     const Departure output{"output", {"128×128"}, {"512×512"}}, grid{"light_grid", {"4"}, {"16"}},
         frames{"frames", {"10"}, {"1000"}};
@@ -170,6 +218,8 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
               "Measured at light_grid 4 / 8 (printed 16).");
     EXPECT_EQ(lineOf({{{"n", {"1", "2", "3", "4", "5"}, {}}}}),
               "Measured at n 1 / 2 / … / 5 (printed none).");
+    EXPECT_EQ(openText({"a", "b", "c", "d", "e"}), "a, b, c, d, e");
+    EXPECT_EQ(openText({"a", "b", "c", "d", "e", "f"}), "a, b, c, d and 2 more");
     const Departure open{"frames", {"3"}, {"50"}, true}, view{"view", {"a"}, {"b"}, true};
     EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (paper profile 50).");
     EXPECT_EQ(lineOf({{output, grid, view, open}}),
@@ -292,7 +342,8 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     const Table table = buildTable(experiment, maker.records());
     PrintedCells count = countPrintedCells({{experiment, experiment}}, {{table, table}});
     EXPECT_EQ(printedCellsLine(count),
-              "cells measured at the printed parameters: 2 of 2, beside a measurement: 2 of 2");
+              "cells measured at the printed parameters: 2 of 2, as far as they are given: 0 of 2, "
+              "beside a measurement: 2 of 2");
     experiment.kind = config::Experiment::Kind::Figure;
     count.add(experiment, table);
     EXPECT_EQ(count.printed, 2) << "a figure's";
@@ -305,7 +356,8 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     count = {};
     count.add(alone, buildTable(alone, {}));
     EXPECT_EQ(printedCellsLine(count),
-              "cells measured at the printed parameters: 0 of 3, beside a measurement: 0 of 3");
+              "cells measured at the printed parameters: 0 of 3, as far as they are given: 0 of 3, "
+              "beside a measurement: 0 of 3");
 }
 
 }  // namespace

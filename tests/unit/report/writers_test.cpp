@@ -10,6 +10,7 @@ namespace gfxrepro::report {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const ReportContext kContext{"llvmpipe", "software", "quick", "abc123", "gfxrepro reproduce"};
 
@@ -89,6 +90,36 @@ TEST(Writers, TableFiles) {
     EXPECT_THAT(latex, testing::EndsWith("\\end{tabular}\n"
                                          "\\par{\\footnotesize \\gfxrepro{zju2005/9.9}\\par}\n"));
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
+}
+
+TEST(Writers, CalibratedCellsAreMarked) {
+    const Written run;
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("error", {2.0});
+    maker.beginCase("models/bunny").add("error", {3.0});
+    writeTables(run.folder.path(), buildTables({experimentFrom(R"(
+sweep: {scene: [models/duck, models/bunny]}
+layout: {rows: scene, columns: {error: {metric: error, format: "{median:.0f}"}, again: {metric: error, format: "{median:.0f}"}}}
+printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,error,again\nmodels/duck,2,1"}
+)")},
+                                               maker.records()));
+    const std::string csv = run.read("tables/zju2005-9.9.csv");
+    EXPECT_THAT(csv, HasSubstr("error_status,error_at_printed,error_calibrated,again_printed"));
+    EXPECT_THAT(csv, Not(HasSubstr("again_calibrated"))) << "none of the column is";
+    EXPECT_THAT(csv, HasSubstr("models/duck,2,2,2,2,,ok,,yes,1,"));
+    EXPECT_THAT(csv, HasSubstr("models/bunny,,3,3,3,,ok,,no,,"));
+    const std::string legend =
+        "calibrated: an input of ours was fitted so that this comes out, which tells nothing of "
+        "the method.";
+    const std::string markdown = run.read("tables/zju2005-9.9.md");
+    EXPECT_THAT(markdown,
+                HasSubstr("| models/duck | 2 → 2‡ | 1 → 2 |\n| models/bunny | 3 | 3 |\n"));
+    EXPECT_THAT(markdown, HasSubstr("\n\n‡ " + legend + "\n"));
+    const std::string latex = run.read("tables/zju2005-9.9.tex");
+    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/error/calibrated}{yes}\n"));
+    EXPECT_THAT(latex, HasSubstr("& \\gfxrepro{zju2005/9.9/models-duck/error}"
+                                 "\\textsuperscript{\\ddag} &"));
+    EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\ddag} " + legend + "\\par}\n"));
 }
 
 TEST(Writers, ClaimFiles) {
