@@ -59,6 +59,8 @@ std::string restsOn(const std::vector<Outcome>& outcomes, std::size_t claim);
 std::string sensitivityMarkdown(const config::Experiment& experiment,
                                 const std::vector<Outcome>& outcomes, const Variations& variations,
                                 std::size_t left = 0);
+/// Of a table whose claims are all of times: a page that says so.
+std::string untriedMarkdown(const config::Experiment& experiment);
 /// basis,assumption,value,claim,verdict,measured,required,margin,error: a row a claim and run.
 std::string sensitivityCsv(const std::vector<Outcome>& outcomes, const std::string& basis);
 /// What sensitivityCsv() wrote; nothing when it is of another basis (an empty one is any). Throws
@@ -74,8 +76,8 @@ std::string basisOf(const Plan& plan, const config::Experiment& experiment);
 /// Where results of a plan's experiments are kept below `folder`: <device class>/<profile>.
 std::filesystem::path keptFolder(const std::filesystem::path& folder, const Plan& plan);
 
-/// The README of a folder of kept results: what each verdict rests on, a line a table; `command`
-/// made the last of them.
+/// The README of a folder of kept results: what each verdict rests on, a line a table, and the
+/// tables of which nothing was tried; `command` made the last of them.
 std::string sensitivityIndex(const std::filesystem::path& folder, const std::string& command);
 
 /// What kept results say of a plan's claims, beside the verdict under which they were tried. Stale

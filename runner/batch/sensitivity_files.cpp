@@ -79,6 +79,13 @@ std::string sensitivityMarkdown(const config::Experiment& experiment,
     return text;
 }
 
+std::string untriedMarkdown(const config::Experiment& experiment) {
+    return fmt::format(
+        "# Sensitivity of {}\n\n{}\n\nNot tried: all its claims are of times, which vary with the "
+        "machine beside the assumptions.\n",
+        escapeMarkdown(experiment.id), escapeMarkdown(experiment.title));
+}
+
 std::string sensitivityCsv(const std::vector<Outcome>& outcomes, const std::string& basis) {
     std::string text = kHeader;
     for (const Outcome& outcome : outcomes) {
@@ -168,19 +175,32 @@ std::string sensitivityIndex(const fs::path& folder, const std::string& command)
         command + "\n";
     std::set<fs::path> files;
     for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
-        if (file.path().extension() == ".csv") files.insert(file.path());
+        const bool isPage = file.path().extension() == ".md" && file.path().parent_path() != folder;
+        if (isPage) files.insert(fs::path(file.path()).replace_extension(".csv"));
     }
+    const auto link = [&](const fs::path& file) {
+        const fs::path page = fs::path(file).replace_extension(".md").lexically_relative(folder);
+        return fmt::format("[{}]({})", file.stem().string(), page.generic_string());
+    };
     fs::path last;
+    std::vector<std::string> untried;
+    const auto sayUntried = [&] {
+        if (!untried.empty())
+            text += fmt::format("\nNot tried, each says why: {}.\n", joined(untried));
+        untried.clear();
+    };
     for (const fs::path& file : files) {
-        const std::vector<Outcome> outcomes = readSensitivity(file);
-        if (outcomes.empty() || outcomes.front().claims.empty()) continue;
+        const std::vector<Outcome> outcomes =
+            fs::is_regular_file(file) ? readSensitivity(file) : std::vector<Outcome>{};
         if (file.parent_path() != last) {
+            sayUntried();
             last = file.parent_path();
             text += fmt::format("\n## {}\n| table | none | rests on |\n| --- | --- | --- |\n",
                                 last.lexically_relative(folder).generic_string());
         }
         std::vector<std::string> firm, resting;
-        for (std::size_t i = 0; i < outcomes.front().claims.size(); ++i) {
+        const std::size_t claims = outcomes.empty() ? 0 : outcomes.front().claims.size();
+        for (std::size_t i = 0; i < claims; ++i) {
             const std::string& id = outcomes.front().claims[i].id;
             const std::string rests = restsOn(outcomes, i);
             if (rests.starts_with("none")) firm.push_back(id);
@@ -188,12 +208,14 @@ std::string sensitivityIndex(const fs::path& folder, const std::string& command)
                 resting.push_back(fmt::format("{}: {}", id, rests));
             }
         }
-        if (firm.empty() && resting.empty()) continue;
-        text += fmt::format(
-            "| [{}]({}) | {} | {} |\n", file.stem().string(),
-            fs::path(file).replace_extension(".md").lexically_relative(folder).generic_string(),
-            escapeMarkdown(joined(firm)), escapeMarkdown(joined(resting, "; ")));
+        if (firm.empty() && resting.empty()) {
+            untried.push_back(link(file));
+            continue;
+        }
+        text += fmt::format("| {} | {} | {} |\n", link(file), escapeMarkdown(joined(firm)),
+                            escapeMarkdown(joined(resting, "; ")));
     }
+    sayUntried();
     return text;
 }
 

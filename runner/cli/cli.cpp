@@ -284,7 +284,7 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
     sensitivityApp->add_flag("--times", s.hasTimes, "claims about times, too (slow)");
     sensitivityApp->add_option("--from", s.from, "run that has the tables as configured")
         ->option_text("RUN");
-    sensitivityApp->add_option("--keep", s.keep, "copies of the summaries (results/sensitivity)")
+    sensitivityApp->add_option("--keep", s.keep, "summaries to go on from (results/sensitivity)")
         ->option_text("DIR");
     sensitivityApp->add_option("--out", s.out, "folder (default runs/<time>-sensitivity)")
         ->option_text("DIR");

@@ -111,10 +111,33 @@ void write(const Study& study, const std::string& keep) {
     writeFileAtomic(kept / (study.experiment().slug() + ".csv"), csv);
 }
 
+/// What `keep` has of the same cases and claims: the runs that are left come after it.
+void takeKept(const std::string& keep, Study& study) {
+    const fs::path file =
+        batch::keptFolder(keep, study.plan) / (study.experiment().slug() + ".csv");
+    if (!fs::is_regular_file(file)) return;
+    for (batch::Outcome& kept : batch::readSensitivity(file, study.basis)) {
+        const auto left =
+            study.variations.runs.begin() + static_cast<std::ptrdiff_t>(study.outcomes.size());
+        const auto run = std::find_if(left, study.variations.runs.end(), [&](const auto& one) {
+            return one.title() == kept.variation.title();
+        });
+        if (run == study.variations.runs.end() || kept.claims.empty()) continue;
+        std::rotate(left, run, run + 1);
+        kept.variation = *left;
+        for (report::ClaimResult& claim : kept.claims) {
+            const auto& claims = study.experiment().claims;
+            const auto spec = std::ranges::find(claims, claim.id, &config::ClaimSpec::id);
+            if (spec != claims.end()) claim.text = spec->text;
+        }
+        study.outcomes.push_back(std::move(kept));
+    }
+}
+
 /// The verdicts as configured, where `run` has measured the same.
 void takeBase(const batch::StoredRun& run, Study& study) {
     for (const config::Experiment& experiment : run.plan.experiments) {
-        if (experiment.id != study.experiment().id) continue;
+        if (experiment.id != study.experiment().id || !study.outcomes.empty()) continue;
         if (run.plan.deviceClass != study.plan.deviceClass ||
             batch::basisOf(run.plan, experiment) != study.basis) {
             continue;
@@ -145,6 +168,10 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
         (experiment.claims.empty() || !options.hasTimes)) {
         tell("{}: left out, {}\n", experiment.id,
              experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
+        if (!experiment.claims.empty() && !options.keep.empty()) {
+            const fs::path kept = batch::keptFolder(options.keep, study.plan);
+            writeFileAtomic(kept / (experiment.slug() + ".md"), batch::untriedMarkdown(experiment));
+        }
         return std::nullopt;
     }
     if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;
@@ -190,6 +217,10 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         if (!study) continue;
         total += study->variations.runs.size();
         studies.push_back(std::move(*study));
+    }
+    for (Study& study : studies) {
+        if (!options.keep.empty()) takeKept(options.keep, study);
+        made += study.outcomes.size();
     }
     if (!options.from.empty()) {
         const batch::StoredRun run = batch::readRun(options.from);

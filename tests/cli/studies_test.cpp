@@ -10,6 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const kClaim =
     "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
@@ -94,6 +95,52 @@ TEST(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     EXPECT_THAT(all.out, HasSubstr("sweep/mock any: holds under all 4; rests on: none of the 1 "
                                    "tried\n"));
     EXPECT_FALSE(fs::exists(out + "/sweep-mock/as_configured"));
+}
+
+TEST(Sensitivity, GoesOnWhereKeptResultsEnd) {
+    const TemporaryFolder folder;
+    const std::string keep = folder.path() / "keep";
+    const auto kept = [&] { return readFile(keep + "/software/full/sweep-mock.csv"); };
+    const auto run = [&](const std::string& claim, const std::string& out,
+                         const std::vector<std::string>& more) {
+        std::vector<std::string> command =
+            sensitivityCommand(writeMockConfig(folder, claim), folder.path() / out);
+        command.insert(command.end(), {"--keep", keep});
+        command.insert(command.end(), more.begin(), more.end());
+        return mockGfxrepro(command);
+    };
+    const std::string wider = std::string(kClaim) + "  pause_ms: {range: [0, 1], why: left open}\n";
+    ASSERT_EQ(run(kClaim, "a", {}).exitCode, 0);
+    const ProcessResult more = run(wider, "b", {});
+    EXPECT_THAT(more.err, HasSubstr("[5/5] sweep/mock pause_ms = 1\n"));
+    EXPECT_THAT(more.err, Not(HasSubstr("number = "))) << "these are kept";
+    EXPECT_THAT(more.out, HasSubstr("sweep/mock small: holds unless number is 10 (flips between 5 "
+                                    "and 10, near 6); rests on: number (of 2 tried)\n"));
+    EXPECT_THAT(kept(), HasSubstr(",number,10,small,fails,10,"));
+    EXPECT_THAT(kept(), HasSubstr(",pause_ms,1,small,holds,3,"));
+    // Another claim: nothing that is kept is of it.
+    std::string other = kClaim;
+    other.replace(other.find("below: 6"), 8, "below: 2");
+    EXPECT_THAT(run(other, "c", {}).err, HasSubstr("[1/4] sweep/mock as configured\n"));
+}
+
+TEST(Sensitivity, TablesOfTimesAreNamed) {
+    const TemporaryFolder folder;
+    const std::string keep = folder.path() / "keep";
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {behaviour: [ok]}\nmeasure: {lane: timing, processes: 6}\n"
+                        "layout: {rows: behaviour, columns: {ms: {metric: wall_time_ms}}}\n"
+                        "claims: {fast: {says: fast, bound: ms, below: 5, kind: absolute}}\n");
+    std::vector<std::string> command = sensitivityCommand(config, folder.path() / "out");
+    command.insert(command.end(), {"--keep", keep});
+    const ProcessResult run = mockGfxrepro(command);
+    EXPECT_EQ(run.err, "sweep/mock: left out, all its claims are of times\n");
+    EXPECT_THAT(readFile(keep + "/software/full/sweep-mock.md"),
+                HasSubstr("\n\nNot tried: all its claims are of times,"));
+    EXPECT_THAT(
+        readFile(keep + "/README.md"),
+        HasSubstr("\nNot tried, each says why: [sweep-mock](software/full/sweep-mock.md).\n"));
 }
 
 TEST(Sensitivity, ReportsShowWhatIsKept) {
