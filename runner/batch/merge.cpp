@@ -259,7 +259,7 @@ void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& sha
     Json manifest = merged.manifest;
     sealRecords(manifest, directory.path());
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
-    writeFileAtomic(directory.planFile(), merged.plan.toText());
+    merged.plan.writeFile(directory.planFile());
 }
 
 bool isOnlyMerged(const Json& manifest) {

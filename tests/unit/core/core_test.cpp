@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "runner/core/atomic_file.h"
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
@@ -121,6 +122,29 @@ TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
     writeFileAtomic(path, "two");
     EXPECT_EQ(readFile(path), "two");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
+}
+
+TEST(Files, WhatIsWrittenInPiecesIsThereAsAWhole) {
+    const test::TemporaryFolder folder;
+    const auto path = folder.write("file.txt", "old");
+    const auto count = [&] {
+        return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+    };
+    {
+        AtomicFile file(path);
+        file.write("never there");
+        EXPECT_EQ(count(), 2);
+    }
+    EXPECT_EQ(readFile(path), "old");
+    EXPECT_EQ(count(), 1);
+    const std::string large(1'500'000, 'x');
+    AtomicFile file(path);
+    for (const std::string& piece : {std::string("a"), large, std::string("b"), large})
+        file.write(piece);
+    EXPECT_EQ(readFile(path), "old");
+    file.commit();
+    EXPECT_EQ(readFile(path), "a" + large + "b" + large);
+    EXPECT_EQ(count(), 1);
 }
 
 TEST(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
