@@ -153,7 +153,7 @@ void copyImages(const RunDirectory& directory, const std::vector<ShardRun>& shar
     for (const Case& item : plan.cases) {
         std::ranges::move(imagesOf[item.id], std::back_inserter(images));
     }
-    report::appendImages(directory.path(), images);
+    report::ImageWriter(directory.path()).append(images);
 }
 
 /// A line of a log without what its worker printed, or in short.

@@ -315,8 +315,9 @@ TEST(LoaderFuzz, FilesOfRuns) {
     rows[2].status = report::Status::Crash;
     rows[2].message = "about\nto crash";
     report::RecordWriter(records).append(rows);
-    report::appendImages(own.path(), {{"0123456789ab", "zju2005/2.1", 0, "flat", "images/a/b.png",
-                                       "images/a/b.exr", "a, \"title\"", ""}});
+    report::ImageWriter(own.path())
+        .append({{"0123456789ab", "zju2005/2.1", 0, "flat", "images/a/b.png", "images/a/b.exr",
+                  "a, \"title\"", ""}});
     const fs::path plan =
         own.write("plan.json", R"({"a": [1, 2.5e3, "x\u00e9"], "b": {"c": null}})");
     fs::create_directories(work.path() / "images");
