@@ -345,5 +345,20 @@ TEST(LoaderFuzz, AnythingToAnyLoader) {
     }
 }
 
+/// In a file of zeros each byte is a face: memory for as many triangles would be twelve times it.
+TEST(LoaderFuzz, FacesWithoutCornersTakeNoMemory) {
+    const test::TemporaryFolder folder;
+    constexpr std::size_t kBytes = 20'000'000;
+    const auto path =
+        folder.write("a.ply",
+                     "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+                     "property float y\nproperty float z\nelement face 19000000\n"
+                     "property list uchar int vertex_indices\nend_header\n");
+    std::filesystem::resize_file(path, kBytes);  // nearly all of it a hole
+    test::resetPeakMemory();
+    EXPECT_TRUE(scene::loadPly(path).meshes.empty());
+    EXPECT_LE(test::peakMemoryBytes(), kBytes);
+}
+
 }  // namespace
 }  // namespace gfxrepro
