@@ -47,7 +47,13 @@ std::string environment(const char* name) {
 }  // namespace
 
 std::string readFile(const fs::path& path) {
-    return std::string(MappedFile(path).text());
+    constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // twice the largest that is written
+    const MappedFile file(path);
+    if (file.bytes().size() > kMostBytes) {
+        throw Error("cannot read " + path.string() + ": " + std::to_string(file.bytes().size()) +
+                    " bytes; at most 1 GiB are read at once");
+    }
+    return std::string(file.text());
 }
 
 void writeFileAtomic(const fs::path& path, std::string_view content) {

@@ -169,6 +169,13 @@ TEST(Files, MissingFilesAndFoldersAreNamed) {
               "cannot read DIR/none: No such file or directory");
     EXPECT_EQ(test::errorText([&] { readFile(folder.path()); }, folder.path()),
               "cannot read DIR: Is a directory");
+    ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "pipe"); }, folder.path()),
+              "cannot read DIR/pipe: a pipe or a device, not a file");
+    const auto large = folder.write("large", "head");
+    std::filesystem::resize_file(large, (std::uintmax_t{1} << 30) + 1);  // nearly all of it a hole
+    EXPECT_EQ(test::errorText([&] { readFile(large); }, folder.path()),
+              "cannot read DIR/large: 1073741825 bytes; at most 1 GiB are read at once");
     EXPECT_TRUE(readFile(folder.write("empty", "")).empty());
 }
 
