@@ -153,7 +153,7 @@ void copyImages(const RunDirectory& directory, const std::vector<ShardRun>& shar
     for (const Case& item : plan.cases) {
         std::ranges::move(imagesOf[item.id], std::back_inserter(images));
     }
-    report::appendImages(directory.path(), images);
+    report::ImageWriter(directory.path()).append(images);
 }
 
 /// A line of a log without what its worker printed, or in short.
@@ -259,7 +259,7 @@ void writeMerged(const RunDirectory& directory, const std::vector<ShardRun>& sha
     Json manifest = merged.manifest;
     sealRecords(manifest, directory.path());
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
-    writeFileAtomic(directory.planFile(), merged.plan.toText());
+    merged.plan.writeFile(directory.planFile());
 }
 
 bool isOnlyMerged(const Json& manifest) {

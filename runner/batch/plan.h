@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runner/config/experiment.h"
@@ -95,8 +97,10 @@ struct Plan {
 
     /// Whether a run of this plan measures the case: all do but those of other shards.
     bool measures(const Case& item) const;
-    /// As JSON, whose cases are written one after another: there may be 100,000.
-    std::string toText() const;
+    /// As JSON, in pieces: of 100,000 cases the whole text would take a fifth of the memory.
+    void write(const std::function<void(std::string_view)>& to) const;
+    /// The same to a file, which is there as a whole or not at all. Throws Error.
+    void writeFile(const std::filesystem::path& path) const;
     static Plan fromJsonFile(const std::filesystem::path& path);
 };
 

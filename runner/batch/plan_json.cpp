@@ -7,6 +7,7 @@
 
 #include "runner/batch/plan.h"
 #include "runner/batch/plan_hash.h"
+#include "runner/core/atomic_file.h"
 #include "runner/report/case_records.h"
 
 namespace gfxrepro::batch {
@@ -229,7 +230,7 @@ Case Case::fromJson(const config::Node& node) {
     return item;
 }
 
-std::string Plan::toText() const {
+void Plan::write(const std::function<void(std::string_view)>& to) const {
     Json json = {{"schema", kPlanSchema},
                  {"hash", hash},
                  {"build", buildId},
@@ -263,11 +264,17 @@ std::string Plan::toText() const {
     if (isVerified) json[kFrozenHash] = frozenHash(json, cases);
     std::string text = json.dump(1);
     text.resize(text.size() - 2);  // "\n}"
-    text += ",\n \"cases\": [";
+    to(text + ",\n \"cases\": [");
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        text += fmt::format("{}\n  {}", i == 0 ? "" : ",", cases[i].toJson().dump());
+        to(fmt::format("{}\n  {}", i == 0 ? "" : ",", cases[i].toJson().dump()));
     }
-    return text + "\n ]\n}\n";
+    to("\n ]\n}\n");
+}
+
+void Plan::writeFile(const fs::path& path) const {
+    AtomicFile file(path);
+    write([&](std::string_view text) { file.write(text); });
+    file.commit();
 }
 
 Plan Plan::fromJsonFile(const fs::path& path) {

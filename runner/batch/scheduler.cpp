@@ -93,6 +93,7 @@ class Scheduler {
           phases_(phases),
           observer_(observer),
           expectations_(options.expectations),
+          images_(directory.path()),
           records_(directory.recordsFile()) {
         for (const Unit& unit : units) {
             if (std::string key = workKey(*unit.item); !key.empty()) {
@@ -121,6 +122,7 @@ class Scheduler {
             if (!outcome_.stopReason.empty()) break;
         }
         workers_.clear();
+        images_.requireOurs();
         records_.requireOurs();
         outcome_.warnings = rounds_.warnings();
         return std::move(outcome_);
@@ -319,8 +321,7 @@ class Scheduler {
         directory_.requireOurs();
         const bool hasValues =
             result.status == report::Status::Ok || result.status == report::Status::Flaky;
-        report::appendImages(
-            directory_.path(),
+        images_.append(
             unit.measuredAs && hasValues
                 ? shareFiles(directory_.path(), *unit.measuredAs, *unit.item, result.images)
                 : result.images);
@@ -333,14 +334,13 @@ class Scheduler {
     }
 
     void count(const Unit& unit, report::Status status) {
-        const Case& item = *unit.item;
         ++outcome_.begun;
         if (status == report::Status::Ok || status == report::Status::Flaky) {
             ++outcome_.finished;
             if (unit.measuredAs) ++outcome_.shared;
             if (status == report::Status::Flaky) ++outcome_.flaky;
         } else {
-            ++(expectations_.isExpected(item, status) ? outcome_.expected : outcome_.failed);
+            ++(expectations_.isExpected(*unit.item, status) ? outcome_.expected : outcome_.failed);
         }
     }
 
@@ -354,6 +354,7 @@ class Scheduler {
     PhaseClock& phases_;
     Observer& observer_;
     Expectations expectations_;
+    report::ImageWriter images_;
     report::RecordWriter records_;
     std::vector<std::unique_ptr<WorkerHandle>> workers_;
     int lostInARow_ = 0;  // units that ended device-lost

@@ -1,5 +1,6 @@
 #include "runner/batch/worker_handle.h"
 
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -19,6 +20,8 @@ constexpr std::chrono::milliseconds kMemoryCheckInterval{20};
 constexpr std::chrono::milliseconds kSendInterval{2};   // while a unit is not sent to its end
 constexpr std::chrono::seconds kLongestSuspension{60};  // of a worker alone, beyond its limit
 constexpr std::size_t kOutputTailBytes = 65536;
+/// Of one answer: a million values take 64 MiB.
+constexpr std::size_t kMostAnswerBytes = std::size_t{64} << 20;
 
 /// Of a process that waits for a driver or a file system.
 const std::string kStuck = "; its process could not be killed and was left behind";
@@ -98,9 +101,27 @@ std::optional<CaseResult> WorkerHandle::receive() {
     const bool isOpen = readAvailable(process_.messageFd(), messages_);
     readAvailable(process_.outputFd(), output_);
     if (output_.size() > kOutputTailBytes) output_.erase(0, output_.size() - kOutputTailBytes);
+    std::optional<CaseResult> result = handleLines();
+    isEndless_ = messages_.size() > kMostAnswerBytes;
+    if ((!isOpen || isEndless_) && isAlive_) {
+        isAlive_ = false;
+        std::optional<int> status = isEndless_ ? std::nullopt : process_.wait(kEndLimit);
+        if (!status) status = process_.kill();
+        isStuck_ = !status;
+        waitStatus_ = status.value_or(0);
+        readAvailable(process_.outputFd(), output_);
+        endPhase();
+        if (unit_ && !result) result = resultOfDeath();
+    }
+    return result;
+}
+
+/// Reads the lines that are whole.
+std::optional<CaseResult> WorkerHandle::handleLines() {
     std::optional<CaseResult> result;
     std::size_t lineBegin = 0;
-    for (std::size_t end; (end = messages_.find('\n', lineBegin)) != std::string::npos;
+    for (std::size_t end;
+         (end = messages_.find('\n', std::max(lineBegin, searchedBytes_))) != std::string::npos;
          lineBegin = end + 1) {
         const Json message =
             Json::parse(messages_.begin() + static_cast<std::ptrdiff_t>(lineBegin),
@@ -109,16 +130,7 @@ std::optional<CaseResult> WorkerHandle::receive() {
         if (std::optional<CaseResult> given = handle(message)) result = std::move(given);
     }
     messages_.erase(0, lineBegin);
-    if (!isOpen && isAlive_) {
-        isAlive_ = false;
-        std::optional<int> status = process_.wait(kEndLimit);
-        if (!status) status = process_.kill();
-        isStuck_ = !status;
-        waitStatus_ = status.value_or(0);
-        readAvailable(process_.outputFd(), output_);
-        endPhase();
-        if (unit_ && !result) result = resultOfDeath();
-    }
+    searchedBytes_ = messages_.size();
     return result;
 }
 
@@ -160,6 +172,11 @@ void WorkerHandle::endPhase() {
 
 CaseResult WorkerHandle::resultOfDeath() const {
     if (!unavailable_.empty()) return failure(report::Status::Unsupported, unavailable_);
+    if (isEndless_) {
+        return failure(report::Status::Crash,
+                       fmt::format("the worker's answer had {} MiB and no end{}",
+                                   kMostAnswerBytes >> 20, isStuck_ ? kStuck : ""));
+    }
     if (isStuck_) return failure(report::Status::Crash, "the worker's answers ended" + kStuck);
     if (WIFSIGNALED(waitStatus_) && WTERMSIG(waitStatus_) == SIGKILL) {
         if (systemOomKills() > oomKillsBefore_) {

@@ -73,6 +73,7 @@ class WorkerHandle {
     bool release(const CaseResult& result);
 
   private:
+    std::optional<CaseResult> handleLines();
     std::optional<CaseResult> handle(const Json& message);
     void begin(const std::string& phase);
     void endPhase();
@@ -93,6 +94,7 @@ class WorkerHandle {
     long long oomKillsBefore_;  // of the system, when the process began
     int waitStatus_ = 0;        // once it is not alive
     bool isStuck_ = false;      // likewise: it could not be killed
+    bool isEndless_ = false;    // likewise: its answer was longer than any
     std::chrono::seconds startLimit_;
     Clock::time_point limit_;                    // of the start, then of the unit
     Clock::time_point lastLook_ = Clock::now();  // of checkLimits()
@@ -100,7 +102,8 @@ class WorkerHandle {
     Clock::duration suspended_{};                // by which the limit has moved for it
     std::string phase_;                          // empty between phases
     Clock::time_point phaseBegin_;
-    std::string messages_;
+    std::string messages_;           // what has come of lines without their end
+    std::size_t searchedBytes_ = 0;  // of them, without a line's end
     std::string output_;
 };
 

@@ -197,26 +197,29 @@ scene::Catalog openCatalog(const Context& context, const std::string& assets) {
     return {dataFolder("configs") / "scenes", assetsFolder(assets), context.generators};
 }
 
-std::string alignedColumns(const std::vector<std::vector<std::string>>& texts) {
-    std::vector<std::vector<std::string>> rows = texts;
-    for (auto& row : rows) std::ranges::transform(row, row.begin(), printable);
-    std::vector<std::size_t> widths;
-    for (const auto& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            widths[i] = std::max(widths[i], row[i].size());
-        }
+void Columns::fit(const std::vector<std::string>& row) {
+    widths_.resize(std::max(widths_.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        widths_[i] = std::max(widths_[i], printable(row[i]).size());
     }
+}
+
+std::string Columns::line(const std::vector<std::string>& row) const {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const std::string text = printable(row[i]);
+        line += text;
+        if (i + 1 < row.size()) line.append(widths_[i] - text.size() + 2, ' ');
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + '\n';
+}
+
+std::string alignedColumns(const std::vector<std::vector<std::string>>& rows) {
+    Columns columns;
+    for (const auto& row : rows) columns.fit(row);
     std::string text;
-    for (const auto& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            line += row[i];
-            if (i + 1 < row.size()) line.append(widths[i] - row[i].size() + 2, ' ');
-        }
-        line.erase(line.find_last_not_of(' ') + 1);
-        text += line + '\n';
-    }
+    for (const auto& row : rows) text += columns.line(row);
     return text;
 }
 

@@ -50,7 +50,19 @@ std::string runSlug(const batch::Plan& plan);
 
 scene::Catalog openCatalog(const Context& context, const std::string& assets);
 
-/// Rows as aligned columns, two spaces apart.
+/// Columns, two spaces apart, as wide as their widest text: all rows are seen before the first is
+/// written, by whoever has not room for all of their lines.
+class Columns {
+  public:
+    void fit(const std::vector<std::string>& row);
+    /// The texts made printable, with a newline.
+    std::string line(const std::vector<std::string>& row) const;
+
+  private:
+    std::vector<std::size_t> widths_;
+};
+
+/// All rows as lines of aligned columns.
 std::string alignedColumns(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace gfxrepro::cli

@@ -29,6 +29,22 @@ std::vector<std::string> predictionTexts(const batch::Case& item, const batch::C
             memoryText(static_cast<double>(known->memoryBytes)), source};
 }
 
+/// A case of the listing.
+std::vector<std::string> rowTexts(const batch::Case& item, const batch::Case& first,
+                                  const batch::Predictor& predictor) {
+    const config::Measure& measure = item.measure;
+    std::vector<std::string> row = {
+        item.id, measure.lane == config::Measure::Lane::Timing ? "timing" : "quality",
+        fmt::format("{}x{}", item.outputWidthPx, item.outputHeightPx),
+        fmt::format("{}x{}x{}", measure.processes, measure.frames, measure.repeats),
+        fmt::format("{:g} s", measure.timeLimitS)};
+    for (std::string& text : predictionTexts(item, first, predictor)) {
+        row.push_back(std::move(text));
+    }
+    row.push_back(item.title());
+    return row;
+}
+
 }  // namespace
 
 int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
@@ -37,32 +53,27 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
         planFor(context, requestOf(selection, findPaperConfigs(selection.names)), selection.profile,
                 selection.assets, deviceClassFor(selection));
     if (asJson) {
-        fmt::print("{}", plan.toText());
+        plan.write([](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); });
         return kExitOk;
     }
     const History history = openHistory(from, plan.deviceClass);
-    std::vector<std::vector<std::string>> rows = {
-        {"case", "lane", "output", "runs", "limit", "time", "memory", "known by", "title"}};
+    const std::vector<std::string> head = {"case", "lane",   "output",   "runs", "limit",
+                                           "time", "memory", "known by", "title"};
     const std::vector<std::size_t> firsts = batch::firstTwins(plan.cases);
+    const auto rowOf = [&](std::size_t i) {
+        return rowTexts(plan.cases[i], plan.cases[firsts[i]], history.predictor);
+    };
+    Columns columns;
+    columns.fit(head);
     long long iterations = 0;
     std::size_t twins = 0;
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-        const batch::Case& item = plan.cases[i];
-        const config::Measure& measure = item.measure;
-        if (firsts[i] == i) iterations += iterationsOf(measure);
+        if (firsts[i] == i) iterations += iterationsOf(plan.cases[i].measure);
         if (firsts[i] != i) ++twins;
-        std::vector<std::string> row = {
-            item.id, measure.lane == config::Measure::Lane::Timing ? "timing" : "quality",
-            fmt::format("{}x{}", item.outputWidthPx, item.outputHeightPx),
-            fmt::format("{}x{}x{}", measure.processes, measure.frames, measure.repeats),
-            fmt::format("{:g} s", measure.timeLimitS)};
-        for (std::string& text : predictionTexts(item, plan.cases[firsts[i]], history.predictor)) {
-            row.push_back(std::move(text));
-        }
-        row.push_back(item.title());
-        rows.push_back(std::move(row));
+        columns.fit(rowOf(i));
     }
-    fmt::print("{}", alignedColumns(rows));
+    fmt::print("{}", columns.line(head));
+    for (std::size_t i = 0; i < firsts.size(); ++i) fmt::print("{}", columns.line(rowOf(i)));
     fmt::print(
         "{} case{}{}, {} iterations, for a {} device; runs are processes x frames x repeats\n",
         plan.cases.size(), plan.cases.size() == 1 ? "" : "s",

@@ -118,7 +118,7 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
     batch::beginInvocation(manifest, context.commandLine);
     // The plan last: a folder with a plan has all that a resumed run needs.
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
-    writeFileAtomic(directory.planFile(), plan.toText());
+    plan.writeFile(directory.planFile());
     return {std::move(plan), std::move(directory), std::move(manifest), scheduler};
 }
 

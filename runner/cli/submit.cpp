@@ -387,7 +387,7 @@ int submit(const Context& context, const SubmitOptions& options) {
         if (!before) batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
     }
     if (!options.isDryRun && (!before || !fs::exists(frozenPlan(s.out)))) {
-        writeFileAtomic(frozenPlan(s.out), cut.plan.toText());
+        cut.plan.writeFile(frozenPlan(s.out));
     }
     if (options.engine == "commands") return writeCommands(cut, options.isDryRun);
     return submitToSlurm(cut, before, options);

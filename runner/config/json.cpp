@@ -31,14 +31,19 @@ struct Reader {
     int* line;
 };
 
-/// A value takes many times its bytes in memory. A plan has at most 200,000 cases of 150 values.
+/// A value takes many times its bytes in memory. A plan has at most 200,000 cases of 150 values,
+/// which take 16 bytes each with their names; its documents, of 4 MiB, may be lists of digits.
 constexpr std::size_t kMostValues = 30'000'000;
+constexpr std::size_t kMostDigits = 4'000'000;
+std::size_t mostValues(std::size_t textBytes) {
+    return std::min(kMostValues, kMostDigits + textBytes / 8);
+}
 
 /// Builds the tree while the parser walks the text: a tree of the parser's own would be as large as
 /// the plan once more, and search each object for every key that it adds.
 class Builder : public nlohmann::json_sax<Json> {
   public:
-    explicit Builder(SourceLocation where) : where_(std::move(where)) {}
+    Builder(SourceLocation where, std::size_t most) : where_(std::move(where)), most_(most) {}
 
     int* line() { return &where_.line; }
     Node takeRoot() { return std::move(root_); }
@@ -108,8 +113,8 @@ class Builder : public nlohmann::json_sax<Json> {
         return done;
     }
     bool add(Node node) {
-        if (++count_ > kMostValues) {
-            throw Error(where_, "more than " + std::to_string(kMostValues) + " values");
+        if (++count_ > most_) {
+            throw Error(where_, "more than " + std::to_string(most_) + " values");
         }
         if (open_.empty()) {
             root_ = std::move(node);
@@ -120,6 +125,7 @@ class Builder : public nlohmann::json_sax<Json> {
     }
 
     SourceLocation where_;
+    std::size_t most_;
     std::size_t count_ = 0;
     std::vector<Open> open_;
     Node root_;
@@ -136,7 +142,7 @@ SourceLocation placeOf(std::string_view text, std::size_t byte, const std::strin
 }  // namespace
 
 Node parseJson(std::string_view text, const std::string& fileName) {
-    Builder builder({fileName, 1, 0});
+    Builder builder({fileName, 1, 0}, mostValues(text.size()));
     const Reader begin{text.data(), builder.line()};
     const Reader end{text.data() + text.size(), builder.line()};
     if (!Json::sax_parse(begin, end, &builder)) {
@@ -146,7 +152,8 @@ Node parseJson(std::string_view text, const std::string& fileName) {
 }
 
 Node parseJsonFile(const std::filesystem::path& path) {
-    return parseJson(readFile(path), path.string());
+    const MappedFile file(path);
+    return parseJson(file.text(), path.string());
 }
 
 }  // namespace gfxrepro::config

@@ -266,7 +266,8 @@ Node parseYaml(std::string_view text, const std::string& fileName) {
 }
 
 Node parseYamlFile(const std::filesystem::path& path) {
-    return parseYaml(readFile(path), path.string());
+    const MappedFile file(path);  // which may have more than is read
+    return parseYaml(file.text(), path.string());
 }
 
 }  // namespace gfxrepro::config

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "runner/core/atomic_file.h"
 #include "runner/core/error.h"
 #include "runner/core/temporary.h"
 
@@ -38,14 +39,6 @@ class Descriptor {
     throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
 }
 
-/// A name that is a device, a pipe or a link would be one no more: a rename takes its place.
-void requireReplaceable(const fs::path& path) {
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0) return;
-    if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) return;  // a folder refuses by itself
-    throw Error("cannot write " + path.string() + ": a link, a pipe or a device, not a file");
-}
-
 std::string environment(const char* name) {
     const char* value = std::getenv(name);
     return value ? value : "";
@@ -54,39 +47,19 @@ std::string environment(const char* name) {
 }  // namespace
 
 std::string readFile(const fs::path& path) {
-    return std::string(MappedFile(path).text());
+    constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // twice the largest that is written
+    const MappedFile file(path);
+    if (file.bytes().size() > kMostBytes) {
+        throw Error("cannot read " + path.string() + ": " + std::to_string(file.bytes().size()) +
+                    " bytes; at most 1 GiB are read at once");
+    }
+    return std::string(file.text());
 }
 
 void writeFileAtomic(const fs::path& path, std::string_view content) {
-    if (path.has_parent_path()) {
-        std::error_code failure;
-        fs::create_directories(path.parent_path(), failure);
-        if (failure) {
-            throw Error("cannot create " + path.parent_path().string() + ": " + failure.message());
-        }
-    }
-    requireReplaceable(path);
-    fs::path temporary = path;
-    temporary += ".tmp" + std::to_string(::getpid());
-    {
-        constexpr int kSafe = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
-        const Descriptor file(
-            ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | kSafe, 0644));
-        if (file.get() < 0) fail("write", temporary);
-        while (!content.empty()) {
-            const ssize_t written = ::write(file.get(), content.data(), content.size());
-            if (written < 0 && errno == EINTR) continue;
-            if (written < 0) {
-                const int reason = errno;
-                ::unlink(temporary.c_str());
-                errno = reason;
-                fail("write", path);
-            }
-            content.remove_prefix(static_cast<std::size_t>(written));
-        }
-        if (::fsync(file.get()) != 0) fail("flush", temporary);
-    }
-    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("rename to", path);
+    AtomicFile file(path);
+    file.write(content);
+    file.commit();
 }
 
 MappedFile::MappedFile(const fs::path& path) {

@@ -1,10 +1,6 @@
 #include "runner/report/images.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <map>
 #include <tuple>
 
@@ -52,49 +48,6 @@ ImageEntry entryFromFields(const SourceLocation& where, std::size_t columns,
     return entry;
 }
 
-/// The list without a torn last line.
-std::string wholeRows(const fs::path& index) {
-    if (!fs::exists(index)) return std::string(kHeader) + '\n';
-    std::string text = readFile(index);
-    CsvReader reader(text, index.string());
-    std::vector<std::string> fields;
-    while (reader.next(fields)) {
-    }
-    text.resize(reader.rowEnd());
-    return text;
-}
-
-[[noreturn]] void failWriting(const fs::path& index, int reason) {
-    throw Error("cannot write " + index.string() + ": " + std::strerror(reason));
-}
-
-/// Adds `rows` to a list that ends with a whole line; false, with nothing done, when it does not.
-/// A list is not written anew for each case: that would take longer with every case of a run.
-bool appendToWhole(const fs::path& index, std::string_view rows) {
-    const int fd = ::open(index.c_str(), O_RDWR | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (fd < 0) return false;
-    const off_t before = ::lseek(fd, 0, SEEK_END);
-    char last = 0;
-    if (before <= 0 || ::pread(fd, &last, 1, before - 1) != 1 || last != '\n') {
-        ::close(fd);
-        return false;
-    }
-    errno = 0;
-    const ssize_t written = ::write(fd, rows.data(), rows.size());
-    int reason = errno;
-    bool isDone = written == static_cast<ssize_t>(rows.size());
-    if (!isDone) {  // a full disk takes a part: give it back
-        if (reason == 0) reason = ENOSPC;
-        if (::ftruncate(fd, before) != 0) reason = errno;
-    } else if (::fdatasync(fd) != 0) {
-        reason = errno;
-        isDone = false;
-    }
-    ::close(fd);
-    if (!isDone) failWriting(index, reason);
-    return true;
-}
-
 /// The list may be anybody's: it names files of the run, below images/.
 void requireInside(const SourceLocation& where, const fs::path& runDir, const std::string& file) {
     if (file.empty()) return;
@@ -113,16 +66,46 @@ void requireInside(const SourceLocation& where, const fs::path& runDir, const st
 
 }  // namespace
 
-void appendImages(const fs::path& runDir, const std::vector<ImageEntry>& images) {
+ImageWriter::ImageWriter(const fs::path& runDir) : index_(indexOf(runDir)) {
+    if (!fs::exists(index_)) return;
+    file_.emplace(index_);
+    const MappedFile file(index_);
+    CsvReader reader(file.text(), index_.string());
+    std::vector<std::string> fields;
+    while (reader.next(fields)) {
+    }
+    file_->cut(reader.rowEnd());
+    if (reader.rowEnd() == 0) writeHeader();
+}
+
+void ImageWriter::writeHeader() {
+    file_->append(std::string(kHeader) + '\n');
+}
+
+void ImageWriter::append(const std::vector<ImageEntry>& images) {
+    requireOurs();
     if (images.empty()) return;
+    if (!file_) {
+        fs::create_directories(index_.parent_path());
+        file_.emplace(index_);
+        writeHeader();
+    }
     std::string text;
     for (const ImageEntry& image : images) {
         CsvRow row(text);
         row.text(image.caseId).text(image.table).integer(image.frame).text(image.name);
         row.text(image.png).text(image.exr).text(image.title).text(image.truthOf).end();
     }
-    const fs::path index = indexOf(runDir);
-    if (!appendToWhole(index, text)) writeFileAtomic(index, wholeRows(index) + text);
+    file_->append(text);
+}
+
+void ImageWriter::requireOurs() const {
+    if (file_) return file_->requireOurs();
+    std::error_code unknown;
+    if (!fs::exists(index_, unknown)) return;
+    throw Error(index_.string() +
+                ": was made by another while a run had no images; nothing more is measured into "
+                "its folder");
 }
 
 std::vector<ImageEntry> readImages(const fs::path& runDir) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "runner/core/appended_file.h"
 
 namespace gfxrepro::report {
 
@@ -23,9 +26,23 @@ struct ImageEntry {
     bool operator==(const ImageEntry&) const = default;
 };
 
-/// Appends to `runDir`/images/index.csv, making it with its header if it is not there. A
-/// torn last line is cut off first. Throws Error, leaving the list as it was.
-void appendImages(const std::filesystem::path& runDir, const std::vector<ImageEntry>& images);
+/// Appends to `runDir`/images/index.csv, which is made with its header at the first image.
+class ImageWriter {
+  public:
+    /// Cuts off a torn last line. Throws Error.
+    explicit ImageWriter(const std::filesystem::path& runDir);
+    /// Throws Error, leaving the list as it was; also as requireOurs().
+    void append(const std::vector<ImageEntry>& images);
+    /// Throws Error where the list is not what was written: somebody made, removed, replaced or
+    /// changed it.
+    void requireOurs() const;
+
+  private:
+    void writeHeader();
+
+    std::filesystem::path index_;
+    std::optional<AppendedFile> file_;  // none before the first image
+};
 
 /// The images of a run, in the order in which they were made; none when there is no list. Of two
 /// entries of one case, frame and name the last counts (a case that was run again). A torn last

@@ -1,14 +1,9 @@
 #include "runner/report/records.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <optional>
@@ -49,10 +44,6 @@ std::optional<Status> findStatus(std::string_view name) {
 
 std::string statusNames() {
     return joined(std::vector<std::string>(kStatusNames.begin(), kStatusNames.end()));
-}
-
-[[noreturn]] void failWriting(const fs::path& path, int reason) {
-    throw Error("cannot write " + path.string() + ": " + std::strerror(reason));
 }
 
 void appendRow(std::string& out, const Record& record, int unitRows) {
@@ -238,27 +229,21 @@ Status statusFromName(std::string_view name) {
     throw Error("unknown status '" + std::string(name) + "'; allowed: " + statusNames());
 }
 
-RecordWriter::RecordWriter(const fs::path& path) : path_(path) {
+namespace {
+
+fs::path inItsFolder(const fs::path& path) {
     if (path.has_parent_path()) fs::create_directories(path.parent_path());
-    fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
-                 0644);
-    if (fd_ < 0) failWriting(path, errno);
-    try {
-        const std::string header = std::string(kHeader) + '\n';
-        const MappedFile file(path);
-        const bool isNew = header != file.text() && header.starts_with(file.text());
-        const std::size_t length = isNew ? 0 : readWholeUnits(path, file.text(), kHeader).endBytes;
-        endBytes_ = static_cast<off_t>(length);
-        if (::ftruncate(fd_, endBytes_) != 0) failWriting(path, errno);
-        if (isNew) writeBlock(header);
-    } catch (...) {
-        ::close(fd_);
-        throw;
-    }
+    return path;
 }
 
-RecordWriter::~RecordWriter() {
-    if (fd_ >= 0) ::close(fd_);
+}  // namespace
+
+RecordWriter::RecordWriter(const fs::path& path) : file_(inItsFolder(path)) {
+    const std::string header = std::string(kHeader) + '\n';
+    const MappedFile file(path);
+    const bool isNew = header != file.text() && header.starts_with(file.text());
+    file_.cut(isNew ? 0 : readWholeUnits(path, file.text(), kHeader).endBytes);
+    if (isNew) file_.append(header);
 }
 
 void RecordWriter::append(const std::vector<Record>& rows) {
@@ -266,30 +251,7 @@ void RecordWriter::append(const std::vector<Record>& rows) {
     for (const Record& row : rows) ++counts[unitOf(row)];
     std::string block;
     for (const Record& row : rows) appendRow(block, row, counts.at(unitOf(row)));
-    if (!block.empty()) writeBlock(block);
-}
-
-void RecordWriter::requireOurs() const {
-    if (isStillAt(path_, fd_) && ::lseek(fd_, 0, SEEK_END) == endBytes_) return;
-    throw Error(path_.string() +
-                ": was removed, replaced or changed while a run wrote to it: rows are lost; "
-                "nothing more is measured into it");
-}
-
-void RecordWriter::writeBlock(std::string_view block) {
-    requireOurs();
-    ssize_t written = 0;
-    do {
-        written = ::write(fd_, block.data(), block.size());
-    } while (written < 0 && errno == EINTR);
-    if (written != static_cast<ssize_t>(block.size())) {
-        // A full disk takes a part of the block: give it back, so that no half case stays.
-        const int reason = written < 0 ? errno : ENOSPC;
-        if (::ftruncate(fd_, endBytes_) != 0) failWriting(path_, errno);
-        failWriting(path_, reason);
-    }
-    endBytes_ += written;
-    if (::fdatasync(fd_) != 0) failWriting(path_, errno);
+    if (!block.empty()) file_.append(block);
 }
 
 std::vector<Record> readRecords(const fs::path& path) {

@@ -1,12 +1,12 @@
 // Measurements in long form: one row a number, append-only, readable by any data frame library.
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "runner/core/appended_file.h"
 
 namespace gfxrepro::report {
 
@@ -66,20 +66,11 @@ class RecordWriter {
     /// it was; also as requireOurs().
     void append(const std::vector<Record>& rows);
 
-    /// Throws Error where the file is not what was written: somebody removed, replaced or changed
-    /// it.
-    void requireOurs() const;
-
-    ~RecordWriter();
-    RecordWriter(const RecordWriter&) = delete;
-    RecordWriter& operator=(const RecordWriter&) = delete;
+    /// As AppendedFile's.
+    void requireOurs() const { file_.requireOurs(); }
 
   private:
-    void writeBlock(std::string_view block);
-
-    std::filesystem::path path_;
-    int fd_ = -1;
-    off_t endBytes_ = 0;
+    AppendedFile file_;
 };
 
 /// Reads records.csv, also of schema 2, whose rows had the parameters. A header or a last unit

@@ -10,6 +10,7 @@
 #include "runner/core/text.h"
 #include "runner/image/png_io.h"
 #include "runner/scene/catalog_entry.h"
+#include "runner/scene/height_rows.h"
 #include "runner/scene/load.h"
 #include "runner/scene/model_files.h"
 #include "runner/scene/point_sampling.h"
@@ -107,14 +108,33 @@ image::Image8 rgbOf(const image::Image8& image) {
     return rgb;
 }
 
+/// Throws Error for a large file that no loader would take, before anybody reads it through.
+void requireWhatIsRead(const fs::path& file) {
+    if (!isHeightMapFile(file)) return requireReadAtOnce(file);
+    const std::uintmax_t bytes = fs::file_size(file);
+    if (bytes < kMostBytesAtOnce) return;
+    const auto size = openHeightRows(file)->sizeSamples;
+    // Floats, and as much again for the coarser levels that surveyors' programs put beside them.
+    const auto mostBytes = 2 * sizeof(float) * static_cast<std::uintmax_t>(size.x) *
+                           static_cast<std::uintmax_t>(size.y);
+    if (bytes <= mostBytes) return;
+    throw Error(fmt::format("{}: has {} bytes; a height map of {} x {} samples has at most {}",
+                            file.string(), bytes, size.x, size.y, mostBytes));
+}
+
+std::string sha256AtOnce(const fs::path& file) {
+    requireReadAtOnce(file);
+    return sha256OfFile(file);
+}
+
 std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source) {
     const HeightMapSource& how = *source.heightMap;
     const std::string colours =
-        how.colourMap.empty() ? "" : " colours " + sha256OfFile(assetsFolder / how.colourMap);
+        how.colourMap.empty() ? "" : " colours " + sha256AtOnce(assetsFolder / how.colourMap);
     // A raw file's, which says how its bytes are read.
     const fs::path sidecar = (assetsFolder / source.file).string() + ".yaml";
     const std::string reading =
-        (fs::is_regular_file(sidecar) ? " sidecar " + sha256OfFile(sidecar) : "") +
+        (fs::is_regular_file(sidecar) ? " sidecar " + sha256AtOnce(sidecar) : "") +
         (how.units.noData == 0.0F ? " no data 0" : "");
     return colours + reading +
            fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM, how.units.heightScaleM,
@@ -126,6 +146,7 @@ Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     const HeightMapSource& how = *source.heightMap;
     Scene scene;
     const fs::path path = assetsFolder / source.file;
+    requireWhatIsRead(path);
     const std::string content =
         fmt::format("of file {}{}", sha256OfFile(path), heightMapKey(assetsFolder, source));
     const fs::path folder = cacheFolder() / "heights";
@@ -255,7 +276,8 @@ const Catalog::FileDigest& Catalog::digestOf(const fs::path& path) const {
     const auto sizeBytes = fs::file_size(path);
     const auto time = fs::last_write_time(path);
     if (digest.sha256.empty() || digest.sizeBytes != sizeBytes || digest.time != time) {
-        std::vector<fs::path> beside = filesBeside(path);  // or throws, before all is read
+        requireWhatIsRead(path);  // or throws, before all is read
+        std::vector<fs::path> beside = filesBeside(path);
         digest = {sizeBytes, time, sha256OfFile(path), std::move(beside)};
     }
     return digest;

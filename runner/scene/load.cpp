@@ -41,7 +41,9 @@ void requireKnownExtension(const std::filesystem::path& path) {
 }
 
 Scene loadScene(const std::filesystem::path& path) {
-    Scene scene = formatOf(path).load(path);
+    const Format& format = formatOf(path);
+    requireReadAtOnce(path);
+    Scene scene = format.load(path);
     scene.name = path.stem().string();
     scene.origin = {Origin::Kind::Real, path.filename().string(), sha256OfModel(path)};
     return scene;

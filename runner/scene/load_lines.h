@@ -53,7 +53,7 @@ class LineReader {
         if (text.empty()) return std::nullopt;
         const auto value = parsedNumber<float>(text);
         if (!value || !std::isfinite(*value)) {
-            fail(fmt::format("'{}' is not a finite number", text));
+            fail(fmt::format("{} is not a finite number", quoted(text)));
         }
         return value;
     }
@@ -69,6 +69,8 @@ class LineReader {
     }
 
   private:
+    static constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
+
     static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
     static bool endsWithBackslash(std::string_view line) {
         while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -83,6 +85,11 @@ class LineReader {
         ++nextLine_;
         const std::size_t end = text_.find('\n');
         const std::string_view line = text_.substr(0, end);
+        if (line.size() > kMostLineBytes) {
+            line_ = nextLine_ - 1;
+            fail(fmt::format("a line of {} bytes; at most {} are read", line.size(),
+                             kMostLineBytes));
+        }
         text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
         return line;
     }

@@ -215,11 +215,19 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
         return property.isList() &&
                (property.name == "vertex_indices" || property.name == "vertex_index");
     };
-    if (std::none_of(element.properties.begin(), element.properties.end(), isIndexList)) {
+    const auto list = std::ranges::find_if(element.properties, isIndexList);
+    if (list == element.properties.end()) {
         throw Error({file, element.line, 0},
                     "element '" + element.name + "' lacks the list vertex_indices");
     }
-    if (!isStrip) triangles.reserve(triangles.size() + element.count);
+    // A file of zeros has a face of no corners in each byte.
+    const std::size_t triangleBytes =
+        Reader::minimumBytes(*list->countType) + 3 * Reader::minimumBytes(list->type);
+    if (!isStrip) {
+        triangles.reserve(
+            triangles.size() +
+            std::min<std::uint64_t>(element.count, reader.restBytes() / triangleBytes));
+    }
     std::vector<std::int64_t> corners;
     const auto readCorners = [&](const Property& property) {
         const double count = reader.number(*property.countType);

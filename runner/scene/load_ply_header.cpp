@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "runner/core/error.h"
+#include "runner/scene/load_text.h"
 
 namespace gfxrepro::scene::ply {
 
@@ -28,6 +29,8 @@ constexpr std::array<TypeNames, 8> kTypes{{{Type::Int8, "char", "int8", 1},
                                            {Type::UInt32, "uint", "uint32", 4},
                                            {Type::Float32, "float", "float32", 4},
                                            {Type::Float64, "double", "float64", 8}}};
+
+constexpr std::size_t kMostLineBytes = 65536;
 
 std::vector<std::string_view> words(std::string_view line) {
     std::vector<std::string_view> result;
@@ -61,9 +64,9 @@ class HeaderParser {
                 parseProperty(line);
             } else {
                 fail(fmt::format(
-                    "'{}' is unknown; comment, obj_info, element, property and end_header are "
+                    "{} is unknown; comment, obj_info, element, property and end_header are "
                     "allowed",
-                    line[0]));
+                    quoted(line[0])));
             }
         }
         header_.bodyAt = at_;
@@ -81,6 +84,10 @@ class HeaderParser {
         if (at_ >= text_.size()) fail("the file ends before 'end_header'");
         const std::size_t end = text_.find('\n', at_);
         const std::string_view line = text_.substr(at_, end - at_);
+        if (line.size() > kMostLineBytes) {
+            fail(fmt::format("a line of {} bytes; a header's have at most {}", line.size(),
+                             kMostLineBytes));
+        }
         at_ = end == std::string_view::npos ? text_.size() : end + 1;
         return words(line);
     }
@@ -108,10 +115,10 @@ class HeaderParser {
         const char* end = line[2].data() + line[2].size();
         const auto [stop, error] = std::from_chars(line[2].data(), end, element.count);
         if (error != std::errc() || stop != end) {
-            fail(fmt::format("'{}' is not a count of elements", line[2]));
+            fail(fmt::format("{} is not a count of elements", quoted(line[2])));
         }
         if (!names_.insert(line[1]).second) {
-            fail(fmt::format("element '{}' is declared twice", element.name));
+            fail(fmt::format("element {} is declared twice", quoted(element.name)));
         }
         header_.elements.push_back(std::move(element));
     }
@@ -139,8 +146,8 @@ class HeaderParser {
             if (word == each.name || word == each.sizedName) return each.type;
         }
         fail(fmt::format(
-            "'{}' is not a type; char, uchar, short, ushort, int, uint, float and double are",
-            word));
+            "{} is not a type; char, uchar, short, ushort, int, uint, float and double are",
+            quoted(word)));
     }
 
     std::string_view text_;

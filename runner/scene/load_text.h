@@ -1,11 +1,13 @@
 // What the loaders of text formats share: numbers and colours.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace gfxrepro::scene {
@@ -25,6 +27,16 @@ std::optional<T> parsedNumber(std::string_view word) {
         return isTiny ? T{0} : std::numeric_limits<T>::infinity();
     }
     return std::nullopt;
+}
+
+/// A word of a file as messages show it: in a file of zeros one has gigabytes, and a message ends
+/// at the first of them.
+inline std::string quoted(std::string_view word) {
+    constexpr std::size_t kMostBytes = 100;
+    std::string text(word.substr(0, kMostBytes));
+    std::ranges::replace(text, '\0', '?');
+    if (word.size() == text.size()) return '\'' + text + '\'';
+    return '\'' + text + "…' (" + std::to_string(word.size()) + " bytes)";
 }
 
 /// IEC 61966-2-1, for values from 0 to 1.

@@ -55,6 +55,7 @@ std::vector<std::string> namesInGltf(std::string_view text) {
 
 std::vector<std::string> namesInObj(std::string_view text, const fs::path& folder) {
     constexpr std::string_view kKey = "mtllib";
+    constexpr std::size_t kMostNameBytes = 4096;  // no file has a longer one
     std::vector<std::string> names;
     std::set<std::string> libraries;
     for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at + 1)) {
@@ -62,8 +63,8 @@ std::vector<std::string> namesInObj(std::string_view text, const fs::path& folde
         const bool beginsLine = at == 0 || before == text.npos || text[before] == '\n';
         if (!beginsLine) continue;
         const std::string_view line = text.substr(at, text.find_first_of("\r\n", at) - at);
-        const std::string name(trimmed(line.substr(kKey.size())));
-        if (!libraries.insert(name).second) continue;
+        const std::string name(trimmed(line.substr(kKey.size(), kMostNameBytes + 1)));
+        if (name.size() > kMostNameBytes || !libraries.insert(name).second) continue;
         names.push_back(name);
         const auto path = existing(folder, name);
         if (!path) continue;
@@ -81,8 +82,6 @@ std::vector<fs::path> filesBeside(const fs::path& model) {
     std::string extension = model.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const bool isGltf = extension == ".gltf" || extension == ".glb";
-    if (isGltf) requireReadAtOnce(model);
     std::vector<std::string> names;
     try {
         const MappedFile file(model);
@@ -103,10 +102,9 @@ std::vector<fs::path> filesBeside(const fs::path& model) {
 }
 
 void requireReadAtOnce(const fs::path& file) {
-    constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;  // what a GLB's head can say
     std::error_code isAbsent;
     const std::uintmax_t bytes = fs::file_size(file, isAbsent);
-    if (isAbsent || bytes < kMostBytes) return;
+    if (isAbsent || bytes < kMostBytesAtOnce) return;
     throw Error(file.string() + ": has " + std::to_string(bytes) +
                 " bytes; a file of a scene has less than 4 GiB");
 }

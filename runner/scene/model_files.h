@@ -1,6 +1,7 @@
 // The files that a model's own file draws in: buffers, textures, material files.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,7 +13,10 @@ namespace gfxrepro::scene {
 /// Throws Error for one that no loader would take, before anybody reads it through.
 std::vector<std::filesystem::path> filesBeside(const std::filesystem::path& model);
 
-/// Throws Error for a file of 4 GiB or more, as glTF and material files are read at once.
+/// Every file of a scene but a height map has less, as it is read at once: what a GLB's head can
+/// say. A file of holes may say that it has more than the disk.
+inline constexpr std::uintmax_t kMostBytesAtOnce = std::uintmax_t{4} << 30;
+/// Throws Error for one that has not.
 void requireReadAtOnce(const std::filesystem::path& file);
 
 /// SHA-256 of a model: its file's, or, where others belong to it, that of all of theirs.

@@ -127,31 +127,35 @@ TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
 }
 
 /// While the first unit runs, and while the last does.
-TEST(Weekend, RecordsThatAreGoneAreNoticed) {
+TEST(Weekend, RecordsAndListsOfImagesThatAreGoneAreNoticed) {
     const TemporaryFolder folder;
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 600}\nsweep: {number: [1, 2]}\n");
     const auto replaced = [](const std::string& file) { writeFileAtomic(file, readShared(file)); };
     const auto removed = [](const std::string& file) { fs::remove(file); };
     const auto emptied = [](const std::string& file) { fs::resize_file(file, 0); };
-    const std::function<void(const std::string&)> disturbances[] = {replaced, removed, emptied};
-    for (const std::size_t start : {1U, 2U}) {
-        for (const auto& disturb : disturbances) {
-            const std::string dir =
-                folder.path() /
-                (std::to_string(start) + std::to_string(&disturb - std::begin(disturbances)));
-            BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
-                                   "--jobs", "1", "--out", dir});
-            waitForStarts(dir, start);
-            disturb(dir + "/records.csv");
-            const ProcessResult result = run.wait();
-            EXPECT_EQ(result.exitCode, 2) << dir << result.out;
-            EXPECT_EQ(result.out, "");
-            EXPECT_THAT(result.err, HasSubstr("gfxrepro: " + dir + "/records.csv: was removed, "));
-            EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
-            EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
-        }
+    const auto made = [](const std::string& file) { writeFileAtomic(file, ""); };
+    using Disturbance = std::function<void(const std::string&)>;
+    const auto isNoticed = [&](std::size_t start, const char* file, const Disturbance& disturb) {
+        const TemporaryFolder own;
+        const std::string dir = own.path() / "run";
+        BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
+                               "--jobs", "1", "--out", dir});
+        waitForStarts(dir, start);
+        disturb(dir + file);
+        const ProcessResult result = run.wait();
+        EXPECT_EQ(result.exitCode, 2) << file << start << result.out;
+        EXPECT_EQ(result.out, "");
+        EXPECT_THAT(result.err, HasSubstr("gfxrepro: " + dir + file + ": was "));
+        EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+        EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
+    };
+    for (const Disturbance& disturb :
+         {Disturbance(replaced), Disturbance(removed), Disturbance(emptied)}) {
+        for (const std::size_t start : {1U, 2U}) isNoticed(start, "/records.csv", disturb);
+        isNoticed(2, "/images/index.csv", disturb);
     }
+    isNoticed(1, "/images/index.csv", made);  // there is no list before the first picture
 }
 
 TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {

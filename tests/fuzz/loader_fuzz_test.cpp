@@ -315,8 +315,9 @@ TEST(LoaderFuzz, FilesOfRuns) {
     rows[2].status = report::Status::Crash;
     rows[2].message = "about\nto crash";
     report::RecordWriter(records).append(rows);
-    report::appendImages(own.path(), {{"0123456789ab", "zju2005/2.1", 0, "flat", "images/a/b.png",
-                                       "images/a/b.exr", "a, \"title\"", ""}});
+    report::ImageWriter(own.path())
+        .append({{"0123456789ab", "zju2005/2.1", 0, "flat", "images/a/b.png", "images/a/b.exr",
+                  "a, \"title\"", ""}});
     const fs::path plan =
         own.write("plan.json", R"({"a": [1, 2.5e3, "x\u00e9"], "b": {"c": null}})");
     fs::create_directories(work.path() / "images");
@@ -342,6 +343,21 @@ TEST(LoaderFuzz, AnythingToAnyLoader) {
             fuzz(load, seed, ++number, work.path());
         }
     }
+}
+
+/// In a file of zeros each byte is a face: memory for as many triangles would be twelve times it.
+TEST(LoaderFuzz, FacesWithoutCornersTakeNoMemory) {
+    const test::TemporaryFolder folder;
+    constexpr std::size_t kBytes = 20'000'000;
+    const auto path =
+        folder.write("a.ply",
+                     "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+                     "property float y\nproperty float z\nelement face 19000000\n"
+                     "property list uchar int vertex_indices\nend_header\n");
+    std::filesystem::resize_file(path, kBytes);  // nearly all of it a hole
+    test::resetPeakMemory();
+    EXPECT_TRUE(scene::loadPly(path).meshes.empty());
+    EXPECT_LE(test::peakMemoryBytes(), kBytes);
 }
 
 }  // namespace

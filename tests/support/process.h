@@ -12,6 +12,7 @@ struct ProcessResult {
     int exitCode = -1;  // 128 + number after a signal
     std::string out;
     std::string err;
+    long long peakBytes = 0;  // resident at once, of the largest of its processes
 };
 
 /// Runs to the end with `environment` ("NAME=value") added to ours.

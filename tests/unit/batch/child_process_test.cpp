@@ -1,56 +1,24 @@
 #include "runner/batch/child_process.h"
 
 #include <gtest/gtest.h>
-#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <string>
 #include <thread>
 
 #include "tests/support/support.h"
+#include "tests/unit/batch/held_at_its_end.h"
 
 namespace gfxrepro::batch {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// Keeps a process from dying of SIGKILL, as a driver or a file system that is away does, for as
-/// long as the object lives: a tracer holds it where it ends.
-class HeldAtItsEnd {
-  public:
-    explicit HeldAtItsEnd(pid_t pid) {
-        std::array<int, 2> ready{};
-        if (::pipe(ready.data()) != 0) return;
-        tracer_ = ::fork();
-        if (tracer_ == 0) {
-            const bool isHeld = ::ptrace(PTRACE_SEIZE, pid, 0, PTRACE_O_TRACEEXIT) == 0;
-            const char answer = isHeld ? 'y' : 'n';
-            if (::write(ready[1], &answer, 1) != 1 || !isHeld) ::_exit(1);
-            while (true) ::pause();
-        }
-        char answer = 'n';
-        isHeld_ = ::read(ready[0], &answer, 1) == 1 && answer == 'y';
-        for (const int end : ready) ::close(end);
-    }
-    ~HeldAtItsEnd() {
-        ::kill(tracer_, SIGKILL);
-        ::waitpid(tracer_, nullptr, 0);
-    }
-    HeldAtItsEnd(const HeldAtItsEnd&) = delete;
-    HeldAtItsEnd& operator=(const HeldAtItsEnd&) = delete;
-    bool isHeld() const { return isHeld_; }
-
-  private:
-    pid_t tracer_ = -1;
-    bool isHeld_ = false;
-};
-
 TEST(ChildProcess, OneThatCannotBeKilledIsLeftBehind) {
     ChildProcess child({"/bin/sleep", "1000"});
     {
-        const HeldAtItsEnd hold(child.pid());
+        const test::HeldAtItsEnd hold(child.pid());
         if (!hold.isHeld()) GTEST_SKIP() << "processes cannot be traced here";
         const auto begin = std::chrono::steady_clock::now();
         EXPECT_FALSE(child.kill());

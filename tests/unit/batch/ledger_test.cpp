@@ -332,7 +332,8 @@ TEST(Plan, KeepsWhatIsAssumed) {
     const Plan plan = makePlan({ledger.load("params: {bias: 0.25}\n"
                                             "assumptions:\n  bias: {range: [0, 1], why: open}\n")},
                                ledger.catalog(), kTechniques, "full", "software", 1);
-    const auto file = ledger.folder.write("plan.json", plan.toText());
+    const auto file = ledger.folder.path() / "plan.json";
+    plan.writeFile(file);
     const config::Assumption kept =
         Plan::fromJsonFile(file).experiments.front().assumptions.front();
     EXPECT_EQ(kept.value.text(), "0.25");

@@ -7,6 +7,7 @@
 
 #include <thread>
 
+#include "tests/unit/batch/held_at_its_end.h"
 #include "tests/unit/batch/plan_fixture.h"
 
 namespace gfxrepro::batch {
@@ -88,10 +89,30 @@ TEST_F(Worker, AfterASuspensionItHasItsOwnTime) {
     EXPECT_FALSE(result->isOutsideKill);
 }
 
+TEST_F(Worker, OneThatCannotBeKilledIsLeftBehindAndTheRowSaysSo) {
+    for (const bool isEndless : {false, true}) {
+        WorkerHandle worker(command(isEndless ? "cat /dev/zero >&3" : "sleep 1000"),
+                            config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        const test::HeldAtItsEnd hold(worker.process().pid());
+        if (!hold.isHeld()) GTEST_SKIP() << "processes cannot be traced here";
+        worker.assign({&item, 0});
+        const auto result = isEndless ? receive(worker) : worker.checkLimits(Clock::now() + 6s);
+        ASSERT_TRUE(result);
+        EXPECT_EQ(result->message,
+                  std::string(isEndless ? "the worker's answer had 64 MiB and no end"
+                                        : "not finished after 5 s") +
+                      "; its process could not be killed and was left behind");
+        EXPECT_FALSE(worker.release(*result));
+    }
+}
+
 TEST_F(Worker, AnAnswerOfAnotherShapeIsAnErrorOfTheCase) {
     const auto messageOf = [&](const std::string& done) {
         WorkerHandle worker(
-            command("echo '{\"begin\": 3}' >&3; echo '{\"done\": " + done + "}' >&3; sleep 1000"),
+            command(
+                "echo a library >&3; echo '[1]' >&3; echo '{\"begin\": 3}' >&3; echo '{\"done\": " +
+                done + "}' >&3; sleep 1000"),
             config::Measure::Lane::Quality, false, phases);
         waitUntilReady(worker);
         worker.assign({&item, 0});
@@ -114,6 +135,33 @@ TEST_F(Worker, AnAnswerOfAnotherShapeIsAnErrorOfTheCase) {
     EXPECT_EQ(messageOf(done("\"ok\"", "[[0, 0]]")),
               "the worker's answer: '/samples/0' has 2 values; expected 7");
     EXPECT_EQ(messageOf("{}"), "the worker's answer: '/status' is missing");
+}
+
+TEST_F(Worker, AnAnswerWithoutEndIsACrashOfTheCase) {
+    for (const char* script : {"cat /dev/zero >&3", "head -c 70000000 /dev/zero >&3; sleep 1000"}) {
+        WorkerHandle worker(command(script), config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        worker.assign({&item, 0});
+        const auto result = receive(worker);
+        ASSERT_TRUE(result) << script;
+        EXPECT_EQ(result->status, report::Status::Crash);
+        EXPECT_EQ(result->message, "the worker's answer had 64 MiB and no end");
+        EXPECT_TRUE(worker.isGone());
+        EXPECT_FALSE(worker.release(*result)) << "the next case has another worker";
+    }
+}
+
+TEST_F(Worker, ALongAnswerIsReadWhole) {
+    WorkerHandle worker(
+        command("printf '{\"unavailable\": \"' >&3; head -c 60000000 /dev/zero | tr "
+                "'\\0' x >&3; echo '\"}' >&3"),
+        config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const auto result = receive(worker);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, report::Status::Unsupported);
+    EXPECT_EQ(result->message, std::string(60'000'000, 'x'));
 }
 
 }  // namespace

@@ -189,6 +189,9 @@ TEST(Node, OfJson) {
     EXPECT_EQ(error("{} {}"), "a.json:1:4: this is no JSON");
     EXPECT_EQ(error(std::string(201, '[')), "a.json:1: nested deeper than 200");
     EXPECT_EQ(error(std::string(200, '[') + std::string(200, ']')), "no error");
+    std::string digits = "[";
+    for (int i = 0; i < 6'000'000; ++i) digits += "0,";
+    EXPECT_EQ(error(digits), "a.json:1: more than 5500000 values") << "many times its bytes";
 }
 
 TEST(Node, EmptyMarkedAndWindowsFiles) {

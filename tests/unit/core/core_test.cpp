@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "runner/core/atomic_file.h"
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
@@ -123,6 +124,29 @@ TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
 }
 
+TEST(Files, WhatIsWrittenInPiecesIsThereAsAWhole) {
+    const test::TemporaryFolder folder;
+    const auto path = folder.write("file.txt", "old");
+    const auto count = [&] {
+        return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+    };
+    {
+        AtomicFile file(path);
+        file.write("never there");
+        EXPECT_EQ(count(), 2);
+    }
+    EXPECT_EQ(readFile(path), "old");
+    EXPECT_EQ(count(), 1);
+    const std::string large(1'500'000, 'x');
+    AtomicFile file(path);
+    for (const std::string& piece : {std::string("a"), large, std::string("b"), large})
+        file.write(piece);
+    EXPECT_EQ(readFile(path), "old");
+    file.commit();
+    EXPECT_EQ(readFile(path), "a" + large + "b" + large);
+    EXPECT_EQ(count(), 1);
+}
+
 TEST(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
     const test::TemporaryFolder folder;
     for (const char* name :
@@ -145,6 +169,13 @@ TEST(Files, MissingFilesAndFoldersAreNamed) {
               "cannot read DIR/none: No such file or directory");
     EXPECT_EQ(test::errorText([&] { readFile(folder.path()); }, folder.path()),
               "cannot read DIR: Is a directory");
+    ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "pipe"); }, folder.path()),
+              "cannot read DIR/pipe: a pipe or a device, not a file");
+    const auto large = folder.write("large", "head");
+    std::filesystem::resize_file(large, (std::uintmax_t{1} << 30) + 1);  // nearly all of it a hole
+    EXPECT_EQ(test::errorText([&] { readFile(large); }, folder.path()),
+              "cannot read DIR/large: 1073741825 bytes; at most 1 GiB are read at once");
     EXPECT_TRUE(readFile(folder.write("empty", "")).empty());
 }
 

@@ -79,8 +79,9 @@ TEST(Report, IsOneSafeFile) {
     const test::TemporaryFolder folder;
     ReportRun run = runIn(folder.path());
     image::writePng(folder.path() / "images/a.png", picture(128));
-    report::appendImages(folder.path(), {{"case", "zju2005/9.9", 0, "surface", "images/a.png", "",
-                                          "zju2005/9.9 scene=<img onerror=x>"}});
+    report::ImageWriter(folder.path())
+        .append({{"case", "zju2005/9.9", 0, "surface", "images/a.png", "",
+                  "zju2005/9.9 scene=<img onerror=x>"}});
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
     for (const char* part : {
@@ -176,9 +177,9 @@ TEST(Report, ImagesWithATruthGetAFlipMap) {
     std::filesystem::create_directories(folder.path() / "images/x");
     image::writePng(folder.path() / "images/x/result.png", picture(255));
     image::writePng(folder.path() / "images/x/truth.png", picture(128));
-    report::appendImages(
-        folder.path(), {{"c", "zju2005/9.9", 0, "result", "images/x/result.png", "", "t"},
-                        {"c", "zju2005/9.9", 0, "truth", "images/x/truth.png", "", "t", "result"}});
+    report::ImageWriter(folder.path())
+        .append({{"c", "zju2005/9.9", 0, "result", "images/x/result.png", "", "t"},
+                 {"c", "zju2005/9.9", 0, "truth", "images/x/truth.png", "", "t", "result"}});
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
     EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"truth\" data-flip=\"data:"));
@@ -207,8 +208,8 @@ TEST(Report, LargeGalleriesLieBesideThePage) {
             std::filesystem::create_hard_link(folder.path() / "images/a b#1.png",
                                               folder.path() / name);
         }
-        report::appendImages(folder.path(),
-                             {{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t"}});
+        report::ImageWriter(folder.path())
+            .append({{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t"}});
     }
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");

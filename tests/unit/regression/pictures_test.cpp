@@ -34,8 +34,8 @@ class Pictures : public ::testing::Test {
                                                  : std::vector<std::string>{"R", "G", "B"});
         image::writeExr(dir / (stem + ".exr"), exr);
         image::writePng(dir / (stem + ".png"), image::toSrgb8(picture));
-        report::appendImages(dir,
-                             {{side, "p/1", frame, name, stem + ".png", stem + ".exr", "p/1"}});
+        report::ImageWriter(dir).append(
+            {{side, "p/1", frame, name, stem + ".png", stem + ".exr", "p/1"}});
         report::Record row;
         row.caseId = side;
         row.table = "p/1";
@@ -224,7 +224,7 @@ TEST_F(Pictures, NamesOfARunBecomeNoOtherPlace) {
     record("b", "flat", ImageF(16, 16, 3, 0.75F));
     const std::string hostile = "images/p-1/](http:x) $(y).png";
     fs::copy_file(file("b", ".png"), folder.path() / "b" / hostile);
-    report::appendImages(folder.path() / "b", {{"b", "p/1", 0, "flat", hostile, "", "p/1"}});
+    report::ImageWriter(folder.path() / "b").append({{"b", "p/1", 0, "flat", hostile, "", "p/1"}});
     EXPECT_EQ(only().evidence, "pictures/p-1/__http_x____y_");
 }
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 
+#include "runner/core/files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::report {
@@ -16,23 +18,67 @@ TEST(Images, AppendedAndRead) {
     const ImageEntry first{"abc", "zju2005/2.1", 0, "surface", "images/a.png", "", "a, \"b\""};
     const ImageEntry second{"abc",          "zju2005/2.1",  1,  "truth",
                             "images/b.png", "images/b.exr", "", "surface"};
-    appendImages(folder.path(), {first});
-    appendImages(folder.path(), {second});
+    ImageWriter(folder.path()).append({first});
+    ImageWriter(folder.path()).append({second});
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(first, second));
     ImageEntry again = first;
     again.png = "images/c.png";
-    appendImages(folder.path(), {again});
+    ImageWriter(folder.path()).append({again});
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(again, second));
 }
 
 TEST(Images, TornLineIsPassedOver) {
     const test::TemporaryFolder folder;
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
-    appendImages(folder.path(), {entry});
+    ImageWriter(folder.path()).append({entry});
     std::ofstream(folder.path() / "images/index.csv", std::ios::app) << "def,t,0,\"to";
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
-    appendImages(folder.path(), {{"def", "t", 0, "n", "images/p", "images/e", "title"}});
+    ImageWriter(folder.path()).append({{"def", "t", 0, "n", "images/p", "images/e", "title"}});
     EXPECT_EQ(readImages(folder.path()).size(), 2u);
+}
+
+TEST(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
+    const test::TemporaryFolder folder;
+    const auto index = folder.path() / "images/index.csv";
+    const auto disturbed = [&](const std::function<void(const std::string& whole)>& disturb) {
+        std::filesystem::remove(index);
+        ImageWriter writer(folder.path());
+        writer.append({entry});
+        writer.requireOurs();
+        disturb(readFile(index));
+        EXPECT_EQ(test::errorText([&] { writer.append({}); }, folder.path()),
+                  test::errorText([&] { writer.append({entry}); }, folder.path()));
+        return test::errorText([&] { writer.requireOurs(); }, folder.path());
+    };
+    const std::string lost =
+        "DIR/images/index.csv: was removed, replaced or changed while a run wrote to it: rows are "
+        "lost; nothing more is measured into it";
+    EXPECT_EQ(disturbed([&](const std::string&) { std::filesystem::remove(index); }), lost);
+    EXPECT_EQ(disturbed([&](const std::string& whole) { writeFileAtomic(index, whole); }), lost);
+    EXPECT_EQ(
+        disturbed([&](const std::string& whole) { folder.write("images/index.csv", whole + "x"); }),
+        lost);
+    EXPECT_EQ(disturbed([&](const std::string&) { folder.write("images/index.csv", ""); }), lost);
+
+    std::filesystem::remove(index);
+    ImageWriter none(folder.path());
+    none.append({});
+    EXPECT_FALSE(std::filesystem::exists(index));
+    folder.write("images/index.csv", "");
+    EXPECT_EQ(test::errorText([&] { none.append({entry}); }, folder.path()),
+              "DIR/images/index.csv: was made by another while a run had no images; nothing more "
+              "is measured into its folder");
+}
+
+TEST(Images, ACutHeadIsWrittenAgain) {
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
+    const test::TemporaryFolder folder;
+    for (const char* head : {"", "case,tab"}) {
+        folder.write("images/index.csv", head);
+        ImageWriter(folder.path()).append({entry});
+        EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
+    }
 }
 
 TEST(Images, OlderListsNameNoTruths) {

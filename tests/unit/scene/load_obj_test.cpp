@@ -123,6 +123,24 @@ TEST_F(LoadObj, SaysWhereItIsWrong) {
               "DIR/a.obj:5: a face of 2 corners; 3 or more are allowed");
 }
 
+TEST_F(LoadObj, AFileOfZerosHasItsErrorSoonAndInALine) {
+    const auto errorOf = [&](const std::string& head, std::uintmax_t bytes) {
+        const auto path = folder_.write("a.obj", head);
+        std::filesystem::resize_file(path, bytes);  // nearly all of it a hole
+        return errorText([&] { loadObj(path); }, folder_.path());
+    };
+    EXPECT_EQ(errorOf(kSquare + "usemtl ", 100'000'000),
+              "DIR/a.obj:5: a line of " + std::to_string(100'000'000 - kSquare.size()) +
+                  " bytes; at most 67108864 are read");
+    const std::string zeros(100, '?');
+    EXPECT_EQ(errorOf("v 0 ", 1'000'000),
+              "DIR/a.obj:1: '" + zeros + "…' (999996 bytes) is not a finite number");
+    EXPECT_EQ(errorOf(kSquare + "f 1 2 3/", 1'000'000),
+              "DIR/a.obj:5: '3/" + zeros.substr(2) + "…' (" +
+                  std::to_string(1'000'000 - kSquare.size() - 6) +
+                  " bytes) is not a corner; v, v/vt, v//vn and v/vt/vn are allowed");
+}
+
 TEST_F(LoadObj, RefusesBrokenMaterialFilesAndTextures) {
     folder_.write("a.mtl", "newmtl a\nKd red\n");
     const std::string content = "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n";

@@ -209,5 +209,20 @@ TEST_F(LoadPly, AHeaderOfManyElementsIsReadAtOnce) {
               "DIR/a.ply:" + std::to_string(kCount + 3) + ": element 'e7' is declared twice");
 }
 
+TEST_F(LoadPly, AFileOfZerosHasItsErrorSoonAndInALine) {
+    const auto errorOf = [&](const std::string& head, std::uintmax_t bytes) {
+        const auto path = folder_.write("a.ply", head);
+        std::filesystem::resize_file(path, bytes);  // nearly all of it a hole
+        return errorText([&] { loadPly(path); }, folder_.path());
+    };
+    EXPECT_EQ(errorOf("ply\nformat ascii 1.0\ncomment ", 100'000'000),
+              "DIR/a.ply:3: a line of 99999979 bytes; a header's have at most 65536");
+    const std::string head = kAscii.substr(0, kAscii.find("0 0 0\n"));
+    const std::string zeros(100, '?');
+    EXPECT_EQ(errorOf(head, 100'000'000), "DIR/a.ply:11: vertex 0: '" + zeros + "…' (" +
+                                              std::to_string(100'000'000 - head.size()) +
+                                              " bytes) is not a number of type float");
+}
+
 }  // namespace
 }  // namespace gfxrepro::scene

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "runner/image/png_io.h"
 #include "runner/scene/topology.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
@@ -236,18 +237,24 @@ TEST(Catalog, AFileThatNoLoaderTakesIsNotReadThrough) {
         "buffers": [{"uri": "huge.bin", "byteLength": 20000000000}]})");
     folders.folder.write("assets/d.gltf", R"({"asset": {"version": "2.0"},
         "images": [{"uri": "huge.bin"}]})");
-    for (const char* huge : {"huge.bin", "e.glb"}) {
-        std::filesystem::resize_file(folders.folder.write("assets/" + std::string(huge), ""),
-                                     20'000'000'000);  // of which the disk has nothing
+    for (const auto& [huge, head] : {std::pair{"huge.bin", ""},
+                                     {"e.glb", ""},
+                                     {"f.ply",
+                                      "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+                                      "property float x\nproperty float y\nproperty float z\n"
+                                      "end_header\n"},
+                                     {"g.obj", kTriangle}}) {
+        std::filesystem::resize_file(folders.folder.write("assets/" + std::string(huge), head),
+                                     20'000'000'000);  // of which the disk has the head alone
     }
     const auto refusalOf = [&](const std::string& file) {
         return "DIR/assets/" + file +
                ": has 20000000000 bytes; a file of a scene has less than 4 GiB";
     };
-    for (const char* model : {"a.obj", "b.obj", "c.gltf", "d.gltf", "e.glb"}) {
+    for (const char* model : {"a.obj", "b.obj", "c.gltf", "d.gltf", "e.glb", "f.ply", "g.obj"}) {
         folders.entry("scene: m/x\ndoc: d\nsources: [{file: " + std::string(model) + "}]\n");
         const Catalog catalog = folders.catalog();
-        const std::string refusal = refusalOf(model[0] == 'e' ? model : "huge.bin");
+        const std::string refusal = refusalOf(model[0] >= 'e' ? model : "huge.bin");
         EXPECT_EQ(
             test::errorText([&] { catalog.contentKey(reference("m/x")); }, folders.folder.path()),
             refusal)
@@ -257,6 +264,46 @@ TEST(Catalog, AFileThatNoLoaderTakesIsNotReadThrough) {
                     testing::HasSubstr(refusal))
             << model;
     }
+}
+
+TEST(Catalog, AHeightMapHasNoMoreThanItsSamples) {
+    const Folders folders;
+    const auto file = [&](const char* name) { return folders.folder.path() / "assets" / name; };
+    image::writePng(file("a.png"), image::Image16(4, 3, 1));
+    folders.folder.write("assets/b.raw", "");
+    folders.folder.write("assets/b.raw.yaml", "{width: 4, height: 3, type: f32}\n");
+    folders.folder.write("assets/c.hgt", "");
+    folders.folder.write("assets/d.tif", "II*");
+    for (const char* name : {"a.png", "b.raw", "c.hgt", "d.tif"}) {
+        std::filesystem::resize_file(file(name), 20'000'000'000);  // nearly all of it a hole
+    }
+    const auto expectRefused = [&](const std::string& source, const std::string& why) {
+        folders.entry("scene: m/x\ndoc: d\nsources: [{spacing_m: 1, height_map: " + source +
+                      "}]\n");
+        const Catalog catalog = folders.catalog();
+        for (const bool isLoaded : {false, true}) {
+            EXPECT_THAT(test::errorText(
+                            [&] {
+                                isLoaded ? void(catalog.load(reference("m/x")))
+                                         : void(catalog.contentKey(reference("m/x")));
+                            },
+                            folders.folder.path()),
+                        testing::StartsWith("DIR/assets/" + why));
+        }
+    };
+    expectRefused("a.png",
+                  "a.png: has 20000000000 bytes; a height map of 4 x 3 samples has at most 96");
+    expectRefused("b.raw", "b.raw: 20000000000 bytes; 4 x 3 samples of f32 need 48");
+    expectRefused("c.hgt", "c.hgt: 20000000000 bytes; an SRTM tile has 2884802 (1201 x 1201)");
+    expectRefused("d.tif", "d.tif: ");
+    image::writePng(file("e.png"), image::Image16(4, 3, 1));
+    expectRefused("e.png, colour_map: a.png",
+                  "a.png: has 20000000000 bytes; a file of a scene has less than 4 GiB");
+    std::filesystem::rename(file("b.raw.yaml"), file("f.raw.yaml"));
+    folders.folder.write("assets/f.raw", std::string(48, '\0'));
+    std::filesystem::resize_file(file("f.raw.yaml"), 20'000'000'000);
+    expectRefused("f.raw",
+                  "f.raw.yaml: has 20000000000 bytes; a file of a scene has less than 4 GiB");
 }
 
 TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
