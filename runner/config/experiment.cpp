@@ -259,12 +259,20 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     }
     const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
     requireAxisNames(experiment.sweep, points);
-    for (const char* key : {"printed", "fit", "claims", "plots"}) {
+    for (const char* key : {"fit", "claims", "plots"}) {
         if (document.find(key) && !layout) {
             throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
         }
     }
-    if (!layout) return;
+    if (!layout) {
+        if (!printed) return;
+        if (printed->find("values")) {
+            throw Error(printed->keyLocation("values"), "printed: 'values' without 'layout'");
+        }
+        // What a preset says of the print: on which hardware, of how many frames.
+        experiment.printed = readPrinted(*printed, &experiment.layout, nullptr);
+        return;
+    }
     const Vocabulary vocabulary = vocabularyOf(experiment, points, isComplete);
     experiment.layout = readLayout(*layout, vocabulary);
     const TableNames names = tableNames(experiment.layout, vocabulary);

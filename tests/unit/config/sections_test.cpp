@@ -27,6 +27,16 @@ TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("assumptions: {a: {valu: 1, why: w}}"),
               "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valu'; did you mean 'value'?");
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
+    EXPECT_EQ(errorWith("printed: {values: \"a\\n1\"}"),
+              "DIR/zju/a.yaml:4:11: printed: 'values' without 'layout'");
+}
+
+TEST_F(ExperimentTest, WhatAPresetSaysOfThePrintNeedsNoLayout) {
+    folder.write("presets/print.yaml", "printed: {hardware: a card, at: {measure.frames: 900}}\n");
+    const Experiment own =
+        load("sweep_of: own\ntitle: t\ntechnique: x\nextends: [presets/print.yaml]\n");
+    EXPECT_EQ(own.printed.hardware, "a card");
+    EXPECT_TRUE(own.printed.rows.empty());
 }
 
 TEST_F(ExperimentTest, BadLayouts) {
