@@ -35,11 +35,11 @@ void ClusteredReflections::setup(technique::SetupContext& context) {
     composite_.emplace(shaders, outputSizePx_, params_.supersampling);
     if (!params_.measuresErrors) return;
     untimed_ = std::make_unique<gl::Profiler>(context.device.info().isSoftware);
-    truthTracer_.emplace(*scene_, *map_, params_.lobe);
+    truthTracer_.emplace(shaders, *scene_, *map_, params_.lobe);
     if (params_.convergedRays == 0) return;
     reflections::LobeSettings lobe = params_.lobe;
     lobe.rays = params_.convergedRays;
-    convergedTracer_.emplace(*scene_, *map_, lobe);
+    convergedTracer_.emplace(shaders, *scene_, *map_, lobe);
 }
 
 std::unique_ptr<reflections::ReflectionTracer> ClusteredReflections::makeTracer(
@@ -57,7 +57,7 @@ std::unique_ptr<reflections::ReflectionTracer> ClusteredReflections::makeTracer(
             return std::make_unique<reflections::GpuRayTracer>(shaders, *objects_, *map_, lobe,
                                                                diagonalM);
         case Method::Embree:
-            return std::make_unique<reflections::EmbreeTracer>(*scene_, *map_, lobe);
+            return std::make_unique<reflections::EmbreeTracer>(shaders, *scene_, *map_, lobe);
         case Method::Clustered:
             break;
     }

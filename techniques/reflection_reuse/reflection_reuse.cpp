@@ -42,7 +42,7 @@ void ReflectionReuse::setup(technique::SetupContext& context) {
     if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info().isSoftware);
     if (!params_.measuresErrors) return;
     untimed_ = std::make_unique<gl::Profiler>(context.device.info().isSoftware);
-    truthTracer_.emplace(*scene_, *map_, params_.lobe);
+    truthTracer_.emplace(shaders, *scene_, *map_, params_.lobe);
 }
 
 std::unique_ptr<reflections::ReflectionTracer> ReflectionReuse::makeTracer(
@@ -54,7 +54,7 @@ std::unique_ptr<reflections::ReflectionTracer> ReflectionReuse::makeTracer(
             return std::make_unique<reflections::GpuRayTracer>(shaders, *objects_, *map_, lobe,
                                                                diagonalM);
         case Tracer::Embree:
-            return std::make_unique<reflections::EmbreeTracer>(*scene_, *map_, lobe);
+            return std::make_unique<reflections::EmbreeTracer>(shaders, *scene_, *map_, lobe);
         case Tracer::Clustered:
             break;
     }

@@ -32,9 +32,13 @@ glm::mat3 normalFromMesh(const glm::mat4& worldFromMesh) {
 
 }  // namespace
 
-EmbreeTracer::EmbreeTracer(const ReflectiveScene& scene, const EnvironmentMap& map,
-                           const LobeSettings& lobe)
-    : scene_(scene), map_(map), lobe_(lobe), posed_(trianglesOf(scene.scene())) {}
+EmbreeTracer::EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                           const EnvironmentMap& map, const LobeSettings& lobe)
+    : scene_(scene),
+      map_(map),
+      lobe_(lobe),
+      posed_(trianglesOf(scene.scene())),
+      wantedSamples_(shaders) {}
 
 void EmbreeTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
     GFXREPRO_ASSERT_EQ(objects.poses().size(), posed_.instances.size());
@@ -59,19 +63,19 @@ void EmbreeTracer::readEnvironment() {
 
 void EmbreeTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
                          ReflectionTarget& target, gl::Profiler& profiler) {
+    if (wanted != nullptr) {
+        traceWanted(gbuffer, *wanted, target, profiler);
+        return;
+    }
     HostGBuffer host;
-    std::vector<std::uint8_t> wantedSamples;
     {
         const gl::CpuScope scope(profiler, "transfer");
         host = readGBuffer(gbuffer);
-        if (wanted != nullptr) {
-            wantedSamples = wanted->read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1);
-        }
     }
     std::vector<TracedSample> samples;
     {
         const gl::CpuScope scope(profiler, "intersection");
-        samples = trace(host, wanted != nullptr ? &wantedSamples : nullptr);
+        samples = trace(host);
     }
     const gl::CpuScope scope(profiler, "transfer");
     std::vector<glm::vec4> radiance;
@@ -82,6 +86,28 @@ void EmbreeTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
     }
     target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
     target.distance.upload(GL_RED, GL_FLOAT, distancesM.data());
+}
+
+void EmbreeTracer::traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted,
+                               ReflectionTarget& target, gl::Profiler& profiler) {
+    GFXREPRO_ASSERT(rays_.has_value());
+    std::vector<std::uint32_t> indices;
+    {
+        const gl::CpuScope scope(profiler, "transfer");
+        indices = wantedSamples_.read(gbuffer, wanted, host_);
+    }
+    std::vector<FoundSample> found(indices.size());
+    {
+        const gl::CpuScope scope(profiler, "intersection");
+        const auto width = static_cast<std::uint32_t>(gbuffer.view.sizePx.x);
+        tbb::parallel_for(std::size_t{0}, indices.size(), [&](std::size_t i) {
+            const glm::ivec2 pixel(indices[i] % width, indices[i] / width);
+            const TracedSample sample = traceSample(host_, pixel);
+            found[i] = {indices[i], sample.distanceM, sample.radiance};
+        });
+    }
+    const gl::CpuScope scope(profiler, "transfer");
+    wantedSamples_.write(found, target);
 }
 
 std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,

@@ -9,6 +9,7 @@
 #include "runner/raycast/ray_tracer.h"
 #include "techniques/reflections/environment_map.h"
 #include "techniques/reflections/reflection_tracer.h"
+#include "techniques/reflections/wanted_samples.h"
 
 namespace gfxrepro::reflections {
 
@@ -28,8 +29,9 @@ class EmbreeTracer final : public ReflectionTracer {
     /// surface that they leave.
     static constexpr float kStart = 1e-4F;
 
-    /// Both must outlive this.
-    EmbreeTracer(const ReflectiveScene& scene, const EnvironmentMap& map, const LobeSettings& lobe);
+    /// Scene and map must outlive this.
+    EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                 const EnvironmentMap& map, const LobeSettings& lobe);
     void update(const GpuObjects& objects, gl::Profiler& profiler) override;
     void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
                gl::Profiler& profiler) override;
@@ -44,6 +46,8 @@ class EmbreeTracer final : public ReflectionTracer {
 
   private:
     void readEnvironment();
+    void traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted, ReflectionTarget& target,
+                     gl::Profiler& profiler);
     TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel) const;
     glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction, float beamArea) const;
 
@@ -55,6 +59,8 @@ class EmbreeTracer final : public ReflectionTracer {
     std::optional<raycast::RayTracer> rays_;
     EnvironmentMap::Host environment_;
     std::uint64_t environmentVersion_ = 0;
+    WantedSamples wantedSamples_;
+    HostGBuffer host_;  // what wantedSamples_ has read
 };
 
 }  // namespace gfxrepro::reflections

@@ -28,7 +28,7 @@ struct KeyFrame {
         map.render(objects);
         reflections::GBufferRenderer(shaders, scene).render(objects, image.gbuffer);
         gl::Profiler profiler(true);
-        reflections::EmbreeTracer tracer(scene, map, {});
+        reflections::EmbreeTracer tracer(shaders, scene, map, {});
         tracer.update(objects, profiler);
         tracer.trace(image.gbuffer, nullptr, image.reflection, profiler);
         host = readReflectionDepthImage(image);

@@ -85,7 +85,7 @@ class ReuseTest : public reflections::ReflectionsTest {
             : scene(source),
               objects(scene),
               map(shaders, scene),
-              tracer(scene, map, {}),
+              tracer(shaders, scene, map, {}),
               renderer(shaders, objects, tracer, settings, kSize, scene.diagonalM()) {
             map.render(objects);
             tracer.update(objects, profiler);

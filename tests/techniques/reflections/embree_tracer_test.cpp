@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflections {
@@ -88,7 +89,7 @@ using EmbreeTracerTest = TracerTest;
 TEST_F(EmbreeTracerTest, MirrorFloorShowsTheRoom) {
     const scene::Scene source = mirrorFloorRoom();
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> samples = tracer.trace(gbuffer);
@@ -120,7 +121,7 @@ TEST_F(EmbreeTracerTest, MirrorSphereShowsTheRoom) {
     const glm::vec3 centre(0.2F, 1.0F, 0.3F);
     addPart(source, sphere(centre), mirror());
     Prepared prepared(shaders, source, camera({0.4F, 1.3F, 1.9F}, centre), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> samples = tracer.trace(gbuffer);
@@ -162,7 +163,7 @@ TEST_F(EmbreeTracerTest, AttributesOfMirroredInstancesStayWithTheirVertices) {
     source.instances[3].worldFromMesh = glm::scale(
         glm::translate(glm::mat4(1.0F), glm::vec3(middle, 0.0F, 0.0F)), glm::vec3(-1, 1, 1));
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> samples = tracer.trace(gbuffer);
@@ -190,7 +191,7 @@ TEST_F(EmbreeTracerTest, GlossyMeanOfOneColourIsThatColour) {
     materials[2].emissive = colour;
     addRoom(source, roomBox(), materials);
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> samples = tracer.trace(gbuffer);
@@ -214,7 +215,7 @@ TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
     addRoom(source, roomBox(), materials);
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
     const LobeSettings lobe{12, 0.5F, 4.0F};
-    EmbreeTracer tracer(prepared.scene, prepared.map, lobe);
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, lobe);
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> samples = tracer.trace(gbuffer);
@@ -246,7 +247,7 @@ TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
 TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
     const scene::Scene source = mirrorFloorRoom();
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const EnvironmentMap::Host environment = prepared.map.read();
@@ -297,7 +298,7 @@ TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
     addPart(source, block({glm::vec3(-0.2F, 0.1F, -2.9F), glm::vec3(0.2F, 2.0F, -2.5F)}),
             glowing({1.0F, 0.5F, 0.0F}));
     Prepared prepared(shaders, source, camera({0, 1.5F, 2.5F}, {0, 0, 0}), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     std::vector<glm::mat4> poses(prepared.objects.poses().begin(), prepared.objects.poses().end());
@@ -322,7 +323,7 @@ TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
 TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
     const scene::Scene source = mirrorFloorRoom();
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(prepared.scene, prepared.map, {});
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
     tracer.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> all = tracer.trace(gbuffer);
@@ -337,7 +338,7 @@ TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
     const std::vector<float> distances = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
     const std::vector<TracedSample> some = tracer.trace(gbuffer, &wantedSamples);
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (wantedSamples[i] == 0) {
+        if (wantedSamples[i] == 0 || !gbuffer.isReflective(i)) {
             EXPECT_EQ(some[i].object, 0U);
             continue;
         }
@@ -353,6 +354,58 @@ TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
         passes.push_back(time.pass);
     }
     EXPECT_EQ(passes, (std::vector<std::string>{"bvh_build", "transfer", "intersection"}));
+}
+
+TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
+    scene::Scene source;
+    source.name = "glow";
+    std::vector<scene::Material> materials(6, glowing({0.8F, 0.6F, 0.4F}));
+    materials[2] = mirror(0.2F);  // glossy, so that the diffuse colour counts
+    addRoom(source, roomBox(), materials);
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::size_t mask = gbuffer.surface.size();
+    std::size_t before = 0;
+    for (const std::size_t stride : {400U, 40U, 4U}) {
+        std::vector<std::uint8_t> wantedSamples(gbuffer.surface.size());
+        std::size_t count = 0, selected = 0;
+        for (std::size_t i = 0; i < wantedSamples.size(); i += stride) {
+            wantedSamples[i] = 1;
+            ++selected;
+            count += gbuffer.isReflective(i) ? 1 : 0;
+        }
+        gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
+        wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
+        ReflectionTarget target(kSizePx);
+        target.radiance.clearToZero();
+        bytesReadBack() = 0;
+        tracer.trace(prepared.gbuffer, &wanted, target, profiler);
+        const std::size_t bytes = bytesReadBack();
+        EXPECT_GT(count, 0U);
+        EXPECT_GE(bytes, mask + count * 28);
+        EXPECT_LE(bytes, mask + selected * 5 * 28);  // with four neighbours each
+        EXPECT_GT(bytes, before);
+        before = bytes;
+
+        const std::vector<TracedSample> expected = tracer.trace(gbuffer, &wantedSamples);
+        const auto radiance = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
+        for (std::size_t i = 0; i < radiance.size(); ++i) {
+            if (wantedSamples[i] == 0 || !gbuffer.isReflective(i)) {
+                ASSERT_EQ(radiance[i], glm::vec4(0.0F)) << "is left alone";
+            } else {
+                ASSERT_LT(largestDifference(glm::vec3(radiance[i]), expected[i].radiance),
+                          1.0F / 2048.0F);
+            }
+        }
+    }
+    gl::Texture none = gl::Texture::make2D(GL_R8UI, kSizePx);
+    none.clearToZero();
+    ReflectionTarget target(kSizePx);
+    bytesReadBack() = 0;
+    tracer.trace(prepared.gbuffer, &none, target, profiler);
+    EXPECT_EQ(bytesReadBack(), mask);
 }
 
 }  // namespace

@@ -11,6 +11,11 @@ std::vector<GlCall>& glCalls() {
     return calls;
 }
 
+std::size_t& bytesReadBack() {
+    static std::size_t bytes = 0;
+    return bytes;
+}
+
 namespace {
 
 /// Notes the call and hands it on to the library that has it.
@@ -23,6 +28,7 @@ Result passOn(GlCall call, const char* name, Arguments... arguments) {
 }  // namespace
 }  // namespace gfxrepro::reflections
 
+using gfxrepro::reflections::bytesReadBack;
 using gfxrepro::reflections::GlCall;
 using gfxrepro::reflections::passOn;
 
@@ -32,11 +38,20 @@ void glDrawElementsInstancedBaseInstance(GLenum mode, GLsizei count, GLenum type
                                          GLuint baseInstance) {
     passOn(GlCall::DrawObject, __func__, mode, count, type, indices, instanceCount, baseInstance);
 }
+void glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
+    passOn(GlCall::DrawList, __func__, mode, count, type, indices);
+}
+void glDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect) {
+    passOn(GlCall::DrawList, __func__, mode, type, indirect);
+}
 GLint glGetUniformLocation(GLuint program, const GLchar* name) {
     return passOn<GLint>(GlCall::LookUp, __func__, program, name);
 }
 void glMemoryBarrier(GLbitfield barriers) {
     passOn(GlCall::Barrier, __func__, barriers);
+}
+void glTextureParameteri(GLuint texture, GLenum name, GLint value) {
+    passOn(GlCall::Parameter, __func__, texture, name, value);
 }
 void glFlush() {
     passOn(GlCall::Flush, __func__);
@@ -51,10 +66,12 @@ void glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, const
     passOn(GlCall::Write, __func__, buffer, offset, size, data);
 }
 void glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
+    bytesReadBack() += static_cast<std::size_t>(size);
     passOn(GlCall::Wait, __func__, buffer, offset, size, data);
 }
 void glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei size,
                        void* pixels) {
+    bytesReadBack() += static_cast<std::size_t>(size);
     passOn(GlCall::Wait, __func__, texture, level, format, type, size, pixels);
 }
 }

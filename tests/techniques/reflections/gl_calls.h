@@ -1,20 +1,26 @@
 // What has been asked of GL. Tests that link gl_calls.cpp call these functions of GL through it.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace gfxrepro::reflections {
 
 enum class GlCall {
     DrawObject,  // glDrawElementsInstancedBaseInstance
+    DrawList,    // glDrawElements, glDrawElementsIndirect
     Flush,       // glFlush
     LookUp,      // glGetUniformLocation: one a uniform that is set
     Barrier,     // glMemoryBarrier
+    Parameter,   // glTextureParameteri: the driver validates the texture anew
     Write,       // glNamedBufferSubData: into what the device may still read
     Wait,        // what the host cannot go on without: read-backs, results of queries, glFinish
 };
 
 /// In order, since the last clear().
 std::vector<GlCall>& glCalls();
+
+/// Read back from buffers and textures, since it was set to 0.
+std::size_t& bytesReadBack();
 
 }  // namespace gfxrepro::reflections

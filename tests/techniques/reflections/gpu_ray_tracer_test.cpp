@@ -98,7 +98,7 @@ class GpuRayTracerTest : public test::GlTest {
         GpuRayTracer tracer(shaders_, objects, map, lobe, scene.diagonalM());
         tracer.update(objects, profiler_);
         tracer.trace(gbuffer, nullptr, target, profiler_);
-        EmbreeTracer embree(scene, map, lobe);
+        EmbreeTracer embree(shaders_, scene, map, lobe);
         embree.update(objects, profiler_);
         const HostGBuffer host = readGBuffer(gbuffer);
         const std::vector<TracedSample> truth = embree.trace(host);

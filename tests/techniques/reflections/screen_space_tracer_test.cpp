@@ -68,7 +68,7 @@ bool isSeen(const HostGBuffer& gbuffer, const glm::vec3& point, const glm::vec3&
 
 TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
     const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kSizePx);
-    EmbreeTracer embree(prepared.scene, prepared.map, {});
+    EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> truth = embree.trace(gbuffer);
@@ -110,7 +110,7 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
     addPart(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
     addPart(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));
     const Prepared prepared(shaders, source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kSizePx);
-    EmbreeTracer embree(prepared.scene, prepared.map, {});
+    EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> truth = embree.trace(gbuffer);
@@ -140,7 +140,7 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
 TEST_F(ScreenSpaceTracerTest, TakesTheEnvironmentForWhatIsOutsideOfTheImage) {
     const Prepared prepared(shaders, pillarsOnMirror(),
                             camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kSizePx);
-    EmbreeTracer embree(prepared.scene, prepared.map, {});
+    EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> truth = embree.trace(gbuffer);
@@ -186,7 +186,7 @@ TEST_F(ScreenSpaceTracerTest, GlossyMeansAgreeWithRays) {
     const Prepared prepared(shaders, pillarsOnMirror(0.15F), beforePillars(), kSizePx);
     // Reflections end at 0.8 m.
     const LobeSettings lobe{16, 0.6F, 12.0F};
-    EmbreeTracer embree(prepared.scene, prepared.map, lobe);
+    EmbreeTracer embree(shaders, prepared.scene, prepared.map, lobe);
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     const std::vector<TracedSample> truth = embree.trace(gbuffer);
