@@ -325,6 +325,53 @@ TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
     }
 }
 
+TEST_F(ClusteredTracerTest, InAndOutsideOfATubeShareNoClusterAsPartsOfIt) {
+    // Where its inside is seen, far away, normals point as those of its outside do that is near.
+    scene::Mesh tube;
+    const auto addWall = [&](float radius, float side) {
+        constexpr unsigned kAround = 64;
+        const auto first = static_cast<unsigned>(tube.positions.size());
+        for (unsigned i = 0; i <= kAround; ++i) {
+            const float angle = glm::two_pi<float>() * static_cast<float>(i) / kAround;
+            const glm::vec3 outwards(std::cos(angle), 0.0F, std::sin(angle));
+            for (const float y : {-0.9F, -0.3F}) {
+                tube.positions.push_back(radius * outwards + glm::vec3(0.0F, y, 0.0F));
+                tube.normals.push_back(side * outwards);
+            }
+        }
+        for (unsigned a = first; a < first + 2 * kAround; a += 2) {
+            tube.triangles.emplace_back(a, a + 1, a + 3);
+            tube.triangles.emplace_back(a, a + 3, a + 2);
+        }
+    };
+    addWall(0.8F, 1.0F);
+    addWall(0.76F, -1.0F);
+    scene::Scene tubeRoom = rooms::room();
+    rooms::add(tubeRoom, tube, glm::vec3(1.0F), Surface::Mirror);
+    const scene::Camera camera = rooms::cameraAt({0.0F, 0.3F, 1.8F}, {0.0F, -0.6F, 0.0F});
+    // Of the samples, those whose cluster is taken to bend to the other side.
+    const auto wrongShare = [&](bool splitsParts) {
+        const ReflectiveScene scene(tubeRoom, {.splitsParts = splitsParts});
+        const Traced traced = trace(scene, camera, settingsFor(scene));
+        int inside = 0, all = 0, wrong = 0;
+        for (std::size_t i = 0; i < traced.clusterOfSample.size(); ++i) {
+            if (traced.clusterOfSample[i] == 0) continue;
+            const ClusterCamera& cluster = traced.cameras[traced.clusterOfSample[i] - 1U];
+            const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+            const glm::vec3 position = traced.gbuffer.positionWorld(pixel);
+            const bool isInside = glm::length(glm::vec2(position.x, position.z)) < 0.78F;
+            ++all;
+            inside += isInside;
+            wrong += isInside != ((cluster.flags & kShowsOwn) != 0);
+        }
+        EXPECT_GT(inside, all / 5);
+        EXPECT_LT(inside, all * 4 / 5);
+        return static_cast<double>(wrong) / all;
+    };
+    EXPECT_LT(wrongShare(true), 0.02);  // a cluster of a sample or a facet bends to no side
+    EXPECT_GT(wrongShare(false), 0.05);
+}
+
 TEST_F(ClusteredTracerTest, ABallHidesWhatItsRaysMeetWhereItsBackIsDrawn) {
     scene::Scene ballRoom = rooms::room();
     // The ball's own colour is in nothing else, and none of its rays meets it.
@@ -410,6 +457,18 @@ TEST_F(ClusteredTracerTest, OneByOneClustersShareBarriersAndAllButTheirOwnUnifor
     // Of the drawing the cluster's number; of the intersection that and its samples.
     EXPECT_EQ(count(many, reflections::GlCall::LookUp),
               count(few, reflections::GlCall::LookUp) + 4 * more);
+}
+
+TEST_F(ClusteredTracerTest, AFrameChangesNoTextureParameter) {
+    const ReflectiveScene scene(fullRoom());
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        settings.march = March::Hierarchical;
+        EXPECT_EQ(std::ranges::count(trace(scene, frontCamera(), settings).calls,
+                                     reflections::GlCall::Parameter),
+                  0);
+    }
 }
 
 // [xie2017] Sec. 4.7.2: 512² output, 2 × 2 samples a pixel.

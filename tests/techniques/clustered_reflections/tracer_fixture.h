@@ -23,6 +23,7 @@ struct Traced {
     std::vector<float> distanceM;
     std::vector<std::uint8_t> environment;
     std::vector<ClusterCamera> cameras;
+    std::vector<std::uint16_t> clusterOfSample;
     float imageScale = 1.0F;
     std::size_t sizeBytes = 0;
     std::vector<gl::PassTime> passes;
@@ -84,6 +85,8 @@ class TracerTest : public testing::Test {
         traced.distanceM = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
         traced.environment = tracer.environmentSamples();
         traced.cameras = tracer.cameras();
+        traced.clusterOfSample = tracer.clusters().clusterOfSample.read<std::uint16_t>(
+            GL_RED_INTEGER, GL_UNSIGNED_SHORT, 1);
         traced.imageScale = tracer.imageScale();
         traced.sizeBytes = tracer.sizeBytes() + gbuffer.sizeBytes() + target.sizeBytes();
         traced.passes = profiler.collect();

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
+#include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -393,6 +395,25 @@ TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
                 ASSERT_LE(glm::distance(shown[i], radiance[i]), 2 * kHalfRounding) << i;
             }
         }
+    }
+}
+
+TEST_F(ReprojectionTest, AListIsDrawnByOneCommandWhereTheDeviceNeedsNoMore) {
+    using enum reflections::GlCall;
+    upload(Samples());
+    ShiftedImage result(kSize);
+    for (const bool splitsDraws : {false, true}) {
+        Reprojection reprojection(shaders, {.splitsDraws = splitsDraws}, kSize);
+        reprojection.setKeyFrame(*key);
+        reflections::glCalls().clear();
+        reprojection.shift(*key, *offsets, nullptr, result);
+        const std::vector<reflections::GlCall> calls = reflections::glCalls();
+        const auto count = [&](reflections::GlCall call) {
+            return std::ranges::count(calls, call);
+        };
+        EXPECT_EQ(count(DrawList), 2);  // triangles, points
+        EXPECT_EQ(count(Flush), splitsDraws ? 2 : 0);
+        EXPECT_EQ(count(Wait), splitsDraws ? 1 : 0);  // how long the lists are
     }
 }
 

@@ -77,6 +77,26 @@ TEST(JsonSchema, TakesEveryShippedFile) {
     EXPECT_GT(count, 200);
 }
 
+// One that none does would be a second way to what another measures.
+TEST(Configs, OfADocumentMeasureEveryTechnique) {
+    const auto techniquesOf = [](const char* folder) {
+        std::set<std::string> techniques;
+        for (const auto& file : fs::directory_iterator(kConfigs / folder)) {
+            if (file.path().extension() != ".yaml") continue;
+            techniques.insert(loadExperiment(file.path(), {}, kConfigs).technique);
+        }
+        return techniques;
+    };
+    std::set<std::string> known = techniquesOf("smoke");
+    EXPECT_EQ(known.erase("template"), 1U);
+    std::set<std::string> measured;
+    for (const char* document : {"xie2017", "zhang2012", "zju2005"}) {
+        measured.merge(techniquesOf(document));
+    }
+    measured.erase("");  // of files that hold print alone
+    EXPECT_EQ(measured, known);
+}
+
 TEST(JsonSchema, RefusesWhatIsNoDocumentAtAll) {
     for (const char* kind : {"experiment", "preset", "scene", "expectations"}) {
         const JsonSchema schema(kind);
