@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "techniques/clustered_reflections/reflection_params.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/clustered_reflections/room.h"
 #include "tests/techniques/technique_fixture.h"
@@ -28,6 +29,14 @@ class ClusteredReflectionsTest : public test::TechniqueTest {
 
 constexpr const char* kMethods[] = {"clustered", "environment_map", "screen_space", "ray_traced",
                                     "embree"};
+
+// [xie2017] Sec. 4.7.4 recommends the second of its ways with the own reflector.
+TEST(ReflectionParamsTest, ConcaveClustersShowTheirOwnReflectorByDefault) {
+    config::Params params = test::paramsOf(kClusteredReflections, "{}");
+    const ReflectionParams defaults(params);
+    EXPECT_EQ(defaults.clustered.ownReflector, OwnReflector::ConcaveDiffuse);
+    EXPECT_TRUE(defaults.reflectors.splitsParts);
+}
 
 TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
