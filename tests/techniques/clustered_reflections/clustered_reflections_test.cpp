@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "runner/config/experiment.h"
 #include "techniques/clustered_reflections/reflection_params.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/clustered_reflections/room.h"
@@ -36,6 +39,23 @@ TEST(ReflectionParamsTest, ConcaveClustersShowTheirOwnReflectorByDefault) {
     const ReflectionParams defaults(params);
     EXPECT_EQ(defaults.clustered.ownReflector, OwnReflector::ConcaveDiffuse);
     EXPECT_TRUE(defaults.reflectors.splitsParts);
+}
+
+// Views that were chosen do not tell what a path shows.
+TEST(ReflectionParamsTest, ErrorsOfBothWaysAreMeasuredOnAllCameraPaths) {
+    const std::filesystem::path configs = GFXREPRO_CONFIGS;
+    for (const char* const profile : {"full", "paper"}) {
+        std::set<std::pair<std::string, OwnReflector>> measured;
+        for (const config::CaseSpec& one : config::expandCases(config::loadExperiment(
+                 configs / "xie2017" / "section-4.7.4.yaml", {.profile = profile}, configs))) {
+            config::Params params =
+                test::paramsOf(kClusteredReflections, one.params.toJson().dump());
+            const ReflectionParams read(params);
+            if (!read.measuresErrors) continue;
+            measured.emplace(one.scene.toJson().dump() + read.view, read.clustered.ownReflector);
+        }
+        EXPECT_EQ(measured.size(), 4U * 3U) << profile;
+    }
 }
 
 TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
