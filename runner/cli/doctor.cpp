@@ -17,6 +17,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/vendor_libraries.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/gl/device.h"
@@ -123,6 +124,10 @@ MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
                          const scene::Catalog& catalog) {
     MachineFacts facts;
     facts.devices = deviceFacts(reports);
+    const bool hasGpu = std::ranges::any_of(facts.devices, [](const DeviceFacts& device) {
+        return device.problem.empty() && !device.isSoftware;
+    });
+    if (!hasGpu) facts.driverProblems = vendorLibraryProblems();
     facts.cpuIsa = embreeIsa();
     facts.assetsFolder = catalog.assetsFolder().string();
     facts.fetchScript =
