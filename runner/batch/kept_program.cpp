@@ -28,7 +28,10 @@ void copyParts(const fs::path& folder) {
         fs::copy(dataFolder(name), folder / name, kAll);
     }
     const fs::path libraries = fs::read_symlink(kSelf).parent_path() / "lib";  // scripts/bundle
-    if (fs::is_directory(libraries)) fs::copy(libraries, folder / "lib", kAll);
+    // Links stay links: what libstdc++.so.6 leads to says its release.
+    if (fs::is_directory(libraries)) {
+        fs::copy(libraries, folder / "lib", kAll | fs::copy_options::copy_symlinks);
+    }
 }
 
 void requireBuild(const fs::path& folder, const std::string& buildId) {

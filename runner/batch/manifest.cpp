@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "runner/batch/commit.h"  // made by the build
+#include "runner/batch/cpu_name.h"
 #include "runner/batch/run_directory.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
@@ -18,16 +19,6 @@ namespace {
 constexpr int kManifestSchema = 1;
 // What a run's end fixes the sums of.
 constexpr const char* kSealedFiles[] = {"records.csv", "images/index.csv"};
-
-std::string cpuModel() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("model name")) {
-            return std::string(trimmed(line.substr(line.find(':') + 1)));
-        }
-    }
-    return "unknown";
-}
 
 long long memoryBytes() {
     return static_cast<long long>(::sysconf(_SC_PHYS_PAGES)) * ::sysconf(_SC_PAGESIZE);
@@ -49,6 +40,7 @@ std::string programBuild() {
 }
 
 Json newManifest(const Plan& plan, const gl::DeviceInfo& device) {
+    std::ifstream cpuinfo("/proc/cpuinfo");
     return {{"schema", kManifestSchema},
             {"commit", programCommit()},
             {"build", programBuild()},
@@ -56,7 +48,7 @@ Json newManifest(const Plan& plan, const gl::DeviceInfo& device) {
             {"plan", plan.hash},
             {"profile", plan.profile},
             {"started", utcTime()},
-            {"cpu", cpuModel()},
+            {"cpu", cpuName(cpuinfo)},
             {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
             {"memory_bytes", memoryBytes()},
             {"device_class", plan.deviceClass},

@@ -90,9 +90,10 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
                  const std::function<void(Case)>& take) {
     if (experiment.technique.empty()) return;  // only printed
     const config::Node* named = experiment.document.find("technique");
-    const technique::TechniqueInfo& info = technique::findTechnique(
-        techniques, experiment.technique,
-        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0});
+    const SourceLocation where =
+        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0};
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(techniques, experiment.technique, where);
     std::vector<config::CaseSpec> specs = config::expandCases(experiment);
     requireCaseCount(specs.size(), experiment);
     for (config::CaseSpec& given : specs) {

@@ -23,6 +23,16 @@ constexpr long long kMinStorageBlockBytes = 128LL << 20;
 constexpr double kMaxLoadPerCore = 0.2;
 constexpr double kMaxStolenFraction = 0.01;
 
+void addDriverFindings(const MachineFacts& facts, Findings& findings) {
+    for (const std::string& problem : facts.driverProblems) {
+        findings.push_back({"driver_not_loaded",
+                            facts.devices.empty() ? Severity::Fatal : Severity::Result,
+                            fmt::format("A driver cannot be loaded: {}.", problem),
+                            "Install what it lacks, or the driver anew; where there is no such "
+                            "device, its file may go."});
+    }
+}
+
 void addDeviceFindings(const MachineFacts& facts, Findings& findings) {
     if (facts.devices.empty()) {
         findings.push_back({"no_egl", Severity::Fatal,
@@ -178,6 +188,7 @@ void addNoiseFindings(const MachineFacts& facts, Findings& findings) {
 
 std::vector<Finding> findingsOf(const MachineFacts& facts) {
     Findings findings;
+    addDriverFindings(facts, findings);
     addDeviceFindings(facts, findings);
     for (const DeviceFacts& device : facts.devices) addLimitFindings(device, findings);
     addDiskFindings(facts, findings);

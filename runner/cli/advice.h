@@ -21,7 +21,8 @@ struct DeviceFacts {
 /// What `doctor` looked at. The defaults are a machine without a fault.
 struct MachineFacts {
     std::vector<DeviceFacts> devices;
-    std::string cpuIsa = "AVX2";  // "SSE", "AVX", "AVX2", "AVX-512"
+    std::vector<std::string> driverProblems;  // of drivers that cannot be loaded; without a GPU
+    std::string cpuIsa = "AVX2";              // "SSE", "AVX", "AVX2", "AVX-512", on ARM "NEON"
     std::string assetsFolder;
     std::string fetchScript = "scripts/fetch-assets";
     bool hasAssets = true;

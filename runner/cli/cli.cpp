@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "runner/batch/manifest.h"
+#include "runner/batch/submission.h"
 #include "runner/batch/worker.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
@@ -354,7 +355,7 @@ int runCommand(int argc, const char* const* argv,
                std::span<const technique::TechniqueInfo> techniques,
                std::span<const scene::GeneratorInfo> generators) {
     Context context{techniques, generators, "gfxrepro", std::chrono::steady_clock::now()};
-    for (int i = 1; i < argc; ++i) context.commandLine += std::string(" ") + argv[i];
+    for (int i = 1; i < argc; ++i) context.commandLine += ' ' + batch::shellQuoted(argv[i]);
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
     app.require_subcommand(0, 1);  // what follows a command is no other one: describe scene
@@ -381,8 +382,7 @@ int runCommand(int argc, const char* const* argv,
 
 }  // namespace
 
-// The catch of the program stands here and not in main.cpp, so that a program with other techniques
-// (tests) has the same exit codes.
+// The catch of the program stands here, not in main.cpp, so that tests' programs exit alike.
 int run(int argc, const char* const* argv, std::span<const technique::TechniqueInfo> techniques,
         std::span<const scene::GeneratorInfo> generators) {
     try {

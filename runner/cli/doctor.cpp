@@ -1,4 +1,3 @@
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,9 +17,11 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/vendor_libraries.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/gl/device.h"
+#include "runner/raycast/embree.h"
 
 namespace gfxrepro::cli {
 
@@ -56,11 +57,16 @@ std::string embreeVersion() {
     return fmt::format("{}.{}.{}", version / 10000, version / 100 % 100, version % 100);
 }
 
+/// The instructions that Embree takes on this processor.
 std::string embreeIsa() {
+#if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return "AVX-512";
     if (__builtin_cpu_supports("avx2")) return "AVX2";
     if (__builtin_cpu_supports("avx")) return "AVX";
     return "SSE";
+#else
+    return "NEON";
+#endif
 }
 
 /// "real", "stand-in", "generated" or "missing".
@@ -118,6 +124,10 @@ MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
                          const scene::Catalog& catalog) {
     MachineFacts facts;
     facts.devices = deviceFacts(reports);
+    const bool hasGpu = std::ranges::any_of(facts.devices, [](const DeviceFacts& device) {
+        return device.problem.empty() && !device.isSoftware;
+    });
+    if (!hasGpu) facts.driverProblems = vendorLibraryProblems();
     facts.cpuIsa = embreeIsa();
     facts.assetsFolder = catalog.assetsFolder().string();
     facts.fetchScript =

@@ -1,6 +1,7 @@
 #include "runner/core/files.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -141,9 +142,15 @@ fs::path assetsFolder(const std::string& given) {
 }
 
 fs::path cacheFolder() {
-    const std::string cache = environment("XDG_CACHE_HOME");
-    return (cache.empty() ? fs::path(environment("HOME")) / ".cache" : fs::path(cache)) /
-           "gfxrepro";
+    if (const fs::path cache = environment("XDG_CACHE_HOME"); !cache.empty()) {
+        return cache / "gfxrepro";
+    }
+    fs::path home = environment("HOME");
+    if (home.empty()) {
+        const passwd* user = ::getpwuid(::getuid());
+        home = user ? fs::path(user->pw_dir) : fs::current_path();
+    }
+    return home / ".cache/gfxrepro";
 }
 
 }  // namespace gfxrepro

@@ -26,7 +26,12 @@ struct SpellValue {
     std::string operator()(unsigned value) const { return fmt::format("{}u", value); }
     std::string operator()(float value) const {
         GFXREPRO_ASSERT(std::isfinite(value));
-        return value < 0 ? fmt::format("({:#})", value) : fmt::format("{:#}", value);
+        std::string digits = fmt::format("{:#}", value);
+        const std::size_t behindPoint = digits.find('.') + 1;  // from fmt 10 on maybe nothing
+        if (behindPoint == digits.size() || digits[behindPoint] == 'e') {
+            digits.insert(behindPoint, 1, '0');
+        }
+        return value < 0 ? '(' + digits + ')' : digits;
     }
     std::string operator()(const std::string& value) const { return value; }
 };

@@ -1,10 +1,10 @@
 #include "runner/raycast/ray_tracer.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include "runner/raycast/embree.h"
 
 namespace gfxrepro::raycast {
 
@@ -91,7 +91,7 @@ bool isEntering(const RTCRay& ray, const RTCHit& hit) {
 
 /// Extends Embree's context, which its filter gets to see. `base` comes first.
 struct SelectingContext {
-    RTCIntersectContext base;
+    QueryContext base;
     const std::vector<Placed>* placed;
     Faces faces;
     unsigned ignored;
@@ -128,7 +128,7 @@ void collectSelected(const RTCFilterFunctionNArguments* arguments) {
 
 /// Extends Embree's context likewise.
 struct CollectingContext {
-    RTCIntersectContext base;
+    QueryContext base;
     std::vector<Record>* records;
 };
 
@@ -152,15 +152,14 @@ struct RayTracer::Impl {
 
     explicit Impl(const scene::Scene& scene);
     void addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh, unsigned id);
-    SelectingContext selecting(Faces faces, unsigned ignored, RTCFilterFunctionN filter) const;
+    SelectingContext selecting(Faces faces, unsigned ignored) const;
     /// Every triangle along the ray once, by distance.
     std::vector<Record> recordsAlong(const glm::vec3& origin, const glm::vec3& direction) const;
 };
 
 RayTracer::Impl::Impl(const scene::Scene& scene)
     : bvh(rtcNewScene(device.get())), placed(scene.instances.size()) {
-    rtcSetSceneFlags(bvh.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
-                                                           RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    rtcSetSceneFlags(bvh.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterOfQuery));
     unsigned triangleCount = 0;
     for (unsigned i = 0; i < scene.instances.size(); ++i) {
         const scene::Instance& instance = scene.instances[i];
@@ -197,11 +196,8 @@ void RayTracer::Impl::addInstance(const scene::Mesh& mesh, const glm::mat4& worl
     rtcAttachGeometryByID(bvh.get(), geometry.get(), id);
 }
 
-SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored,
-                                            RTCFilterFunctionN filter) const {
+SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored) const {
     SelectingContext context{};
-    rtcInitIntersectContext(&context.base);
-    context.base.filter = filter;
     context.placed = &placed;
     context.faces = faces;
     context.ignored = ignored;
@@ -211,12 +207,10 @@ SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored,
 std::vector<Record> RayTracer::Impl::recordsAlong(const glm::vec3& origin,
                                                   const glm::vec3& direction) const {
     std::vector<Record> records;
-    CollectingContext context;
-    rtcInitIntersectContext(&context.base);
-    context.base.filter = &collect;
+    CollectingContext context{};
     context.records = &records;
     RTCRayHit rayHit = rayHitAlong(rayAlong(origin, glm::normalize(direction), 0.0F, kInfinity));
-    rtcIntersect1(bvh.get(), &context.base, &rayHit);
+    intersect(bvh.get(), rayHit, context.base, &collect);
     const auto inOrder = [](const Record& a, const Record& b) {
         return std::tie(a.distance, a.geometry, a.triangle) <
                std::tie(b.distance, b.geometry, b.triangle);
@@ -238,10 +232,10 @@ RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 std::optional<Hit> RayTracer::closestHit(const glm::vec3& origin, const glm::vec3& direction,
                                          float tMin, float tMax, Faces faces) const {
     const glm::vec3 unit = glm::normalize(direction);
-    SelectingContext context =
-        impl_->selecting(faces, kNoTriangle, faces == Faces::All ? nullptr : &rejectOthers);
+    SelectingContext context = impl_->selecting(faces, kNoTriangle);
     RTCRayHit rayHit = rayHitAlong(rayAlong(origin, unit, tMin, tMax));
-    rtcIntersect1(impl_->bvh.get(), &context.base, &rayHit);
+    intersect(impl_->bvh.get(), rayHit, context.base,
+              faces == Faces::All ? nullptr : &rejectOthers);
     const RTCHit& found = rayHit.hit;
     if (found.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
@@ -261,10 +255,10 @@ std::optional<Hit> RayTracer::closestHit(const glm::vec3& origin, const glm::vec
 void RayTracer::hitsBetween(const glm::vec3& origin, const glm::vec3& direction, float tMin,
                             float tMax, Faces faces, std::vector<TriangleHit>& hits) const {
     hits.clear();
-    SelectingContext context = impl_->selecting(faces, kNoTriangle, &collectSelected);
+    SelectingContext context = impl_->selecting(faces, kNoTriangle);
     context.hits = &hits;
     RTCRayHit rayHit = rayHitAlong(rayAlong(origin, glm::normalize(direction), tMin, tMax));
-    rtcIntersect1(impl_->bvh.get(), &context.base, &rayHit);
+    intersect(impl_->bvh.get(), rayHit, context.base, &collectSelected);
     // The filter sees triangles in order of traversal, and one twice where the hierarchy refers to
     // it twice.
     const auto inOrder = [](const TriangleHit& a, const TriangleHit& b) {
@@ -280,9 +274,9 @@ void RayTracer::hitsBetween(const glm::vec3& origin, const glm::vec3& direction,
 bool RayTracer::isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
                            float tMax, Faces faces, unsigned ignored) const {
     const bool isPlain = faces == Faces::All && ignored == kNoTriangle;
-    SelectingContext context = impl_->selecting(faces, ignored, isPlain ? nullptr : &rejectOthers);
+    SelectingContext context = impl_->selecting(faces, ignored);
     RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
-    rtcOccluded1(impl_->bvh.get(), &context.base, &ray);
+    occluded(impl_->bvh.get(), ray, context.base, isPlain ? nullptr : &rejectOthers);
     return ray.tfar < 0.0F;  // Embree's sign for "something is in the way"
 }
 

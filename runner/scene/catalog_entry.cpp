@@ -28,9 +28,11 @@ void requireKeys(const Node& map, const std::string& what, std::string_view sect
     }
 }
 
-const Node& required(const Node& map, const std::string& what, std::string_view key) {
+// Literals, not strings: a reference from a call with a temporary is one that GCC 14 takes for
+// dangling.
+const Node& required(const Node& map, const char* what, const char* key) {
     const Node* value = map.find(key);
-    if (!value) throw Error(map.location(), what + ": '" + std::string(key) + "' is missing");
+    if (!value) throw Error(map.location(), std::string(what) + ": '" + key + "' is missing");
     return *value;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "runner/core/error.h"
 
@@ -140,8 +141,10 @@ class Elements {
     }
 
   private:
-    std::size_t offset(int bytes) const {
-        if (bytes < 0) fail("has a negative offset");
+    /// tinygltf's offsets are int before 2.9, std::size_t from there on.
+    template <class Integer>
+    std::size_t offset(Integer bytes) const {
+        if (!std::in_range<std::size_t>(bytes)) fail("has a negative offset");
         return static_cast<std::size_t>(bytes);
     }
 

@@ -8,6 +8,7 @@
 #include <exception>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
@@ -54,6 +55,40 @@ bool readWholeFile(std::vector<unsigned char>* content, std::string*, const std:
     const auto* begin = reinterpret_cast<const unsigned char*>(file.bytes().data());
     content->assign(begin, begin + file.bytes().size());
     return true;
+}
+
+[[maybe_unused]]  // before tinygltf 2.9
+bool fileSize(std::size_t* sizeBytes, std::string*, const std::string& uri, void* folder) {
+    const auto path = static_cast<Folder*>(folder)->find(uri);
+    if (!path) return false;
+    requireReadAtOnce(*path);
+    *sizeBytes = std::filesystem::file_size(*path);
+    return true;
+}
+
+bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+}
+
+/// Lets the parser at files by these callbacks only. From 2.9 on tinygltf asks for sizes, too, and
+/// refuses callbacks of which one is missing: it would go on with its own, which read any path.
+template <class Parser, class Callbacks = tinygltf::FsCallbacks>
+void readThrough(Folder& folder, Parser& parser) {
+    Callbacks callbacks{};
+    callbacks.FileExists = fileExists;
+    callbacks.ExpandFilePath = sameUri;
+    callbacks.ReadWholeFile = readWholeFile;
+    callbacks.WriteWholeFile = writeNothing;
+    callbacks.user_data = &folder;
+    if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+        callbacks.GetFileSizeInBytes = fileSize;
+    }
+    if constexpr (std::is_void_v<decltype(parser.SetFsCallbacks(callbacks))>) {
+        parser.SetFsCallbacks(callbacks);
+    } else {
+        const bool isTaken = parser.SetFsCallbacks(callbacks);
+        GFXREPRO_ASSERT(isTaken);
+    }
 }
 
 /// Keeps the encoded bytes of images with a URI. The range of one in a buffer has not been checked
@@ -111,7 +146,7 @@ void checkExtensions(const tinygltf::Model& model, const std::string& name) {
 bool parse(std::string_view content, bool isBinary, Folder& folder, tinygltf::Model& model,
            std::string& message) {
     tinygltf::TinyGLTF parser;
-    parser.SetFsCallbacks({fileExists, sameUri, readWholeFile, nullptr, &folder});
+    readThrough(folder, parser);
     parser.SetImageLoader(keepEncoded, nullptr);
     std::string ignoredWarnings;
     const auto size = static_cast<unsigned int>(content.size());

@@ -17,7 +17,8 @@ target_compile_options(gfxrepro_warnings INTERFACE
 
 set(CMAKE_CXX_EXTENSIONS OFF)
 
-# gfxrepro_verify_headers(TARGET): every header beside the target's sources compiles alone.
+# gfxrepro_verify_headers(TARGET [targets …]): every header beside the target's sources compiles alone, with the
+# targets that those have.
 function(gfxrepro_verify_headers target)
     if(NOT GFXREPRO_VERIFY_HEADERS)
         return()
@@ -32,7 +33,7 @@ function(gfxrepro_verify_headers target)
     endforeach()
     if(units)
         add_library(${target}_headers OBJECT ${units})
-        target_link_libraries(${target}_headers PRIVATE ${target} gfxrepro_warnings)
+        target_link_libraries(${target}_headers PRIVATE ${target} gfxrepro_warnings ${ARGN})
     endif()
 endfunction()
 
@@ -43,7 +44,7 @@ function(gfxrepro_module name)
     target_link_libraries(gfxrepro_${name}
         PUBLIC gfxrepro_options ${arg_PUBLIC}
         PRIVATE gfxrepro_warnings ${arg_PRIVATE})
-    gfxrepro_verify_headers(gfxrepro_${name})
+    gfxrepro_verify_headers(gfxrepro_${name} ${arg_PRIVATE})
 endfunction()
 
 # add_technique(NAME SOURCES … SHADERS … [PRIVATE targets …]) → library technique_NAME; its shaders are
@@ -54,7 +55,7 @@ function(add_technique name)
     target_link_libraries(technique_${name}
         PUBLIC gfxrepro_technique techniques_kit
         PRIVATE gfxrepro_warnings gfxrepro_raycast gfxrepro_metrics gfxrepro_gpu_scene ${arg_PRIVATE})
-    gfxrepro_verify_headers(technique_${name})
+    gfxrepro_verify_headers(technique_${name} ${arg_PRIVATE})
     gfxrepro_shaders(technique_${name} ${name} ${arg_SHADERS})
 endfunction()
 

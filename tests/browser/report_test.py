@@ -356,6 +356,6 @@ class Report(unittest.TestCase):
 
 if __name__ == "__main__":
     if webdriver.missing():
-        print(f"skipped: {webdriver.missing()} is not installed (scripts/setup installs it)")
+        print(f"skipped: {webdriver.missing()} is not installed (scripts/setup --tests installs it)")
         sys.exit(77)
     unittest.main(argv=[sys.argv[0], "-v"])

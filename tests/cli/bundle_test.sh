@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # bundle_test.sh SURROUNDINGS SOURCE BUILD: the bundle measures the smoke config as the build does. Exit 77: skipped.
 #   without_environment: `env -i`, every library from the bundle but the C library's
+#   beside_a_newer_cpp_library: the node's libstdc++ is taken where it is newer, and not where it is older
+#   packed: the archive is under 32 MiB and has the bundle
 #   in_a_bare_root: chroot into a folder of the bundle, the C library and Mesa; needs root
 set -euo pipefail
 surroundings=$1 source=$2 build=$3
@@ -30,6 +32,29 @@ without_environment)
     env -i "$D/bundle/gfxrepro" run "$D/bundle/configs/smoke/template.yaml" --device software --quiet --out "$D/run"
     env -i "$D/bundle/gfxrepro" table "$D/run"
     require_same_tables "$D/run"
+    ;;
+beside_a_newer_cpp_library)
+    cd "$D"
+    used() { env -i LD_DEBUG=files "$D/bundle/gfxrepro" --version 2>&1 | grep 'calling init: .*libstdc++' | tail -n 1; }
+    called() { # its file and the link to it
+        mv "$D"/bundle/lib/libstdc++.so.6.0.* "$D/bundle/lib/$1"
+        ln -sf "$1" "$D/bundle/lib/libstdc++.so.6"
+    }
+    [[ $(used) == *"$D/bundle/lib/"* ]] || fail "of the same release, but not its own: $(used)"
+    called libstdc++.so.6.0.1
+    [[ $(used) == *libstdc++* && $(used) != *"$D/bundle/lib/"* ]] || fail "older, and still its own: $(used)"
+    env -i "$D/bundle/gfxrepro" run "$D/bundle/configs/smoke/template.yaml" --device software --quiet --out "$D/run"
+    env -i "$D/bundle/gfxrepro" table "$D/run"
+    require_same_tables "$D/run"
+    called libstdc++.so.6.0.999
+    [[ $(used) == *"$D/bundle/lib/"* ]] || fail "newer, and not its own: $(used)"
+    ;;
+packed)
+    "$source/scripts/bundle" --tar "$D/packed" "$build"
+    [ "$(stat -c %s "$D/packed.tar.xz")" -lt $((32 << 20)) ] || fail "$(stat -c %s "$D/packed.tar.xz") bytes"
+    mkdir "$D/elsewhere"
+    tar -C "$D/elsewhere" -xf "$D/packed.tar.xz"
+    diff -r --no-dereference "$D/packed" "$D/elsewhere/packed" || fail "other files"
     ;;
 in_a_bare_root)
     [ "$(id -u)" = 0 ] || skip "a chroot needs root"

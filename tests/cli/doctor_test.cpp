@@ -1,7 +1,14 @@
 // The advice of `gfxrepro doctor`, each from made-up facts, by its exact words.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+
 #include "runner/cli/advice.h"
+#include "runner/cli/cpp_library.h"
+#include "runner/cli/vendor_libraries.h"
+#include "tests/support/support.h"
 
 namespace gfxrepro::cli {
 namespace {
@@ -45,6 +52,59 @@ TEST(Doctor, NoEgl) {
               "fatal no_egl: No EGL device was found: there is no driver to draw with. → Install "
               "libegl1, libegl-mesa0 and libgl1-mesa-dri for the software device, or a GPU's "
               "driver with EGL.\n");
+}
+
+TEST(Doctor, DriverNotLoaded) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].isSoftware = true;
+    facts.driverProblems = {"/a.json names the driver libEGL_a.so.0: no such file"};
+    EXPECT_THAT(
+        linesOf(facts),
+        testing::StartsWith(
+            "results driver_not_loaded: A driver cannot be loaded: /a.json names the driver "
+            "libEGL_a.so.0: no such file. → Install what it lacks, or the driver anew; where "
+            "there is no such device, its file may go.\nresults software_only: "));
+    facts.devices.clear();
+    EXPECT_EQ(linesOf(facts).substr(0, 24), "fatal driver_not_loaded:");
+}
+
+/// Of the drivers that `folder` names, and no others.
+std::vector<std::string> problemsOf(const test::TemporaryFolder& folder) {
+    ::setenv("__EGL_VENDOR_LIBRARY_DIRS", folder.path().c_str(), 1);
+    std::vector<std::string> problems = vendorLibraryProblems();
+    ::unsetenv("__EGL_VENDOR_LIBRARY_DIRS");
+    return problems;
+}
+
+TEST(VendorLibraries, SayWhyADriverCannotBeLoaded) {
+    const test::TemporaryFolder folder;
+    const std::string driver = R"({"file_format_version":"1.0.0","ICD":{"library_path":"LIB"}})";
+    const auto naming = [&](const std::string& library) {
+        return std::string(driver).replace(driver.find("LIB"), 3, library);
+    };
+    folder.write("10_good.json", naming("libm.so.6"));
+    EXPECT_THAT(problemsOf(folder), testing::IsEmpty());
+    folder.write("20_gone.json", naming("libEGL_gone.so.0"));
+    folder.write("30_torn.json", driver.substr(0, 20));
+    const std::string libraries = folder.write("no.so", "no library").string();
+    folder.write("40_no.json", naming(libraries));
+    const std::vector<std::string> problems = problemsOf(folder);
+    ASSERT_EQ(problems.size(), 3U);
+    EXPECT_EQ(problems[0], (folder.path() / "20_gone.json").string() +
+                               " names the driver libEGL_gone.so.0: libEGL_gone.so.0: cannot open "
+                               "shared object file: No such file or directory");
+    EXPECT_THAT(problems[1], testing::StartsWith((folder.path() / "30_torn.json").string() + ": "));
+    EXPECT_THAT(problems[2], testing::HasSubstr("no.so: file too short"));
+}
+
+TEST(CppLibrary, ReleaseComesFromTheName) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("libstdc++.so.6.0.30", "");
+    EXPECT_EQ(releaseOfCppLibrary(file), 30);
+    std::filesystem::create_symlink(file, folder.path() / "libstdc++.so.6");
+    EXPECT_EQ(releaseOfCppLibrary(folder.path() / "libstdc++.so.6"), 30);
+    EXPECT_EQ(releaseOfCppLibrary(folder.write("plain/libstdc++.so.6", "")), 0);
+    EXPECT_EQ(releaseOfCppLibrary(folder.path() / "none"), 0);
 }
 
 TEST(Doctor, OldGl) {

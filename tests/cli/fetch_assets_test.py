@@ -107,6 +107,8 @@ with tempfile.TemporaryDirectory() as folder:
     named = {line.split("file: ")[1].split(",")[0].split("}")[0].split("#")[0].strip()
              for file in (SOURCE / "configs/scenes").rglob("*.yaml")
              for line in file.read_text().splitlines() if line.strip().startswith(("- {file: ", "- file: "))}
+    homeless = {name: value for name, value in os.environ.items() if name not in ("HOME", "XDG_CACHE_HOME", "GFXREPRO_ASSETS")}
+    assert subprocess.run([SOURCE / "scripts/fetch-assets", "--list"], env=homeless, capture_output=True).returncode == 0
     assert named - set(fetch("--list")[1].split()) == set(by_hand), named
     (mirror / "hand").mkdir()
     (mirror / "hand/hand.ply").write_bytes(b"a hand")

@@ -76,7 +76,7 @@ class ImageCommands : public ::testing::Test {
 /// From the technique through the worker and the runner into the files.
 TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
     const std::string config = writeMockConfig(folder_, "params: {number: 7}\n").string();
-    const std::string run = at("run");
+    const std::string run = at("a run");
     const ProcessResult result =
         gfxrepro({"run", config, "--device", "software", "--quiet", "--out", run});
     ASSERT_EQ(result.exitCode, 0) << result.err;
@@ -88,7 +88,7 @@ TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
     EXPECT_EQ(images[1].truthOf, "flat");
     const auto attributes = image::readExr(std::filesystem::path(run) / images[1].exr).attributes;
     EXPECT_EQ(attributes.at("command"),
-              "gfxrepro run " + config + " --device software --quiet --out " + run);
+              "gfxrepro run " + config + " --device software --quiet --out '" + run + "'");
     EXPECT_EQ(attributes.at("case"), images[1].caseId);
     EXPECT_EQ(attributes.at("technique"), "mock");
     EXPECT_EQ(nlohmann::json::parse(attributes.at("params")).at("number"), 7);

@@ -3,7 +3,7 @@
 set -euo pipefail
 mock=$(realpath "$1")
 for program in slurmctld slurmd munged sbatch scontrol squeue; do
-    command -v "$program" >/dev/null || { echo "skipped: $program is not installed (scripts/setup installs it)"; exit 77; }
+    command -v "$program" >/dev/null || { echo "skipped: $program is not installed (scripts/setup --tests installs it)"; exit 77; }
 done
 # shellcheck source=tests/slurm/cluster.sh
 . "$(dirname "$0")/cluster.sh"

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pwd.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "runner/core/atomic_file.h"
@@ -53,6 +56,26 @@ TEST(Text, SplitsTrimsAndJoins) {
     EXPECT_EQ(joined(items), "a, b");
     const std::vector<std::string> gaps = {"", "a", "", ""};
     EXPECT_EQ(joined(gaps), ", a, , ");
+}
+
+TEST(Files, CachesLieInTheHomeOfTheUserWithoutHOME) {
+    const auto inEnvironment = [](const char* cache, const char* home) {
+        const auto set = [](const char* name, const char* value) {
+            return value ? ::setenv(name, value, 1) : ::unsetenv(name);
+        };
+        set("XDG_CACHE_HOME", cache);
+        set("HOME", home);
+        return cacheFolder().string();
+    };
+    const std::string cache = std::getenv("XDG_CACHE_HOME") ? std::getenv("XDG_CACHE_HOME") : "";
+    const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+    EXPECT_EQ(inEnvironment("/c", "/h"), "/c/gfxrepro");
+    EXPECT_EQ(inEnvironment(nullptr, "/h"), "/h/.cache/gfxrepro");
+    const passwd* user = ::getpwuid(::getuid());
+    EXPECT_EQ(inEnvironment(nullptr, nullptr),
+              (user ? std::string(user->pw_dir) : std::filesystem::current_path().string()) +
+                  "/.cache/gfxrepro");
+    inEnvironment(cache.empty() ? nullptr : cache.c_str(), home.empty() ? nullptr : home.c_str());
 }
 
 TEST(Hash, MatchesFips180) {

@@ -323,6 +323,27 @@ TEST_F(LoadGltf, DecodesPercentSignsAndStaysInItsFolder) {
               "DIR/a.gltf: File not found : gone.bin");
 }
 
+// What lies outside is there and would serve: it is not looked at by the parser's own means either.
+TEST_F(LoadGltf, ReadsNothingOutsideOfItsFolder) {
+    folder_.write("outside.bin", squareBytes());
+    const auto refusal = [&](const std::string& key, const std::string& value) {
+        Document document = square();
+        document["buffers"] = R"([{"byteLength":76,"uri":"inside.bin"}])";
+        document[key] = value;
+        folder_.write("model/inside.bin", squareBytes());
+        const auto path = folder_.write("model/a.gltf", text(document));
+        return errorText([&] { loadGltf(path); }, folder_.path());
+    };
+    const std::string absolute = (folder_.path() / "outside.bin").string();
+    const std::string outside =
+        "DIR/model/a.gltf: the URI '../outside.bin' leaves the file's folder";
+    EXPECT_EQ(refusal("buffers", R"([{"byteLength":76,"uri":"../outside.bin"}])"), outside);
+    EXPECT_EQ(refusal("images", R"([{"uri":"../outside.bin"}])"), outside);
+    EXPECT_EQ(refusal("buffers", R"([{"byteLength":76,"uri":")" + absolute + R"("}])"),
+              "DIR/model/a.gltf: the URI 'DIR/outside.bin' leaves the file's folder");
+    EXPECT_EQ(refusal("asset", R"({"version":"2.0"})"), "no error") << "what lies inside is read";
+}
+
 TEST_F(LoadGltf, RefusesWhatItCannotRead) {
     EXPECT_EQ(errorWith("asset", R"({"version":"1.0"})"),
               "DIR/a.gltf: glTF version '1.0'; 2.0 is read");

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# fresh_system.sh SUITE [STEP…]: makes a bare system beside this one (bookworm, trixie: Debian 12, 13; noble: Ubuntu
+# 24.04) and there runs, from a clone of the last commit,
+#   1 2 3      the README's commands, by their order in its first block
+#   container  what containers/Containerfile runs, each stage in a bare system of its own
+#   bundle     the bundle of this machine's build/release, which is an older system's; left out where it is not built
+# or only the steps that are named.
+# GFXREPRO_SYSTEMS  the folder for systems and for the compiler's cache, which stays (default build/systems)
+# Needs root, mmdebstrap and a mount namespace. Exit 77: skipped, the last line says why.
+set -euo pipefail
+suite=$1
+shift
+source=$(cd "$(dirname "$0")/../.." && pwd)
+systems=${GFXREPRO_SYSTEMS:-$source/build/systems}
+steps=${*:-1 2 3 container $([ ! -x "$source/build/release/gfxrepro" ] || echo bundle)}
+
+skip() { echo "skipped: $*"; exit 77; }
+[ "$(id -u)" = 0 ] || skip "a chroot needs root"
+command -v mmdebstrap >/dev/null || skip "mmdebstrap is not installed (scripts/setup --tests installs it)"
+unshare --mount true 2>/dev/null || skip "this machine grants no mount namespace"
+
+root=$systems/$suite
+cache=$systems/ccache-$suite
+mkdir -p "$systems" "$cache"
+trap 'rm -rf --one-file-system "$root" "$root-final"' EXIT
+
+# bare FOLDER: a minimal system with certificates, from Debian's or Ubuntu's own servers.
+bare() {
+    local mirror="deb http://deb.debian.org/debian $suite main"
+    if [ "$suite" = noble ]; then
+        local key=/usr/share/keyrings/ubuntu-archive-keyring.gpg
+        [ -e $key ] || skip "$key is not here to check Ubuntu's packages with"
+        mirror="deb [signed-by=$key] http://archive.ubuntu.com/ubuntu noble main universe"
+    fi
+    rm -rf --one-file-system "$1"
+    if ! mmdebstrap --quiet --variant=minbase --include=apt,ca-certificates "$suite" "$1" "$mirror" >"$systems/$suite.log" 2>&1; then
+        tail -n 20 "$systems/$suite.log" >&2
+        ! grep -qE 'Could not (resolve|connect)|Failed to fetch|Unable to connect' "$systems/$suite.log" || skip "the packages of $suite cannot be reached"
+        exit 1
+    fi
+}
+
+# inside FOLDER COMMAND: in the system, with the clone as the current folder.
+inside() {
+    unshare --mount bash -c 'for name in proc dev sys; do mount --rbind "/$name" "$1/$name"; done
+        mkdir -p "$1/root/.cache/ccache" && mount --bind "$2" "$1/root/.cache/ccache"
+        exec env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root \
+            "$(command -v chroot)" "$1" sh -ec "cd /src; $3"' _ "$1" "$cache" "$2"
+}
+
+# stage_commands N: what the N-th stage of the Containerfile runs.
+stage_commands() { awk -v n="$1" '/^FROM /{s++} s == n && sub(/^RUN /, "")' "$source/containers/Containerfile"; }
+
+bare "$root"
+git -c safe.directory="$source" clone --quiet --no-hardlinks "$source" "$root/src"
+for step in $steps; do
+    echo "== $suite: $step"
+    case $step in
+    [1-3])
+        command=$(sed -n '/^```sh/,/^```/{/^scripts/p}' "$source/README.md" | sed -n "${step}{s/ *#.*//;p}")
+        [ -n "$command" ] || { echo "FAILED: the README has no command $step"; exit 1; }
+        echo "$command"
+        code=0
+        inside "$root" "$command" || code=$?
+        # A claim that fails is a result.
+        [ $code -eq 0 ] || { [ $code -eq 1 ] && [[ $command == *reproduce* ]]; } || exit $code
+        ;;
+    container)
+        inside "$root" "$(stage_commands 1)"
+        bare "$root-final"
+        mkdir "$root-final/src"
+        cp "$root/gfxrepro.deb" "$root-final/"
+        mkdir -p "$root-final/usr/share/glvnd/egl_vendor.d"
+        cp "$source/containers/10_nvidia.json" "$root-final/usr/share/glvnd/egl_vendor.d/"
+        inside "$root-final" "$(stage_commands 2)"
+        inside "$root-final" "gfxrepro doctor; gfxrepro run /usr/share/gfxrepro/configs/smoke/template.yaml --device software --quiet --out run; gfxrepro table run"
+        ;;
+    bundle)
+        "$source/scripts/bundle" "$root/bundle"
+        inside "$root" "/bundle/gfxrepro doctor; /bundle/gfxrepro run /bundle/configs/smoke/template.yaml --device software --quiet --out bundle-run; /bundle/gfxrepro table bundle-run"
+        ;;
+    *) echo "fresh_system.sh: unknown step '$step'" >&2; exit 2 ;;
+    esac
+done
+echo "passed: $suite: $steps"
