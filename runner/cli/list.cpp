@@ -68,15 +68,31 @@ Rows generators(const Context& context) {
     return rows;
 }
 
+/// Those in runs/, the newest last.
+Rows runs() {
+    Rows rows;
+    for (const fs::path& run : runFolders()) {
+        std::error_code isAbsent;
+        const fs::path manifest = run / "manifest.json";
+        std::string what = "not begun";
+        if (fs::is_regular_file(manifest, isAbsent)) {
+            const auto json = nlohmann::json::parse(readFile(manifest), nullptr, false);
+            const bool isWhole = json.is_object() && json.contains("command");
+            what = isWhole && json["command"].is_string() ? json["command"].get<std::string>()
+                                                          : "its manifest cannot be read";
+        }
+        rows.push_back({run.string(), what});
+    }
+    return rows;
+}
+
 }  // namespace
 
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson) {
     const std::map<std::string, std::function<Rows()>> kinds = {
-        {"configs", configs},
-        {"generators", [&] { return generators(context); }},
-        {"scenes", [&] { return scenes(context, assets); }},
-        {"tables", tables},
-        {"techniques", [&] { return techniques(context); }},
+        {"configs", configs}, {"generators", [&] { return generators(context); }},
+        {"runs", runs},       {"scenes", [&] { return scenes(context, assets); }},
+        {"tables", tables},   {"techniques", [&] { return techniques(context); }},
     };
     const auto kind = kinds.find(what);
     if (kind == kinds.end()) {
