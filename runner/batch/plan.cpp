@@ -132,6 +132,10 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         }
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);
+        if (experiment.hasDefaultLayout()) {
+            experiment.outputs = technique::outputsOf(
+                technique::findTechnique(techniques, experiment.technique, {}));
+        }
         requireCaseCount(plan.cases.size() + cases.size(), experiment);
         for (Case& item : cases) {
             if (!item.scene.isNull()) {
