@@ -68,20 +68,21 @@ Rows generators(const Context& context) {
     return rows;
 }
 
+/// What first measured a run.
+std::string commandOf(const fs::path& manifest) {
+    std::error_code isAbsent;
+    if (!fs::is_regular_file(manifest, isAbsent)) return "not begun";
+    const auto json = nlohmann::json::parse(readFile(manifest), nullptr, false);
+    const nlohmann::json::json_pointer first("/invocations/0/command");
+    const bool isSaid = json.is_object() && json.contains(first) && json[first].is_string();
+    return isSaid ? json[first].get<std::string>() : "not finished";
+}
+
 /// Those in runs/, the newest last.
 Rows runs() {
     Rows rows;
     for (const fs::path& run : runFolders()) {
-        std::error_code isAbsent;
-        const fs::path manifest = run / "manifest.json";
-        std::string what = "not begun";
-        if (fs::is_regular_file(manifest, isAbsent)) {
-            const auto json = nlohmann::json::parse(readFile(manifest), nullptr, false);
-            const bool isWhole = json.is_object() && json.contains("command");
-            what = isWhole && json["command"].is_string() ? json["command"].get<std::string>()
-                                                          : "its manifest cannot be read";
-        }
-        rows.push_back({run.string(), what});
+        rows.push_back({run.string(), commandOf(run / "manifest.json")});
     }
     return rows;
 }

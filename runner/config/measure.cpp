@@ -38,7 +38,6 @@ Measure readMeasure(Params& params, bool isOwn) {
     if (isTimed) {
         measure.lane = Measure::Lane::Timing;
         measure.warmup = 1;
-        measure.repeats = 3;
         measure.processes = kFewestRounds;
         measure.processesAtLeast = 1;
     }

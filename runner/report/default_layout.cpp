@@ -28,17 +28,18 @@ struct Series {
     bool isWhole = true;
     std::set<std::string> cases = {};
 
-    bool isBytes() const { return unit == "byte"; }
+    bool isOfMebibytes() const { return unit == "byte" && most >= kMebibyte; }
     std::string label() const {
         if (metric == "wall_time_ms") return "frame_ms";
         if (metric == "gpu_time_ms" || metric == "cpu_time_ms") return pass + "_ms";
         std::string name = metric;
-        if (isBytes() && name.ends_with("_bytes")) name.replace(name.size() - 5, 5, "mib");
+        if (isOfMebibytes() && name.ends_with("_bytes")) name.replace(name.size() - 5, 5, "mib");
         return pass.empty() ? name : name + '_' + pass;
     }
     std::string shown(double value) const {
-        return isBytes() ? fmt::format("{:.4g}", value / kMebibyte)
-                         : shortestText(isWhole ? value : std::stod(fmt::format("{:.4g}", value)));
+        return isOfMebibytes()
+                   ? fmt::format("{:.4g}", value / kMebibyte)
+                   : shortestText(isWhole ? value : std::stod(fmt::format("{:.4g}", value)));
     }
 };
 
@@ -81,8 +82,14 @@ std::vector<Series> declared(std::vector<Series> all, const config::Outputs& out
 /// Counts as they are, other numbers as far as they are worth reading.
 std::string formatOf(const Series& series) {
     constexpr double kManyDigits = 1e4;
-    const bool isCount = series.isWhole && !series.isBytes();
-    return isCount || series.most >= kManyDigits ? "{median:.0f}" : "{median:.4g}";
+    if (series.isOfMebibytes()) return "{median:.4g}";
+    return series.isWhole || series.most >= kManyDigits ? "{median:.0f}" : "{median:.4g}";
+}
+" : " {
+median:
+    .4g
+}
+";
 }
 
 struct Axis {
@@ -159,7 +166,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         selection.metric = series.metric;
         selection.pass = series.pass;
         selection.format = formatOf(series);
-        if (series.isBytes()) selection.scale = 1.0 / kMebibyte;
+        if (series.isOfMebibytes()) selection.scale = 1.0 / kMebibyte;
         std::string label = series.label();
         if (!labels.insert(label).second) {  // a pass on both clocks
             label = series.metric + '_' + series.pass;

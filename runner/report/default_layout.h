@@ -19,7 +19,7 @@ struct DefaultLayout {
 /// For an experiment of one's own without a `layout`: a row a point of its sweep; columns are the
 /// times of a frame and its passes, then the metrics in the order in which the technique declares
 /// them (Experiment::outputs), without details. Of plans that do not know what was declared: all,
-/// as recorded. Bytes are shown in MiB.
+/// as recorded. A MiB and more is shown in MiB.
 DefaultLayout defaultLayout(const config::Experiment& experiment,
                             std::span<const PlannedCase> planned,
                             const std::vector<Record>& records);

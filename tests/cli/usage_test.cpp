@@ -184,7 +184,8 @@ TEST(Usage, TablesAndCasesAreChosenByPatterns) {
         EXPECT_EQ(result.exitCode, 0) << result.err;
         return nlohmann::json::parse(result.out)["cases"].size();
     };
-    EXPECT_EQ(count({"zju2005/table-4.?"}), count({"zju2005/4.1", "zju2005/4.2", "zju2005/4.3"}));
+    EXPECT_EQ(count({"zju2005/table-4.?"}),
+              count({"zju2005/table-4.1", "zju2005/table-4.2", "zju2005/table-4.3"}));
     const TemporaryFolder folder;
     const std::string config = folder.write(
         "a.yml", "sweep_of: a\ntitle: A\ntechnique: template\nsweep: {brightness: [0, 0.5, 1]}\n");
