@@ -24,7 +24,8 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
                             std::span<const PlannedCase> planned,
                             const std::vector<Record>& records);
 
-/// What the technique declares of each metric, beside the table's columns.
+/// What the technique declares of each metric, beside the table's columns. What a case that was run
+/// did not record is blank: other methods, or more images, have it.
 void describeColumns(const config::Experiment& experiment, const config::Layout& layout,
                      Table& table);
 

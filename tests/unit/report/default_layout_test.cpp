@@ -66,6 +66,18 @@ TEST(DefaultLayout, ShowsTimesThenMetricsAndTellsWhatIsAlikeOnce) {
     EXPECT_EQ(table.columns[2].doc, "wrong");
 }
 
+TEST(DefaultLayout, WhatACaseDoesNotRecordIsBlank) {
+    Recorded records = recordedAt({32, 64});
+    std::erase_if(records, [](const Record& record) {
+        return record.metric == "error_pct" && record.caseId.find("32") != std::string::npos;
+    });
+    const Table table = buildTable(sweepOf("{resolution: [32, 64]}"), records);
+    ASSERT_EQ(table.columns[2].label, "error_pct");
+    EXPECT_FALSE(table.rows[0].cells[2].isPlanned);
+    EXPECT_EQ(table.rows[0].cells[2].measured, "");
+    EXPECT_EQ(table.rows[1].cells[2].measured, "1.562");
+}
+
 TEST(DefaultLayout, OfOneCaseNothingIsFolded) {
     const Table table = buildTable(sweepOf("{resolution: [32]}"), recordedAt({32}));
     EXPECT_THAT(table.constants, IsEmpty());
