@@ -1,5 +1,7 @@
 #include "runner/batch/case_filter.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <set>
 
@@ -27,10 +29,27 @@ std::optional<std::string> valueOf(const Case& item, const std::string& key) {
     return value ? std::optional(report::canonicalText(*value)) : std::nullopt;
 }
 
+/// What is allowed: one value, or those between signs `|`, or of a list.
+config::Node::Sequence alternativesOf(const config::Node& wanted) {
+    if (wanted.isSequence()) return wanted.items();
+    if (!wanted.isScalar() || wanted.text().find('|') == std::string::npos) return {wanted};
+    config::Node::Sequence values;
+    for (const std::string& text : split(wanted.text(), '|')) {
+        values.push_back(config::Node::scalar(text, wanted.location()));
+    }
+    return values;
+}
+
 bool has(const Case& item, const config::Override& wanted) {
     const auto value = valueOf(item, wanted.key);
-    if (wanted.key == kCaseKey) return value->starts_with(wanted.value.text());
-    return value == report::canonicalText(wanted.value);
+    if (!value) return false;
+    // A vector is a list itself.
+    if (value == report::canonicalText(wanted.value)) return true;
+    return std::ranges::any_of(alternativesOf(wanted.value), [&](const config::Node& allowed) {
+        const std::string text = report::canonicalText(allowed);
+        if (wanted.key == kCaseKey) return value->starts_with(text);
+        return value == text || ::fnmatch(text.c_str(), value->c_str(), 0) == 0;
+    });
 }
 
 /// What the case has under all of the keys; empty where it lacks one.

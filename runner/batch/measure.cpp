@@ -196,10 +196,10 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
 
 CaseResult measureCase(const Case& item, MeasureContext& context) {
     CaseResult result;
-    RunRecorder recorder(context.runDir, context.command, item, result);
     const SourceLocation nowhere;
     const technique::TechniqueInfo& info =
         technique::findTechnique(context.techniques, item.technique, nowhere);
+    RunRecorder recorder(context.runDir, context.command, item, technique::outputsOf(info), result);
     config::Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
 

@@ -7,6 +7,7 @@
 #include "runner/batch/expectations.h"
 #include "runner/batch/ledger.h"
 #include "runner/batch/plan_hash.h"
+#include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
 
@@ -62,7 +63,9 @@ std::string Case::title() const {
     for (const auto& [name, value] : axes.entries()) {
         title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
     }
-    if (!standsFor.isNull()) title += " (" + scene.text() + ")";
+    // A file with its units is no other scene.
+    const bool isOther = !standsFor.isNull() && !config::isSceneFile(scene.text());
+    if (isOther) title += " (" + scene.text() + ")";
     return title;
 }
 
@@ -132,6 +135,10 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         }
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);
+        if (experiment.hasDefaultLayout()) {
+            experiment.outputs = technique::outputsOf(
+                technique::findTechnique(techniques, experiment.technique, {}));
+        }
         requireCaseCount(plan.cases.size() + cases.size(), experiment);
         for (Case& item : cases) {
             if (!item.scene.isNull()) {

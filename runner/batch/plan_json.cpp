@@ -21,16 +21,18 @@ constexpr int kPlanSchema = 1;
 constexpr const char* kFrozenHash = "frozen_hash";
 
 Json toJson(const config::Measure& measure) {
-    return {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
-            {"warmup", measure.warmup},
-            {"repeats", measure.repeats},
-            {"processes", measure.processes},
-            {"relative_error", measure.relativeError},
-            {"processes_at_most", measure.processesAtMost},
-            {"time_budget_s", measure.timeBudgetS},
-            {"frames", measure.frames},
-            {"time_limit_s", measure.timeLimitS},
-            {"memory_limit_bytes", measure.memoryLimitBytes}};
+    Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
+                 {"warmup", measure.warmup},
+                 {"repeats", measure.repeats},
+                 {"processes", measure.processes},
+                 {"relative_error", measure.relativeError},
+                 {"processes_at_most", measure.processesAtMost},
+                 {"time_budget_s", measure.timeBudgetS},
+                 {"frames", measure.frames},
+                 {"time_limit_s", measure.timeLimitS},
+                 {"memory_limit_bytes", measure.memoryLimitBytes}};
+    if (measure.processesAtLeast > 0) json["processes_at_least"] = measure.processesAtLeast;
+    return json;
 }
 
 void requireMap(const config::Node& node, const char* what) {
@@ -105,6 +107,9 @@ config::Measure measureFrom(const config::Node& node) {
     measure.frames = requiredInt(node, "frames");
     measure.timeLimitS = required(node, "time_limit_s").asDouble();
     measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
+    if (const config::Node* rounds = node.find("processes_at_least")) {
+        measure.processesAtLeast = intFrom(*rounds, "processes_at_least");
+    }
     return measure;
 }
 
@@ -142,6 +147,32 @@ void readPaper(const config::Node& node, config::Experiment& experiment) {
     for (const config::Node& item : required(node, "cases").items()) {
         experiment.paperCases.push_back({requiredText(item, "scene"), requiredMap(item, "params")});
     }
+}
+
+Json outputsToJson(const config::Outputs& outputs) {
+    Json metrics = Json::array();
+    for (const config::MetricInfo& info : outputs.metrics) {
+        metrics.push_back({{"name", info.name},
+                           {"unit", info.unit},
+                           {"doc", info.doc},
+                           {"better", config::betterText(info.better)},
+                           {"detail", info.isDetail}});
+    }
+    return metrics;
+}
+
+config::Outputs outputsFrom(const config::Node& metrics) {
+    config::Outputs outputs;
+    for (const config::Node& item : metrics.items()) {
+        config::MetricInfo info{requiredText(item, "name"), requiredText(item, "unit"),
+                                requiredText(item, "doc")};
+        for (const config::Better better : {config::Better::Lower, config::Better::Higher}) {
+            if (requiredText(item, "better") == config::betterText(better)) info.better = better;
+        }
+        info.isDetail = required(item, "detail").asBool();
+        outputs.metrics.push_back(std::move(info));
+    }
+    return outputs;
 }
 
 /// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
@@ -253,6 +284,9 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
         if (!experiment.paperCases.empty()) {
             json["experiments"].back()["paper"] = paperToJson(experiment);
         }
+        if (!experiment.outputs.metrics.empty()) {
+            json["experiments"].back()["metrics"] = outputsToJson(experiment.outputs);
+        }
     }
     for (const ExpectationList& list : expectations) {
         json["expectations"].push_back({{"file", list.file}, {"text", list.text}});
@@ -307,6 +341,9 @@ Plan Plan::fromJsonFile(const fs::path& path) {
         }
         if (const config::Node* paper = item.find("paper")) {  // older plans have none
             readPaper(*paper, plan.experiments.back());
+        }
+        if (const config::Node* metrics = item.find("metrics")) {
+            plan.experiments.back().outputs = outputsFrom(*metrics);
         }
     }
     if (const config::Node* lists = node.find("expectations")) {

@@ -53,6 +53,7 @@ fs::path madeBelow(const fs::path& runDir, const fs::path& folder) {
 
 void RunRecorder::metric(std::string_view metric, double value, std::string_view unit,
                          std::string_view pass) {
+    requireDeclared(metric, unit, pass);
     const bool isPerfect = value == kInfinity && unit == "dB";
     if (!std::isfinite(value) && !isPerfect) {
         throw Error(
@@ -67,6 +68,17 @@ void RunRecorder::metric(std::string_view metric, double value, std::string_view
     }
     result_.samples.push_back(
         {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value, false});
+}
+
+void RunRecorder::requireDeclared(std::string_view metric, std::string_view unit,
+                                  std::string_view pass) const {
+    const std::string owner = "technique '" + item_.technique + "'";
+    outputs_.requireMetric(metric, owner);
+    if (!pass.empty()) outputs_.requirePass(pass, owner);
+    const config::MetricInfo& info = *outputs_.find(metric);
+    if (info.name != metric || info.unit == unit) return;  // what a share is of has any unit
+    throw Error(fmt::format("metric '{}' is recorded in '{}', but declared in '{}'", metric, unit,
+                            info.unit));
 }
 
 void RunRecorder::image(std::string_view name, const image::ImageF& image,

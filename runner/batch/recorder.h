@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "runner/batch/plan.h"
 #include "runner/batch/protocol.h"
@@ -12,15 +13,20 @@
 
 namespace gfxrepro::batch {
 
-/// Metrics and images go into `result`; files are written atomically. Throws Error for a second
-/// value of a metric, pass, frame and repeat, for values that are not finite (but +∞ dB, which two
-/// equal pictures have), for names that are no file names, and where the run directory is gone.
+/// Metrics and images go into `result`; files are written atomically. Throws Error for a
+/// metric, unit or pass that `outputs` does not declare, for a second value of a metric, pass,
+/// frame and repeat, for values that are not finite (but +∞ dB, which two equal pictures have), for
+/// names that are no file names, and where the run directory is gone.
 class RunRecorder : public technique::Recorder {
   public:
     /// `command` is the one that measures, as typed.
     RunRecorder(const std::filesystem::path& runDir, const std::string& command, const Case& item,
-                CaseResult& result)
-        : runDir_(runDir), command_(command), item_(item), result_(result) {}
+                config::Outputs outputs, CaseResult& result)
+        : runDir_(runDir),
+          command_(command),
+          item_(item),
+          outputs_(std::move(outputs)),
+          result_(result) {}
 
     /// Where in the case the next calls belong; at first to the set-up.
     void setIteration(int frame, int repeat) {
@@ -37,9 +43,13 @@ class RunRecorder : public technique::Recorder {
     void checkTruths() const;
 
   private:
+    void requireDeclared(std::string_view metric, std::string_view unit,
+                         std::string_view pass) const;
+
     std::filesystem::path runDir_;
     std::string command_;
     const Case& item_;
+    config::Outputs outputs_;
     CaseResult& result_;
     int frame_ = report::kSetup;
     int repeat_ = report::kSetup;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -18,6 +19,9 @@ namespace gfxrepro::batch {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// The parameter of techniques that save pictures only when they are asked to.
+constexpr const char* kPictures = "pictures";
 
 /// A user's own scene file is named relative to the config; a worker gets the absolute path.
 config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
@@ -40,6 +44,67 @@ void requireKnownAt(const config::Printed& printed, const config::Node& params) 
         throw Error(value.location(),
                     "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
     }
+}
+
+/// What is laid out is recorded: metrics and passes of the technique.
+void requireOutputs(const config::Experiment& experiment,
+                    std::span<const technique::TechniqueInfo> techniques) {
+    if (experiment.technique.empty()) return;
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(techniques, experiment.technique, {});
+    const config::Outputs outputs = technique::outputsOf(info);
+    const std::string owner = "technique '" + experiment.technique + "'";
+    const auto require = [&](const config::Selection& selection) {
+        const SourceLocation& where = selection.location;
+        if (selection.metric) outputs.requireMetric(*selection.metric, owner, where);
+        if (selection.pass && !selection.pass->empty()) {
+            outputs.requirePass(*selection.pass, owner, where);
+        }
+        if (!selection.shareOf) return;
+        outputs.requireMetric(selection.shareOf->metric, owner, where);
+        if (!selection.shareOf->pass.empty()) {
+            outputs.requirePass(selection.shareOf->pass, owner, where);
+        }
+    };
+    require(experiment.layout.cell);
+    for (const auto* axes : {&experiment.layout.rows, &experiment.layout.columns}) {
+        for (const config::LayoutAxis& axis : *axes) {
+            for (const auto& [label, selection] : axis.labels) require(selection);
+        }
+    }
+}
+
+/// A scene where the technique needs one, and of the kind that it takes. What a generator makes is
+/// seen when it runs.
+void requireScene(const Case& item, technique::SceneNeed need, const config::Experiment& experiment,
+                  const scene::Catalog& catalog) {
+    if (need == technique::SceneNeed::Nothing) return;
+    const bool needsHeights = need == technique::SceneNeed::HeightMap;
+    const char* wanted = needsHeights ? "a height map (.png, .tif, .hgt, .raw)"
+                                      : "a model (.glb, .gltf, .obj, .ply)";
+    if (item.scene.isNull()) {
+        throw Error(experiment.document.find("technique")->location(),
+                    fmt::format("technique '{}' needs a scene: `scene:` with a name of `gfxrepro "
+                                "list scenes`, or {} beside this file",
+                                item.technique, wanted));
+    }
+    const scene::SceneSource source = catalog.resolve(item.scene);
+    if (source.generator || source.heightMap.has_value() == needsHeights) return;
+    throw Error(item.scene.location(),
+                fmt::format("scene '{}' is {}; technique '{}' takes {}", item.scene.text(),
+                            needsHeights ? "a model" : "a height map", item.technique, wanted));
+}
+
+/// A table that nobody laid out shows what its cases look like: techniques save pictures when they
+/// are asked to.
+void offerPictures(const technique::TechniqueInfo& info, Case& item) {
+    if (item.given.find(kPictures) || (item.offered.isMap() && item.offered.find(kPictures)))
+        return;
+    config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+    info.create(params);
+    const bool isTaken = std::ranges::any_of(
+        params.declared(), [](const auto& param) { return param.name == kPictures; });
+    if (isTaken) item.offered.set(kPictures, config::Node::scalar("true"));
 }
 
 /// Throws Error for two cases that are alike. Those whose scenes have two names, but one content,
@@ -87,7 +152,7 @@ namespace {
 /// 100,000.
 void forEachCase(const config::Experiment& experiment, const scene::Catalog& catalog,
                  std::span<const technique::TechniqueInfo> techniques, std::uint64_t seed,
-                 const std::function<void(Case)>& take) {
+                 const std::function<void(Case, technique::SceneNeed)>& take) {
     if (experiment.technique.empty()) return;  // only printed
     const config::Node* named = experiment.document.find("technique");
     const SourceLocation where =
@@ -100,9 +165,10 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         const config::CaseSpec spec = std::move(given);
         Case item;
         takeInstead(spec, experiment.paramsInstead, item);
+        if (experiment.hasDefaultLayout()) offerPictures(info, item);
         config::Params params(item.given, "technique '" + std::string(info.name) + "'");
         if (!item.offered.isNull()) params.offer(item.offered);
-        info.create(params);
+        const technique::SceneNeed need = info.create(params)->sceneNeed();
         params.finish();
         item.experiment = experiment.id;
         item.technique = experiment.technique;
@@ -119,7 +185,7 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
-        take(std::move(item));
+        take(std::move(item), need);
     }
 }
 
@@ -131,7 +197,7 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
                                     std::uint64_t seed) {
     std::vector<Case> cases;
     forEachCase(experiment, catalog, techniques, seed,
-                [&](Case item) { cases.push_back(std::move(item)); });
+                [&](Case item, technique::SceneNeed) { cases.push_back(std::move(item)); });
     return cases;
 }
 
@@ -139,9 +205,14 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::span<const technique::TechniqueInfo> techniques,
                                std::uint64_t seed) {
     std::vector<Case> cases;
-    forEachCase(experiment, catalog, techniques, seed, [&](const Case& item) {
+    std::map<std::string, technique::SceneNeed> asked;
+    forEachCase(experiment, catalog, techniques, seed, [&](const Case& item, const auto need) {
+        const std::string scene = item.scene.isNull() ? "" : item.scene.text();
+        const auto [known, isNew] = asked.try_emplace(scene, need);
+        if (isNew || known->second != need) requireScene(item, need, experiment, catalog);
         std::ranges::move(withScenes(item, experiment, catalog), std::back_inserter(cases));
     });
+    requireOutputs(experiment, techniques);
     requireTaken(experiment, cases, catalog);
     requireSceneNames(experiment, cases, catalog);
     requireDistinct(experiment, cases);

@@ -49,6 +49,11 @@ std::vector<const Case*> casesFrom(const Plan& plan, std::size_t first) {
     return cases;
 }
 
+/// Whether rounds may follow those that are measured whatever they take.
+bool mayFollow(const config::Measure& measure) {
+    return measure.mayContinue() || measure.certainRounds() < measure.processes;
+}
+
 /// Round `process` of these cases, all of which take part in it.
 void addRound(std::vector<const Case*> cases, int process, std::vector<Unit>& units) {
     const bool isBackwards =
@@ -67,16 +72,16 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<report::Record>& r
         first += all.size();
         const auto begun = recorded.rounds.find(all.front()->experiment);
         int rounds = begun == recorded.rounds.end() ? 0 : begun->second;
-        for (const Case* item : all) rounds = std::max(rounds, item->measure.processes);
+        for (const Case* item : all) rounds = std::max(rounds, item->measure.certainRounds());
         for (int process = 0; process < rounds; ++process) {
             std::vector<const Case*> cases;
             for (const Case* item : all) {
                 const auto complete = recorded.complete.find(item->id);
-                const bool isFurther = item->measure.mayContinue() &&
+                const bool isFurther = mayFollow(item->measure) &&
                                        complete != recorded.complete.end() &&
                                        hasAllBefore(complete->second, process);
-                const bool isAsked = process < item->measure.processes;
-                if (plan.measures(*item) && (isAsked || isFurther)) cases.push_back(item);
+                const bool isCertain = process < item->measure.certainRounds();
+                if (plan.measures(*item) && (isCertain || isFurther)) cases.push_back(item);
             }
             addRound(std::move(cases), process, units);
         }
@@ -133,11 +138,12 @@ std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
         if (table.times.hasRounds(item->id, process)) cases.push_back(item);
     }
     // A round takes as long as those before it did.
-    const int measured = std::max(table.roundsBegun, measure.processes);
+    const int measured = std::max(table.roundsBegun, measure.certainRounds());
     const bool isAffordable = spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
-    const bool isWanted = measure.mayContinue() && rounds > 0 &&
-                          rounds < static_cast<std::size_t>(measure.processesAtMost) &&
-                          !table.times.isKnownTo(measure.relativeError, measure.processes);
+    const bool isAsked = process < measure.processes;
+    const bool isUnknown = measure.mayContinue() && process < measure.processesAtMost &&
+                           !table.times.isKnownTo(measure.relativeError, measure.processes);
+    const bool isWanted = rounds > 0 && (isAsked || isUnknown);
     if (isWanted && isAffordable && !cases.empty()) {
         table.roundsBegun = measured + 1;
         std::vector<Unit> units;

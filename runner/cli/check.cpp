@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <set>
 
 #include "runner/batch/ledger.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/report/claims.h"
 #include "runner/report/figure.h"
@@ -38,6 +40,20 @@ void sayUnread(const Context& context, const scene::Catalog& catalog, const std:
     }
 }
 
+/// Reads the user's own files, each once: what is wrong in one would be found by the first case.
+void requireReadable(const std::vector<batch::Case>& cases, const scene::Catalog& catalog) {
+    std::set<std::string> read;
+    for (const batch::Case& item : cases) {
+        const bool isOwn = !item.scene.isNull() && config::isSceneFile(item.scene.text());
+        if (!isOwn || !read.insert(item.scene.text()).second) continue;
+        try {
+            catalog.load(item.scene);
+        } catch (const Error& error) {
+            throw Error(item.scene.location(), error.what());
+        }
+    }
+}
+
 }  // namespace
 
 int check(const Context& context, const Selection& selection) {
@@ -50,6 +66,7 @@ int check(const Context& context, const Selection& selection) {
             batch::resolveCases(experiment, catalog, context.techniques, 1);
         batch::bindAssumptions(experiment, cases, catalog, context.techniques);
         batch::requireRanges(experiment, cases, catalog, context.techniques);
+        requireReadable(cases, catalog);
         const std::size_t caseCount = cases.size();
         const report::Table table = report::buildTable(experiment, batch::plannedCases(cases), {});
         report::requireProvenance(experiment, table);

@@ -107,7 +107,7 @@ struct SensitivityOptions {
 };
 
 /// What `list` lists, as its help has it.
-inline constexpr const char* kListed = "tables|techniques|scenes|configs|generators";
+inline constexpr const char* kListed = "tables|techniques|scenes|configs|generators|runs";
 
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);

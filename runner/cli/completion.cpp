@@ -88,7 +88,7 @@ Words paths(const std::string& prefix, const std::function<bool(const fs::path&)
 }
 
 bool isYaml(const fs::path& path) {
-    return path.extension() == ".yaml";
+    return isYamlFile(path);
 }
 
 bool isRun(const fs::path& path) {

@@ -6,6 +6,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/help.h"
 #include "runner/config/schema.h"
 #include "runner/core/text.h"
 
@@ -13,13 +14,50 @@ namespace gfxrepro::cli {
 
 namespace {
 
-void printParams(const std::vector<config::ParamInfo>& params) {
-    std::vector<std::vector<std::string>> rows = {
-        {"parameter", "type", "default", "range", "unit", "meaning"}};
-    for (const config::ParamInfo& info : params) {
-        rows.push_back({info.name, info.type, info.defaultValue, info.range, info.unit, info.doc});
+constexpr std::size_t kColumn = 28;
+
+/// "[256; 32 … 1024 voxels]"; a number that was given as a float is printed as one.
+std::string valuesText(const config::ParamInfo& info) {
+    std::string text = info.defaultValue;
+    const auto number = parseDouble(text);
+    const auto single = static_cast<float>(number.value_or(0.0));
+    if (number && static_cast<double>(single) == *number) text = fmt::format("{}", single);
+    const std::string unit = info.unit.empty() || info.unit == "1" ? "" : ' ' + info.unit;
+    if (!info.range.empty()) {
+        text += "; " + info.range + unit;
+    } else {
+        text += unit;
     }
-    fmt::print("\n{}", alignedColumns(rows));
+    return fmt::format("[{}]", text);
+}
+
+void printParams(const std::vector<config::ParamInfo>& params) {
+    fmt::print("\nparameters, each with [default; what is allowed]\n");
+    for (const config::ParamInfo& info : params) {
+        fmt::print("{}", entryLines("  " + info.name, info.doc + ' ' + valuesText(info), kColumn));
+    }
+}
+
+void printMetrics(std::span<const config::MetricInfo> metrics) {
+    for (const config::MetricInfo& info : metrics) {
+        std::string unit = info.unit == "1" ? "" : info.unit;
+        if (const auto better = config::betterText(info.better); !better.empty()) {
+            unit += (unit.empty() ? "" : ", ") + std::string(better);
+        }
+        fmt::print("{}", entryLines("  " + info.name,
+                                    info.doc + (unit.empty() ? "" : " [" + unit + "]"), kColumn));
+    }
+}
+
+void printOutputs(const config::Outputs& outputs) {
+    fmt::print("\nmetrics\n");
+    printMetrics(outputs.metrics);
+    fmt::print("\npasses: what times are of, and what tells values of a metric apart\n");
+    for (const config::PassInfo& info : outputs.passes) {
+        fmt::print("{}", entryLines("  " + info.name, info.doc, kColumn));
+    }
+    fmt::print("\nmetrics of every technique\n");
+    printMetrics(technique::commonMetrics());
 }
 
 using ParamInfos = std::vector<config::ParamInfo>;
@@ -55,8 +93,10 @@ ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
 }
 
 void describeTechnique(const technique::TechniqueInfo& info) {
-    say("technique {}: {}\n", info.name, info.summary);
+    fmt::print("{}",
+               entryLines("technique " + std::string(info.name), std::string(info.summary), 4));
     printParams(paramsOf(info));
+    printOutputs(info.outputs());
 }
 
 void describeGenerator(const scene::GeneratorInfo& info) {
@@ -118,7 +158,8 @@ auto findNamed(const Infos& infos, const std::string& name) {
 config::SchemaNames schemaNames(const Context& context) {
     config::SchemaNames names;
     for (const technique::TechniqueInfo& info : context.techniques) {
-        names.techniques.push_back({std::string(info.name), paramsOf(info)});
+        names.techniques.push_back(
+            {std::string(info.name), paramsOf(info), technique::outputsOf(info)});
     }
     for (const scene::GeneratorInfo& info : context.generators) {
         names.generators.emplace_back(info.name);
@@ -171,9 +212,9 @@ int describe(const Context& context, const DescribeOptions& options) {
     for (const std::filesystem::path& file : paperConfigs()) {
         request.configs.push_back(file.string());
     }
-    if (name.ends_with(".yaml")) request.configs = {name};
+    if (isYamlFile(name)) request.configs = {name};
     for (const config::Experiment& experiment : loadExperiments(request, "full")) {
-        if (experiment.id == name || name.ends_with(".yaml")) {
+        if (experiment.id == name || isYamlFile(name)) {
             describeExperiment(experiment);
             return kExitOk;
         }

@@ -1,6 +1,9 @@
 #include "runner/cli/experiments.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <set>
 
@@ -47,12 +50,36 @@ bool isTable(const fs::path& file, std::string_view table) {
     return stem == table || (dash != std::string::npos && stem.substr(dash + 1) == table);
 }
 
+/// Whether a pattern is meant, and of "zju2005/table-2.1" or "zju2005/2.1".
+bool matches(const fs::path& file, const std::string& pattern) {
+    if (pattern.find_first_of("*?[") == std::string::npos) return false;
+    const std::string stem = file.stem().string();
+    const std::string number = stem.substr(stem.find('-') + 1);
+    return std::ranges::any_of(std::array{stem, number}, [&](const std::string& name) {
+        return ::fnmatch(pattern.c_str(), (paperOf(file) + "/" + name).c_str(), 0) == 0;
+    });
+}
+
 /// expect-software.yaml is beside the configs, but none.
 bool isConfig(const fs::path& file) {
     return file.extension() == ".yaml" && !file.stem().string().starts_with("expect-");
 }
 
 }  // namespace
+
+std::vector<fs::path> runFolders() {
+    std::vector<fs::path> folders;
+    std::error_code isAbsent;
+    for (const fs::directory_entry& folder : fs::directory_iterator("runs", isAbsent)) {
+        if (fs::is_regular_file(folder.path() / "plan.json")) folders.push_back(folder.path());
+    }
+    std::ranges::sort(folders);
+    return folders;
+}
+
+bool isYamlFile(const fs::path& name) {
+    return name.extension() == ".yaml" || name.extension() == ".yml";
+}
 
 std::vector<fs::path> paperConfigs() {
     std::vector<fs::path> files;
@@ -83,7 +110,7 @@ std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names)
     const std::vector<std::string> known = paperNames();
     std::vector<std::string> found;
     for (const std::string& name : names) {
-        if (fs::path(name).extension() == ".yaml") {  // a config of the user's own
+        if (isYamlFile(name)) {  // a config of the user's own
             found.push_back(name);
             continue;
         }
@@ -93,7 +120,8 @@ std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names)
         for (const fs::path& file : all) {
             const bool isMeant =
                 slash == std::string::npos || isTable(file, name.substr(slash + 1));
-            if (paperOf(file) == paper && isMeant) found.push_back(file.string());
+            const bool isOfPaper = paperOf(file) == paper;
+            if ((isOfPaper && isMeant) || matches(file, name)) found.push_back(file.string());
         }
         if (found.size() == before) {
             throw UsageError("unknown paper or table '" + name + "'" + suggestion(name, known) +

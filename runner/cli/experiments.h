@@ -18,8 +18,15 @@ std::vector<std::filesystem::path> paperConfigs();
 /// Each "PAPER" and its "PAPER/TABLE"s.
 std::vector<std::string> paperNames();
 
+/// The run directories in runs/, by name, which begins with their time: the newest last.
+std::vector<std::filesystem::path> runFolders();
+
+/// Whether the name ends in .yaml or .yml.
+bool isYamlFile(const std::filesystem::path& name);
+
 /// The config files behind "PAPER" and "PAPER/TABLE" (all papers for no name), as absolute paths;
-/// a name that ends in .yaml is a config itself.
+/// "zju2005/figure-*" and "*/2.?" are patterns. A name that ends in .yaml or .yml is a config
+/// itself.
 /// Throws UsageError for names that are none, with the nearest.
 std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names);
 

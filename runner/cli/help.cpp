@@ -56,29 +56,6 @@ std::size_t widthOf(std::string_view text) {
     }));
 }
 
-/// `name`, and `doc` wrapped beside it from `column` on.
-std::string entryLines(const std::string& name, const std::string& doc, std::size_t column) {
-    std::string text;
-    std::string line = name;
-    if (widthOf(line) + 2 > column) {
-        text = line + "\n";
-        line.clear();
-    }
-    line.append(column - widthOf(line), ' ');
-    for (const std::string& word : split(doc, ' ')) {
-        const bool isFirst = line.find_last_not_of(' ') == std::string::npos || line.back() == ' ';
-        if (!isFirst && widthOf(line) + 1 + widthOf(word) > kScreenWidth) {
-            text += line + "\n";
-            line = std::string(column, ' ');
-        } else if (!isFirst) {
-            line += ' ';
-        }
-        line += word;
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    return text + line + "\n";
-}
-
 bool isChoice(const std::string& value) {
     return value.find('|') != std::string::npos;
 }
@@ -144,6 +121,28 @@ void setFormatter(CLI::App& app, const std::shared_ptr<CLI::FormatterBase>& form
 }
 
 }  // namespace
+
+std::string entryLines(const std::string& name, const std::string& doc, std::size_t column) {
+    std::string text;
+    std::string line = name;
+    if (widthOf(line) + 2 > column) {
+        text = line + "\n";
+        line.clear();
+    }
+    line.append(column - widthOf(line), ' ');
+    for (const std::string& word : split(doc, ' ')) {
+        const bool isFirst = line.find_last_not_of(' ') == std::string::npos || line.back() == ' ';
+        if (!isFirst && widthOf(line) + 1 + widthOf(word) > kScreenWidth) {
+            text += line + "\n";
+            line = std::string(column, ' ');
+        } else if (!isFirst) {
+            line += ' ';
+        }
+        line += word;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    return text + line + "\n";
+}
 
 void arrangeHelp(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands({})) {

@@ -31,6 +31,9 @@ struct HelpEntry {
 /// The arguments and options of a command.
 std::vector<HelpEntry> helpEntries(const CLI::App& app);
 
+/// Lines of a screen's width: `name`, and `doc` wrapped beside it from `column` on.
+std::string entryLines(const std::string& name, const std::string& doc, std::size_t column);
+
 /// "gfxrepro run [OPTION…] [CONFIG…]" for the full `name` of a command.
 std::string usageLine(const CLI::App& app, const std::string& name);
 

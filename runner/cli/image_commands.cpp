@@ -1,7 +1,9 @@
 #include "runner/cli/image_commands.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
+#include "runner/core/error.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::cli {
@@ -10,6 +12,10 @@ namespace {
 
 CLI::Option* addFile(CLI::App* app, const char* name, std::string& file, const char* doc) {
     return app->add_option(name, file, doc)->required()->option_text("FILE");
+}
+
+void addOut(CLI::App* app, std::string& file, const char* doc) {
+    app->add_option("--out", file, doc)->required()->option_text("FILE");
 }
 
 /// `values` as the help shows them: "a|b|c".
@@ -43,7 +49,7 @@ void addDiff(CLI::App& image, ImageDiffOptions& o, std::function<int()>& command
 void addConvert(CLI::App& image, ImageConvertOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("convert", "EXR to PNG and back; one channel in colours");
     addFile(app, "in", o.in, "EXR or PNG");
-    addFile(app, "out", o.out, "EXR or PNG");
+    addOut(app, o.out, "EXR or PNG");
     app->add_option("--exposure", o.exposureStops, "colours times 2^STOPS")
         ->check(CLI::Range(-100.0, 100.0))
         ->option_text("STOPS");
@@ -60,7 +66,7 @@ void addConvert(CLI::App& image, ImageConvertOptions& o, std::function<int()>& c
 void addCrop(CLI::App& image, ImageCropOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("crop", "a part of an image, its pixels magnified");
     addFile(app, "in", o.in, "EXR (all channels stay) or PNG");
-    addFile(app, "out", o.out, "of the same kind");
+    addOut(app, o.out, "of the same kind");
     const auto addNumber = [&](const char* name, int& number, const char* doc, const char* text) {
         app->add_option(name, number, doc)->required()->option_text(text);
     };
@@ -74,8 +80,8 @@ void addCrop(CLI::App& image, ImageCropOptions& o, std::function<int()>& command
 
 void addSheet(CLI::App& image, ImageSheetOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("contact-sheet", "many images on one PNG");
-    addFile(app, "out", o.out, "PNG");
     app->add_option("files", o.files, "EXR or PNG, row by row")->required()->option_text("FILE");
+    addOut(app, o.out, "PNG");
     app->add_option("--columns", o.columns, "images side by side")
         ->check(CLI::Range(1, 100))
         ->option_text("N");
@@ -86,6 +92,15 @@ void addSheet(CLI::App& image, ImageSheetOptions& o, std::function<int()>& comma
 }
 
 }  // namespace
+
+void requireNoInput(const std::string& out, std::span<const std::string> inputs) {
+    for (const std::string& input : inputs) {
+        std::error_code isAbsent;
+        if (std::filesystem::equivalent(out, input, isAbsent)) {
+            throw UsageError("--out " + out + " is the input " + input + "; allowed: another file");
+        }
+    }
+}
 
 void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command) {
     CLI::App* image =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,5 +66,8 @@ int imageInfo(const std::string& file);
 
 /// Adds them to the program's; `command` becomes the one that was chosen.
 void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command);
+
+/// Throws UsageError where `out` is one of the files that are read.
+void requireNoInput(const std::string& out, std::span<const std::string> inputs);
 
 }  // namespace gfxrepro::cli

@@ -164,6 +164,7 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
 
 int imageConvert(const ImageConvertOptions& options) {
     image::isExrFile(options.in);
+    requireNoInput(options.out, {&options.in, 1});
     if (image::isExrFile(options.out)) {
         image::writeExr(options.out, exrFrom(options));
     } else {

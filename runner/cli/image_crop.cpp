@@ -17,6 +17,7 @@ int imageCrop(const ImageCropOptions& options) {
                         "convert' makes one of the other",
                         options.in, options.out));
     }
+    requireNoInput(options.out, {&options.in, 1});
     const image::Rectangle part{options.left, options.top, options.width, options.height};
     if (isExr) {
         image::writeExr(options.out,

@@ -14,6 +14,7 @@ int imageSheet(const ImageSheetOptions& options) {
     if (image::isExrFile(options.out)) {
         throw UsageError(options.out + ": a contact sheet is a .png");
     }
+    requireNoInput(options.out, options.files);
     std::vector<image::Image8> images;
     for (const std::string& file : options.files) {
         images.push_back(image::isExrFile(file) ? image::toSrgb8(image::readLinear(file))

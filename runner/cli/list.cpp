@@ -68,15 +68,32 @@ Rows generators(const Context& context) {
     return rows;
 }
 
+/// What first measured a run.
+std::string commandOf(const fs::path& manifest) {
+    std::error_code isAbsent;
+    if (!fs::is_regular_file(manifest, isAbsent)) return "not begun";
+    const auto json = nlohmann::json::parse(readFile(manifest), nullptr, false);
+    const nlohmann::json::json_pointer first("/invocations/0/command");
+    const bool isSaid = json.is_object() && json.contains(first) && json[first].is_string();
+    return isSaid ? json[first].get<std::string>() : "not finished";
+}
+
+/// Those in runs/, the newest last.
+Rows runs() {
+    Rows rows;
+    for (const fs::path& run : runFolders()) {
+        rows.push_back({run.string(), commandOf(run / "manifest.json")});
+    }
+    return rows;
+}
+
 }  // namespace
 
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson) {
     const std::map<std::string, std::function<Rows()>> kinds = {
-        {"configs", configs},
-        {"generators", [&] { return generators(context); }},
-        {"scenes", [&] { return scenes(context, assets); }},
-        {"tables", tables},
-        {"techniques", [&] { return techniques(context); }},
+        {"configs", configs}, {"generators", [&] { return generators(context); }},
+        {"runs", runs},       {"scenes", [&] { return scenes(context, assets); }},
+        {"tables", tables},   {"techniques", [&] { return techniques(context); }},
     };
     const auto kind = kinds.find(what);
     if (kind == kinds.end()) {

@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
 #include "runner/core/error.h"
 #include "runner/core/text.h"
@@ -30,8 +33,9 @@ UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
         if (extra.starts_with("-")) {
             const std::string option = extra.substr(0, extra.find('='));
             return UsageError(name + ": unknown option '" + option + "'" +
-                              suggestion(option, optionNames(command)) + "; see '" + name +
-                              " --help'");
+                              suggestion(option, optionNames(command)) +
+                              (&command == &app ? "; see 'gfxrepro --help'"
+                                                : "; see 'gfxrepro help " + name + "'"));
         }
         if (&command == &app) {
             return UsageError("unknown command '" + extra + "'" +
@@ -42,11 +46,43 @@ UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
     return UsageError(name + ": " + problem.what());
 }
 
+/// `latest` is the newest run of runs/ wherever a run is named.
+void takeLatest(CLI::App& app) {
+    const auto toFolder = [](std::string& name) {
+        if (name != "latest" || std::filesystem::exists(name)) return std::string();
+        const std::vector<std::filesystem::path> runs = runFolders();
+        if (runs.empty()) return std::string("latest: there is no run in runs/");
+        name = runs.back().string();
+        return std::string();
+    };
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        for (CLI::Option* option : command->get_options()) {
+            if (valueName(*option) == "RUN") {
+                option->transform(CLI::Validator(toFolder, "", "latest"));
+            }
+        }
+    }
+}
+
+/// `gfxrepro help run` is `gfxrepro run --help`, `gfxrepro version` is `gfxrepro --version`.
+std::vector<const char*> spelledOut(int argc, const char* const* argv) {
+    std::vector<const char*> words(argv, argv + argc);
+    if (argc < 2) return words;
+    if (std::string_view(words[1]) == "version" && argc == 2) words[1] = "--version";
+    if (std::string_view(words[1]) == "help") {
+        words.erase(words.begin() + 1);
+        words.push_back("--help");
+    }
+    return words;
+}
+
 }  // namespace
 
 void parse(CLI::App& app, int argc, const char* const* argv) {
+    takeLatest(app);
     try {
-        app.parse(argc, argv);
+        const std::vector<const char*> words = spelledOut(argc, argv);
+        app.parse(static_cast<int>(words.size()), words.data());
     } catch (const CLI::Success& help) {  // --help, --version: CLI11 answers them by throwing
         std::ostringstream text;
         app.exit(help, text, text);

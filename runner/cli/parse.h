@@ -6,7 +6,8 @@
 namespace gfxrepro::cli {
 
 /// Runs the callbacks of the commands that were named; none where help or version was printed.
-/// Throws UsageError, with the nearest name, for what is unknown.
+/// Throws UsageError, with the nearest name, for what is unknown. `gfxrepro help run` is `gfxrepro
+/// run --help`, `gfxrepro version` is `gfxrepro --version`.
 void parse(CLI::App& app, int argc, const char* const* argv);
 
 }  // namespace gfxrepro::cli

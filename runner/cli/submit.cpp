@@ -160,7 +160,7 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     for (std::size_t i = 0; i < cut.plan.cases.size(); ++i) {
         const config::Measure& measure = cut.plan.cases[i].measure;
         s.isExclusive = s.isExclusive || measure.lane == config::Measure::Lane::Timing;
-        cut.unitCounts[static_cast<std::size_t>(shardOf[i])] += measure.processes;
+        cut.unitCounts[static_cast<std::size_t>(shardOf[i])] += measure.certainRounds();
         cut.timesS[static_cast<std::size_t>(shardOf[i])] += timesS[i];
     }
     tell("{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(), s.shardCount,

@@ -192,6 +192,22 @@ Node paramsByScene(const Node& document) {
     return scenes;
 }
 
+/// A swept axis wins over a value of a file that is extended; of one file, or of the command line,
+/// the value would be ignored.
+void requireNotFixed(const Experiment& experiment) {
+    if (!experiment.sweep.isMap()) return;
+    for (const auto& [axis, values] : experiment.sweep.entries()) {
+        if (values.isNull() || !experiment.params.find(axis)) continue;
+        const SourceLocation swept = experiment.sweep.keyLocation(axis);
+        const SourceLocation fixed = experiment.params.find(axis)->location();
+        const bool isTyped = fixed.file.text().starts_with(kCommandLine);
+        if (!isTyped && !(fixed.file == swept.file && fixed.line > 0)) continue;
+        throw Error(fixed, "'" + axis + "' is swept, too, in " + toString(swept) +
+                               (isTyped ? "; use --sweep " + axis + "=… instead"
+                                        : "; allowed: in 'params' or in 'sweep'"));
+    }
+}
+
 void readMeasurement(const Node& document, Experiment& experiment) {
     const auto section = [&](const char* key) {
         const Node* node = document.find(key);
@@ -212,10 +228,12 @@ void readMeasurement(const Node& document, Experiment& experiment) {
         throwNotAllowed(experiment.sceneInstead, "scene_instead", "a map {scene: scene}");
     }
     experiment.sweep = section("sweep");
+    requireNotFixed(experiment);
     Params output(section("output"), "output");
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
     Params measure(section("measure"), "measure");
-    experiment.measure = readMeasure(measure);
+    experiment.measure =
+        readMeasure(measure, experiment.kind == Kind::Sweep && !document.find("layout"));
     if (const Node* given = document.find("picture_tolerance")) {
         Params tolerance(*given, "picture_tolerance");
         experiment.pictureTolerance = readPictureTolerance(tolerance);
@@ -326,6 +344,10 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
 
 Experiment experimentFromDocument(const Node& document, const std::filesystem::path& file) {
     return readExperiment(document, file, false);
+}
+
+bool Experiment::hasDefaultLayout() const {
+    return kind == Kind::Sweep && !technique.empty() && !layout.isGiven;
 }
 
 bool Experiment::isPublished() const {

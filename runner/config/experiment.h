@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runner/config/node.h"
+#include "runner/config/outputs.h"
 
 namespace gfxrepro::config {
 
@@ -52,11 +53,16 @@ struct Measure {
     double timeBudgetS = 60.0;  // of all rounds of the experiment
     int frames = 1;             // frames of a path; each is repeated
     int sceneSeeds = 1;         // samples of a generated scene: its seed and those that follow it
-    double timeLimitS = 120.0;  // of the whole case, scene loading included
+    /// Timing lane: rounds that are measured whatever they take; of `processes` the others are
+    /// begun only where they end within `timeBudgetS`. 0: all.
+    int processesAtLeast = 0;
+    double timeLimitS = 120.0;       // of the whole case, scene loading included
     long long memoryLimitBytes = 0;  // resident; 0: none
 
     /// Whether rounds may follow the first `processes`.
     bool mayContinue() const;
+    /// Rounds that are measured whatever they take.
+    int certainRounds() const;
 };
 
 /// `picture_tolerance:` — how far apart the pictures of a case may be that two builds have
@@ -248,7 +254,10 @@ struct Experiment {
     /// compare with print: in a sweep that prints nothing, and without a technique.
     Node paperDocument;
     std::vector<PaperCase> paperCases;  // its cases; a plan fills them in
+    Outputs outputs;  // what its cases record, where it has no layout; a plan fills it in
 
+    /// Whether its table is made of what was recorded: an experiment of one's own without a layout.
+    bool hasDefaultLayout() const;
     /// Whether what is measured stands for something published: all but sweeps without `printed`.
     bool isPublished() const;
 

@@ -115,6 +115,40 @@ Json axisOf(const std::string& technique, const std::string& param) {
     return orNull(anyOf({listOf(std::move(value), 1), refTo("axis")}));
 }
 
+Json namesType(const std::vector<std::string>& names) {
+    Json exact = Json::array({nullptr});
+    Json types = Json::array();
+    for (const std::string& name : names) {
+        if (name.ends_with('*')) {
+            types.push_back({{"pattern", fmt::format("^{}", name.substr(0, name.size() - 1))}});
+        } else {
+            exact.push_back(name);
+        }
+    }
+    types.push_back({{"enum", std::move(exact)}});
+    return types.size() == 1 ? types[0] : Json{{"anyOf", std::move(types)}};
+}
+
+/// What a layout may show of a technique: its metrics and passes.
+void defineLayout(const SchemaNames::Technique& technique, Json& definitions) {
+    std::vector<std::string> metrics, passes;
+    for (const MetricInfo& info : technique.outputs.metrics) metrics.push_back(info.name);
+    for (const MetricInfo& info : technique.outputs.metrics) {
+        if (info.unit == "%") metrics.push_back(info.name + std::string(kShareOf));
+    }
+    for (const PassInfo& info : technique.outputs.passes) passes.push_back(info.name);
+    definitions["metric_" + technique.name] = namesType(metrics);
+    const Json metric = refTo("metric_" + technique.name);
+    Json parts = {{"type", "object"},
+                  {"properties", {{"metric", metric}, {"pass", namesType(passes)}}}};
+    definitions["cell_" + technique.name] = parts;
+    const Json labels = {{"additionalProperties",
+                          {{"anyOf", Json::array({metric, refTo("cell_" + technique.name)})}}}};
+    definitions["layout_" + technique.name] = {
+        {"properties",
+         {{"rows", labels}, {"columns", labels}, {"axes", {{"additionalProperties", labels}}}}}};
+}
+
 /// The parameters of a technique; its sweep, which has them as axes.
 void defineTechnique(const SchemaNames::Technique& technique, Json& definitions) {
     Json params = Json::object();
@@ -141,6 +175,7 @@ Json conditionOf(const SchemaNames::Technique& technique) {
                            {"sweep", refTo("sweep_" + technique.name)}};
     Json profile = {{"type", {"object", "null"}}, {"properties", measured}};
     Json properties = measured;
+    properties["layout"] = refTo("layout_" + technique.name);
     properties["profiles"] = {{"additionalProperties", std::move(profile)}};
     return {{"if",
              {{"properties", {{"technique", {{"const", technique.name}}}}},
@@ -154,6 +189,7 @@ void addNames(const SchemaNames& names, Json& root) {
     Json techniques = Json::array();
     for (const SchemaNames::Technique& technique : names.techniques) {
         defineTechnique(technique, definitions);
+        defineLayout(technique, definitions);
         root["allOf"].push_back(conditionOf(technique));
         techniques.push_back(technique.name);
     }

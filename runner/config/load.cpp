@@ -324,7 +324,7 @@ Override parseOverride(const std::string& text) {
     if (trimmed(text.substr(equals + 1)).empty()) {
         throw UsageError("'" + text + "' on the command line has no value; null removes the key");
     }
-    const SourceLocation where{"command line, " + text, 0, 0};
+    const SourceLocation where{kCommandLine + text, 0, 0};
     const Node value = parseYaml(text.substr(equals + 1), where.file.text());
     return {std::string(trimmed(text.substr(0, equals))), relocated(value, where)};
 }

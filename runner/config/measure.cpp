@@ -1,5 +1,6 @@
 // The sections whose keys are declared where they are read: `output`, `measure`,
 // `picture_tolerance`.
+#include <algorithm>
 #include <cmath>
 
 #include "runner/config/params.h"
@@ -12,6 +13,11 @@ bool Measure::mayContinue() const {
            processes < processesAtMost;
 }
 
+int Measure::certainRounds() const {
+    const bool isBounded = lane == Lane::Timing && processesAtLeast > 0;
+    return isBounded ? std::min(processesAtLeast, processes) : processes;
+}
+
 std::pair<int, int> readOutput(Params& params) {
     const int width =
         params.getInt("width", 512, {"width of the image", "pixels", 1, kMaxOutputPx});
@@ -21,12 +27,20 @@ std::pair<int, int> readOutput(Params& params) {
     return {width, height};
 }
 
-Measure readMeasure(Params& params) {
+Measure readMeasure(Params& params, bool isOwn) {
     constexpr Choice<Measure::Lane> kLanes[] = {
         {Measure::Lane::Quality, "quality", "may run beside others"},
         {Measure::Lane::Timing, "timing", "runs alone"}};
     constexpr double kMax = 1'000'000;
+    // Who says nothing of how to measure, or what to show, wants times, in about a minute.
+    const bool isTimed = isOwn && !params.isGiven("lane") && !params.isGiven("scene_seeds");
     Measure measure;
+    if (isTimed) {
+        measure.lane = Measure::Lane::Timing;
+        measure.warmup = 1;
+        measure.processes = kFewestRounds;
+        measure.processesAtLeast = 1;
+    }
     measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
     measure.warmup = params.getInt("warmup", measure.warmup,
                                    {"iterations before the first measured one", "", 0, kMax});
@@ -45,6 +59,11 @@ Measure readMeasure(Params& params) {
     measure.timeBudgetS = params.getDouble(
         "time_budget_s", measure.timeBudgetS,
         {"of all rounds of the file: none is begun to end later", "seconds", 0, 1e9});
+    measure.processesAtLeast = params.getInt(
+        "processes_at_least", measure.processesAtLeast,
+        {"rounds whatever they take, of a table of times; the others only within time_budget_s; "
+         "0: all",
+         "", 0, kMax});
     measure.frames = params.getInt("frames", measure.frames,
                                    {"frames of a path; each is repeated", "", 1, kMax});
     measure.sceneSeeds = params.getInt(

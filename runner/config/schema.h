@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runner/config/outputs.h"
 #include "runner/config/params.h"
 
 namespace gfxrepro::config {
@@ -71,6 +72,7 @@ struct SchemaNames {
     struct Technique {
         std::string name;
         std::vector<ParamInfo> params;
+        Outputs outputs;
     };
     std::vector<Technique> techniques;
     std::vector<std::string> generators;

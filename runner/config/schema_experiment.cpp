@@ -55,7 +55,8 @@ SchemaSection content() {
           text()},
          {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
          {"scene_params", "{name: value}", "{}",
-          "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`",
+          "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
+          "height map beside this file: spacing_m, height_scale_m, no_data",
           mapOf(anything())},
          {"scene_seed",
           "whole number",
@@ -75,7 +76,9 @@ SchemaSection content() {
           mapOf(anything())},
          {"output", "map", "512 × 512", "size of the image", refTo("output")},
          {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
-         {"measure", "map", "once", "lane, warm-up, repeats and processes", refTo("measure")},
+         {"measure", "map",
+          "once; of sweep_of without layout and lane: timed, six rounds or a minute",
+          "lane, warm-up, repeats and processes", refTo("measure")},
          {"picture_tolerance", "map", "none",
           "what `gfxrepro compare` lets the pictures of two builds differ by: without it the "
           "values "
@@ -264,7 +267,7 @@ SchemaSection output() {
 
 SchemaSection measure() {
     Params params(Node(), "measure");
-    readMeasure(params);
+    readMeasure(params, false);
     return declared("measure", params);
 }
 

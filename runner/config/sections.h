@@ -72,14 +72,18 @@ const std::vector<std::string>& identityKeys();
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 
+/// Begins the place of what was given there.
+inline constexpr const char* kCommandLine = "command line, ";
+
 /// Most pixels along a side of the image.
 inline constexpr int kMaxOutputPx = 16384;
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
 
 /// The `measure`, `output` and `picture_tolerance` sections; their declarations are part of the
-/// schema.
-Measure readMeasure(Params& params);
+/// schema. `isOwn`: an experiment of one's own without a layout, which is timed unless it names a
+/// lane or seeds.
+Measure readMeasure(Params& params, bool isOwn);
 std::pair<int, int> readOutput(Params& params);
 PictureTolerance readPictureTolerance(Params& params);
 

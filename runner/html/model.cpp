@@ -126,6 +126,15 @@ const RunPart* Page::shown() const {
     return part == parts.end() ? nullptr : &*part;
 }
 
+bool Page::isOwn() const {
+    const RunPart* part = shown();
+    return part && !part->experiment->isPublished();
+}
+
+std::string Page::heading() const {
+    return isOwn() ? title : label + ". " + title;
+}
+
 std::string Model::letter(std::size_t run) {
     std::string before = run < 26 ? "" : letter(run / 26 - 1);
     return before += static_cast<char>('A' + run % 26);

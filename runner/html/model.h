@@ -50,6 +50,10 @@ struct Page {
     std::string paper() const { return id.substr(0, id.find('/')); }
     /// The first run's that has the table itself; null where none has.
     const RunPart* shown() const;
+    /// An experiment of one's own, which stands for nothing published.
+    bool isOwn() const;
+    /// "Table 2.1. Voxelization"; of an experiment of one's own its title alone.
+    std::string heading() const;
 };
 
 struct Model {
@@ -57,6 +61,8 @@ struct Model {
     std::vector<Page> pages;
 
     bool isComparison() const { return runs.size() > 1; }
+    /// One experiment of one's own, on whose page the report opens.
+    bool isOneOwn() const { return !isComparison() && pages.size() == 1 && pages[0].isOwn(); }
     /// "A", "B", … "Z", "AA", …
     static std::string letter(std::size_t run);
 };

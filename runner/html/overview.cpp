@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
@@ -222,6 +223,9 @@ std::string claimBadge(const ClaimResult& claim, const Page& page, const std::st
 }
 
 std::string pageLink(const Page& page) {
+    if (page.isOwn()) {
+        return fmt::format("<a href=\"#{}\">{}</a>", escapeXml(page.slug), escapeXml(page.title));
+    }
     return fmt::format("<a href=\"#{}\">{}</a> <span class=\"soft\">{}</span>",
                        escapeXml(page.slug), escapeXml(page.label), escapeXml(page.title));
 }
@@ -335,8 +339,17 @@ std::string runName(const ReportRun& run) {
 }
 
 std::string overviewHtml(const Model& model) {
-    return "<section class=\"page\" id=\"overview\">\n<h1>Published tables, measured again</h1>\n" +
-           countsHtml(model) + printedHtml(model) + filtersHtml(model) +
+    const bool isOwn = std::ranges::all_of(model.pages, &Page::isOwn);
+    const std::string title = model.isOneOwn() ? escapeXml(model.pages.front().title)
+                              : isOwn          ? "Experiments"
+                                               : "Published tables, measured again";
+    const bool hasClaims = std::ranges::any_of(model.pages, [](const Page& page) {
+        return std::ranges::any_of(page.parts,
+                                   [](const RunPart& part) { return !part.claims.empty(); });
+    });
+    return fmt::format("<section class=\"page\" id=\"overview\">\n<h1>{}</h1>\n", title) +
+           (isOwn && !hasClaims ? "" : countsHtml(model)) + printedHtml(model) +
+           filtersHtml(model) +
            (model.isComparison() ? gridOfSeveralHtml(model) : gridOfOneHtml(model)) +
            newsHtml(model) + missingHtml(model) + "<h3>What ran on what</h3>\n" + factsHtml(model) +
            "</section>\n";

@@ -156,8 +156,8 @@ std::string againHtml(const RunPart& part, const report::ReportContext& context)
 
 std::string pageHtml(const Page& page, const Model& model) {
     std::string html = fmt::format(
-        "<section class=\"page\" id=\"{}\">\n<h2>{}. {}</h2>\n<p class=\"soft small\">{}</p>\n",
-        escapeXml(page.slug), escapeXml(page.label), escapeXml(page.title), escapeXml(page.id));
+        "<section class=\"page\" id=\"{}\">\n<h2>{}</h2>\n<p class=\"soft small\">{}</p>\n",
+        escapeXml(page.slug), escapeXml(page.heading()), escapeXml(page.id));
     const RunPart* shown = page.shown();
     if (!shown) return html + claimsHtml(page, model) + "</section>\n";
     html += tableHtml(page, model);

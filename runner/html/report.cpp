@@ -21,15 +21,17 @@ std::string navigationHtml(const Model& model) {
         "<a class=\"previous\">← previous</a> <a class=\"next\">next →</a>\n"
         "<select aria-label=\"page\"><option value=\"overview\">Overview</option>";
     for (const Page& page : model.pages) {
-        html += fmt::format("<option value=\"{}\">{} · {}. {}</option>", escapeXml(page.slug),
-                            escapeXml(page.paper()), escapeXml(page.label), escapeXml(page.title));
+        const std::string paper = page.isOwn() ? "" : page.paper() + " · ";
+        html += fmt::format("<option value=\"{}\">{}{}</option>", escapeXml(page.slug),
+                            escapeXml(paper), escapeXml(page.heading()));
     }
     return html + "</select></nav>\n";
 }
 
-std::string titleOf(std::span<const ReportRun> runs) {
+std::string titleOf(const Model& model) {
+    if (model.isOneOwn()) return model.pages.front().title;
     std::string names;
-    for (const ReportRun& run : runs) {
+    for (const ReportRun& run : model.runs) {
         const std::string name = fs::absolute(run.folder).lexically_normal().filename().string();
         names += (names.empty() ? "" : ", ") + name;
     }
@@ -49,9 +51,12 @@ void writeReport(const fs::path& file, std::span<const ReportRun> runs) {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<link rel=\"icon\" href=\"data:,\">\n"
         "<title>gfxrepro: {}</title>\n<style>\n{}</style>\n</head>\n<body>\n",
-        escapeXml(titleOf(runs)), kStyle);
-    html += navigationHtml(model) + "<main>\n" + overviewHtml(model);
+        escapeXml(titleOf(model)), kStyle);
+    html += navigationHtml(model) + "<main>\n";
+    // The first section is the one that the report opens with.
+    if (!model.isOneOwn()) html += overviewHtml(model);
     for (const Page& page : model.pages) html += pageHtml(page, model);
+    if (model.isOneOwn()) html += overviewHtml(model);
     html += fmt::format(
         "</main>\n<aside class=\"cases-shown\" hidden></aside>\n{}<script>\n{}"
         "</script>\n</body>\n</html>\n",

@@ -87,6 +87,13 @@ class Overlay {
     std::vector<std::vector<std::string>> rows_;
 };
 
+/// Which way a column is better.
+std::string directionHtml(config::Better better) {
+    if (better == config::Better::Neither) return "";
+    return fmt::format(" <span class=\"sub\" title=\"{}\">{}</span>", config::betterText(better),
+                       better == config::Better::Lower ? "↓" : "↑");
+}
+
 std::string headHtml(const Overlay& overlay, bool isComparison) {
     const auto isGroup = [&](const auto& column) { return overlay.widthOf(column.label) > 1; };
     const bool isTwoLines = std::ranges::any_of(overlay.columns(), isGroup);
@@ -106,8 +113,11 @@ std::string headHtml(const Overlay& overlay, bool isComparison) {
         const std::string span = isGroup(column)
                                      ? fmt::format(" colspan=\"{}\"", overlay.widthOf(column.label))
                                      : std::string(rowSpan);
-        head += fmt::format("<th class=\"{}\"{}>{}{}</th>", isGroup(column) ? "group" : "num", span,
-                            escapeXml(column.label), unit);
+        const std::string title =
+            column.doc.empty() ? "" : fmt::format(" title=\"{}\"", escapeXml(column.doc));
+        head +=
+            fmt::format("<th class=\"{}\"{}{}>{}{}{}</th>", isGroup(column) ? "group" : "num", span,
+                        title, escapeXml(column.label), unit, directionHtml(column.better));
         if (!isGroup(column)) continue;
         if (overlay.hasPrinted(column.label)) below += "<th class=\"sub\">printed</th>";
         for (const std::size_t run : overlay.runs()) {
@@ -215,10 +225,18 @@ std::string parametersHtml(const Page& page, const Model& model) {
     return html;
 }
 
+/// What is alike in all rows of a table that nobody laid out.
+std::string constantsHtml(const Page& page) {
+    const RunPart* shown = page.shown();
+    if (!shown || shown->table.constants.empty()) return "";
+    return fmt::format("<p class=\"parameters\">In every row: {}.</p>\n",
+                       escapeXml(fmt::format("{}", fmt::join(shown->table.constants, ", "))));
+}
+
 std::string tableHtml(const Page& page, const Model& model) {
     const Overlay overlay(page);
     if (overlay.isEmpty()) return "";
-    std::string html = parametersHtml(page, model) +
+    std::string html = parametersHtml(page, model) + constantsHtml(page) +
                        "<div class=\"scroll\"><table class=\"results\">\n" +
                        headHtml(overlay, model.isComparison()) + "<tbody>\n";
     bool hasStandIn = false;

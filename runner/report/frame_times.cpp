@@ -205,6 +205,8 @@ std::vector<std::string> outlierTexts(const FrameTimes& times) {
 }
 
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times) {
+    const bool hasAsked = times.roundCount() >= static_cast<std::size_t>(measure.processes);
+    if (!hasAsked && measure.certainRounds() < measure.processes) return "time_budget_s";
     if (!measure.mayContinue()) return "processes";
     if (times.isKnownTo(measure.relativeError, measure.processes)) return "relative_error";
     const bool isMost = times.roundCount() >= static_cast<std::size_t>(measure.processesAtMost);

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "runner/core/files.h"
+#include "runner/report/default_layout.h"
 #include "runner/report/figure.h"
 #include "runner/report/gnuplot.h"
 
@@ -70,7 +71,8 @@ std::vector<PlotFile> writePlots(const fs::path& runDir, const std::vector<Table
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<PlotFile> files;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        const std::vector<config::PlotSpec>& plots = experiments[i].plots;
+        const std::vector<config::PlotSpec> plots =
+            experiments[i].hasDefaultLayout() ? defaultPlots(tables[i]) : experiments[i].plots;
         for (std::size_t n = 0; n < plots.size(); ++n) {
             const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
             files.push_back(

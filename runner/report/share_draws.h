@@ -4,13 +4,14 @@
 #include <map>
 #include <string_view>
 
+#include "runner/config/outputs.h"
 #include "runner/report/sampling.h"
 
 namespace gfxrepro::report {
 
 /// A percentage is recorded with how many samples it is a share of in the metric of the same name
 /// and this ending: redundant_pct and redundant_pct_of (technique::Recorder::share()).
-inline constexpr std::string_view kShareOf = "_of";
+using config::kShareOf;
 
 /// What else the share could be in truth: as many draws as metrics' quantiles need from its
 /// posterior under Jeffreys' prior, Beta(k + ½, n − k + ½), which has an interval for shares of 0

@@ -247,10 +247,12 @@ Table transposed(const Table& table, std::size_t rowAxis) {
 Table buildTable(const config::Experiment& given, std::span<const PlannedCase> planned,
                  const std::vector<Record>& records) {
     config::Experiment experiment = given;
-    if (!given.layout.isGiven && given.kind == config::Experiment::Kind::Sweep) {
-        experiment.layout = defaultLayout(given, planned, records);
-    }
     Table table;
+    if (given.hasDefaultLayout()) {
+        DefaultLayout made = defaultLayout(given, planned, records);
+        experiment.layout = std::move(made.layout);
+        table.constants = std::move(made.constants);
+    }
     table.id = experiment.id;
     table.slug = experiment.slug();
     table.label = experiment.label();
@@ -278,6 +280,7 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
                 config::isCalibrated(experiment, row.labels, table.columns[i].label);
         }
     }
+    if (given.hasDefaultLayout()) describeColumns(given, layout, table);
     addTimes(experiment, records, table);
     layPrintedBeside(experiment, columns, table);
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {

@@ -102,6 +102,9 @@ struct TableRow {
 struct TableColumn {
     std::string label;  // "rasterization_ms"; several column axes are joined by "_"
     std::string unit;   // of the records, if they agree and are not scaled
+    /// Of a table that nobody laid out: what the technique declares of the metric.
+    std::string doc = {};
+    config::Better better = config::Better::Neither;
 };
 
 struct Table {
@@ -118,7 +121,9 @@ struct Table {
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;
     std::vector<TableRow> printedRows;  // printed, but not part of this run; no cell is planned
-    std::vector<std::string> notes;     // printed rows that found no place, and the like
+    /// "triangles 69,451": what a table that nobody laid out has in all rows alike.
+    std::vector<std::string> constants;
+    std::vector<std::string> notes;  // printed rows that found no place, and the like
     /// By how much two equal cases of this table would differ (frame_times.h), as a share; none
     /// with too few rounds.
     std::optional<double> wallNoise, processNoise;

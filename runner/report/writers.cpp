@@ -117,7 +117,12 @@ std::string boundsLegend(const Table& table) {
                                ? " [95 % interval; of a share that was counted once, by its count "
                                  "alone: other scenes may differ by more]"
                                : " [95 % interval]";
-    return fmt::format("Printed → measured{}{}.", table.hasShown(Bounds::Interval) ? interval : "",
+    const bool hasPrinted = std::ranges::any_of(table.rows, [](const TableRow& row) {
+        return std::ranges::any_of(row.cells,
+                                   [](const Cell& cell) { return cell.printed.has_value(); });
+    });
+    return fmt::format("{}{}{}.", hasPrinted ? "Printed → measured" : "Measured",
+                       table.hasShown(Bounds::Interval) ? interval : "",
                        table.hasShown(Bounds::Range)
                            ? " (range, min … max: too few processes for an interval)"
                            : "");
@@ -126,6 +131,9 @@ std::string boundsLegend(const Table& table) {
 std::string tableMarkdown(const Table& table) {
     std::string text = fmt::format("# {}\n\n", escapeMarkdown(table.label + ". " + table.title));
     text += table.isOnlyPrinted ? "As printed; nothing is measured." : boundsLegend(table);
+    if (!table.constants.empty()) {
+        text += fmt::format("\n\nIn every row: {}.", escapeMarkdown(joined(table.constants)));
+    }
     if (!table.hardware.empty())
         text += fmt::format(" Printed: {}.", escapeMarkdown(table.hardware));
     if (const std::string parameters = parametersLine(table); !parameters.empty())

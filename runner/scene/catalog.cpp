@@ -215,12 +215,42 @@ const SceneEntry& Catalog::entryNamed(const Node& reference) const {
                                           " (`gfxrepro list scenes` prints all)");
 }
 
+namespace {
+
+/// How the values of a height map of one's own become metres.
+void takeUnits(const std::string& name, const Node& params, SceneSource& source) {
+    HeightMapUnits& units = source.heightMap->units;
+    static const std::vector<std::string> kNames = {"spacing_m", "height_scale_m", "no_data"};
+    for (const auto& [key, value] : params.entries()) {
+        if (std::ranges::find(kNames, key) == kNames.end()) {
+            throw Error(params.keyLocation(key),
+                        fmt::format("height map '{}' has no parameter '{}'{}; allowed: {}", name,
+                                    key, suggestion(key, kNames), joined(kNames)));
+        }
+        const auto number = static_cast<float>(value.asDouble());
+        const bool isLength = key != "no_data";
+        if (isLength && !(number > 0.0F && number <= 1e6F)) {
+            throw Error(value.location(),
+                        fmt::format("{} is {}; allowed: above 0, at most 1e6", key, value.text()));
+        }
+        if (key == "spacing_m") units.spacingM = number;
+        if (key == "height_scale_m") units.heightScaleM = number;
+        if (key == "no_data") units.noData = number;
+    }
+}
+
+}  // namespace
+
 bool SceneSource::isSeeded() const {
     if (generator) return generator->isSeeded;
     return heightMap && heightMap->detailM > 0.0F;
 }
 
 void takeParams(const std::string& name, const Node& params, SceneSource& source) {
+    if (source.heightMap && config::isSceneFile(name)) {
+        takeUnits(name, params, source);
+        return;
+    }
     if (!source.generator) {
         const std::string& first = params.entries().front().first;
         throw Error(
@@ -248,8 +278,9 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
         source.file = fs::absolute(fs::path(reference.location().file.text()).parent_path() / name)
                           .lexically_normal();
         source.where = reference.location();
+        if (isHeightMapFile(source.file)) source.heightMap = HeightMapSource{};
         try {
-            requireKnownExtension(name);
+            if (!source.heightMap) requireKnownExtension(name);
         } catch (const Error& error) {
             throw Error(reference.location(), std::string("scene file ") + error.what());
         }

@@ -54,8 +54,9 @@ struct SceneEntry {
     std::filesystem::path path;
 };
 
-/// Lays parameters over those of the source's generator. Throws Error where the scene `name` is not
-/// generated, and for what the generator does not take.
+/// Lays parameters over those of the source's generator; of a height map's own file they are
+/// spacing_m (1), height_scale_m (1) and no_data. Throws Error where the scene `name` is neither,
+/// and for what is not taken.
 void takeParams(const std::string& name, const config::Node& params, SceneSource& source);
 
 class Catalog {

@@ -9,7 +9,49 @@ void Recorder::share(std::string_view name, double part, double whole, std::stri
                      std::string_view pass) {
     if (whole == 0.0) return;
     metric(name, 100.0 * part / whole, "%", pass);
-    metric(std::string(name).append("_of"), whole, unit, pass);
+    metric(std::string(name).append(config::kShareOf), whole, unit, pass);
+}
+
+std::span<const config::MetricInfo> commonMetrics() {
+    using config::Better;
+    constexpr bool kIsDetail = true;
+    static const std::vector<config::MetricInfo> metrics = {
+        {"wall_time_ms", "ms", "a frame, from the first call until the device is done",
+         Better::Lower},
+        {"gpu_time_ms", "ms", "a pass, by the device's clock", Better::Lower},
+        {"cpu_time_ms", "ms", "a pass on the processor", Better::Lower},
+        {"frame_rate", "1/s", "1000 ÷ wall_time_ms", Better::Higher, kIsDetail},
+        {"process_time_ms", "ms",
+         "CPU time of all threads in a frame or a pass; of a software device alone", Better::Lower,
+         kIsDetail},
+        {"setup_time_ms", "ms", "buffers, textures and shaders, once a process", Better::Lower,
+         kIsDetail},
+        {"load_time_ms", "ms", "reading or generating the scene, once a worker", Better::Lower,
+         kIsDetail},
+        {"scene_triangles", "triangle", "of the scene as it is loaded", Better::Neither, kIsDetail},
+        {"scene_vertices", "vertex", "of the scene as it is loaded", Better::Neither, kIsDetail},
+        {"scene_source", "enum", "0: a real model, 1: a stand-in, 2: generated", Better::Neither,
+         kIsDetail},
+        {"peak_memory_bytes", "byte", "most that the process held, without other cases' scenes",
+         Better::Lower, kIsDetail},
+        {"baseline_memory_bytes", "byte", "what it held before its first case", Better::Neither,
+         kIsDetail},
+        {"work_primitives", "primitive", "that a repeat drew, as the device counts them",
+         Better::Neither, kIsDetail},
+        {"work_fragments", "fragment", "likewise", Better::Neither, kIsDetail},
+        {"work_compute_invocations", "1", "likewise", Better::Neither, kIsDetail},
+        {"work_image_digest", "1", "of the picture: equal where repeats made the same",
+         Better::Neither, kIsDetail},
+    };
+    return metrics;
+}
+
+config::Outputs outputsOf(const TechniqueInfo& technique) {
+    const config::Outputs own = technique.outputs();
+    const std::span<const config::MetricInfo> common = commonMetrics();
+    config::Outputs all{{common.begin(), common.end()}, own.passes};
+    all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
+    return all;
 }
 
 const TechniqueInfo& findTechnique(std::span<const TechniqueInfo> techniques, std::string_view name,

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runner/config/outputs.h"
 #include "runner/config/params.h"
 #include "runner/gl/device.h"
 #include "runner/gl/objects.h"
@@ -70,8 +71,8 @@ struct ImageOptions {
 class Recorder {
   public:
     virtual ~Recorder() = default;
-    /// `metric` is snake_case with its unit where it has one ("memory_bytes"); `unit` is spelt out
-    /// ("voxel", "byte", "ms", "1"). A metric may be given once a pass and frame.
+    /// `metric`, its `unit` and `pass` as the technique declares them (TechniqueInfo::outputs). A
+    /// metric may be given once a pass and frame.
     virtual void metric(std::string_view metric, double value, std::string_view unit,
                         std::string_view pass = "") = 0;
     /// `part` of `whole` as the percentage `metric` ("redundant_pct"), with `whole` as
@@ -87,6 +88,9 @@ class Recorder {
     virtual std::filesystem::path artifact(std::string_view fileName) = 0;
 };
 
+/// A model has triangles or points.
+enum class SceneNeed { Nothing, Model, HeightMap };
+
 /// A method under measurement with its competitors. Life: constructor (parameters only, no GL) →
 /// setup → render, repeatedly → record, after the last repeat of a frame. Errors are thrown.
 class Technique {
@@ -99,13 +103,23 @@ class Technique {
     /// The 2D colour texture (floating point or normalized) that render() left, if there is one: a
     /// blank picture, or one that changes between repeats of a frame, voids their times.
     virtual const gl::Texture* frameImage() const { return nullptr; }
+    /// What it asks of the case's scene: known without a device.
+    virtual SceneNeed sceneNeed() const { return SceneNeed::Nothing; }
 };
 
 struct TechniqueInfo {
     std::string_view name;
     std::string_view summary;
     std::unique_ptr<Technique> (*create)(config::Params& params);
+    /// All that record() may give and render() may scope: nothing else can be recorded.
+    config::Outputs (*outputs)();
 };
+
+/// What the runner records of every case, whatever the technique.
+std::span<const config::MetricInfo> commonMetrics();
+
+/// What a case of the technique records: that, and its own.
+config::Outputs outputsOf(const TechniqueInfo& technique);
 
 /// Every technique, from techniques/registry.cpp.
 std::span<const TechniqueInfo> registeredTechniques();

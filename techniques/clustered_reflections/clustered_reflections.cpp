@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/scene/animation.h"
+#include "techniques/clustered_reflections/outputs.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/requirements.h"
 #include "techniques/reflections/gpu_ray_tracer.h"
@@ -100,6 +101,7 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 }  // namespace
 
 const technique::TechniqueInfo kClusteredReflections{
-    "clustered_reflections", "mirror and glossy reflections from clustered depth images", create};
+    "clustered_reflections", "mirror and glossy reflections from clustered depth images", create,
+    outputs};
 
 }  // namespace gfxrepro::clustered_reflections

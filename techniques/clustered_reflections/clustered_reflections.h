@@ -17,6 +17,7 @@ class ClusteredReflections final : public technique::Technique {
     explicit ClusteredReflections(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "techniques/depth_sampling/next_view.h"
+#include "techniques/depth_sampling/outputs.h"
 #include "techniques/depth_sampling/pictures.h"
 #include "techniques/depth_sampling/view_check.h"
 #include "techniques/depth_sampling/visibility_experiment.h"
@@ -228,7 +229,7 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
 
 const technique::TechniqueInfo kDepthSampling = {
     "depth_sampling",
-    "non-redundant depth images, conventional ones and depth peeling (xie2017, chapter 2)",
-    &create};
+    "non-redundant depth images, conventional ones and depth peeling (xie2017, chapter 2)", &create,
+    &outputs};
 
 }  // namespace gfxrepro::depth_sampling

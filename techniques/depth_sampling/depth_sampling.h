@@ -57,6 +57,7 @@ class DepthSampling final : public technique::Technique {
     explicit DepthSampling(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
 

@@ -7,6 +7,7 @@
 
 #include "runner/core/files.h"
 #include "techniques/kit/requirements.h"
+#include "techniques/point_splatting/outputs.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -143,6 +144,7 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 }  // namespace
 
 const technique::TechniqueInfo kPointSplatting{
-    "point_splatting", "adaptive EWA splatting of large point models (zju2005, chapter 3)", create};
+    "point_splatting", "adaptive EWA splatting of large point models (zju2005, chapter 3)", create,
+    outputs};
 
 }  // namespace gfxrepro::point_splatting

@@ -59,6 +59,7 @@ class PointSplatting final : public technique::Technique {
     explicit PointSplatting(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override { return &output(); }

@@ -198,17 +198,19 @@ void PointSplatting::recordCompression(technique::Recorder& recorder) const {
         "bit", "device");
 
     const CompressionErrors errors = compressionErrors(*model_);
-    const auto record = [&](const char* name, const ErrorStatistics& error, const char* unit) {
-        recorder.metric("compression_error_mean", error.mean, unit, name);
-        recorder.metric("compression_error_max", error.max, unit, name);
+    const auto record = [&](const char* name, const ErrorStatistics& error, bool isAngle) {
+        const std::string metric = isAngle ? "compression_angle" : "compression_error";
+        const char* unit = isAngle ? "degree" : "%";
+        recorder.metric(metric + "_mean", error.mean, unit, name);
+        recorder.metric(metric + "_max", error.max, unit, name);
         if (error.ofBound > 0.0) {
             recorder.metric("compression_error_of_bound", error.ofBound, "1", name);
         }
     };
-    record("position", errors.positionPct, "% of the patch's diagonal");
-    record("normal", errors.normalDeg, "°");
-    record("tangents", errors.tangentDeg, "°");
-    record("radius", errors.radiusPct, "% of the radius");
+    record("position", errors.positionPct, false);
+    record("normal", errors.normalDeg, true);
+    record("tangents", errors.tangentDeg, true);
+    record("radius", errors.radiusPct, false);
 }
 
 double PointSplatting::selectionMs() const {

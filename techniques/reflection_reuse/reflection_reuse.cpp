@@ -8,6 +8,7 @@
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/requirements.h"
+#include "techniques/reflection_reuse/outputs.h"
 #include "techniques/reflections/gpu_ray_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -135,6 +136,7 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 }  // namespace
 
 const technique::TechniqueInfo kReflectionReuse{
-    "reflection_reuse", "mirror reflections of key frames reused in the frames after them", create};
+    "reflection_reuse", "mirror reflections of key frames reused in the frames after them", create,
+    outputs};
 
 }  // namespace gfxrepro::reflection_reuse

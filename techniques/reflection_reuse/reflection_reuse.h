@@ -17,6 +17,7 @@ class ReflectionReuse final : public technique::Technique {
     explicit ReflectionReuse(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     /// Frames are consecutive. One that is rendered again starts from what was there before it.
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;

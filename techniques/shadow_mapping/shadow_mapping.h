@@ -58,6 +58,7 @@ class ShadowMapping final : public technique::Technique {
     explicit ShadowMapping(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override { return &image_->colour; }

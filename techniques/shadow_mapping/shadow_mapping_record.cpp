@@ -6,6 +6,7 @@
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
+#include "techniques/shadow_mapping/outputs.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
 
 namespace gfxrepro::shadow_mapping {
@@ -142,6 +143,6 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 }  // namespace
 
 const technique::TechniqueInfo kShadowMapping{
-    "shadow_mapping", "shadow maps compared in the shader or by the texture unit", create};
+    "shadow_mapping", "shadow maps compared in the shader or by the texture unit", create, outputs};
 
 }  // namespace gfxrepro::shadow_mapping

@@ -67,6 +67,7 @@ class SoftShadows final : public technique::Technique {
     explicit SoftShadows(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
 

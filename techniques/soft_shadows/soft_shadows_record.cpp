@@ -7,6 +7,7 @@
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
+#include "techniques/soft_shadows/outputs.h"
 #include "techniques/soft_shadows/soft_shadows.h"
 
 namespace gfxrepro::soft_shadows {
@@ -233,6 +234,7 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 }  // namespace
 
 const technique::TechniqueInfo kSoftShadows{
-    "soft_shadows", "soft shadows of a rectangular light from reconstructed depth images", create};
+    "soft_shadows", "soft shadows of a rectangular light from reconstructed depth images", create,
+    outputs};
 
 }  // namespace gfxrepro::soft_shadows

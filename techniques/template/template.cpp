@@ -34,6 +34,12 @@ class TemplateTechnique : public technique::Technique {
         params.finish();
     }
 
+    // `gfxrepro check` refuses a case without it.
+    technique::SceneNeed sceneNeed() const override {
+        return method_ == Method::Silhouette ? technique::SceneNeed::Model
+                                             : technique::SceneNeed::Nothing;
+    }
+
     // Compile, allocate, upload. The runner times it as set-up.
     void setup(technique::SetupContext& context) override {
         size_ = context.outputSizePx;
@@ -99,9 +105,15 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
     return std::make_unique<TemplateTechnique>(params);
 }
 
+// All that is recorded and timed, in the order in which tables show it; the runner refuses others.
+config::Outputs outputs() {
+    return {{{"mean_brightness", "1", "of all pixels", config::Better::Neither}},
+            {{"draw", "the whole picture"}}};
+}
+
 }  // namespace
 
 const technique::TechniqueInfo kTemplate{
-    "template", "the skeleton for new techniques: a ramp or a silhouette", create};
+    "template", "the skeleton for new techniques: a ramp or a silhouette", create, outputs};
 
 }  // namespace gfxrepro::template_

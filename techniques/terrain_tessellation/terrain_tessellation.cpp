@@ -10,6 +10,7 @@
 #include "runner/gl/gl.h"
 #include "techniques/kit/requirements.h"
 #include "techniques/terrain_tessellation/ground_picture.h"
+#include "techniques/terrain_tessellation/outputs.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {
@@ -187,6 +188,6 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 
 const technique::TechniqueInfo kTerrainTessellation{
     "terrain_tessellation", "height maps tessellated to the screen's resolution (zhang2012)",
-    create};
+    create, outputs};
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -54,6 +54,7 @@ class TerrainTessellation final : public technique::Technique {
     explicit TerrainTessellation(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::HeightMap; }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override { return &target_->colour; }

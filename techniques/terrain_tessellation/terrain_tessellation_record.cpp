@@ -205,7 +205,7 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
     const image::ImageF truthPicture = image::averaged(truth.picture, params_.supersampling);
     const glm::dvec3 channels = kit::channelErrors(picture, truthPicture, nullptr);
-    recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "1");
+    recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "level");
     recorder.metric("psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");
     recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
     if (!params_.showsPictures) return;

@@ -46,6 +46,12 @@ std::optional<scene::Box> readCut(config::Params& params) {
 DrawingSettings::DrawingSettings(config::Params& params, VoxelValue value) {
     draw.value = value;
     draw.mode = params.getEnum("draw", DrawMode::None, kModes, {"what is drawn of the grid"});
+    if (params.getBool("pictures", false,
+                       {"an opaque picture beside what is measured, where nothing is drawn"}) &&
+        !isOn()) {
+        draw.mode = DrawMode::Opaque;
+        isBeside = true;
+    }
     draw.opacity = static_cast<float>(params.getDouble(
         "opacity", 0.1, {"of a voxel, where voxels are blended", "1", 0.001, 0.999}));
     framing = params.getEnum("frame", Framing::Model, kFramings, {"what the picture holds"});

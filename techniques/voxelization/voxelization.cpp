@@ -7,6 +7,7 @@
 #include "techniques/kit/requirements.h"
 #include "techniques/voxelization/binvox.h"
 #include "techniques/voxelization/implicit.h"
+#include "techniques/voxelization/outputs.h"
 #include "techniques/voxelization/parametric.h"
 #include "techniques/voxelization/phantom.h"
 #include "techniques/voxelization/reference.h"
@@ -98,10 +99,12 @@ void Voxelization::render(technique::FrameContext& context) {
         gl::CpuScope scope(context.profiler, "read_back");
         readSheets(grid()->sheets);
     }
-    if (params_.drawing.isOn()) {
-        const bool showsBoth = params_.combination.findsCollision && !combination_.result();
-        drawing_.render(context.profiler, *grid(), showsBoth ? &combination_.second() : nullptr);
-    }
+    if (params_.drawing.isPass()) draw(context.profiler);
+}
+
+void Voxelization::draw(gl::Profiler& profiler) {
+    const bool showsBoth = params_.combination.findsCollision && !combination_.result();
+    drawing_.render(profiler, *grid(), showsBoth ? &combination_.second() : nullptr);
 }
 
 void Voxelization::record(technique::Recorder& recorder) {
@@ -116,7 +119,12 @@ void Voxelization::record(technique::Recorder& recorder) {
     combination_.record(recorder);
     if (!grid()) return;
     recordGrid(recorder, grid()->read());
-    if (params_.drawing.isOn()) drawing_.record(recorder);
+    if (!params_.drawing.isOn()) return;
+    if (params_.drawing.isBeside) {
+        gl::Profiler unread(false);
+        draw(unread);
+    }
+    drawing_.record(recorder);
 }
 
 void Voxelization::recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const {
@@ -193,6 +201,7 @@ image::ImageF middleSlices(const DenseGrid& grid) {
 
 const technique::TechniqueInfo kVoxelization = {
     "voxelization",
-    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)", &create};
+    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)", &create,
+    &outputs};
 
 }  // namespace gfxrepro::voxelization

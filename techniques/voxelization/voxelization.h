@@ -36,12 +36,17 @@ class Voxelization final : public technique::Technique {
     explicit Voxelization(config::Params& params);
 
     void setup(technique::SetupContext& context) override;
+    technique::SceneNeed sceneNeed() const override {
+        return params_.input == InputKind::Mesh ? technique::SceneNeed::Model
+                                                : technique::SceneNeed::Nothing;
+    }
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
 
   private:
     void setupMesh(technique::SetupContext& context);
     const VoxelGrid* grid() const;
+    void draw(gl::Profiler& profiler);
     void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const;
     /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.
     void recordMisses(technique::Recorder& recorder, const DenseGrid& grid) const;

@@ -197,7 +197,7 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
 void checkInput(const config::Params& params, const VoxelizationParams& read) {
     if (read.input == InputKind::Mesh) {
         if (read.voxelizer.method != Method::DepthOnly) return;
-        for (const char* name : {"collision", "csg", "draw"}) {
+        for (const char* name : {"collision", "csg", "draw", "pictures"}) {
             if (!params.isGiven(name)) continue;
             throw Error(params.locationOf(name),
                         fmt::format("'method: depth_only' makes no grid for '{}'", name));

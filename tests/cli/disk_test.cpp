@@ -24,7 +24,7 @@ TEST(Disk, AFullDiskLosesNothingMeasured) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(
         folder,
-        "sweep:\n  number: {range: [1, 40]}\nmeasure: {repeats: 9}\n"
+        "sweep:\n  number: {range: [1, 40]}\nmeasure: {lane: quality, repeats: 9}\n"
         "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n");
     const std::string whole = folder.path() / "whole", full = folder.path() / "full";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);

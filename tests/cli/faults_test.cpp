@@ -17,7 +17,7 @@ TEST(Faults, EveryFailureBecomesARow) {
     const std::string config = writeMockConfig(
         folder,
         "sweep:\n  behaviour: [ok, crash, exit, hang, throw, bad_alloc, unsupported, device_lost,"
-        " not_a_number]\nmeasure: {time_limit_s: 2}\n");
+        " not_a_number]\nmeasure: {lane: quality, time_limit_s: 2}\n");
     const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
@@ -39,7 +39,7 @@ TEST(Faults, MemoryLimit) {
     const std::string config =
         writeMockConfig(folder,
                         "sweep:\n  allocate_mib: [0, 1024]\nparams: {pause_ms: 1000}\n"
-                        "measure: {memory_limit_bytes: 943718400}\n");
+                        "measure: {lane: quality, memory_limit_bytes: 943718400}\n");
     const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
     const std::vector<report::Record> ok = rowsOf(dir, "number");
@@ -77,8 +77,9 @@ TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
 
 TEST(Faults, LeakEndsAtTheMemoryLimitAndCostsOneCase) {
     const TemporaryFolder folder;
-    const std::string config = writeMockConfig(
-        folder, "sweep: {behaviour: [ok, leak]}\nmeasure: {memory_limit_bytes: 943718400}\n");
+    const std::string config = writeMockConfig(folder,
+                                               "sweep: {behaviour: [ok, leak]}\nmeasure: {lane: "
+                                               "quality, memory_limit_bytes: 943718400}\n");
     const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
     EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
@@ -132,7 +133,8 @@ TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
 TEST(Faults, SideBySideAndInFreshProcesses) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(
-        folder, "sweep:\n  number: [1, 2, 3]\nmeasure: {processes: 2, repeats: 2}\n");
+        folder,
+        "sweep:\n  number: [1, 2, 3]\nmeasure: {lane: quality, processes: 2, repeats: 2}\n");
     const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"run", config, "--device", "software", "--jobs", "2", "--out", dir});

@@ -166,22 +166,22 @@ TEST_F(ImageCommands, DiffRefuses) {
 
 TEST_F(ImageCommands, ConvertShowsColoursChannelsAndDirections) {
     const std::string in = write("a.exr", gbuffer(0.5F));
-    out({"image", "convert", in, at("a.png"), "--exposure", "1"});
+    out({"image", "convert", in, "--out", at("a.png"), "--exposure", "1"});
     EXPECT_EQ(image::readPng8(at("a.png")).at(15, 0, 0), 255);
     EXPECT_EQ(image::readPng8(at("a.png")).at(0, 0, 0), 188);  // 0.5
 
     // Z is 8 … 15 where there is something; 0 is nothing and shown as the nearer end.
-    EXPECT_EQ(out({"image", "convert", in, at("z.png"), "--channels", "Z"}),
+    EXPECT_EQ(out({"image", "convert", in, "--out", at("z.png"), "--channels", "Z"}),
               "Z: 8 to 15 in magma\n");
     const Image8 depth = image::readPng8(at("z.png"));
     EXPECT_EQ(depth.at(0, 0, 2), 4);
     EXPECT_EQ(depth.at(15, 0, 2), 191);
-    EXPECT_EQ(out({"image", "convert", in, at("z.png"), "--channels", "Z", "--range", "0,15",
-                   "--colours", "grey"}),
+    EXPECT_EQ(out({"image", "convert", in, "--out", at("z.png"), "--channels", "Z", "--range",
+                   "0,15", "--colours", "grey"}),
               "Z: 0 to 15 in grey\n");
     EXPECT_EQ(image::readPng8(at("z.png")).at(12, 0, 1), 204);
 
-    out({"image", "convert", in, at("n.png"), "--channels", "N.X,N.Y,N.Z"});
+    out({"image", "convert", in, "--out", at("n.png"), "--channels", "N.X,N.Y,N.Z"});
     const Image8 normal = image::readPng8(at("n.png"));
     EXPECT_EQ(normal.at(0, 0, 1), 128);
     EXPECT_EQ(normal.at(15, 0, 0), 128);
@@ -191,41 +191,43 @@ TEST_F(ImageCommands, ConvertShowsColoursChannelsAndDirections) {
 TEST_F(ImageCommands, ConvertKeepsWhatAnExrHas) {
     const ExrImage a = gbuffer(0.5F);
     const std::string in = write("a.exr", a);
-    out({"image", "convert", in, at("b.exr"), "--exposure", "-1"});
+    out({"image", "convert", in, "--out", at("b.exr"), "--exposure", "-1"});
     const ExrImage b = image::readExr(at("b.exr"));
     EXPECT_EQ(b.attributes, a.attributes);
     EXPECT_EQ(b.matrices, a.matrices);
     EXPECT_EQ(b.channels.size(), a.channels.size());
     EXPECT_EQ(b.find("R")->at(15, 0), 0.25F);
     EXPECT_EQ(*b.find("id"), *a.find("id"));
-    out({"image", "convert", in, at("b.exr"), "--channels", "id,Z"});
+    out({"image", "convert", in, "--out", at("b.exr"), "--channels", "id,Z"});
     EXPECT_EQ(image::readExr(at("b.exr")).channels.size(), 2U);
     // There and back.
-    out({"image", "convert", in, at("a.png")});
-    out({"image", "convert", at("a.png"), at("c.exr")});
+    out({"image", "convert", in, "--out", at("a.png")});
+    out({"image", "convert", at("a.png"), "--out", at("c.exr")});
     EXPECT_NEAR(image::readExr(at("c.exr")).colour().at(15, 0, 1), 0.5F, 0.003F);
 }
 
 TEST_F(ImageCommands, ConvertRefuses) {
     const std::string in = write("a.exr", gbuffer(0.5F)), png = write("b.png", Image8(4, 4, 3));
-    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--channels", "z"}),
+    EXPECT_EQ(refusal({"image", "convert", in, "--out", at("x.png"), "--channels", "z"}),
               "gfxrepro: DIR/a.exr: no channel 'z'; did you mean 'Z'?; it has B, G, N.X, N.Y, N.Z, "
               "R, Z, id\n");
-    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--channels", "R,G"}),
+    EXPECT_EQ(refusal({"image", "convert", in, "--out", at("x.png"), "--channels", "R,G"}),
               "gfxrepro: --channels takes 1 or 3 names for a PNG, found 2\n");
-    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--channels", "Z", "--range", "3,3"}),
+    EXPECT_EQ(refusal({"image", "convert", in, "--out", at("x.png"), "--channels", "Z", "--range",
+                       "3,3"}),
               "gfxrepro: --range: expected two numbers that differ, low,high; found '3,3'\n");
-    EXPECT_EQ(refusal({"image", "convert", in, at("x.png"), "--range", "0,1"}),
+    EXPECT_EQ(refusal({"image", "convert", in, "--out", at("x.png"), "--range", "0,1"}),
               "gfxrepro: --range is of one channel: give --channels\n");
-    EXPECT_EQ(refusal({"image", "convert", png, at("x.png"), "--channels", "Z"}),
+    EXPECT_EQ(refusal({"image", "convert", png, "--out", at("x.png"), "--channels", "Z"}),
               "gfxrepro: DIR/b.png: --channels is for EXR files\n");
-    EXPECT_EQ(refusal({"image", "convert", in, at("x.exr"), "--tonemap", "aces"}),
+    EXPECT_EQ(refusal({"image", "convert", in, "--out", at("x.exr"), "--tonemap", "aces"}),
               "gfxrepro: --tonemap and --range are for PNG files; an EXR keeps its numbers\n");
 }
 
 TEST_F(ImageCommands, CropKeepsChannelsAndWhereTheyAre) {
     const ExrImage a = gbuffer(0.5F);
-    out({"image", "crop", write("a.exr", a), at("b.exr"), "6", "3", "4", "2", "--scale", "3"});
+    out({"image", "crop", write("a.exr", a), "--out", at("b.exr"), "6", "3", "4", "2", "--scale",
+         "3"});
     const ExrImage b = image::readExr(at("b.exr"));
     ASSERT_EQ(b.width(), 12);
     ASSERT_EQ(b.height(), 6);
@@ -244,16 +246,17 @@ TEST_F(ImageCommands, CropOfPngAndRefusals) {
     Image8 image(5, 4, 3);
     image.at(4, 3, 1) = 9;
     const std::string in = write("a.png", image);
-    out({"image", "crop", in, at("b.png"), "4", "3", "1", "1", "--scale", "2"});
+    out({"image", "crop", in, "--out", at("b.png"), "4", "3", "1", "1", "--scale", "2"});
     const Image8 corner = image::readPng8(at("b.png"));
     EXPECT_EQ(corner.width(), 2);
     EXPECT_EQ(corner.at(1, 1, 1), 9);
-    EXPECT_EQ(refusal({"image", "crop", in, at("b.png"), "3", "0", "3", "2"}),
+    EXPECT_EQ(refusal({"image", "crop", in, "--out", at("b.png"), "3", "0", "3", "2"}),
               "gfxrepro: 3x2 pixels from (3, 0) are no part of an image of 5x4\n");
-    EXPECT_EQ(refusal({"image", "crop", in, at("b.png"), "0", "0", "2", "2", "--scale", "0"}),
-              "gfxrepro: 2x2 pixels from (0, 0) cannot be magnified 0 times; 1 to 16384 times are "
-              "allowed\n");
-    EXPECT_EQ(refusal({"image", "crop", in, at("b.exr"), "0", "0", "2", "2"}),
+    EXPECT_EQ(
+        refusal({"image", "crop", in, "--out", at("b.png"), "0", "0", "2", "2", "--scale", "0"}),
+        "gfxrepro: 2x2 pixels from (0, 0) cannot be magnified 0 times; 1 to 16384 times are "
+        "allowed\n");
+    EXPECT_EQ(refusal({"image", "crop", in, "--out", at("b.exr"), "0", "0", "2", "2"}),
               "gfxrepro: image crop: DIR/a.png and DIR/b.exr are of different kinds; 'image "
               "convert' makes one of the other\n");
 }
@@ -266,8 +269,8 @@ TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
     }());
     const std::string grey = write("g.png", Image8(30, 30, 1, 50));
     const std::string exr = write("e.exr", gbuffer(1.0F));
-    std::string text = out(
-        {"image", "contact-sheet", at("s.png"), red, grey, exr, "--columns", "2", "--width", "40"});
+    std::string text = out({"image", "contact-sheet", "--out", at("s.png"), red, grey, exr,
+                            "--columns", "2", "--width", "40"});
     for (std::size_t found; (found = text.find(folder_.path().string())) != std::string::npos;) {
         text.replace(found, folder_.path().string().size(), "DIR");
     }
@@ -280,8 +283,19 @@ TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
     EXPECT_EQ(sheet.at(56 + 20, 8 + 20, 2), 50);
     EXPECT_EQ(sheet.at(56 + 20, 8 + 60, 2), 96);   // below the lower one of a row
     EXPECT_EQ(sheet.at(8 + 39, 96 + 29, 1), 255);  // the right half of the EXR file
-    EXPECT_EQ(refusal({"image", "contact-sheet", at("s.exr"), red}),
+    EXPECT_EQ(refusal({"image", "contact-sheet", "--out", at("s.exr"), red}),
               "gfxrepro: DIR/s.exr: a contact sheet is a .png\n");
+}
+
+TEST_F(ImageCommands, NothingIsWrittenOverWhatIsRead) {
+    const std::string a = write("a.png", Image8(4, 4, 1, 50));
+    const std::string b = write("b.png", Image8(4, 4, 1, 60));
+    const std::string same =
+        "gfxrepro: --out DIR/a.png is the input DIR/a.png; allowed: another file\n";
+    EXPECT_EQ(refusal({"image", "contact-sheet", b, a, "--out", a}), same);
+    EXPECT_EQ(refusal({"image", "convert", a, "--out", a}), same);
+    EXPECT_EQ(refusal({"image", "crop", a, "0", "0", "1", "1", "--out", a}), same);
+    EXPECT_EQ(image::readPng8(a).at(0, 0), 50);
 }
 
 TEST_F(ImageCommands, InfoNamesChannelsAndAttributes) {

@@ -178,6 +178,10 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
     return std::make_unique<Mock>(params);
 }
 
+config::Outputs outputs() {
+    return {{{"number", "1", "as asked for"}, {"psnr_db", "dB", "of a perfect picture"}}, {}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -186,6 +190,6 @@ int main(int argc, char** argv) {
         std::getenv("GFXREPRO_MOCK_DRIVER_HANGS")) {
         ::pause();
     }
-    const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create}};
+    const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create, outputs}};
     return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }

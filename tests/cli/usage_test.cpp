@@ -1,10 +1,16 @@
 // What the program says to input that it cannot use: exact words, exit code 2.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
 
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
+
+using testing::HasSubstr;
 
 /// Standard error of a call that must end with exit code 2, with the folder's path as DIR.
 std::string refusal(const std::vector<std::string>& arguments, const TemporaryFolder& folder) {
@@ -31,7 +37,8 @@ TEST(Usage, UnknownCommand) {
 TEST(Usage, UnknownOption) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"run", "--jbos", "2", "x.yaml"}, folder),
-              "gfxrepro: run: unknown option '--jbos'; did you mean '--jobs'?; see 'run --help'\n");
+              "gfxrepro: run: unknown option '--jbos'; did you mean '--jobs'?; see 'gfxrepro help "
+              "run'\n");
 }
 
 TEST(Usage, MissingConfig) {
@@ -72,7 +79,7 @@ TEST(Usage, UnknownPaperAndKind) {
               "'gfxrepro list tables' shows all\n");
     EXPECT_EQ(refusal({"list", "scene"}, folder),
               "gfxrepro: list: unknown kind 'scene'; did you mean 'scenes'?; known: configs, "
-              "generators, scenes, tables, techniques\n");
+              "generators, runs, scenes, tables, techniques\n");
 }
 
 TEST(Usage, RunWantsConfigsOrARun) {
@@ -144,6 +151,48 @@ TEST(Usage, DescribeSaysWhatItCannot) {
               "gfxrepro: describe: --markdown is for 'config' alone\n");
     // The name of a command is not taken for one.
     EXPECT_EQ(gfxrepro({"describe", "--json-schema", "scene"}).exitCode, 0);
+}
+
+TEST(Usage, DescribeListsMetricsAndPassesOnAScreen) {
+    for (const char* technique : {"voxelization", "soft_shadows", "point_splatting"}) {
+        const std::string text = gfxrepro({"describe", technique}).out;
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) {
+            const auto columns =
+                std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
+            EXPECT_LE(columns, 80) << line;
+        }
+        EXPECT_THAT(text, HasSubstr("\nmetrics\n"));
+        EXPECT_THAT(text, HasSubstr("\npasses"));
+    }
+    EXPECT_THAT(
+        gfxrepro({"describe", "voxelization"}).out,
+        HasSubstr("  memory_bytes              mesh, fragments and worksheets on the device"));
+}
+
+TEST(Usage, HelpAndVersionAreCommandsToo) {
+    EXPECT_EQ(gfxrepro({"help"}).out, gfxrepro({"--help"}).out);
+    EXPECT_EQ(gfxrepro({"help", "image", "diff"}).out, gfxrepro({"image", "diff", "--help"}).out);
+    EXPECT_EQ(gfxrepro({"version"}).out, gfxrepro({"--version"}).out);
+}
+
+TEST(Usage, TablesAndCasesAreChosenByPatterns) {
+    const auto count = [](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "plan");
+        arguments.insert(arguments.end(), {"--json", "--device", "software"});
+        const ProcessResult result = gfxrepro(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return nlohmann::json::parse(result.out)["cases"].size();
+    };
+    EXPECT_EQ(count({"zju2005/table-4.?"}),
+              count({"zju2005/table-4.1", "zju2005/table-4.2", "zju2005/table-4.3"}));
+    const TemporaryFolder folder;
+    const std::string config = folder.write(
+        "a.yml", "sweep_of: a\ntitle: A\ntechnique: template\nsweep: {brightness: [0, 0.5, 1]}\n");
+    EXPECT_EQ(count({config}), 3U);
+    EXPECT_EQ(count({config, "--only", "brightness=0|1.0"}), 2U);
+    EXPECT_EQ(count({config, "--only", "brightness=[0, 0.5]"}), 2U);
+    EXPECT_EQ(count({config, "--only", "brightness=0*"}), 2U);
 }
 
 }  // namespace

@@ -160,8 +160,8 @@ TEST(Weekend, RecordsAndListsOfImagesThatAreGoneAreNoticed) {
 
 TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     const TemporaryFolder folder;
-    const std::string config =
-        writeMockConfig(folder, "sweep: {behaviour: [hang, ok]}\nmeasure: {time_limit_s: 60}\n");
+    const std::string config = writeMockConfig(
+        folder, "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: quality, time_limit_s: 60}\n");
     const std::string dir = folder.path() / "run";
     const auto killedIn = [&](std::size_t start, std::vector<std::string> command) {
         command.insert(command.end(), {"--jobs", "1"});
@@ -226,12 +226,14 @@ void killTwice(const std::vector<std::string>& configs, const std::string& dir) 
     }
 }
 
-constexpr const char* kHangs = "sweep: {behaviour: [hang, ok]}\nmeasure: {time_limit_s: 20}\n";
+constexpr const char* kHangs =
+    "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: quality, time_limit_s: 20}\n";
 
 TEST(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
     const TemporaryFolder folder;
-    const std::string config = writeMockConfig(
-        folder, "sweep: {behaviour: [hang, ok]}\nmeasure: {time_limit_s: 20, processes: 3}\n");
+    const std::string config = writeMockConfig(folder,
+                                               "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: "
+                                               "quality, time_limit_s: 20, processes: 3}\n");
     const std::string dir = folder.path() / "run";
     killTwice({config}, dir);
     const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
@@ -308,8 +310,8 @@ TEST(Weekend, WhatAStopRuleCutShortWasSurvived) {
 /// Runs a case of a second, with a limit of two, whose first worker `suspend` holds up for longer.
 void expectNoTimeout(const std::function<void(BackgroundProgram&, pid_t)>& suspend) {
     const TemporaryFolder folder;
-    const std::string config =
-        writeMockConfig(folder, "params: {pause_ms: 1000}\nmeasure: {time_limit_s: 2}\n");
+    const std::string config = writeMockConfig(
+        folder, "params: {pause_ms: 1000}\nmeasure: {lane: quality, time_limit_s: 2}\n");
     const std::string dir = folder.path() / "run";
     BackgroundProgram run(
         {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});

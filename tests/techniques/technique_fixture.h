@@ -43,6 +43,9 @@ class TechniqueTest : public GlTest {
         for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
         MetricRecorder recorder;
         technique->record(recorder);
+        const config::Outputs outputs = technique::outputsOf(technique_);
+        recorder.expectDeclared(outputs);
+        for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;
         EXPECT_TRUE(profiler_.collect().empty()) << "what is recorded is not timed by pass";
         return recorder;
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "runner/technique/technique.h"
 
@@ -19,6 +20,7 @@ class MetricRecorder final : public technique::Recorder {
         const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);
         EXPECT_TRUE(metrics.emplace(key, value).second) << key << " twice";
         EXPECT_TRUE(std::isfinite(value)) << key;
+        given.push_back({std::string(metric), std::string(unit), std::string(pass)});
         if (unit == "%") {
             // Sums over images may exceed 100.
             EXPECT_GE(value, 0.0) << key;
@@ -31,6 +33,20 @@ class MetricRecorder final : public technique::Recorder {
     }
     std::filesystem::path artifact(std::string_view) override { return {}; }
 
+    /// Every metric, unit and pass is one that the technique declares.
+    void expectDeclared(const config::Outputs& outputs) const {
+        for (const Given& one : given) {
+            const config::MetricInfo* info = outputs.find(one.metric);
+            ASSERT_NE(info, nullptr) << one.metric;
+            if (info->name == one.metric) EXPECT_EQ(info->unit, one.unit) << one.metric;
+            if (!one.pass.empty()) EXPECT_TRUE(outputs.hasPass(one.pass)) << one.pass;
+        }
+    }
+
+    struct Given {
+        std::string metric, unit, pass;
+    };
+    std::vector<Given> given;
     std::map<std::string, double> metrics;
     std::map<std::string, image::ImageF> images;
 };

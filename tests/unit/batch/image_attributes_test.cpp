@@ -91,7 +91,7 @@ TEST(RunRecorder, KeepsLayersTruthsAndAttributes) {
     const test::TemporaryFolder folder;
     CaseResult result;
     const Case item = someCase();
-    RunRecorder recorder(folder.path(), "gfxrepro run x.yaml", item, result);
+    RunRecorder recorder(folder.path(), "gfxrepro run x.yaml", item, {}, result);
     technique::ImageOptions options;
     options.layers.add(image::ImageF(4, 2, 1, 7.0F), {"id"}, image::ExrPixelType::Uint);
     options.layers.attributes["about_id"] = "reflector";
@@ -115,7 +115,7 @@ TEST(RunRecorder, TruthsNeedTheirImage) {
     const test::TemporaryFolder folder;
     CaseResult result;
     const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, result);
+    RunRecorder recorder(folder.path(), "", item, {}, result);
     recorder.setIteration(0, 0);
     recorder.image("result", image::ImageF(1, 1, 1), {});
     recorder.checkTruths();
@@ -123,6 +123,33 @@ TEST(RunRecorder, TruthsNeedTheirImage) {
     recorder.image("truth", image::ImageF(1, 1, 1), {.truthOf = "result"});
     EXPECT_EQ(test::errorText([&] { recorder.checkTruths(); }),
               "image 'truth' is the truth of 'result', which is not among the frame's images");
+}
+
+TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    Case item = someCase();
+    item.technique = "dots";
+    const config::Outputs outputs{{{"voxels", "voxel", "full ones"}, {"useful_pct", "%", "useful"}},
+                                  {{"draw", "the picture"}, {"image_*", "an image"}}};
+    RunRecorder recorder(folder.path(), "", item, outputs, result);
+    recorder.metric("voxels", 7, "voxel", "draw");
+    recorder.metric("voxels", 8, "voxel", "image_12");
+    recorder.share("useful_pct", 1, 4, "sample", "");
+    const auto refused = [&](const char* metric, const char* unit, const char* pass) {
+        return test::errorText([&] { recorder.metric(metric, 1, unit, pass); });
+    };
+    EXPECT_EQ(refused("voxel", "voxel", ""),
+              "technique 'dots' has no metric 'voxel'; did you mean 'voxels'?");
+    EXPECT_EQ(refused("voxels", "byte", ""),
+              "metric 'voxels' is recorded in 'byte', but declared in 'voxel'");
+    EXPECT_EQ(refused("voxels", "voxel", "drew"),
+              "technique 'dots' has no pass 'drew'; did you mean 'draw'?");
+    EXPECT_EQ(refused("voxels", "voxel", "image_"),
+              "technique 'dots' has no pass 'image_'; did you mean 'image_*'?");
+    EXPECT_EQ(refused("voxels_of", "voxel", ""),
+              "technique 'dots' has no metric 'voxels_of'; did you mean 'voxels'?");
+    EXPECT_EQ(result.samples.size(), 4U);
 }
 
 }  // namespace

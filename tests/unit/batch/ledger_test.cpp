@@ -34,7 +34,8 @@ const technique::TechniqueInfo kTechniques[] = {
     {"still", "measures nothing",
      [](config::Params& params) -> std::unique_ptr<technique::Technique> {
          return std::make_unique<Still>(params);
-     }}};
+     },
+     [] { return config::Outputs(); }}};
 
 /// A config with two generated scenes and one of a file; it ends with `lines`.
 struct Ledger {

@@ -111,7 +111,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
     const JsonSchema schema("experiment");
     const std::string head = "table: p/1\ntitle: t\ntechnique: template\n";
     const std::string table = head + "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: ";
-    const std::string claim = table + "{aa: m, bb: m}}\nclaims:\n  C: ";
+    const std::string claim = table + "{aa: mean_brightness, bb: mean_brightness}}\nclaims:\n  C: ";
     ASSERT_EQ(loadError(head), "no error");
     ASSERT_EQ(schema.complaintAbout(head), "");
     ASSERT_EQ(loadError(claim + "{says: s, order: aa < bb}"), "no error");
@@ -126,7 +126,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
              head + "measure: {warm: 1}\n",
              head + "profiles: {full: {}}\n",
              head + "profiles: {quick: {ouptut: {}}}\n",
-             table + "{aa: {metric: m, formt: x}}}\n",
+             table + "{aa: {metric: mean_brightness, formt: x}}}\n",
              claim + "{says: s, order: aa < bb, within: 5%}",  // of another type
              claim + "{says: s, order: aa < bb, bound: aa, above: 1}",
              claim + "{says: s}",

@@ -1,0 +1,69 @@
+#include "runner/config/outputs.h"
+
+#include <algorithm>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+bool stands(const std::string& declared, std::string_view name) {
+    if (!declared.ends_with('*')) return declared == name;
+    const std::string_view stem = std::string_view(declared).substr(0, declared.size() - 1);
+    return name.size() > stem.size() && name.starts_with(stem);
+}
+
+template <class Infos>
+std::vector<std::string> namesOf(const Infos& infos) {
+    std::vector<std::string> names;
+    for (const auto& info : infos) names.push_back(info.name);
+    return names;
+}
+
+[[noreturn]] void throwUnknown(const std::string& owner, const char* what, std::string_view name,
+                               const std::vector<std::string>& known, const SourceLocation& where) {
+    const std::string near = suggestion(std::string(name), known);
+    throw Error(where, owner + " has no " + what + " '" + std::string(name) + "'" +
+                           (near.empty() && !known.empty() ? "; it has " + joined(known) : near));
+}
+
+}  // namespace
+
+const MetricInfo* Outputs::find(std::string_view metric) const {
+    const auto found = std::ranges::find(metrics, metric, &MetricInfo::name);
+    if (found != metrics.end()) return &*found;
+    if (!metric.ends_with(kShareOf)) return nullptr;
+    const auto share = std::ranges::find(metrics, metric.substr(0, metric.size() - kShareOf.size()),
+                                         &MetricInfo::name);
+    return share != metrics.end() && share->unit == "%" ? &*share : nullptr;
+}
+
+bool Outputs::hasPass(std::string_view pass) const {
+    return std::ranges::any_of(passes,
+                               [&](const PassInfo& info) { return stands(info.name, pass); });
+}
+
+void Outputs::requireMetric(std::string_view metric, const std::string& owner,
+                            const SourceLocation& where) const {
+    if (!find(metric)) throwUnknown(owner, "metric", metric, namesOf(metrics), where);
+}
+
+void Outputs::requirePass(std::string_view pass, const std::string& owner,
+                          const SourceLocation& where) const {
+    if (!hasPass(pass)) throwUnknown(owner, "pass", pass, namesOf(passes), where);
+}
+
+std::string_view betterText(Better better) {
+    switch (better) {
+        case Better::Lower:
+            return "lower is better";
+        case Better::Higher:
+            return "higher is better";
+        case Better::Neither:
+            break;
+    }
+    return "";
+}
+
+}  // namespace gfxrepro::config

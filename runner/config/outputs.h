@@ -1,0 +1,53 @@
+// What is recorded of a case, as it is declared: metrics, and the steps of an algorithm. `describe`
+// lists them, `check` and the recorder refuse others, and a table without a layout shows them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::config {
+
+/// Which way a metric is better.
+enum class Better { Neither, Lower, Higher };
+
+struct MetricInfo {
+    std::string name;  // snake_case with its unit where it has one: "memory_bytes"
+    std::string unit;  // spelt out: "voxel", "byte", "ms", "1"; of all its passes
+    std::string doc;
+    Better better = Better::Neither;
+    /// Explains or checks others: a table without a layout leaves it to records.csv.
+    bool isDetail = false;
+};
+
+/// What a time is of, or a metric is told apart by. A name that ends in '*' stands for all that
+/// begin so: "image_*".
+struct PassInfo {
+    std::string name;
+    std::string doc;
+};
+
+/// In the order in which they are shown.
+struct Outputs {
+    std::vector<MetricInfo> metrics = {};
+    std::vector<PassInfo> passes = {};
+
+    /// Of the share `m`, `m`_of is a metric, too. Null where there is none.
+    const MetricInfo* find(std::string_view metric) const;
+    bool hasPass(std::string_view pass) const;
+    /// Throw Error with the nearest name for what is not declared; `owner` begins the message.
+    void requireMetric(std::string_view metric, const std::string& owner,
+                       const SourceLocation& where = {}) const;
+    void requirePass(std::string_view pass, const std::string& owner,
+                     const SourceLocation& where = {}) const;
+};
+
+/// Ends the name of what a share is of.
+inline constexpr std::string_view kShareOf = "_of";
+
+/// "lower is better", "higher is better", "".
+std::string_view betterText(Better better);
+
+}  // namespace gfxrepro::config

@@ -1,0 +1,144 @@
+// An experiment of who writes five lines: what they give, and what check says of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The processes of the rows that are no controls.
+std::set<int> processesOf(const std::vector<report::Record>& rows) {
+    std::set<int> processes;
+    for (const report::Record& row : rows) {
+        if (row.process >= 0) processes.insert(row.process);
+        EXPECT_EQ(row.lane, "timing");
+    }
+    return processes;
+}
+
+TEST(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
+    const TemporaryFolder folder;
+    const std::string config =
+        folder.write("mine.yaml",
+                     "sweep_of: mine\ntitle: Mine at three\ntechnique: template\n"
+                     "sweep: {brightness: [0.25, 0.5, 1]}\n");
+    const fs::path dir = folder.path() / "run";
+    const ProcessResult run =
+        gfxrepro({"reproduce", config, "--device", "software", "--out", dir.string()});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(processesOf(rowsOf(dir, "wall_time_ms")), (std::set{0, 1, 2, 3, 4, 5}));
+    const std::string table = readFile(dir / "tables" / "sweep-mine.csv");
+    EXPECT_TRUE(table.starts_with("brightness,frame_ms_printed,frame_ms_measured")) << table;
+    const std::string page = readFile(dir / "report.html");
+    EXPECT_THAT(page, HasSubstr("<title>gfxrepro: Mine at three</title>"));
+    EXPECT_THAT(page, HasSubstr("<h2>Mine at three</h2>"));
+    EXPECT_THAT(page, HasSubstr("<h4>brightness=0.25</h4>"));
+    EXPECT_THAT(page, Not(HasSubstr("ambiguous</span>")));
+    EXPECT_LT(page.find("id=\"sweep-mine\""), page.find("id=\"overview\""));
+    if (runProgram({"/bin/sh", "-c", "command -v gnuplot"}).exitCode == 0) {
+        EXPECT_THAT(page, HasSubstr("<figure class=\"curve\"><svg"));
+        EXPECT_THAT(page, HasSubstr("Times over brightness (lower is better)"));
+    }
+}
+
+TEST(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
+    const TemporaryFolder folder;
+    const std::string config =
+        folder.write("mine.yaml",
+                     "sweep_of: mine\ntitle: T\ntechnique: mock\nparams: {pause_ms: 300}\n"
+                     "measure: {time_budget_s: 1}\n");
+    const fs::path dir = folder.path() / "run";
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--out", dir.string()});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(processesOf(rowsOf(dir, "wall_time_ms")), std::set{0});
+    EXPECT_THAT(readFile(dir / "log.jsonl"), HasSubstr("\"ended_by\":\"time_budget_s\""));
+}
+
+TEST(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "");
+    const auto inFolder = [&](const std::string& words) {
+        return runProgram(
+            {"/bin/sh", "-c",
+             "cd '" + folder.path().string() + "' && '" + GFXREPRO_MOCK_PROGRAM + "' " + words});
+    };
+    EXPECT_THAT(inFolder("table latest").err, HasSubstr("latest: there is no run in runs/"));
+    for (const char* name : {"runs/20260101-a", "runs/20260102-b"}) {
+        ASSERT_EQ(inFolder("run mock.yaml --device software --out " + std::string(name)).exitCode,
+                  0);
+    }
+    EXPECT_EQ(inFolder("table latest").exitCode, 0);
+    EXPECT_TRUE(fs::exists(folder.path() / "runs/20260102-b/tables/sweep-mock.csv"));
+    EXPECT_FALSE(fs::exists(folder.path() / "runs/20260101-a/tables"));
+    const std::string listed = inFolder("list runs").out;
+    EXPECT_THAT(listed, HasSubstr("runs/20260101-a  gfxrepro run mock.yaml"));
+    EXPECT_LT(listed.find("20260101-a"), listed.find("20260102-b"));
+}
+
+/// What check says of a config with these lines and a file beside it.
+std::string checked(const TemporaryFolder& folder, const std::string& lines) {
+    const std::string head = "sweep_of: mine\ntitle: Mine\n";
+    ProcessResult result = gfxrepro({"check", folder.write("mine.yaml", head + lines)});
+    EXPECT_EQ(result.exitCode, 2) << lines;
+    const std::string prefix = folder.path().string();
+    for (std::size_t at; (at = result.err.find(prefix)) != std::string::npos;) {
+        result.err.replace(at, prefix.size(), "DIR");
+    }
+    return result.err;
+}
+
+TEST(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
+    const TemporaryFolder folder;
+    folder.write("model.glb", "no model");
+    folder.write("model.fbx", "no model");
+    const std::string voxels = "technique: voxelization\n";
+    const std::string terrain = "technique: terrain_tessellation\n";
+    EXPECT_EQ(
+        checked(folder, voxels),
+        "gfxrepro: DIR/mine.yaml:3:12: technique 'voxelization' needs a scene: `scene:` with a "
+        "name of `gfxrepro list scenes`, or a model (.glb, .gltf, .obj, .ply) beside this "
+        "file\n");
+    EXPECT_THAT(checked(folder, voxels + "scene: model.fbx\n"),
+                HasSubstr("mine.yaml:4:8: scene file DIR/model.fbx: unknown extension '.fbx'"));
+    EXPECT_THAT(checked(folder, voxels + "scene: model.glb\n"), HasSubstr("mine.yaml:4:8: "));
+    EXPECT_THAT(checked(folder, terrain + "scene: model.glb\n"),
+                HasSubstr("model.glb' is a model; technique 'terrain_tessellation' takes a height "
+                          "map (.png, .tif, .hgt, .raw)"));
+    folder.write("map.png", "no picture");
+    EXPECT_THAT(checked(folder, terrain + "scene: map.png\nscene_params: {spacing: 2}\n"),
+                HasSubstr("has no parameter 'spacing'; did you mean 'spacing_m'?"));
+    EXPECT_THAT(checked(folder, terrain + "scene: map.png\n"), HasSubstr("mine.yaml:4:8: "));
+    EXPECT_THAT(checked(folder, voxels + "scene: map.png\n"),
+                HasSubstr("map.png' is a height map"));
+    EXPECT_EQ(checked(folder, voxels + "scene: shapes/torus\nparams: {resolution: 64}\n"
+                                       "sweep: {resolution: [32, 64]}\n"),
+              "gfxrepro: DIR/mine.yaml:5:22: 'resolution' is swept, too, in DIR/mine.yaml:6:9; "
+              "allowed: in 'params' or in 'sweep'\n");
+}
+
+TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
+    const TemporaryFolder folder;
+    const std::string head = "technique: voxelization\nscene: shapes/torus\n";
+    const auto laidOut = [&](const std::string& column) {
+        return checked(folder, head + "layout: {rows: scene, columns: {a: " + column + "}}\n");
+    };
+    EXPECT_EQ(laidOut("{metric: gpu_tme_ms, pass: draw}"),
+              "gfxrepro: DIR/mine.yaml:5:36: technique 'voxelization' has no metric 'gpu_tme_ms'; "
+              "did you mean 'gpu_time_ms'?\n");
+    EXPECT_EQ(laidOut("{metric: gpu_time_ms, pass: synthesys}"),
+              "gfxrepro: DIR/mine.yaml:5:36: technique 'voxelization' has no pass 'synthesys'; did "
+              "you mean 'synthesis'?\n");
+    EXPECT_THAT(laidOut("{metric: voxels, share_of: voxel}"), HasSubstr("did you mean 'voxels'?"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
