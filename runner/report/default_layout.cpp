@@ -85,12 +85,6 @@ std::string formatOf(const Series& series) {
     if (series.isOfMebibytes()) return "{median:.4g}";
     return series.isWhole || series.most >= kManyDigits ? "{median:.0f}" : "{median:.4g}";
 }
-" : " {
-median:
-    .4g
-}
-";
-}
 
 struct Axis {
     std::size_t index;
