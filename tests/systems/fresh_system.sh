@@ -24,16 +24,15 @@ cache=$systems/ccache-$suite
 mkdir -p "$systems" "$cache"
 trap 'rm -rf --one-file-system "$root" "$root-final"' EXIT
 
-# bare FOLDER: a minimal system with certificates, from Debian's or Ubuntu's own servers.
+# bare FOLDER: a minimal system with certificates, from the servers that mmdebstrap knows for the suite.
 bare() {
-    local mirror="deb http://deb.debian.org/debian $suite main"
     if [ "$suite" = noble ]; then
         local key=/usr/share/keyrings/ubuntu-archive-keyring.gpg
         [ -e $key ] || skip "$key is not here to check Ubuntu's packages with"
-        mirror="deb [signed-by=$key] http://archive.ubuntu.com/ubuntu noble main universe"
+        set -- "$1" --components=main,universe
     fi
     rm -rf --one-file-system "$1"
-    if ! mmdebstrap --quiet --variant=minbase --include=apt,ca-certificates "$suite" "$1" "$mirror" >"$systems/$suite.log" 2>&1; then
+    if ! mmdebstrap --quiet --variant=minbase --include=apt,ca-certificates "${@:2}" "$suite" "$1" >"$systems/$suite.log" 2>&1; then
         tail -n 20 "$systems/$suite.log" >&2
         ! grep -qE 'Could not (resolve|connect)|Failed to fetch|Unable to connect' "$systems/$suite.log" || skip "the packages of $suite cannot be reached"
         exit 1
