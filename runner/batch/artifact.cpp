@@ -8,6 +8,7 @@
 
 #include "runner/batch/made_from.h"
 #include "runner/batch/predictions.h"
+#include "runner/batch/run_files.h"
 #include "runner/batch/submission.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
@@ -31,6 +32,7 @@ std::uintmax_t sizeOf(const fs::path& path) {
 
 /// What was measured; what is made of it is made again there.
 void copyMeasured(const fs::path& runDir, const fs::path& target) {
+    requireModestLog(runDir / "log.jsonl");  // the others were read
     for (const char* name :
          {"plan.json", "manifest.json", "records.csv", "log.jsonl", "images", "artifacts"}) {
         copyTree(runDir / name, target / name);

@@ -181,6 +181,7 @@ std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytes
     for (const ShardRun& shard : shards) {
         const fs::path file = shard.path / "log.jsonl";
         if (!fs::exists(file)) continue;
+        requireModestLog(file);
         const MappedFile mapped(file);
         const std::size_t begin = text.size();
         for (std::string_view rest = mapped.text(); !rest.empty();) {

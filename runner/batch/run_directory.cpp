@@ -164,12 +164,14 @@ RunDirectory RunDirectory::create(const fs::path& path) {
         throw Error(path.string() + ": has a " + file +
                     " that is of no run and would be written over; give another folder");
     }
-    if (isBegun(path)) requirePlainFiles(path);
+    const bool wasBegun = isBegun(path);
+    if (wasBegun) requirePlainFiles(path);
     RunDirectory directory(path);
     if (fs::exists(directory.planFile())) {
         throw Error(path.string() + ": holds a run already; continue it with --resume " +
                     path.string() + ", or give another folder");
     }
+    if (wasBegun) removeTemporaryFiles(path);
     return directory;
 }
 

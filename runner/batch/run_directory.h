@@ -11,8 +11,9 @@ namespace gfxrepro::batch {
 /// folder, locked for writing as long as the object lives.
 class RunDirectory {
   public:
-    /// Makes the folder. Throws Error when it holds a run already, when another run writes to it,
-    /// and when it is no run's but has a file that a run writes.
+    /// Makes the folder; of one whose run was killed before it had a plan, removes the temporary
+    /// files. Throws Error when it holds a run already, when another run writes to it, and when it
+    /// is no run's but has a file that a run writes.
     static RunDirectory create(const std::filesystem::path& path);
     /// A run that was begun; removes the temporary files of processes that were killed. Throws
     /// Error when there is none, when another run writes to it, and as requirePlainFiles().

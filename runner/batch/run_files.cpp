@@ -72,8 +72,10 @@ constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
                                 {"/record_s", JsonKind::Number},
                                 {"/peak_bytes", JsonKind::Whole}};
 
-void requireModest(const fs::path& file, std::uintmax_t size, std::uintmax_t mostBytes) {
-    if (size <= mostBytes) return;
+void requireModest(const fs::path& file, std::uintmax_t mostBytes) {
+    std::error_code isAbsent;
+    const std::uintmax_t size = fs::file_size(file, isAbsent);
+    if (isAbsent || size <= mostBytes) return;
     throw Error({file.string(), 0, 0},
                 fmt::format("{} bytes; at most {} are read", size, mostBytes));
 }
@@ -81,11 +83,11 @@ void requireModest(const fs::path& file, std::uintmax_t size, std::uintmax_t mos
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
-    for (const auto& [name, mostBytes] : kMostBytes) {
-        std::error_code isAbsent;
-        const std::uintmax_t size = fs::file_size(runDir / name, isAbsent);
-        if (!isAbsent) requireModest(runDir / name, size, mostBytes);
-    }
+    for (const auto& [name, mostBytes] : kMostBytes) requireModest(runDir / name, mostBytes);
+}
+
+void requireModestLog(const fs::path& file) {
+    requireModest(file, kMostLogBytes);
 }
 
 Json readManifest(const fs::path& file) {
@@ -117,10 +119,10 @@ Json inShort(const Json& event) {
 std::vector<Json> readLog(const fs::path& file) {
     std::vector<Json> events;
     if (!fs::exists(file)) return events;
+    requireModestLog(file);
     const std::string name = file.string();
     const MappedFile mapped(file);
     std::string_view rest = mapped.text();
-    requireModest(file, rest.size(), kMostLogBytes);
     for (int line = 1; !rest.empty(); ++line) {
         const std::string_view text = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(text.size() + 1, rest.size()));

@@ -12,13 +12,15 @@
 namespace gfxrepro::batch {
 
 /// Throws Error, with the limit, where a file of a run's folder that is read at once is larger than
-/// it gets in any run (the log is readLog's): the largest had records of 75 MB, a plan of 15 MB.
+/// it gets in any run (but for the log): the largest had records of 75 MB, a plan of 15 MB.
 void requireModestFiles(const std::filesystem::path& runDir);
 
 /// Beyond the first a log gets events in short alone, after one line that says so; beyond the
 /// second it gets none, as it would not be read again.
 inline constexpr std::size_t kMostWholeLogBytes = std::size_t{384} << 20;
 inline constexpr std::size_t kMostLogBytes = std::size_t{512} << 20;
+/// Throws Error, with the limit, for a log over the second, which is neither read nor copied.
+void requireModestLog(const std::filesystem::path& file);
 Json inShortFromHere();
 /// What a run that goes on needs to know of an event: not its texts, nor what a case cost.
 Json inShort(const Json& event);

@@ -98,8 +98,13 @@ bool isStillAt(const fs::path& path, int fd) {
 void copyTree(const fs::path& from, const fs::path& to) {
     const fs::file_status status = fs::symlink_status(from);
     if (fs::is_regular_file(status)) {
-        fs::create_directories(to.parent_path());
+        constexpr std::uintmax_t kTooManyBytes = std::uintmax_t{4} << 30;
         std::error_code failure;
+        if (const auto size = fs::file_size(from, failure); !failure && size >= kTooManyBytes) {
+            throw Error("cannot copy " + from.string() + ": " + std::to_string(size) +
+                        " bytes; 4 GiB or more are not copied");
+        }
+        fs::create_directories(to.parent_path());
         fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
         const bool isGone = failure && !fs::exists(from);
         if (failure && !isGone) {

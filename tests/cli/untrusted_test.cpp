@@ -170,6 +170,9 @@ TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
         expectRefused({"report", dir}, why);
         expectRefused({"run", "--resume", dir}, why);
         expectRefused({"plan", (folder.path() / "mock.yaml").string(), "--from", dir}, why);
+        expectRefused({"export", dir, "--out", out}, why);
+        expectRefused({"merge", out, dir}, why);
+        fs::remove_all(out);
         // Nor need what does not read the log be without its tables.
         const bool isLog = name == std::string_view("log.jsonl");
         for (const char* command : {"table", "claims"}) {

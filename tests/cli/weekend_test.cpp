@@ -421,6 +421,21 @@ TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
     EXPECT_TRUE(fs::exists(dir + "/images/notes.tmpl"));
 }
 
+/// A run killed before it had a plan is not resumed, but begun again.
+TEST(Weekend, WhatARunWithoutAPlanWasWritingIsSweptWhereItBeginsAgain) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
+    const auto isKept = [&](const std::string& name) {
+        folder.write(name + "/manifest.json.tmp12", "torn");
+        const ProcessResult run = shell(mockRun(config, folder.path() / name));
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        return fs::exists(folder.path() / name / "manifest.json.tmp12");
+    };
+    folder.write("killed/lock", "");
+    EXPECT_FALSE(isKept("killed"));
+    EXPECT_TRUE(isKept("somebodys")) << "no run ever began in it";
+}
+
 TEST(Weekend, FilesOfOthersAreNotWrittenOver) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");

@@ -184,6 +184,11 @@ TEST(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
     for (const char* name : {"a.exr.tmp4711", "b.csv.tmp"}) {
         EXPECT_FALSE(std::filesystem::exists(to / name)) << name;
     }
+    const auto large = folder.write("large", "head");
+    std::filesystem::resize_file(large, std::uintmax_t{1} << 32);  // nearly all of it a hole
+    EXPECT_EQ(test::errorText([&] { copyTree(large, to / "large"); }, folder.path()),
+              "cannot copy DIR/large: 4294967296 bytes; 4 GiB or more are not copied");
+    EXPECT_FALSE(std::filesystem::exists(to / "large"));
 }
 
 TEST(Files, MissingFilesAndFoldersAreNamed) {
