@@ -192,22 +192,6 @@ Node paramsByScene(const Node& document) {
     return scenes;
 }
 
-/// A swept axis wins over a value of a file that is extended; of one file, or of the command line,
-/// the value would be ignored.
-void requireNotFixed(const Experiment& experiment) {
-    if (!experiment.sweep.isMap()) return;
-    for (const auto& [axis, values] : experiment.sweep.entries()) {
-        if (values.isNull() || !experiment.params.find(axis)) continue;
-        const SourceLocation swept = experiment.sweep.keyLocation(axis);
-        const SourceLocation fixed = experiment.params.find(axis)->location();
-        const bool isTyped = fixed.file.text().starts_with(kCommandLine);
-        if (!isTyped && !(fixed.file == swept.file && fixed.line > 0)) continue;
-        throw Error(fixed, "'" + axis + "' is swept, too, in " + toString(swept) +
-                               (isTyped ? "; use --sweep " + axis + "=… instead"
-                                        : "; allowed: in 'params' or in 'sweep'"));
-    }
-}
-
 void readMeasurement(const Node& document, Experiment& experiment) {
     const auto section = [&](const char* key) {
         const Node* node = document.find(key);
@@ -228,7 +212,6 @@ void readMeasurement(const Node& document, Experiment& experiment) {
         throwNotAllowed(experiment.sceneInstead, "scene_instead", "a map {scene: scene}");
     }
     experiment.sweep = section("sweep");
-    requireNotFixed(experiment);
     Params output(section("output"), "output");
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
     Params measure(section("measure"), "measure");

@@ -125,6 +125,19 @@ TEST(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
               "allowed: in 'params' or in 'sweep'\n");
 }
 
+TEST(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {
+    const TemporaryFolder folder;
+    folder.write("base.yaml", "params: {number: 1}\n");
+    const fs::path config =
+        writeMockConfig(folder, "extends: [base.yaml]\nsweep: {number: [2, 3]}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        mockGfxrepro({"run", config, "--device", "software", "--quiet", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult table = mockGfxrepro({"table", dir});
+    EXPECT_EQ(table.exitCode, 0) << table.err;  // the plan has both in one document
+}
+
 TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
     const TemporaryFolder folder;
     const std::string head = "technique: voxelization\nscene: shapes/torus\n";
