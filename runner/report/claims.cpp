@@ -324,10 +324,11 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
                 fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",
                             config::kFewestRounds, paperProcesses));
         }
-        if (claim.timeKind == ClaimSpec::TimeKind::Algorithmic && reader.asksForATimeAsSuch()) {
+        if (claim.timeKind && *claim.timeKind != ClaimSpec::TimeKind::Absolute &&
+            reader.asksForATimeAsSuch()) {
             complain(
-                "holds a time against a number, which no count of work decides; its 'kind' "
-                "is architectural | absolute");
+                "holds a time against a number, which neither a count of work nor another machine "
+                "decides; its 'kind' is absolute");
         }
     }
 }

@@ -237,11 +237,16 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
                               "algorithmic"),
               "claim 'C' has a 'kind' and reads no time");
     const std::string isAbsolute =
-        "claim 'C' holds a time against a number, which no count of work decides; its 'kind' is "
-        "architectural | absolute";
+        "claim 'C' holds a time against a number, which neither a count of work nor another "
+        "machine decides; its 'kind' is absolute";
     const std::string ofTime = ", at: {e: slow}, origin: document, kind: algorithmic";
     EXPECT_EQ(provenanceError("bound: a, below: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}, origin: document, "
+                              "kind: architectural"),
+              isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}, origin: document, kind: absolute"),
+              "no error");
     EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime), "no error");
     EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime, false, 5),
               "claim 'C' is of a time: the paper profile needs processes: 6 or more, has 5");
