@@ -42,8 +42,8 @@ bare() {
 # inside FOLDER COMMAND: in the system, with the clone as the current folder.
 inside() {
     unshare --mount bash -c 'for name in proc dev sys; do mount --rbind "/$name" "$1/$name"; done
-        mkdir -p "$1/root/.cache/ccache" && mount --bind "$2" "$1/root/.cache/ccache"
-        exec env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root \
+        mkdir -p "$1/home/.cache/ccache" && mount --bind "$2" "$1/home/.cache/ccache"
+        exec env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/home \
             "$(command -v chroot)" "$1" sh -ec "cd /src; $3"' _ "$1" "$cache" "$2"
 }
 
