@@ -18,6 +18,9 @@ using config::Assumption;
 using config::Node;
 
 constexpr std::size_t kMostShown = 12;
+/// What techniques call the camera or path of the scene that a case is seen along; of some it is a
+/// choice among their own.
+constexpr const char* kView = "view";
 
 std::vector<config::ParamInfo> declaredBy(const config::Experiment& experiment,
                                           std::span<const technique::TechniqueInfo> techniques) {
@@ -95,6 +98,10 @@ void requireFreeText(const Assumption& assumption, const config::Experiment& exp
     const bool isOfNumbers =
         isNumber(range) || (range.isSequence() && std::ranges::any_of(range.items(), isNumber));
     if (isOfNumbers) refuse(range.location(), "has a range of numbers");
+    // A list is what is tried in its place, and only parameters are.
+    if (!range.isNull() && (!range.isScalar() || range.text().find('\n') != std::string::npos)) {
+        refuse(range.location(), "has a range that is no line of text");
+    }
     if (isNumber(assumption.value) && !near.empty()) {
         refuse(assumption.value.location(), "is a number");
     }
@@ -131,27 +138,111 @@ void requireCatalogued(const Assumption& assumption, const Node& name,
     refuseRange(assumption, name, "catalogued scenes" + suggestion(text, known));
 }
 
+/// Whether some source of the scene, at hand or not, is a height map. What a generator makes is
+/// seen when it runs.
+bool hasHeights(const scene::SceneEntry& entry) {
+    return std::ranges::any_of(entry.sources, [](const scene::SceneSource& source) {
+        return source.heightMap.has_value();
+    });
+}
+
+/// Catalogued, each once, with a seed and parameters that its generator takes, and of the kind of
+/// `scene`, whose place it takes.
+void requireAlternatives(const Assumption& assumption, const Node& others, const std::string& scene,
+                         const scene::Catalog& catalog) {
+    if (!others.isSequence() || others.items().empty()) {
+        refuseRange(assumption, others, "a list of scenes");
+    }
+    const auto own = catalog.entries().find(config::sceneName(scene));
+    std::vector<std::string> seen;
+    for (const Node& other : others.items()) {
+        requireCatalogued(assumption, other, catalog);
+        if (std::ranges::find(seen, other.text()) != seen.end()) {
+            refuseRange(assumption, other, "each scene once");
+        }
+        seen.push_back(other.text());
+        const std::string name = config::sceneName(other.text());
+        if (name != other.text()) catalog.resolve(other);
+        if (own == catalog.entries().end()) continue;
+        const bool needsHeights = hasHeights(own->second);
+        if (hasHeights(catalog.entries().at(name)) == needsHeights) continue;
+        refuseRange(
+            assumption, other,
+            fmt::format("{} in the place of {}", needsHeights ? "height maps" : "models", scene));
+    }
+    if (seen == std::vector<std::string>{scene}) {
+        refuseRange(assumption, others, "another scene than " + scene);
+    }
+}
+
+/// The scenes of the config, as it names them, and of its profile `paper`.
+std::vector<std::string> scenesOf(const config::Experiment& experiment) {
+    std::vector<std::string> names;
+    const auto add = [&](const config::Experiment& one) {
+        for (const config::CaseSpec& spec : config::expandCases(one)) {
+            const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+        }
+    };
+    add(experiment);
+    if (!experiment.paperDocument.isNull()) {
+        add(config::experimentFromDocument(experiment.paperDocument, experiment.file));
+    }
+    return names;
+}
+
 void requireScenes(const config::Experiment& experiment, const Assumption& assumption,
                    const scene::Catalog& catalog) {
     const Node& range = assumption.range;
     if (range.isMap()) {
+        const std::vector<std::string> measured = scenesOf(experiment);
         for (const auto& [scene, others] : range.entries()) {
-            requireCatalogued(assumption, Node::scalar(scene, range.keyLocation(scene)), catalog);
-            if (!others.isSequence()) refuseRange(assumption, others, "a list of scenes");
-            for (const Node& other : others.items()) requireCatalogued(assumption, other, catalog);
+            const Node name = Node::scalar(scene, range.keyLocation(scene));
+            requireCatalogued(assumption, name, catalog);
+            requireAlternatives(assumption, others, scene, catalog);
+            // A preset names those of all files that extend it.
+            const bool isOfFile = name.location().file.text() == experiment.file.string();
+            if (isOfFile && std::ranges::find(measured, scene) == measured.end()) {
+                refuseRange(assumption, name,
+                            "scenes of " + experiment.id + ", " + joined(measured, " | "));
+            }
         }
         return;
     }
-    for (const Node& other : listOf(assumption)) requireCatalogued(assumption, other, catalog);
     std::vector<std::string> names;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
         const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
+    for (const Node& other : listOf(assumption)) requireCatalogued(assumption, other, catalog);
     if (names.size() > 1) {
         refuseRange(
             assumption, range,
             fmt::format("{{scene: [scenes]}}, as {} has {} scenes", experiment.id, names.size()));
+    }
+    requireAlternatives(assumption, range, names.empty() ? "" : names.front(), catalog);
+}
+
+/// Views are what the scenes of the cases have, whatever their seed.
+void requireViews(const Assumption& assumption, const std::vector<Case>& cases,
+                  const scene::Catalog& catalog) {
+    std::vector<std::string> loaded;
+    for (const Case& item : cases) {
+        if (item.scene.isNull()) continue;
+        const std::string name = config::sceneName(item.scene.text());
+        if (std::ranges::find(loaded, name) != loaded.end()) continue;
+        loaded.push_back(name);
+        const scene::Scene scene = catalog.load(item.scene);
+        std::vector<std::string> views;
+        for (const scene::CameraPath& path : scene.paths) views.push_back(path.name);
+        for (const scene::Camera& camera : scene.cameras) views.push_back(camera.name);
+        for (const Node& value : listOf(assumption)) {
+            const std::string text = value.isScalar() ? value.text() : "";
+            if (std::ranges::find(views, text) != views.end()) continue;
+            refuseRange(assumption, value,
+                        fmt::format("paths and cameras of {}, {}", item.scene.text(),
+                                    views.empty() ? "which has none" : joined(views, " | ")));
+        }
     }
 }
 
@@ -221,6 +312,8 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
                    const scene::Catalog& catalog,
                    std::span<const technique::TechniqueInfo> techniques) {
     constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000;
+    if (experiment.technique.empty()) return;  // only printed
+    const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
     for (const Assumption& assumption : experiment.assumptions) {
         if (!assumption.isBound || assumption.range.isNull()) continue;
         if (assumption.name == config::kOutputAssumption) {
@@ -233,6 +326,10 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
             requireReadable(experiment, assumption,
                             technique::findTechnique(techniques, experiment.technique, {}));
             requireMeasuredWithin(assumption, cases);
+            const config::ParamInfo* info = findInfo(declared, assumption.name);
+            if (assumption.name == kView && info && info->type == "text") {
+                requireViews(assumption, cases, catalog);
+            }
         }
     }
 }

@@ -127,7 +127,8 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
 
 /// The cases of the experiment under the profile `paper`: what tables compare a run's parameters
 /// with. None where nothing is published. Scenes need not be at hand. Throws Error as resolveCases,
-/// and for a name in `printed.at` that is no parameter.
+/// and for what `printed.at` names that is no parameter, or a value that the technique does not
+/// take.
 std::vector<config::PaperCase> resolvePaperCases(
     const config::Experiment& experiment, const scene::Catalog& catalog,
     std::span<const technique::TechniqueInfo> techniques);

@@ -33,16 +33,30 @@ config::Node absoluteReference(const config::Node& reference, const scene::Catal
                                 reference.location());
 }
 
-/// Keys with a dot, and `scene`, are checked where `printed.at` is read.
-void requireKnownAt(const config::Printed& printed, const config::Node& params) {
+/// Keys with a dot are checked where `printed.at` is read. A value is one that the technique takes:
+/// its type and range are the parameter's.
+void requireKnownAt(const config::Printed& printed, const Case& item,
+                    const technique::TechniqueInfo& info, const scene::Catalog& catalog) {
     std::vector<std::string> known;
-    for (const auto& [name, value] : params.entries()) known.push_back(name);
+    for (const auto& [name, value] : item.params.entries()) known.push_back(name);
     for (const auto& [name, value] : printed.at) {
-        const bool isKnown = name == "scene" || name.find('.') != std::string::npos ||
-                             std::ranges::find(known, name) != known.end();
-        if (isKnown) continue;
-        throw Error(value.location(),
-                    "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
+        if (name.find('.') != std::string::npos) continue;
+        if (name == "scene") {
+            const std::string text = value.isScalar() ? value.text() : "";
+            if (catalog.entries().contains(config::sceneName(text))) continue;
+            throw Error(value.location(), fmt::format("printed.at: scene is {}; allowed: a "
+                                                      "catalogued scene",
+                                                      value.toFlowText()));
+        }
+        if (std::ranges::find(known, name) == known.end()) {
+            throw Error(value.location(),
+                        "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
+        }
+        config::Node given = item.given;
+        given.set(name, value, value.location());
+        config::Params params(given, "printed.at");
+        if (!item.offered.isNull()) params.offer(item.offered);
+        info.create(params);
     }
 }
 
@@ -227,7 +241,8 @@ std::vector<config::PaperCase> resolvePaperCases(
         config::experimentFromDocument(experiment.paperDocument, experiment.file);
     std::vector<config::PaperCase> cases;
     for (const Case& item : resolveParameters(paper, catalog, techniques, 0)) {
-        requireKnownAt(paper.printed, item.params);
+        requireKnownAt(paper.printed, item,
+                       technique::findTechnique(techniques, paper.technique, {}), catalog);
         config::Node params = item.params;
         params.setPath("output.width", config::Node::number(item.outputWidthPx));
         params.setPath("output.height", config::Node::number(item.outputHeightPx));

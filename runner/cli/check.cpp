@@ -1,4 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
 #include <set>
 
 #include "runner/batch/ledger.h"
@@ -8,8 +13,11 @@
 #include "runner/cli/experiments.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
+#include "runner/core/files.h"
+#include "runner/core/text.h"
 #include "runner/report/claims.h"
 #include "runner/report/figure.h"
+#include "runner/report/printed_values.h"
 
 namespace gfxrepro::cli {
 
@@ -40,6 +48,53 @@ void sayUnread(const Context& context, const scene::Catalog& catalog, const std:
     }
 }
 
+/// Throws Error for a printed row or value that has no place in the table, whatever the profile.
+void requirePrinted(const Context& context, const scene::Catalog& catalog,
+                    const std::string& file) {
+    std::optional<config::Experiment> whole;
+    std::vector<report::Table> tables;
+    for (const char* profile : {"full", "quick", "paper"}) {
+        const config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
+        if (one.technique.empty() || one.printed.rows.empty()) return;
+        const std::vector<batch::Case> cases =
+            batch::resolveParameters(one, catalog, context.techniques, 1);
+        tables.push_back(report::buildTable(one, batch::plannedCases(cases), {}));
+        if (!whole) whole = one;
+    }
+    report::requirePrintedValues(*whole, tables);
+}
+
+/// Throws Error for a sweep that the text names ("sweeps/NAME") and that is not among the configs.
+void requireNamedSweeps(const config::Node& node) {
+    if (node.isMap()) {
+        for (const auto& [key, value] : node.entries()) requireNamedSweeps(value);
+    } else if (node.isSequence()) {
+        for (const config::Node& item : node.items()) requireNamedSweeps(item);
+    }
+    if (!node.isScalar()) return;
+    static constexpr std::string_view kFolder = "sweeps/";
+    const std::string& text = node.text();
+    for (std::size_t at = text.find(kFolder); at != std::string::npos;
+         at = text.find(kFolder, at + 1)) {
+        const std::size_t begin = at + kFolder.size();
+        const auto isOfName = [](unsigned char c) {
+            return std::isalnum(c) || c == '_' || c == '-';
+        };
+        const auto end = std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                          text.end(), isOfName);
+        const std::string name(text.begin() + static_cast<std::ptrdiff_t>(begin), end);
+        const std::filesystem::path folder = dataFolder("configs") / "sweeps";
+        if (std::filesystem::is_regular_file(folder / (name + ".yaml"))) continue;
+        std::vector<std::string> known;
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
+        }
+        throw Error(node.location(), fmt::format("'sweeps/{}' is named, and configs/sweeps has "
+                                                 "none of that name{}",
+                                                 name, suggestion(name, known)));
+    }
+}
+
 /// Reads the user's own files, each once: what is wrong in one would be found by the first case.
 void requireReadable(const std::vector<batch::Case>& cases, const scene::Catalog& catalog) {
     std::set<std::string> read;
@@ -67,6 +122,11 @@ int check(const Context& context, const Selection& selection) {
         batch::bindAssumptions(experiment, cases, catalog, context.techniques);
         batch::requireRanges(experiment, cases, catalog, context.techniques);
         requireReadable(cases, catalog);
+        requirePrinted(context, catalog, file);
+        for (const char* section : {"claims", "assumptions", "printed"}) {
+            const config::Node* node = experiment.document.find(section);
+            if (node) requireNamedSweeps(*node);
+        }
         const std::size_t caseCount = cases.size();
         const report::Table table = report::buildTable(experiment, batch::plannedCases(cases), {});
         report::requireProvenance(experiment, table);

@@ -49,6 +49,35 @@ ClaimSpec::Known readKnown(const Node& node, const std::string& what) {
     return known;
 }
 
+std::string placeOf(const ClaimSpec::Known& known) {
+    return known.device.value_or("any device") + ", " + known.profile.value_or("any profile");
+}
+
+/// The first that is of a device and profile is taken: a later one may be of more, never of what an
+/// earlier one has.
+void requireApart(const std::vector<ClaimSpec::Known>& known, const Node::Sequence& entries,
+                  const std::string& what) {
+    const auto isWithin = [](const auto& narrow, const auto& wide) {
+        return !wide || narrow == wide;
+    };
+    for (std::size_t later = 1; later < known.size(); ++later) {
+        for (std::size_t i = 0; i < later; ++i) {
+            const ClaimSpec::Known &one = known[i], &other = known[later];
+            const bool areApart = (one.device && other.device && one.device != other.device) ||
+                                  (one.profile && other.profile && one.profile != other.profile);
+            const bool isNarrower = isWithin(one.device, other.device) &&
+                                    isWithin(one.profile, other.profile) &&
+                                    (one.device != other.device || one.profile != other.profile);
+            if (areApart || isNarrower) continue;
+            throw Error(entries[later].location(),
+                        what + " is of " + placeOf(other) + ", and an earlier one of " +
+                            placeOf(one) +
+                            "; allowed: one for each device and profile, what is "
+                            "of more behind what is of less");
+        }
+    }
+}
+
 }  // namespace
 
 bool ClaimSpec::hasBound() const {
@@ -67,7 +96,7 @@ std::string_view timeKindName(TimeKind kind) {
     return kTimeKinds[static_cast<std::size_t>(kind)];
 }
 
-void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim) {
+void readProvenance(const Node& node, const std::string& what, bool hasPrinted, ClaimSpec& claim) {
     if (const Node* origin = node.find("origin")) {
         claim.origin = named<Origin>(*origin, what + ": origin", kOrigins);
     }
@@ -77,6 +106,11 @@ void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim)
                         what + ": bound_from, and there is no number in what it requires");
         }
         claim.boundFrom = named<BoundSource>(*source, what + ": bound_from", kBoundSources);
+        if (claim.boundFrom == BoundSource::Print && !hasPrinted) {
+            throw Error(source->location(), what +
+                                                ": bound_from is print, and the table has no "
+                                                "printed values; allowed: text | ours");
+        }
     }
     if (const Node* kind = node.find("kind")) {
         claim.timeKind = named<TimeKind>(*kind, what + ": kind", kTimeKinds);
@@ -90,6 +124,7 @@ void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim)
     const Node::Sequence entries =
         because->isSequence() ? because->items() : Node::Sequence{*because};
     for (const Node& entry : entries) claim.because.push_back(readKnown(entry, what + ": because"));
+    requireApart(claim.because, entries, what + ": because");
 }
 
 }  // namespace gfxrepro::config

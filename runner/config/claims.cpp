@@ -75,7 +75,8 @@ class ClaimReader {
         readCommon();
         readOperands(*node_.find(kind.key));
         readRequired();
-        readProvenance(node_, what_, claim_);
+        requireRoom();
+        readProvenance(node_, what_, hasPrinted_, claim_);
         return std::move(claim_);
     }
 
@@ -259,6 +260,15 @@ class ClaimReader {
         claim_.low = pair->items()[0].asDouble();
         claim_.high = pair->items()[1].asDouble();
         if (*claim_.low > *claim_.high) throwNotAllowed(*pair, what, "[low, high], low first");
+    }
+
+    /// Bounds of which one excludes itself leave nothing where they are one number.
+    void requireRoom() const {
+        if (!claim_.isLowExcluded && !claim_.isHighExcluded) return;
+        if (!claim_.low || !claim_.high || *claim_.low < *claim_.high) return;
+        const Node& bound = *node_.find(claim_.isHighExcluded ? "less_than" : "more_than");
+        throwNotAllowed(bound, what_ + ": " + (claim_.isHighExcluded ? "less_than" : "more_than"),
+                        "bounds with a number between them");
     }
 
     void requireSome(const std::string& keys) const {

@@ -73,7 +73,9 @@ void requireLabels(const std::vector<std::string>& row, const std::vector<std::s
     }
 }
 
-/// Parameters of the technique are known to the plan alone, which checks their names.
+constexpr int kMostFrames = 1'000'000;  // as of measure.frames
+
+/// Parameters of the technique are known to the plan alone, which checks their names and values.
 std::vector<std::pair<std::string, Node>> readAt(const Node& at) {
     if (!at.isMap()) throwNotAllowed(at, "printed.at", "a map {parameter: printed value}");
     constexpr const char* kSizes[] = {"output.width", "output.height", "measure.frames"};
@@ -86,8 +88,11 @@ std::vector<std::pair<std::string, Node>> readAt(const Node& at) {
                                                   "'; allowed: a parameter, scene, output.width, "
                                                   "output.height, measure.frames");
         }
-        if (isSize && value.tryInteger().value_or(0) < 1) {
-            throwNotAllowed(value, "printed.at: " + name, "a whole number, at least 1");
+        const int most = name == "measure.frames" ? kMostFrames : kMaxOutputPx;
+        const long long size = value.tryInteger().value_or(0);
+        if (isSize && (size < 1 || size > most)) {
+            throwNotAllowed(value, "printed.at: " + name,
+                            fmt::format("a whole number, 1 … {}", most));
         }
         values.emplace_back(name, value);
     }

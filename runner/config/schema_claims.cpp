@@ -49,14 +49,16 @@ SchemaSection common() {
               "or of an input fitted to it. A document's table needs it",
               choice(kOrigins)},
              {"bound_from", "print | text | ours", "none",
-              "where the number that it requires comes from. A document's table needs it",
+              "where the number that it requires comes from; print: the table's printed values. A "
+              "document's table needs it",
               choice(kBoundSources)},
              {"kind", "algorithmic | architectural | absolute", "none",
               "of a claim about time: counts of work decide; a GPU's units do; or times as such, "
               "at the printed parameters. The last two are judged on a GPU only",
               choice(kTimeKinds)},
              {"because", "known | [known]", "none",
-              "where it is known not to hold, and why; any other verdict than the known is news",
+              "where it is known not to hold, and why, one for each device and profile, what is of "
+              "more behind what is of less; any other verdict than the known is news",
               oneOrMore(refTo("because"))}},
             false};
 }

@@ -107,15 +107,26 @@ std::string ClaimReader::groupName(const Rows& rows) const {
     return joined(parts);
 }
 
-bool ClaimReader::readsTime() const {
+bool ClaimReader::readsSome(const std::function<bool(const Cell&)>& isSuch) const {
     const Rows read = rows();
-    const auto isTime = [&](const Operand& operand) {
+    const auto readsOne = [&](const Operand& operand) {
         return std::ranges::any_of(operand.columns(), [&](std::size_t column) {
             return std::ranges::any_of(
-                read, [&](std::size_t row) { return table_.rows[row].cells[column].isTime; });
+                read, [&](std::size_t row) { return isSuch(table_.rows[row].cells[column]); });
         });
     };
-    return std::ranges::any_of(operands_, isTime) || std::ranges::any_of(overColumn_, isTime);
+    return std::ranges::any_of(operands_, readsOne) || std::ranges::any_of(overColumn_, readsOne);
+}
+
+bool ClaimReader::readsTime() const {
+    return readsSome([](const Cell& cell) { return cell.isTime; });
+}
+
+bool ClaimReader::readsShare() const {
+    return readsSome([](const Cell& cell) {
+        const bool isScaled = cell.metric.empty() && cell.unit.empty();
+        return isScaled || cell.metric.ends_with("_pct");
+    });
 }
 
 bool ClaimReader::readsCalibrated() const {

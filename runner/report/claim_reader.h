@@ -1,6 +1,7 @@
 // Reads the values that a claim is about off a table.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ class ClaimReader {
     bool isAtPrintedParameters() const;
     /// Whether some cell that it may read is a time or a rate of time.
     bool readsTime() const;
+    /// Whether some cell that it may read is, perhaps scaled, a recorded percentage, which has an
+    /// interval where it is a share of a count.
+    bool readsShare() const;
     /// Whether all cells that it may read are marked as calibrated.
     bool readsCalibrated() const;
     /// Whether what it asks could come out otherwise on a machine on which every time is twice as
@@ -59,6 +63,7 @@ class ClaimReader {
         throw Error(claim_.location, "claim '" + claim_.id + "': " + message);
     }
     Rows rows() const;
+    bool readsSome(const std::function<bool(const Cell&)>& isSuch) const;
     std::size_t rowAxis(const std::string& name, const char* key) const;
     std::vector<bool> axesAlongX();
     std::optional<double> expected(std::size_t operand, std::size_t row);

@@ -281,6 +281,14 @@ int processesOfPaper(const config::Experiment& experiment) {
         .measure.processes;
 }
 
+/// Scenes that a verdict in the profile, or in any, is taken over.
+int seedsAtMost(const config::Experiment& experiment, const std::optional<std::string>& profile) {
+    int seeds = experiment.measure.sceneSeeds;
+    if (profile.value_or("paper") != "paper" || experiment.paperDocument.isNull()) return seeds;
+    return std::max(seeds, config::experimentFromDocument(experiment.paperDocument, experiment.file)
+                               .measure.sceneSeeds);
+}
+
 }  // namespace
 
 void requireProvenance(const config::Experiment& experiment, const Table& table) {
@@ -309,6 +317,13 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
         ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
+        for (const ClaimSpec::Known& known : claim.because) {
+            if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
+            if (reader.readsShare() || seedsAtMost(experiment, known.profile) > 1) continue;
+            complain(
+                "is known as ambiguous, and reads neither a time nor a share, of one scene: a "
+                "number without an interval holds or fails");
+        }
         if (table.isPublished && claim.origin == ClaimSpec::Origin::Calibrated &&
             !reader.readsCalibrated()) {
             complain(

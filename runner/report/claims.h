@@ -97,8 +97,9 @@ std::string whatIsAbsent(const config::ClaimSpec& claim, const Table& table);
 
 /// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
 /// none, where a document's table does not say whose the claim or its bound is, where a claim of a
-/// calibrated input reads cells that are not marked so, or a reason is for a device or profile that
-/// the claim is not judged on. `table` may have been built from no records.
+/// calibrated input reads cells that are not marked so, a reason is for a device or profile that
+/// the claim is not judged on, or what has no interval is known as ambiguous. `table` may have been
+/// built from no records.
 void requireProvenance(const config::Experiment& experiment, const Table& table);
 
 /// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.

@@ -72,6 +72,36 @@ TEST(Usage, UnknownTechniqueAndScene) {
         std::string::npos);
 }
 
+TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
+    const TemporaryFolder folder;
+    const auto errorOf = [&](const std::string& row, const std::string& reason) {
+        const std::string config = folder.write(
+            "t.yaml",
+            "table: p/1\ntitle: T\ntechnique: voxelization\nscene: shapes/torus\n"
+            "sweep: {resolution: [32, 64]}\nprofiles: {paper: {sweep: {resolution: [128]}}}\n"
+            "layout: {rows: resolution, columns: {voxels: {metric: voxels}}}\n"
+            "printed:\n  values: |\n    resolution,voxels\n    " +
+                row +
+                "\nclaims:\n  C: {says: s, origin: document, bound: voxels, above: 1, bound_from: "
+                "ours, because: {verdict: fails, reason: " +
+                reason + "}}\n");
+        const ProcessResult result = gfxrepro({"check", config});
+        const std::size_t at = result.err.find("t.yaml:");
+        return at == std::string::npos ? result.err : result.err.substr(at);
+    };
+    EXPECT_EQ(errorOf("128,12", "few"), "");
+    EXPECT_EQ(errorOf("182,12", "few"),
+              "t.yaml:11: printed: no profile measures the row '182,12'; allowed: resolution 32 | "
+              "64 | 128\n");
+    EXPECT_EQ(errorOf("128,12x8", "few"),
+              "t.yaml:11: printed: voxels is '12x8'; allowed: as the cell's format writes numbers, "
+              "or empty where it is lost\n");
+    EXPECT_EQ(errorOf("128,12", "few (sweeps/voxelization-rule.yaml)"),
+              "t.yaml:13:111: 'sweeps/voxelization-rule' is named, and configs/sweeps has none of "
+              "that name; did you mean 'voxelization-rules'?\n");
+    EXPECT_EQ(errorOf("128,12", "few (sweeps/voxelization-rules.yaml)"), "");
+}
+
 TEST(Usage, UnknownPaperAndKind) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"reproduce", "zju2006/2.1"}, folder),

@@ -20,6 +20,7 @@ class Still : public technique::Technique {
         const double bias = params.getDouble("bias", 0.5, {"taken from the depth", "texels", 0, 1});
         const bool isStatic = params.getBool("static", false, {"drawn once"});
         params.getInt("last", 0, {"frame that is drawn"});
+        params.getText("view", "", {"a camera of the scene"});
         if (!isStatic) params.refuseGiven({"last"}, "'static: true'");
         if (isStatic && bias == 0.0) {
             throw Error(params.locationOf("bias"), "bias is 0, but static needs one");
@@ -178,6 +179,77 @@ TEST(Ledger, RefusesRangesThatACaseCannotTake) {
                              "  bias: {range: [0, 1], why: open}\n"
                              "  scene: {range: [tree, tree@2], why: open}\n"),
               "no error");
+}
+
+TEST(Ledger, RefusesViewsThatTheSceneHasNot) {
+    const Ledger ledger;
+    const auto errorOf = [&](const std::string& range) {
+        return ledger.errorOf("scene: tree\nassumptions:\n  view: {range: [" + range +
+                              "], why: open}\n");
+    };
+    EXPECT_EQ(errorOf("whole, nowhere"),
+              "DIR/t.yaml:6:25: assumption 'view': range is nowhere; allowed: paths and cameras of "
+              "tree, whole");
+    EXPECT_EQ(errorOf("whole"), "no error");
+}
+
+TEST(Ledger, RefusesScenesThatTakeNobodysPlace) {
+    const Ledger ledger;
+    ledger.folder.write("configs/scenes/hills.yaml",
+                        "scene: hills\ndoc: d\nsources:\n  - {height_map: h.png, spacing_m: 1}\n");
+    const auto errorOf = [&](const std::string& range) {
+        return ledger.errorOf("sweep: {scene: [grass, scan]}\nassumptions:\n  scene: {range: {" +
+                              range + "}, why: open}\n");
+    };
+    const std::string head = "DIR/t.yaml:6:";
+    EXPECT_EQ(errorOf("tree: [grass]"), head +
+                                            "19: assumption 'scene': range is tree; allowed: "
+                                            "scenes of sweep/t, grass | scan");
+    EXPECT_EQ(errorOf("grass: [tree, tree]"),
+              head + "33: assumption 'scene': range is tree; allowed: each scene once");
+    EXPECT_EQ(errorOf("grass: [grass]"), head +
+                                             "26: assumption 'scene': range is [grass]; "
+                                             "allowed: another scene than grass");
+    EXPECT_EQ(errorOf("grass: [hills]"), head +
+                                             "27: assumption 'scene': range is hills; allowed: "
+                                             "models in the place of grass");
+    EXPECT_EQ(errorOf("grass: []"),
+              head + "26: assumption 'scene': range is []; allowed: a list of scenes");
+    EXPECT_EQ(errorOf("grass: [tree@many]"),
+              head + "27: the seed of scene 'tree' is 'many'; allowed: a whole number, at least 0");
+    EXPECT_EQ(errorOf("grass: [tree, tree@2]"), "no error");
+}
+
+TEST(Ledger, RefusesAListOfWhatNobodyTries) {
+    const Ledger ledger;
+    EXPECT_EQ(
+        ledger.errorOf("assumptions:\n  camera: {value: low, range: [low, high], why: open}\n"),
+        "DIR/t.yaml:5:31: assumption 'camera' has a range that is no line of text: it is no "
+        "parameter of technique 'still'");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  camera: {value: low, range: any, why: open}\n"),
+              "no error");
+}
+
+TEST(PaperCases, RefuseWhatTheTechniqueDoesNotTake) {
+    const Ledger ledger;
+    const auto errorOf = [&](const std::string& at) {
+        return test::errorText(
+            [&] {
+                config::Experiment experiment = ledger.load("printed: {at: " + at + "}\n");
+                experiment.paperDocument = experiment.document;
+                resolvePaperCases(experiment, ledger.catalog(), kTechniques);
+            },
+            ledger.folder.path());
+    };
+    EXPECT_EQ(errorOf("{bias: 5}"),
+              "DIR/t.yaml:4:22: printed.at: bias is 5; allowed: 0 … 1 texels");
+    EXPECT_EQ(errorOf("{bias: much}"),
+              "DIR/t.yaml:4:22: printed.at: bias is 'much'; allowed: a number, 0 … 1 texels");
+    EXPECT_EQ(errorOf("{biass: 1}"),
+              "DIR/t.yaml:4:23: printed.at: 'biass' is no parameter; did you mean 'bias'?");
+    EXPECT_EQ(errorOf("{scene: gras}"),
+              "DIR/t.yaml:4:23: printed.at: scene is gras; allowed: a catalogued scene");
+    EXPECT_EQ(errorOf("{bias: 0.25, scene: grass}"), "no error");
 }
 
 TEST(Cases, TakeParametersInsteadOfValuesAndDefaults) {

@@ -168,8 +168,11 @@ TEST_F(ExperimentTest, PrintedParameters) {
               "DIR/zju/a.yaml:6:16: printed.at: 'measure.repeats'; allowed: a parameter, scene, "
               "output.width, output.height, measure.frames");
     EXPECT_EQ(loadError(at("{measure.frames: all}")),
-              "DIR/zju/a.yaml:6:32: printed.at: measure.frames is all; allowed: a whole number, at "
-              "least 1");
+              "DIR/zju/a.yaml:6:32: printed.at: measure.frames is all; allowed: a whole number, 1 "
+              "… 1000000");
+    EXPECT_EQ(loadError(at("{output.width: 20000}")),
+              "DIR/zju/a.yaml:6:30: printed.at: output.width is 20000; allowed: a whole number, 1 "
+              "… 16384");
     EXPECT_EQ(loadError(at("{grid: 16}")),
               "DIR/zju/a.yaml:6:22: printed.at: 'grid' is swept; allowed: what all cases share");
     EXPECT_EQ(loadError("table: p/1\ntitle: t\nprinted: {values: \"a\\n1\", at: {grid: 1}}\n"),
@@ -248,6 +251,11 @@ TEST_F(ExperimentTest, BadClaims) {
               head + "3: claim 'C' needs above, more_than, below or less_than");
     EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, more_than: 1}"),
               head + "48: claim 'C': 'above' and 'more_than'; one is allowed");
+    EXPECT_EQ(claimError("{says: s, bound: aa, more_than: 1, less_than: 1}"),
+              head + "52: claim 'C': less_than is 1; allowed: bounds with a number between them");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, more_than: 1, at_most: 1}"),
+              head + "43: claim 'C': more_than is 1; allowed: bounds with a number between them");
+    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 1, at_most: 1}"), "no error");
     EXPECT_EQ(claimError("{says: s, bound: aa, more_than: 2, less_than: 1}"),
               head + "52: claim 'C': the lower bound exceeds the upper");
 }
@@ -326,12 +334,45 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
                   "unmeasured");
     EXPECT_EQ(error("because: [{verdict: fails, reason: r, device: cpu}]"),
               head + "87: claim 'C': because: device is cpu; allowed: software | gpu");
+    EXPECT_EQ(errorWith(layout + "{says: s, bound: aa, below: 1, bound_from: print}"),
+              head +
+                  "49: claim 'C': bound_from is print, and the table has no printed values; "
+                  "allowed: text | ours");
+    const auto known = [&](const std::string& first, const std::string& second) {
+        return error("because: [{verdict: fails, reason: r" + first +
+                     "}, {verdict: ambiguous, reason: r" + second + "}]");
+    };
+    const std::string rule =
+        "; allowed: one for each device and profile, what is of more behind what is of less";
+    EXPECT_EQ(known("", ""), head +
+                                 "80: claim 'C': because is of any device, any profile, and an "
+                                 "earlier one of any device, any profile" +
+                                 rule);
+    EXPECT_EQ(known(", profile: quick", ", profile: quick"),
+              head +
+                  "96: claim 'C': because is of any device, quick, and an earlier one of any "
+                  "device, quick" +
+                  rule);
+    EXPECT_EQ(known("", ", device: gpu"),
+              head +
+                  "80: claim 'C': because is of gpu, any profile, and an earlier one of any "
+                  "device, any profile" +
+                  rule)
+        << "never reached";
+    EXPECT_EQ(known(", device: software", ", profile: quick"),
+              head +
+                  "98: claim 'C': because is of any device, quick, and an earlier one of "
+                  "software, any profile" +
+                  rule);
+    EXPECT_EQ(known(", profile: quick", ", profile: paper"), "no error");
+    EXPECT_EQ(known(", profile: quick", ""), "no error");
+    EXPECT_EQ(known(", device: gpu, profile: quick", ", device: gpu"), "no error");
 }
 
 TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     const Experiment table = load(
         "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
-        "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
+        "layout: {rows: scene, columns: {aa: m}}\nprinted: {values: \"scene,aa\\ns,1\"}\nclaims:\n"
         "  C: {says: s, bound: aa, more_than: 0, origin: derived, bound_from: print, kind: "
         "architectural, because: [{verdict: fails, profile: quick, reason: r}]}\n");
     const ClaimSpec& claim = table.claims.at(0);

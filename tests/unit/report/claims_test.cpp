@@ -290,6 +290,37 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
         "no error");
 }
 
+/// What has no interval is never told from its bound.
+TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
+    const auto errorOf = [](const std::string& measure, const std::string& claim) {
+        const config::Experiment experiment = experimentFrom(
+            measure +
+            "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {time: {metric: gpu_time_ms}, "
+            "much: {metric: bytes}, part: {metric: drawn_pct}}}\nclaims:\n  C: {says: s, origin: "
+            "document, " +
+            claim + "}\n");
+        try {
+            requireProvenance(experiment, buildTable(experiment, {}));
+            return std::string("no error");
+        } catch (const Error& error) {
+            const std::string text = error.what();
+            return text.substr(text.find("claim"));
+        }
+    };
+    const std::string count = "measure: {scene_seeds: 1}\n", five = "measure: {scene_seeds: 5}\n";
+    const std::string times = "measure: {lane: timing, processes: 6}\n";
+    const std::string known = ", because: {verdict: ambiguous, reason: r}";
+    const std::string refused =
+        "claim 'C' is known as ambiguous, and reads neither a time nor a share, of one scene: a "
+        "number without an interval holds or fails";
+    EXPECT_EQ(errorOf(count, "order: much < 2 * much" + known), refused);
+    EXPECT_EQ(errorOf(count, "order: part < much" + known), "no error");
+    EXPECT_EQ(errorOf(five, "order: much < 2 * much" + known), "no error");
+    EXPECT_EQ(errorOf(count, "order: much < 2 * much, because: {verdict: fails, reason: r}"),
+              "no error");
+    EXPECT_EQ(errorOf(times, "order: time < 2 * time, kind: algorithmic" + known), "no error");
+}
+
 TEST(Claims, ATimeAsSuchIsJudgedAtThePrintedParametersAlone) {
     RecordMaker maker;
     maker.beginCase("models/duck", R"({"size": 64})");
