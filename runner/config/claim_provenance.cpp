@@ -96,7 +96,7 @@ std::string_view timeKindName(TimeKind kind) {
     return kTimeKinds[static_cast<std::size_t>(kind)];
 }
 
-void readProvenance(const Node& node, const std::string& what, bool hasPrinted, ClaimSpec& claim) {
+void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim) {
     if (const Node* origin = node.find("origin")) {
         claim.origin = named<Origin>(*origin, what + ": origin", kOrigins);
     }
@@ -106,11 +106,6 @@ void readProvenance(const Node& node, const std::string& what, bool hasPrinted, 
                         what + ": bound_from, and there is no number in what it requires");
         }
         claim.boundFrom = named<BoundSource>(*source, what + ": bound_from", kBoundSources);
-        if (claim.boundFrom == BoundSource::Print && !hasPrinted) {
-            throw Error(source->location(), what +
-                                                ": bound_from is print, and the table has no "
-                                                "printed values; allowed: text | ours");
-        }
     }
     if (const Node* kind = node.find("kind")) {
         claim.timeKind = named<TimeKind>(*kind, what + ": kind", kTimeKinds);

@@ -76,7 +76,7 @@ class ClaimReader {
         readOperands(*node_.find(kind.key));
         readRequired();
         requireRoom();
-        readProvenance(node_, what_, hasPrinted_, claim_);
+        readProvenance(node_, what_, claim_);
         return std::move(claim_);
     }
 

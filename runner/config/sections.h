@@ -48,9 +48,8 @@ std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, boo
 void requireOperand(const std::string& operand, const Node& node, const TableNames& names,
                     const std::string& what);
 
-/// origin, bound_from, kind and because of a claim; `what` begins the messages. `hasPrinted`: the
-/// table has printed numbers.
-void readProvenance(const Node& node, const std::string& what, bool hasPrinted, ClaimSpec& claim);
+/// origin, bound_from, kind and because of a claim; `what` begins the messages.
+void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim);
 
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names);
 

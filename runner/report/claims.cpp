@@ -305,6 +305,9 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
         if (isOfDocument && claim.hasBound() && !claim.boundFrom) {
             complain("requires a number and needs 'bound_from': print | text | ours");
         }
+        if (claim.boundFrom == ClaimSpec::BoundSource::Print && experiment.printed.rows.empty()) {
+            complain("has its bound from print, and the table has no printed values: text | ours");
+        }
         for (const ClaimSpec::Known& known : claim.because) {
             if (claim.device == ClaimSpec::Device::Gpu && known.device == "software") {
                 complain("has a reason for software ('because'), and a GPU alone judges it");

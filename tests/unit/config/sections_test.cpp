@@ -334,10 +334,6 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
                   "unmeasured");
     EXPECT_EQ(error("because: [{verdict: fails, reason: r, device: cpu}]"),
               head + "87: claim 'C': because: device is cpu; allowed: software | gpu");
-    EXPECT_EQ(errorWith(layout + "{says: s, bound: aa, below: 1, bound_from: print}"),
-              head +
-                  "49: claim 'C': bound_from is print, and the table has no printed values; "
-                  "allowed: text | ours");
     const auto known = [&](const std::string& first, const std::string& second) {
         return error("because: [{verdict: fails, reason: r" + first +
                      "}, {verdict: ambiguous, reason: r" + second + "}]");
@@ -372,7 +368,7 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
 TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     const Experiment table = load(
         "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
-        "layout: {rows: scene, columns: {aa: m}}\nprinted: {values: \"scene,aa\\ns,1\"}\nclaims:\n"
+        "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
         "  C: {says: s, bound: aa, more_than: 0, origin: derived, bound_from: print, kind: "
         "architectural, because: [{verdict: fails, profile: quick, reason: r}]}\n");
     const ClaimSpec& claim = table.claims.at(0);

@@ -228,6 +228,9 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
     EXPECT_EQ(
         provenanceError("bound: a, below: 1, at: {e: much}, origin: document, bound_from: text"),
         "no error");
+    EXPECT_EQ(
+        provenanceError("bound: a, below: 1, at: {e: much}, origin: document, bound_from: print"),
+        "claim 'C' has its bound from print, and the table has no printed values: text | ours");
     EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document"),
               "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
     EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document, kind: "
