@@ -192,8 +192,7 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
             item.params.set(std::string(config::kSceneAxisPrefix) + name, value,
                             spec.sceneParams.keyLocation(name));
         }
-        item.axes = config::Node::map({});
-        for (const auto& [name, value] : spec.axes) item.axes.set(name, value);
+        item.axes = config::Node::map(spec.axes);
         requireModestTitle(experiment, item);
         item.outputWidthPx = spec.outputWidthPx;
         item.outputHeightPx = spec.outputHeightPx;

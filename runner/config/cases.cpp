@@ -11,8 +11,8 @@ namespace gfxrepro::config {
 namespace {
 
 const Node& sceneAt(const AxisPoint& point, const Experiment& experiment) {
-    const auto swept = std::ranges::find(point, "scene", &AxisPoint::value_type::first);
-    return swept == point.end() ? experiment.scene : swept->second;
+    const auto swept = std::ranges::find(point, "scene", &Node::Entry::key);
+    return swept == point.end() ? experiment.scene : swept->value;
 }
 
 /// `params` with those of the scene laid over.

@@ -16,7 +16,7 @@
 namespace gfxrepro::config {
 
 /// One point of a sweep: axis name → value, in the order of the axes.
-using AxisPoint = std::vector<std::pair<std::string, Node>>;
+using AxisPoint = Node::Map;
 
 /// The `sweep:` map. Each key is an axis: `scene`, `output.width`, or a technique's parameter.
 ///
@@ -87,7 +87,7 @@ struct Selection {
         format;                    // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
     std::optional<double> scale;   // multiplies every value
     std::optional<Whole> shareOf;  // shows the statistic ÷ the same of that, in %
-    std::vector<std::pair<std::string, Node>> where;  // axis = value
+    Node::Map where;               // axis = value
     SourceLocation location;
 };
 
@@ -117,7 +117,7 @@ struct Printed {
     std::vector<std::vector<std::string>> rows;
     /// What the paper measured at where the profile `paper` departs from it: a parameter,
     /// `output.width`, `output.height`, `measure.frames` or `scene`, with the printed value.
-    std::vector<std::pair<std::string, Node>> at;
+    Node::Map at;
     SourceLocation location;
 };
 

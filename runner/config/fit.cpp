@@ -139,9 +139,9 @@ bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
     };
     return std::ranges::any_of(calibrated->items(), [&](const Node& cells) {
         return std::ranges::all_of(cells.entries(), [&](const auto& entry) {
-            const std::string* label = labelOf(entry.first);
+            const std::string* label = labelOf(entry.key());
             if (!label) return false;
-            const Node& values = entry.second;
+            const Node& values = entry.value;
             if (!values.isSequence()) return isLabel(values, *label);
             return std::ranges::any_of(values.items(),
                                        [&](const Node& one) { return isLabel(one, *label); });

@@ -78,7 +78,7 @@ class Builder : public nlohmann::json_sax<Json> {
         Node::Map entries;
         entries.reserve(done.values.size());
         for (std::size_t i = 0; i < done.values.size(); ++i) {
-            entries.emplace_back(std::move(done.keys[i]), std::move(done.values[i]));
+            entries.emplace_back(done.keys[i], std::move(done.values[i]));
         }
         return add(Node::map(std::move(entries), where_));
     }

@@ -42,20 +42,20 @@ bool needsQuotes(const std::string& text) {
 
 std::optional<std::size_t> Node::MapContent::placeOf(std::string_view key) const {
     if (slots.empty()) {
-        const auto at = std::ranges::find(entries, key, &Map::value_type::first);
+        const auto at = std::ranges::find(entries, key, &Entry::key);
         if (at == entries.end()) return std::nullopt;
         return static_cast<std::size_t>(at - entries.begin());
     }
     const std::size_t mask = slots.size() - 1;
     for (std::size_t i = std::hash<std::string_view>()(key) & mask; slots[i] != 0;
          i = (i + 1) & mask) {
-        if (entries[slots[i] - 1].first == key) return slots[i] - 1;
+        if (entries[slots[i] - 1].key() == key) return slots[i] - 1;
     }
     return std::nullopt;
 }
 
-void Node::MapContent::add(std::string key, Node value) {
-    entries.emplace_back(std::move(key), std::move(value));
+void Node::MapContent::add(const std::string& key, Node value) {
+    entries.emplace_back(key, std::move(value));
     if (entries.size() <= kFewKeys) return;
     if (slots.size() < 2 * entries.size()) {
         enterSlots();
@@ -66,7 +66,7 @@ void Node::MapContent::add(std::string key, Node value) {
 
 void Node::MapContent::enterSlot(std::size_t place) {
     const std::size_t mask = slots.size() - 1;
-    std::size_t i = std::hash<std::string>()(entries[place].first) & mask;
+    std::size_t i = std::hash<std::string>()(entries[place].key()) & mask;
     while (slots[i] != 0) i = (i + 1) & mask;
     slots[i] = static_cast<std::uint32_t>(place + 1);
 }
@@ -146,9 +146,9 @@ Node Node::map(Map entries, SourceLocation where) {
     content.entries.reserve(entries.size());
     for (auto& [key, value] : entries) {
         if (const auto place = content.placeOf(key)) {
-            content.entries[*place].second = std::move(value);
+            content.entries[*place].value = std::move(value);
         } else {
-            content.add(std::move(key), std::move(value));
+            content.add(key, std::move(value));
         }
     }
     Node node;
@@ -206,7 +206,7 @@ const Node::Map& Node::entries() const {
     return mapContent().entries;
 }
 
-std::span<Node::Map::value_type> Node::entries() {
+std::span<Node::Entry> Node::entries() {
     if (!isMap()) throwExpected("a map", *this);
     return std::get<OwnMap>(value_).get().entries;
 }
@@ -232,7 +232,7 @@ std::optional<bool> Node::tryBool() const {
 const Node* Node::find(std::string_view key) const {
     GFXREPRO_ASSERT(isMap());
     const std::optional<std::size_t> place = mapContent().placeOf(key);
-    return place ? &mapContent().entries[*place].second : nullptr;
+    return place ? &mapContent().entries[*place].value : nullptr;
 }
 
 Node* Node::find(std::string_view key) {
@@ -246,12 +246,12 @@ const SourceLocation& Node::keyLocation(std::string_view key) const {
     return place && *place < content.keyLocations.size() ? content.keyLocations[*place] : location_;
 }
 
-void Node::set(std::string key, Node value) {
+void Node::set(const std::string& key, Node value) {
     const SourceLocation where = value.location();
-    set(std::move(key), std::move(value), where);
+    set(key, std::move(value), where);
 }
 
-void Node::set(std::string key, Node value, SourceLocation keyWhere) {
+void Node::set(const std::string& key, Node value, SourceLocation keyWhere) {
     if (isNull()) value_ = OwnMap();
     if (!isMap()) throwExpected("a map", *this);
     MapContent& content = std::get<OwnMap>(value_).get();
@@ -260,9 +260,9 @@ void Node::set(std::string key, Node value, SourceLocation keyWhere) {
     if (content.keyLocations.size() <= place) content.keyLocations.resize(place + 1, location_);
     content.keyLocations[place] = std::move(keyWhere);
     if (found) {
-        content.entries[place].second = std::move(value);
+        content.entries[place].value = std::move(value);
     } else {
-        content.add(std::move(key), std::move(value));
+        content.add(key, std::move(value));
     }
 }
 
@@ -294,7 +294,7 @@ void Node::setPath(std::string_view dottedPath, Node value) {
         node = node->find(steps[i]);
         done += (done.empty() ? "" : ".") + steps[i];
     }
-    node->set(std::move(steps.back()), std::move(value));
+    node->set(steps.back(), std::move(value));
 }
 
 bool Node::sameContent(const Node& other) const {
@@ -313,8 +313,8 @@ bool Node::sameContent(const Node& other) const {
     if (isMap()) {
         return entries().size() == other.entries().size() &&
                std::all_of(entries().begin(), entries().end(), [&](const auto& entry) {
-                   const Node* match = other.find(entry.first);
-                   return match && entry.second.sameContent(*match);
+                   const Node* match = other.find(entry.key());
+                   return match && entry.value.sameContent(*match);
                });
     }
     return true;

@@ -15,6 +15,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "runner/core/error.h"
+#include "runner/core/kept_text.h"
 
 namespace gfxrepro::config {
 
@@ -25,7 +26,8 @@ namespace gfxrepro::config {
 /// and `false`.
 class Node {
   public:
-    using Map = std::vector<std::pair<std::string, Node>>;  // in the order of the file
+    class Entry;
+    using Map = std::vector<Entry>;  // in the order of the file
     using Sequence = std::vector<Node>;
 
     Node() = default;
@@ -58,7 +60,7 @@ class Node {
     const Sequence& items() const;
     const Map& entries() const;
     /// For changing values; keys stay as they are.
-    std::span<Map::value_type> entries();
+    std::span<Entry> entries();
 
     // Typed reads that answer whether the value is such a one.
     std::optional<double> tryDouble() const;
@@ -72,8 +74,8 @@ class Node {
     /// Where the key itself stands (for "unknown key" messages); the map's place when not known.
     const SourceLocation& keyLocation(std::string_view key) const;
     /// Adds or replaces an entry; a null node becomes a map.
-    void set(std::string key, Node value);
-    void set(std::string key, Node value, SourceLocation keyWhere);
+    void set(const std::string& key, Node value);
+    void set(const std::string& key, Node value, SourceLocation keyWhere);
     bool erase(std::string_view key);
     /// Follows "a.b.c"; sets it, making maps on the way. Throws Error when a step is no map.
     void setPath(std::string_view dottedPath, Node value);
@@ -104,7 +106,7 @@ class Node {
         std::vector<std::uint32_t> slots;
 
         std::optional<std::size_t> placeOf(std::string_view key) const;
-        void add(std::string key, Node value);
+        void add(const std::string& key, Node value);
         void enterSlot(std::size_t place);
         void enterSlots();
     };
@@ -130,6 +132,35 @@ class Node {
     SourceLocation location_;
 };
 
+/// An entry of a map: `for (const auto& [key, value] : node.entries())`.
+class Node::Entry {
+  public:
+    Entry(const std::string& key, Node given) : value(std::move(given)), key_(key) {}
+    const std::string& key() const { return key_; }
+
+    template <std::size_t index>
+    const auto& get() const {
+        if constexpr (index == 0) {
+            return key();
+        } else {
+            return value;
+        }
+    }
+    template <std::size_t index>
+    auto& get() {
+        if constexpr (index == 0) {
+            return key();
+        } else {
+            return value;
+        }
+    }
+
+    Node value;
+
+  private:
+    KeptText key_;
+};
+
 /// Parses one YAML document (JSON is YAML); an empty one is null. Throws Error with
 /// file:line:column on syntax errors, duplicate keys, tags, merge keys, keys that are no text,
 /// anchors that expand beyond 100,000 nodes, more than one document, and nesting deeper than 64.
@@ -146,3 +177,14 @@ Node parseJsonFile(const std::filesystem::path& path);
 Node merged(const Node& base, const Node& over);
 
 }  // namespace gfxrepro::config
+
+template <>
+struct std::tuple_size<gfxrepro::config::Node::Entry> : std::integral_constant<std::size_t, 2> {};
+template <>
+struct std::tuple_element<0, gfxrepro::config::Node::Entry> {
+    using type = const std::string;
+};
+template <>
+struct std::tuple_element<1, gfxrepro::config::Node::Entry> {
+    using type = gfxrepro::config::Node;
+};

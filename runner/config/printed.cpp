@@ -76,10 +76,10 @@ void requireLabels(const std::vector<std::string>& row, const std::vector<std::s
 constexpr int kMostFrames = 1'000'000;  // as of measure.frames
 
 /// Parameters of the technique are known to the plan alone, which checks their names and values.
-std::vector<std::pair<std::string, Node>> readAt(const Node& at) {
+Node::Map readAt(const Node& at) {
     if (!at.isMap()) throwNotAllowed(at, "printed.at", "a map {parameter: printed value}");
     constexpr const char* kSizes[] = {"output.width", "output.height", "measure.frames"};
-    std::vector<std::pair<std::string, Node>> values;
+    Node::Map values;
     for (const auto& [name, value] : at.entries()) {
         const bool isSize =
             std::find(std::begin(kSizes), std::end(kSizes), name) != std::end(kSizes);

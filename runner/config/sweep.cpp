@@ -123,7 +123,7 @@ class Factors {
                     throw Error(
                         node.location(),
                         fmt::format("zip: axis '{}' has {} values, but '{}' has {}", axis,
-                                    values.size(), block.entries()[0].first, factor.size()));
+                                    values.size(), block.entries()[0].key(), factor.size()));
                 }
                 for (std::size_t i = 0; i < values.size(); ++i) {
                     factor[i].emplace_back(axis, std::move(values[i]));
@@ -146,8 +146,8 @@ class Factors {
                     throwNotAllowed(point, "a point of a list", "a map {axis: value}");
                 }
                 for (const auto& entry : point.entries()) {
-                    if (own.insert(entry.first).second) {
-                        claim(entry.first, point.keyLocation(entry.first));
+                    if (own.insert(entry.key()).second) {
+                        claim(entry.key(), point.keyLocation(entry.key()));
                     }
                 }
                 factor.emplace_back(point.entries().begin(), point.entries().end());
@@ -199,8 +199,8 @@ const Node* valueAt(const AxisPoint& point, std::string_view axis) {
 bool matchesAll(const AxisPoint& point, const Node& conditions) {
     return std::all_of(conditions.entries().begin(), conditions.entries().end(),
                        [&](const auto& condition) {
-                           const Node* value = valueAt(point, condition.first);
-                           return value && matchesAny(*value, condition.second);
+                           const Node* value = valueAt(point, condition.key());
+                           return value && matchesAny(*value, condition.value);
                        });
 }
 
@@ -209,7 +209,7 @@ void applyWhen(const Node& when, AxisPoint& point) {
     for (std::size_t before = point.size() + 1; before != point.size();) {
         before = point.size();
         std::erase_if(point, [&, whole = point](const auto& axis) {
-            const Node* conditions = when.find(axis.first);
+            const Node* conditions = when.find(axis.key());
             return conditions && !matchesAll(whole, *conditions);
         });
     }

@@ -26,7 +26,7 @@ std::size_t countNodes(const Node& node) {
     if (node.isSequence()) {
         for (const Node& item : node.items()) count += countNodes(item);
     } else if (node.isMap()) {
-        for (const auto& entry : node.entries()) count += countNodes(entry.second);
+        for (const auto& entry : node.entries()) count += countNodes(entry.value);
     }
     return count;
 }
@@ -36,7 +36,7 @@ std::size_t depthOf(const Node& node) {
     if (node.isSequence()) {
         for (const Node& item : node.items()) deepest = std::max(deepest, depthOf(item));
     } else if (node.isMap()) {
-        for (const auto& entry : node.entries()) deepest = std::max(deepest, depthOf(entry.second));
+        for (const auto& entry : node.entries()) deepest = std::max(deepest, depthOf(entry.value));
     }
     return node.isScalar() || node.isNull() ? 0 : deepest + 1;
 }
@@ -175,7 +175,7 @@ class Builder : public YAML::EventHandler {
     }
 
     std::vector<std::string> lines_;
-    FileName fileName_;
+    KeptText fileName_;
     std::vector<Open> open_;
     std::map<YAML::anchor_t, Node> anchors_;
     std::size_t aliasedNodes_ = 0;

@@ -2,18 +2,8 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
-#include <set>
 
 namespace gfxrepro {
-
-FileName::FileName(const std::string& name) {
-    if (name.empty()) return;
-    static std::mutex mutex;
-    static auto& names = *new std::set<std::string>;  // for as long as the program runs
-    const std::lock_guard lock(mutex);
-    name_ = &*names.insert(name).first;
-}
 
 std::string toString(const SourceLocation& location) {
     std::string text = location.file;

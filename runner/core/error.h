@@ -7,31 +7,13 @@
 #include <string>
 #include <utility>
 
+#include "runner/core/kept_text.h"
+
 namespace gfxrepro {
-
-/// The name of a file, kept once however many places are in it: every value of a plan of 100,000
-/// cases has one.
-class FileName {
-  public:
-    FileName() = default;
-    FileName(const std::string& name);
-    FileName(const char* name) : FileName(std::string(name)) {}
-
-    const std::string& text() const {
-        static const std::string kNone;
-        return name_ ? *name_ : kNone;
-    }
-    operator const std::string&() const { return text(); }
-    bool empty() const { return name_ == nullptr; }
-    bool operator==(const FileName& other) const = default;
-
-  private:
-    const std::string* name_ = nullptr;  // null: empty
-};
 
 /// A place in a text file. Lines and columns count from 1; 0 means that it is not known.
 struct SourceLocation {
-    FileName file;
+    KeptText file;
     int line = 0;
     int column = 0;
 

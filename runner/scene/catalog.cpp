@@ -252,7 +252,7 @@ void takeParams(const std::string& name, const Node& params, SceneSource& source
         return;
     }
     if (!source.generator) {
-        const std::string& first = params.entries().front().first;
+        const std::string& first = params.entries().front().key();
         throw Error(
             params.keyLocation(first),
             fmt::format("scene '{}' is not generated, so it has no parameter '{}': it is {}", name,

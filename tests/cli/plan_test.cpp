@@ -13,34 +13,47 @@ namespace fs = std::filesystem;
 
 constexpr long long kMostBytes = 500'000'000;
 
-std::string largeConfig(const TemporaryFolder& folder) {
+constexpr const char* kTwoAxes =
+    "  azimuth_deg: {range: [0, 249.75, 0.25]}\n"
+    "  elevation_deg: {range: [-50, 49, 1]}\n";
+constexpr const char* kSixAxes =
+    "  azimuth_deg: {range: [0, 15, 1]}\n"
+    "  elevation_deg: {range: [-5, 5, 1]}\n"
+    "  voxel_bits: [1, 8, 16, 32]\n"
+    "  opacity: {range: [0.1, 0.25, 0.01]}\n"
+    "  padding: {range: [0, 8, 1]}\n"
+    "  read_back: [true]\n";
+
+std::string largeConfig(const TemporaryFolder& folder, const std::string& axes) {
     return folder.write("large.yaml",
                         "sweep_of: large\ntitle: A hundred thousand cases\n"
                         "technique: voxelization\nscene: shapes/torus\n"
                         "params: {resolution: 32, draw: opaque}\n"
                         "measure: {lane: quality, warmup: 0, repeats: 1}\n"
-                        "sweep:\n  azimuth_deg: {range: [0, 249.75, 0.25]}\n"
-                        "  elevation_deg: {range: [-50, 49, 1]}\n"
-                        "output: {width: 64, height: 64}\n");
+                        "sweep:\n" +
+                            axes + "output: {width: 64, height: 64}\n");
 }
 
 TEST(LargePlan, IsListedAsItComes) {
     const TemporaryFolder folder;
-    const std::string config = largeConfig(folder), file = folder.path() / "out";
-    for (const char* form : {"", " --json"}) {
+    const std::string file = folder.path() / "out";
+    const auto list = [&](const std::string& axes, const std::string& form) {
         const ProcessResult plan = runProgram(
-            {"/bin/sh", "-c", "exec " GFXREPRO_PROGRAM " plan " + config + form + " >" + file});
+            {"/bin/sh", "-c",
+             "exec " GFXREPRO_PROGRAM " plan " + largeConfig(folder, axes) + form + " >" + file});
         EXPECT_EQ(plan.exitCode, 0) << plan.err;
-        EXPECT_LT(plan.peakBytes, kMostBytes) << form;
+        EXPECT_LT(plan.peakBytes, kMostBytes) << form << "\n" << axes;
         EXPECT_GT(fs::file_size(file), 10'000'000U);
-    }
+    };
+    list(kTwoAxes, " --json");
+    list(kSixAxes, "");
 }
 
 TEST(LargePlan, IsFrozenAsItComes) {
     const TemporaryFolder folder;
     const fs::path dir = folder.path() / "run";
-    BackgroundProgram run(
-        {GFXREPRO_PROGRAM, "run", largeConfig(folder), "--device", "software", "--out", dir});
+    BackgroundProgram run({GFXREPRO_PROGRAM, "run", largeConfig(folder, kTwoAxes), "--device",
+                           "software", "--out", dir});
     for (int i = 0; i < 3000 && !fs::exists(dir / "plan.json"); ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

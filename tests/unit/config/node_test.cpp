@@ -25,8 +25,8 @@ Node parse(std::string_view text) {
 TEST(Node, KeepsOrderPlacesAndKinds) {
     const Node node = parse("b: 1\na: [x, true]\nn:\nm: {k: 2.5}\n");
     ASSERT_TRUE(node.isMap());
-    EXPECT_EQ(node.entries()[0].first, "b");
-    EXPECT_EQ(node.entries()[1].first, "a");
+    EXPECT_EQ(node.entries()[0].key(), "b");
+    EXPECT_EQ(node.entries()[1].key(), "a");
     EXPECT_EQ(node.find("a")->location(), (SourceLocation{"a.yaml", 2, 4}));
     EXPECT_EQ(node.find("a")->items()[1].location(), (SourceLocation{"a.yaml", 2, 8}));
     EXPECT_EQ(node.keyLocation("m"), (SourceLocation{"a.yaml", 4, 1}));

@@ -12,6 +12,7 @@
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "runner/core/kept_text.h"
 #include "runner/core/json_depth.h"
 #include "runner/core/random.h"
 #include "runner/core/text.h"
@@ -19,6 +20,16 @@
 
 namespace gfxrepro {
 namespace {
+
+TEST(KeptText, IsKeptOnce) {
+    const KeptText a("resolution"), b(std::string("reso") + "lution");
+    EXPECT_EQ(&a.text(), &b.text());
+    EXPECT_EQ(a, b);
+    EXPECT_NE(a, KeptText("padding"));
+    EXPECT_TRUE(KeptText("").empty());
+    EXPECT_EQ(KeptText(), KeptText(""));
+    EXPECT_EQ(KeptText().text(), "");
+}
 
 TEST(Error, SaysWhere) {
     EXPECT_STREQ(Error({"a.yaml", 3, 7}, "unknown key 'x'").what(), "a.yaml:3:7: unknown key 'x'");
