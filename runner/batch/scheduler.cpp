@@ -370,7 +370,8 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lan
             "--assets",       options.assetsFolder,
             "--lane",         lane == Lane::Timing ? "timing" : "quality",
             "--run",          runDir.string(),
-            "--command",      options.command};
+            "--command",      options.command,
+            "--jobs",         std::to_string(options.jobs)};
 }
 
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases) {

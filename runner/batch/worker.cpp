@@ -97,10 +97,10 @@ void runWorker(const WorkerOptions& options, std::span<const technique::Techniqu
         throw UsageError("the worker command is for the program's own use: descriptor 3 is closed");
     }
     send({{"begin", "device"}});
-    const gl::DebugOutput debug =
-        options.lane == config::Measure::Lane::Timing ? gl::DebugOutput::Off : gl::DebugOutput::Log;
+    const bool isTiming = options.lane == config::Measure::Lane::Timing;
+    const gl::DebugOutput debug = isTiming ? gl::DebugOutput::Off : gl::DebugOutput::Log;
     try {
-        gl::Device device = gl::Device::open({options.device, debug});
+        gl::Device device = gl::Device::open({options.device, debug, isTiming ? 1 : options.jobs});
         send({{"end", "device"}});
         serve(device, options, techniques, generators);
     } catch (const NoDeviceError& error) {

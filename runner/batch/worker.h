@@ -16,6 +16,7 @@ struct WorkerOptions {
     std::string assetsFolder;
     std::string runDir;
     std::string command = {};  // that measures, as typed
+    int jobs = 1;              // quality units at once
 };
 
 /// Runs until standard input ends. Every failure of a case becomes its status; nothing is thrown

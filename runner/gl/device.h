@@ -47,6 +47,7 @@ enum class DebugOutput {
 struct DeviceChoice {
     std::string name = "auto";
     DebugOutput debug = DebugOutput::Log;
+    int processes = 1;  // that draw at once, this one among them: they share the cores (llvmpipe)
 };
 
 /// An EGL display with a current OpenGL 4.5 core context, without a surface. One a process is the
