@@ -86,6 +86,8 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<report::Record>& r
             addRound(std::move(cases), process, units);
         }
     }
+    std::ranges::stable_partition(
+        units, [](const Unit& unit) { return unit.item->measure.lane == Lane::Quality; });
     return units;
 }
 

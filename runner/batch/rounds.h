@@ -15,9 +15,10 @@
 
 namespace gfxrepro::batch {
 
-/// The units of a plan, or of its shard, in the order in which they run: experiment by experiment,
-/// round by round. In the timing lane every other round goes backwards (ABBA), so that what drifts
-/// evenly reaches all cases of a table alike.
+/// The units of a plan, or of its shard, in the order in which they run: the quality lane, side by
+/// side, then the timing lane; experiment by experiment, round by round. In the timing lane every
+/// other round goes backwards (ABBA), so that what drifts evenly reaches all cases of a table
+/// alike.
 ///
 /// With the `records` of a run, of rounds beyond the first `processes` those that were begun, too:
 /// in these a case takes part that was measured in all rounds before.
