@@ -1,4 +1,5 @@
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -41,7 +42,7 @@ void dropUseless(PointCloud& points, PointRepairs& repairs) {
     }
     repairs.dropped = p.size() - order.size();
     const auto place = [&](std::size_t i) { return std::tie(p[i].x, p[i].y, p[i].z); };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    tbb::parallel_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return std::tuple_cat(place(a), std::tie(a)) < std::tuple_cat(place(b), std::tie(b));
     });
     const auto end = std::unique(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -49,7 +50,7 @@ void dropUseless(PointCloud& points, PointRepairs& repairs) {
     });
     repairs.duplicates = static_cast<std::size_t>(order.end() - end);
     order.erase(end, order.end());
-    std::sort(order.begin(), order.end());
+    tbb::parallel_sort(order.begin(), order.end());
     if (order.size() == p.size()) return;
     keep(points.normals, order);
     keep(points.radii, order);

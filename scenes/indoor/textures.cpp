@@ -1,3 +1,5 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,7 +64,7 @@ float fraction(float x) {
 template <class Color>
 image::Image8 painted(const Color& color) {
     image::Image8 result(kSize, kSize, 3);
-    for (int y = 0; y < kSize; ++y) {
+    tbb::parallel_for(0, kSize, [&](int y) {
         for (int x = 0; x < kSize; ++x) {
             const glm::vec3 c = color((static_cast<float>(x) + 0.5F) / kSize,
                                       (static_cast<float>(y) + 0.5F) / kSize);
@@ -71,7 +73,7 @@ image::Image8 painted(const Color& color) {
                     static_cast<std::uint8_t>(std::clamp(c[k], 0.0F, 1.0F) * 255.0F + 0.5F);
             }
         }
-    }
+    });
     return result;
 }
 
