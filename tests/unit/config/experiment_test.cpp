@@ -187,7 +187,7 @@ TEST_F(ExperimentTest, TerrainTable) {
     ASSERT_EQ(cases.size(), 10U);
     EXPECT_EQ(cases[9].params.toFlowText(),
               "{method: adaptive, block: 32, tile_patches: 8, tau: 4, delta_s: 10}");
-    EXPECT_EQ(cases[9].axes[0].second.asInteger(), 10);
+    EXPECT_EQ(cases[9].axes[0].value.asInteger(), 10);
     EXPECT_EQ(cases[0].scene.text(), "terrain/puget_sound");
     EXPECT_EQ(cases[0].outputHeightPx, 800);
     EXPECT_TRUE(table.claims[0].isStrict);
@@ -425,7 +425,7 @@ TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
     EXPECT_EQ(cases[0].scene.text(), file);
     EXPECT_EQ(cases[1].scene.text(), "models/duck");
     EXPECT_EQ(table.claims[0].at[0].second[0].text(), file);
-    EXPECT_EQ(table.layout.columns[0].labels[0].second.where[0].second.text(), file);
+    EXPECT_EQ(table.layout.columns[0].labels[0].second.where[0].value.text(), file);
 }
 
 TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {

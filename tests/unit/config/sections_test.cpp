@@ -159,9 +159,9 @@ TEST_F(ExperimentTest, PrintedParameters) {
     };
     const Experiment read = load(at("{measure.frames: 500, output.width: 1024, depth: deep}"));
     ASSERT_EQ(read.printed.at.size(), 3U);
-    EXPECT_EQ(read.printed.at[0].first, "measure.frames");
-    EXPECT_EQ(read.printed.at[0].second.asInteger(), 500);
-    EXPECT_EQ(read.printed.at[2].second.text(), "deep");
+    EXPECT_EQ(read.printed.at[0].key(), "measure.frames");
+    EXPECT_EQ(read.printed.at[0].value.asInteger(), 500);
+    EXPECT_EQ(read.printed.at[2].value.text(), "deep");
     EXPECT_EQ(loadError(at("500")),
               "DIR/zju/a.yaml:6:15: printed.at is 500; allowed: a map {parameter: printed value}");
     EXPECT_EQ(loadError(at("{measure.repeats: 5}")),
