@@ -12,11 +12,15 @@ namespace {
 using config::JsonKind;
 using config::JsonMember;
 
-constexpr JsonMember kDevice[] = {
-    {"/index", JsonKind::Int},           {"/platform", JsonKind::Text},
-    {"/vendor", JsonKind::Text},         {"/renderer", JsonKind::Text},
-    {"/version", JsonKind::Text},        {"/mesa_version", JsonKind::Text},
-    {"/is_software", JsonKind::Boolean}, {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
+                                  {"/platform", JsonKind::Text},
+                                  {"/vendor", JsonKind::Text},
+                                  {"/renderer", JsonKind::Text},
+                                  {"/version", JsonKind::Text},
+                                  {"/mesa_version", JsonKind::Text},
+                                  {"/uuid", JsonKind::Text},
+                                  {"/is_software", JsonKind::Boolean},
+                                  {"/timer_resolution_ns", JsonKind::Number}};
 constexpr JsonMember kResult[] = {{"/status", JsonKind::Text},
                                   {"/message", JsonKind::Text},
                                   {"/void", JsonKind::Text},
@@ -56,6 +60,7 @@ Json toJson(const gl::DeviceInfo& info) {
             {"renderer", info.renderer},
             {"version", info.version},
             {"mesa_version", info.mesaVersion},
+            {"uuid", info.uuid},
             {"is_software", info.isSoftware},
             {"timer_resolution_ns", info.timerResolutionNs}};
 }
@@ -69,6 +74,7 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("renderer").get_to(info.renderer);
     json.at("version").get_to(info.version);
     json.at("mesa_version").get_to(info.mesaVersion);
+    json.at("uuid").get_to(info.uuid);
     json.at("is_software").get_to(info.isSoftware);
     json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
     return info;

@@ -60,7 +60,14 @@ void addDeviceFindings(const MachineFacts& facts, Findings& findings) {
     const bool anyGpu =
         std::any_of(facts.devices.begin(), facts.devices.end(),
                     [](const DeviceFacts& d) { return d.problem.empty() && !d.isSoftware; });
-    if (!anyGpu) {
+    for (const std::string& gpu : facts.unusedGpus) {
+        findings.push_back(
+            {"gpu_does_not_serve", Severity::Result,
+             fmt::format("There is a GPU that cannot be used: {}.", gpu),
+             "Install its driver with EGL (in a container, let in its graphics part), and let this "
+             "user open its file. --device software measures without it."});
+    }
+    if (!anyGpu && facts.unusedGpus.empty()) {
         findings.push_back({"software_only", Severity::Result,
                             "There is no GPU, only the software device: claims that need a GPU "
                             "stay without a verdict.",

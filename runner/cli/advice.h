@@ -22,6 +22,7 @@ struct DeviceFacts {
 struct MachineFacts {
     std::vector<DeviceFacts> devices;
     std::vector<std::string> driverProblems;  // of drivers that cannot be loaded; without a GPU
+    std::vector<std::string> unusedGpus;      // that no driver serves, each with its reason
     std::string cpuIsa = "AVX2";              // "SSE", "AVX", "AVX2", "AVX-512", on ARM "NEON"
     std::string assetsFolder;
     std::string fetchScript = "scripts/fetch-assets";

@@ -55,8 +55,8 @@ void addProfile(CLI::App* app, std::string& profile) {
 }
 
 void addDevice(CLI::App* app, std::string& device) {
-    app->add_option("--device", device, "where; N is a number from doctor")
-        ->option_text("auto|software|N");
+    app->add_option("--device", device, "where; N and UUID are of doctor")
+        ->option_text("auto|gpu|software|N|UUID");
 }
 
 CLI::Option* addRunDirectory(CLI::App* app, std::string& dir) {

@@ -17,10 +17,11 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/vendor_libraries.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/gl/device.h"
+#include "runner/gl/gpu_nodes.h"
+#include "runner/gl/vendor_libraries.h"
 #include "runner/raycast/embree.h"
 
 namespace gfxrepro::cli {
@@ -127,7 +128,10 @@ MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
     const bool hasGpu = std::ranges::any_of(facts.devices, [](const DeviceFacts& device) {
         return device.problem.empty() && !device.isSoftware;
     });
-    if (!hasGpu) facts.driverProblems = vendorLibraryProblems();
+    if (!hasGpu) {
+        facts.driverProblems = gl::vendorLibraryProblems();
+        facts.unusedGpus = gl::unusedGpus();
+    }
     facts.cpuIsa = embreeIsa();
     facts.assetsFolder = catalog.assetsFolder().string();
     facts.fetchScript =
@@ -191,6 +195,7 @@ void printDevice(const Json& device) {
     say("device {}   {} ({}, {})\n", device["index"].get<int>(),
         device["renderer"].get<std::string>(), device["platform"].get<std::string>(),
         device["is_software"].get<bool>() ? "software" : "gpu");
+    if (const std::string uuid = device["uuid"]; !uuid.empty()) say("           UUID {}\n", uuid);
     say("           OpenGL {}, timer resolution {:.0f} ns\n", device["version"].get<std::string>(),
         device["timer_resolution_ns"].get<double>());
     say("           textures {}², 3D {}³, {} layers, storage blocks {} MiB,\n",

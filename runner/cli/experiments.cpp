@@ -161,7 +161,7 @@ batch::Request requestOf(const Selection& selection, const std::vector<std::stri
 }
 
 std::string deviceClassFor(const Selection& selection) {
-    if (selection.device == "software") return "software";
+    if (selection.device == "software" || selection.device == "gpu") return selection.device;
     try {
         batch::PhaseClock phases;
         const gl::DeviceInfo device =

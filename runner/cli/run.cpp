@@ -48,6 +48,15 @@ std::string deviceClassOf(const gl::DeviceInfo& device) {
     return device.isSoftware ? "software" : "gpu";
 }
 
+/// Says on what a run measures, and keeps its workers to that: "auto" could find another later.
+gl::DeviceInfo settleDevice(batch::SchedulerOptions& scheduler, batch::PhaseClock& phases) {
+    const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
+    scheduler.device = std::to_string(device.index);
+    tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer, deviceClassOf(device),
+         device.version, device.uuid.empty() ? "" : ", UUID " + device.uuid);
+    return device;
+}
+
 /// Leaves the tables alone that decide most claims in `budgetS`, as earlier runs predict their
 /// times; says which are left out. Twins count in each of their tables: the other may be left out.
 batch::Request withinBudget(const batch::Plan& plan, const batch::Request& request,
@@ -81,14 +90,14 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, std::optional<batch::Plan> submitted,
                     batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
-    const batch::SchedulerOptions scheduler{request.device,
-                                            fs::absolute(assetsFolder(selection.assets)),
-                                            jobsOf(options),
-                                            {},
-                                            context.commandLine};
+    batch::SchedulerOptions scheduler{request.device,
+                                      fs::absolute(assetsFolder(selection.assets)),
+                                      jobsOf(options),
+                                      {},
+                                      context.commandLine};
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     if (!submitted) loadExperiments(request, selection.profile);
-    const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
+    const gl::DeviceInfo device = settleDevice(scheduler, phases);
     batch::Plan plan = submitted ? std::move(*submitted)
                                  : planFor(context, request, selection.profile,
                                            scheduler.assetsFolder, deviceClassOf(device));
@@ -171,12 +180,12 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     batch::RunDirectory directory = batch::RunDirectory::open(options.resume);
     batch::StoredRun stored = batch::readRun(options.resume);
     requireSameRequest(options, request, stored.plan);
-    const batch::SchedulerOptions scheduler{stored.plan.request.device,
-                                            fs::absolute(assetsFolder(options.selection.assets)),
-                                            jobsOf(options),
-                                            {},
-                                            context.commandLine};
-    const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
+    batch::SchedulerOptions scheduler{stored.plan.request.device,
+                                      fs::absolute(assetsFolder(options.selection.assets)),
+                                      jobsOf(options),
+                                      {},
+                                      context.commandLine};
+    const gl::DeviceInfo device = settleDevice(scheduler, phases);
     const std::string reason = batch::whyNotResumable(
         stored.plan, deviceClassOf(device), openCatalog(context, options.selection.assets));
     if (!reason.empty()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -17,6 +18,8 @@
 #include "runner/core/text.h"
 #include "runner/gl/egl_context.h"
 #include "runner/gl/gl.h"
+#include "runner/gl/gpu_nodes.h"
+#include "runner/gl/vendor_libraries.h"
 
 namespace gfxrepro::gl {
 
@@ -44,12 +47,6 @@ std::string mesaVersionIn(const std::string& version) {
     return version.substr(begin, version.find(' ', begin) - begin);
 }
 
-bool isSoftwareRenderer(const std::string& renderer) {
-    return std::ranges::any_of(
-        std::array{"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer"},
-        [&](const char* name) { return renderer.find(name) != std::string::npos; });
-}
-
 double measureTimerResolutionNs() {
     constexpr int kReadings = 256;
     GLint64 smallestNs = std::numeric_limits<GLint64>::max();
@@ -63,6 +60,32 @@ double measureTimerResolutionNs() {
     return hasTicked ? static_cast<double>(smallestNs) : 0.0;
 }
 
+std::set<std::string, std::less<>> readExtensions() {
+    std::set<std::string, std::less<>> extensions;
+    const auto count = static_cast<GLuint>(getInteger(GL_NUM_EXTENSIONS));
+    for (GLuint i = 0; i < count; ++i) {
+        extensions.insert(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, i)));
+    }
+    return extensions;
+}
+
+/// "4b1c0f3e-…" of 16 bytes; empty where the driver does not tell.
+std::string readUuid() {
+    constexpr GLenum kDeviceUuid = 0x9597;  // GL_EXT_memory_object, not among the core's names
+    using GetBytes = void(APIENTRY*)(GLenum, GLuint, GLubyte*);
+    const auto getBytes = reinterpret_cast<GetBytes>(eglGetProcAddress("glGetUnsignedBytei_vEXT"));
+    if (!getBytes || !readExtensions().contains("GL_EXT_memory_object")) return "";
+    std::array<GLubyte, 16> bytes = {};
+    getBytes(kDeviceUuid, 0, bytes.data());
+    if (glGetError() != GL_NO_ERROR) return "";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        if (i == 4 || i == 6 || i == 8 || i == 10) text += '-';
+        text += fmt::format("{:02x}", bytes[i]);
+    }
+    return text;
+}
+
 DeviceInfo readInfo(const egl::Candidate& candidate) {
     DeviceInfo info;
     info.index = candidate.index;
@@ -70,8 +93,9 @@ DeviceInfo readInfo(const egl::Candidate& candidate) {
     info.vendor = getString(GL_VENDOR);
     info.renderer = getString(GL_RENDERER);
     info.version = getString(GL_VERSION);
+    info.uuid = readUuid();
     info.mesaVersion = mesaVersionIn(info.version);
-    info.isSoftware = isSoftwareRenderer(info.renderer);
+    info.isSoftware = isSoftwareContext();
     info.timerResolutionNs = measureTimerResolutionNs();
     return info;
 }
@@ -86,15 +110,6 @@ DeviceLimits readLimits() {
     limits.maxComputeInvocations = getInteger(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
     limits.maxImageUnits = getInteger(GL_MAX_IMAGE_UNITS);
     return limits;
-}
-
-std::set<std::string, std::less<>> readExtensions() {
-    std::set<std::string, std::less<>> extensions;
-    const auto count = static_cast<GLuint>(getInteger(GL_NUM_EXTENSIONS));
-    for (GLuint i = 0; i < count; ++i) {
-        extensions.insert(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, i)));
-    }
-    return extensions;
 }
 
 void APIENTRY logMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei,
@@ -138,6 +153,62 @@ std::string resetReason() {
     }
 }
 
+/// What DeviceChoice::name asks for.
+struct Wanted {
+    enum class Kind { Auto, Gpu, Software, Index, Uuid };
+    Kind kind = Kind::Auto;
+    long long index = 0;
+    std::string uuid{};  // as DeviceInfo has it
+
+    static Wanted parse(const std::string& name);
+    /// Empty: `device` serves. Whose index it is was looked at before.
+    std::string whyNot(const DeviceInfo& device) const;
+};
+
+/// As DeviceInfo has it; nothing for what is no UUID.
+std::optional<std::string> parseUuid(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (text.starts_with("gpu-")) text.erase(0, 4);
+    constexpr std::string_view kForm = "xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx";
+    const bool isUuid = std::ranges::equal(text, kForm, [](unsigned char c, char form) {
+        return form == '-' ? c == '-' : std::isxdigit(c) != 0;
+    });
+    return isUuid ? std::optional(text) : std::nullopt;
+}
+
+Wanted Wanted::parse(const std::string& name) {
+    if (name == "auto") return {Kind::Auto};
+    if (name == "gpu") return {Kind::Gpu};
+    if (name == "software") return {Kind::Software};
+    if (const auto index = parseInteger(name)) return {Kind::Index, *index};
+    if (const auto uuid = parseUuid(name)) return {Kind::Uuid, 0, *uuid};
+    throw UsageError(fmt::format(
+        "unknown device '{}'; allowed: auto, gpu, software, or an index or a UUID as 'gfxrepro "
+        "doctor' lists them",
+        name));
+}
+
+std::string Wanted::whyNot(const DeviceInfo& device) const {
+    switch (kind) {
+        case Kind::Auto:
+        case Kind::Gpu:
+            return device.isSoftware ? device.renderer + " is no GPU" : "";
+        case Kind::Software:
+            return device.isSoftware ? "" : device.renderer + " is no software renderer";
+        case Kind::Uuid:
+            if (device.uuid == uuid) return "";
+            return device.renderer +
+                   (device.uuid.empty() ? " tells no UUID" : " has the UUID " + device.uuid);
+        case Kind::Index:
+            break;
+    }
+    return "";
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 Device::Device(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -170,44 +241,48 @@ Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug)
 
 Device Device::open(const DeviceChoice& choice) {
     shareCores(choice.processes);
-    const std::optional<long long> index = parseInteger(choice.name);
-    if (choice.name != "auto" && choice.name != "software" && !index) {
-        throw UsageError(fmt::format(
-            "unknown device '{}'; allowed: auto, software, or an index as 'gfxrepro doctor' lists "
-            "them",
-            choice.name));
-    }
+    const Wanted wanted = Wanted::parse(choice.name);
     auto [candidates, problems] = egl::findCandidates();
-    if (index && (*index < 0 || *index >= static_cast<long long>(candidates.size()))) {
+    if (wanted.kind == Wanted::Kind::Index &&
+        (wanted.index < 0 || wanted.index >= static_cast<long long>(candidates.size()))) {
         problems.push_back(fmt::format("device {}: there are {} ways to a device, counted from 0",
-                                       *index, candidates.size()));
+                                       wanted.index, candidates.size()));
     }
 
-    std::optional<Device> software;  // what auto falls back on
+    std::optional<Device> software;  // what auto falls back on where there is no GPU
+    bool isGpuThere = false;
     for (const egl::Candidate& candidate : candidates) {
-        if (index && *index != candidate.index) continue;
+        if (wanted.kind == Wanted::Kind::Index && wanted.index != candidate.index) continue;
         // Where Mesa lists its devices, the surfaceless platform only offers the same again.
         if (software && candidate.platform == "surfaceless") continue;
         try {
             Device device = openCandidate(candidate, choice.debug);
-            const bool isSoftware = device.info().isSoftware;
-            if (index || (choice.name == "software") == isSoftware) return device;
-            if (choice.name == "software") {
-                problems.push_back(fmt::format("{}: {} is no software renderer", candidate.name(),
-                                               device.info().renderer));
-            } else if (!software) {
-                software = std::move(device);
-            }
+            const std::string why = wanted.whyNot(device.info());
+            if (why.empty()) return device;
+            problems.push_back(fmt::format("{}: {}", candidate.name(), why));
+            if (wanted.kind == Wanted::Kind::Auto && !software) software = std::move(device);
         } catch (const NoDeviceError& error) {
             problems.push_back(error.what());
+            isGpuThere |= candidate.isGpu;
         }
     }
-    if (software) {
+    if (wanted.kind == Wanted::Kind::Auto || wanted.kind == Wanted::Kind::Gpu) {
+        const std::vector<std::string> unused = unusedGpus();
+        isGpuThere |= !unused.empty();
+        if (isGpuThere) append(problems, vendorLibraryProblems());
+        append(problems, unused);
+    }
+    if (software && !isGpuThere) {
         software->impl_->context.makeCurrent();
         return std::move(*software);
     }
-    throw NoDeviceError(fmt::format("no usable OpenGL 4.5 device for '{}':\n  {}", choice.name,
-                                    joined(problems, "\n  ")));
+    std::string text = fmt::format("no usable OpenGL 4.5 device for '{}':\n  {}", choice.name,
+                                   joined(problems, "\n  "));
+    if (software) {
+        text +=
+            "\nThis machine has a GPU that does not serve; --device software measures without it";
+    }
+    throw NoDeviceError(text);
 }
 
 const DeviceInfo& Device::info() const {
@@ -237,6 +312,15 @@ void Device::finish(const char* what) {
     checkDebug(what);
     if (error == GL_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != GL_NO_ERROR) throw Error(fmt::format("{}: {}", what, errorName(error)));
+}
+
+bool isSoftwareContext() {
+    return std::ranges::any_of(
+        std::array{"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer", "SwiftShader",
+                   "Basic Render Driver"},
+        [renderer = getString(GL_RENDERER)](const char* name) {
+            return renderer.find(name) != std::string::npos;
+        });
 }
 
 std::vector<DeviceReport> listDevices() {

@@ -17,9 +17,10 @@ struct DeviceInfo {
     std::string platform;            // "device" | "surfaceless"
     std::string vendor;              // GL_VENDOR
     std::string renderer;            // GL_RENDERER
+    std::string uuid;                // "6d657361-…", of GL_EXT_memory_object; empty: not told
     std::string version;             // GL_VERSION
     std::string mesaVersion;         // "22.3.6"; empty elsewhere
-    bool isSoftware = false;         // llvmpipe, softpipe, swrast
+    bool isSoftware = false;         // the processor's cores draw: llvmpipe and its like
     double timerResolutionNs = 0.0;  // smallest step seen between two GL_TIMESTAMP readings
 };
 
@@ -42,8 +43,8 @@ enum class DebugOutput {
             // not pass through the driver's frames.
 };
 
-/// "auto": the first hardware device, else the software one; "software"; or an index from
-/// listDevices().
+/// "auto": the first GPU, where the machine shows none the software device; "gpu"; "software"; an
+/// index from listDevices(); or a UUID as `nvidia-smi -L` prints it, with "GPU-" or without.
 struct DeviceChoice {
     std::string name = "auto";
     DebugOutput debug = DebugOutput::Log;
@@ -55,7 +56,8 @@ struct DeviceChoice {
 class Device {
   public:
     /// The context is current afterwards. Throws NoDeviceError with one message per way that was
-    /// tried, UsageError for a name that is none of the three kinds.
+    /// tried, and for "auto" also where a GPU is there that does not serve: the software device is
+    /// no answer then. UsageError for a name that is none of these kinds.
     static Device open(const DeviceChoice& choice);
     Device(Device&&) noexcept;
     Device& operator=(Device&&) noexcept;
@@ -77,6 +79,9 @@ class Device {
     static Device openCandidate(const egl::Candidate& candidate, DebugOutput debug);
     std::unique_ptr<Impl> impl_;
 };
+
+/// Whether the context that is current is of a software device, as DeviceInfo::isSoftware says.
+bool isSoftwareContext();
 
 /// What is there, without keeping a context (one that was current stays so); entries that cannot
 /// make a context carry the reason.

@@ -56,6 +56,11 @@ Function procedure(const char* name) {
     throw NoDeviceError(candidate.name() + ": " + reason);
 }
 
+const char* deviceString(EGLDeviceEXT device, EGLint name) {
+    const auto query = procedure<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+    return query ? query(device, name) : nullptr;
+}
+
 EGLDisplay openDisplay(const Candidate& candidate) {
     const bool isDevice = candidate.platform == "device";
     const EGLenum platform = isDevice ? EGL_PLATFORM_DEVICE_EXT : EGL_PLATFORM_SURFACELESS_MESA;
@@ -126,7 +131,10 @@ Candidates findCandidates() {
             found.problems.push_back("EGL devices: eglQueryDevicesEXT found none: " + lastError());
         }
         for (EGLDeviceEXT device : devices) {
-            found.all.push_back({static_cast<int>(found.all.size()), "device", device});
+            const bool isSoftware =
+                hasExtension(deviceString(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
+            found.all.push_back(
+                {static_cast<int>(found.all.size()), "device", device, !isSoftware});
         }
     }
     if (hasExtension(extensions, "EGL_MESA_platform_surfaceless")) {

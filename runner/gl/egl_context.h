@@ -16,6 +16,7 @@ struct Candidate {
     int index = 0;         // devices in the driver's order, then the surfaceless platform
     std::string platform;  // "device" | "surfaceless"
     EGLDeviceEXT device = EGL_NO_DEVICE_EXT;
+    bool isGpu = false;  // a device that the driver does not call software
 
     std::string name() const { return "device " + std::to_string(index) + " (" + platform + ")"; }
 };

@@ -7,36 +7,46 @@
 #include <glm/glm.hpp>
 #include <type_traits>
 
+#include "runner/gl/device.h"
 #include "runner/gl/gl.h"
 
 namespace gfxrepro::kit {
 
-/// llvmpipe keeps every primitive of a draw in memory until it is flushed, of a triangle about 80
-/// bytes, twice.
-constexpr std::uint32_t kPrimitivesPerFlush = 1U << 16;
-
-/// Cuts draws into pieces and flushes after `mostTriangles`, so that the memory that a software
-/// device takes does not grow with the scene. Small draws share a flush.
+/// Cuts draws into pieces and flushes them where the device is a software one: llvmpipe keeps every
+/// primitive of a draw in memory until it is flushed, of a triangle about 80 bytes, twice. Small
+/// draws share a flush. Other devices get each draw whole, and no flush.
 class FlushedDraws {
   public:
-    explicit FlushedDraws(std::uint32_t mostTriangles = kPrimitivesPerFlush)
-        : mostTriangles_(mostTriangles) {}
+    static constexpr std::uint32_t kPrimitivesPerFlush = 1U << 16;
+
+    explicit FlushedDraws(bool splits = gl::isSoftwareContext())
+        : mostPrimitives_(splits ? kPrimitivesPerFlush : kMostOfADraw) {}
+
+    /// As many primitives a caller may put into one draw that it cuts itself.
+    std::uint32_t mostPrimitives() const { return mostPrimitives_; }
+    /// After such a draw.
+    void drawn(std::uint32_t count) {
+        unflushed_ += count;
+        if (mostPrimitives_ == kMostOfADraw || unflushed_ < mostPrimitives_) return;
+        glFlush();
+        unflushed_ = 0;
+    }
 
     /// Calls draw(first, count) for pieces of the triangles [first, first + count).
     template <class Draw>
     void draw(std::uint32_t first, std::uint32_t count, const Draw& draw) {
-        for (std::uint32_t done = 0; done < count; done += mostTriangles_) {
-            const std::uint32_t piece = std::min(count - done, mostTriangles_);
+        for (std::uint32_t done = 0; done < count; done += mostPrimitives_) {
+            const std::uint32_t piece = std::min(count - done, mostPrimitives_);
             draw(first + done, piece);
-            unflushed_ += piece;
-            if (unflushed_ < mostTriangles_) continue;
-            glFlush();
-            unflushed_ = 0;
+            drawn(piece);
         }
     }
 
   private:
-    std::uint32_t mostTriangles_;
+    // Of triangles GL counts the indices, in a signed number.
+    static constexpr std::uint32_t kMostOfADraw = (1U << 31) / 3;
+
+    std::uint32_t mostPrimitives_;
     std::uint32_t unflushed_ = 0;
 };
 

@@ -44,12 +44,13 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
     array_.bind();
     std::vector<GLint> firsts;
     std::vector<GLsizei> counts;
-    GLsizei batch = 0;
+    std::uint32_t batch = 0;
+    kit::FlushedDraws flushes;
     const auto issue = [&] {
         if (firsts.empty()) return;
         glMultiDrawArrays(GL_POINTS, firsts.data(), counts.data(),
                           static_cast<GLsizei>(firsts.size()));
-        glFlush();
+        flushes.drawn(batch);
         firsts.clear();
         counts.clear();
         batch = 0;
@@ -58,8 +59,8 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
         const Patch& patch = patches_[item.patch];
         firsts.push_back(static_cast<GLint>(patch.firstPoint));
         counts.push_back(static_cast<GLsizei>(levels_[patch.firstLevel + item.level].count));
-        batch += counts.back();
-        if (batch >= static_cast<GLsizei>(kit::kPrimitivesPerFlush)) issue();
+        batch += static_cast<std::uint32_t>(counts.back());
+        if (batch >= flushes.mostPrimitives()) issue();
     }
     issue();
     glDisable(GL_PROGRAM_POINT_SIZE);

@@ -193,7 +193,7 @@ void SplatRenderer::upload(std::span<const DrawnPatch> drawn, const PatchView& v
             item.mode = SplatMode::FullEwa;
         }
     }
-    drawList_.assign(points_, items_, kMaxRange, kit::kPrimitivesPerFlush);
+    drawList_.assign(points_, items_, kMaxRange, kit::FlushedDraws().mostPrimitives());
     if (drawList_.ranges.empty()) return;
     std::vector<Command> commands;
     commands.reserve(drawList_.ranges.size());
@@ -253,6 +253,7 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         glBlendFunc(GL_ONE, GL_ONE);
     }
     const gl::Program* inUse = nullptr;
+    kit::FlushedDraws flushes;
     for (const Batch& batch : drawList_.batches) {
         const ModePrograms& programs = modes_[static_cast<std::size_t>(batch.mode)];
         const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
@@ -264,6 +265,7 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
             inUse = &program;
         }
         issue(batch);
+        flushes.drawn(batch.pointCount);
     }
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);
@@ -275,7 +277,11 @@ void SplatRenderer::drawSprites(const PatchView& view) {
     spriteTarget_.clearDepth(1.0F);
     spriteTarget_.bind();
     setUp(sprites_, view);
-    for (const Batch& batch : drawList_.batches) issue(batch);
+    kit::FlushedDraws flushes;
+    for (const Batch& batch : drawList_.batches) {
+        issue(batch);
+        flushes.drawn(batch.pointCount);
+    }
 }
 
 void SplatRenderer::normalize(const PatchView& view) {
@@ -298,7 +304,6 @@ void SplatRenderer::issue(const Batch& batch) const {
     } else {
         glMultiDrawArraysIndirect(GL_POINTS, offset, count, sizeof(Command));
     }
-    glFlush();
 }
 
 void SplatRenderer::setUp(const gl::Program& program, const PatchView& view) const {

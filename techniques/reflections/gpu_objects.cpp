@@ -14,7 +14,6 @@ namespace gfxrepro::reflections {
 namespace {
 
 /// Of a draw that is not split: indices are counted by signed numbers.
-constexpr std::uint32_t kMostTriangles = (1U << 31) / 3;
 
 /// Object of shaders/objects.glsl.
 struct ObjectRecord {
@@ -176,7 +175,7 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
       valueLayers_(layersTexture(scene.valueLevels(), GL_RGBA8)),
       objectCount_(static_cast<std::uint32_t>(scene.objects().size())),
       triangleCount_(static_cast<std::uint32_t>(scene.geometry().triangles.size())),
-      mostTrianglesPerDraw_(splitsDraws ? kit::kPrimitivesPerFlush : kMostTriangles) {
+      splitsDraws_(splitsDraws) {
     std::vector<std::uint32_t> indices(objectCount_);
     std::iota(indices.begin(), indices.end(), 0U);
     objectIndices_ = gl::Buffer::of(indices);
@@ -219,9 +218,13 @@ void GpuObjects::bind() const {
     valueLayers_.bind(kValueLayersUnit);
 }
 
+std::uint32_t GpuObjects::mostTrianglesPerDraw() const {
+    return kit::FlushedDraws(splitsDraws_).mostPrimitives();
+}
+
 void GpuObjects::draw(std::span<const std::uint32_t> objects) const {
     vertexArray_.bind();
-    kit::FlushedDraws draws(mostTrianglesPerDraw_);
+    kit::FlushedDraws draws(splitsDraws_);
     for (const std::uint32_t index : objects) {
         const Object& object = scene_->objects()[index];
         draws.draw(object.firstTriangle, object.triangleCount,

@@ -53,7 +53,7 @@ class GpuObjects {
     const ReflectiveScene& scene() const { return *scene_; }
     std::uint32_t objectCount() const { return objectCount_; }
     std::uint32_t triangleCount() const { return triangleCount_; }
-    std::uint32_t mostTrianglesPerDraw() const { return mostTrianglesPerDraw_; }
+    std::uint32_t mostTrianglesPerDraw() const;
     std::span<const glm::mat4> poses() const { return poses_; }
     std::span<const scene::Box> boundsWorld() const { return boundsWorld_; }  // in the present pose
     std::size_t sizeBytes() const;
@@ -76,7 +76,8 @@ class GpuObjects {
     gl::VertexArray vertexArray_;
     std::vector<glm::mat4> poses_;
     std::vector<scene::Box> boundsWorld_;
-    std::uint32_t objectCount_ = 0, triangleCount_ = 0, mostTrianglesPerDraw_;
+    std::uint32_t objectCount_ = 0, triangleCount_ = 0;
+    bool splitsDraws_;
 };
 
 }  // namespace gfxrepro::reflections

@@ -280,7 +280,8 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
     program.set("tileIndex", tile);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
-    const int step = std::max(1, static_cast<int>(kit::kPrimitivesPerFlush) / (2 * side));
+    const auto most = static_cast<int>(kit::FlushedDraws::kPrimitivesPerFlush);
+    const int step = settings_.batches ? std::max(1, most / (2 * side)) : side;
     int draws = 0;
     for (int first = 0; first < side; first += step, ++draws) {
         program.set("firstRow", first);

@@ -177,7 +177,7 @@ void ParametricSource::record(technique::Recorder& recorder) {
     recorder.metric("samples", static_cast<double>(sampleCounts_.x) * sampleCounts_.y, "sample");
     recorder.metric("samples_outside", static_cast<double>(samplesOutside_), "sample");
     // Above 1 the surface may have holes.
-    recorder.metric("sample_gap_voxels", statistics_.largestGap / grid_.voxelSize(), "voxel");
+    recorder.metric("sample_gap_voxels", statistics_.largestGap / grid_.voxelSize(), "1");
 }
 
 }  // namespace gfxrepro::voxelization

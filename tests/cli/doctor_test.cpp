@@ -7,7 +7,7 @@
 
 #include "runner/cli/advice.h"
 #include "runner/cli/cpp_library.h"
-#include "runner/cli/vendor_libraries.h"
+#include "runner/gl/vendor_libraries.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::cli {
@@ -71,7 +71,7 @@ TEST(Doctor, DriverNotLoaded) {
 /// Of the drivers that `folder` names, and no others.
 std::vector<std::string> problemsOf(const test::TemporaryFolder& folder) {
     ::setenv("__EGL_VENDOR_LIBRARY_DIRS", folder.path().c_str(), 1);
-    std::vector<std::string> problems = vendorLibraryProblems();
+    std::vector<std::string> problems = gl::vendorLibraryProblems();
     ::unsetenv("__EGL_VENDOR_LIBRARY_DIRS");
     return problems;
 }
@@ -130,6 +130,17 @@ TEST(Doctor, SoftwareOnly) {
               "EGL, and let this user open /dev/dri or /dev/nvidia*.\n");
     facts.devices.push_back(gpu());
     EXPECT_EQ(linesOf(facts), "");
+}
+
+TEST(Doctor, AGpuThatDoesNotServe) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].isSoftware = true;
+    facts.unusedGpus = {"/dev/nvidia0: Permission denied"};
+    EXPECT_EQ(linesOf(facts),
+              "results gpu_does_not_serve: There is a GPU that cannot be used: /dev/nvidia0: "
+              "Permission denied. → Install its driver with EGL (in a container, let in its "
+              "graphics part), and let this user open its file. --device software measures "
+              "without it.\n");
 }
 
 TEST(Doctor, CoarseTimer) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "runner/gl/gl.h"
+#include "runner/gl/gpu_nodes.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
@@ -27,22 +28,38 @@ TEST(DeviceTest, OpensSoftwareByNameAndByIndex) {
     EXPECT_EQ(byIndex.info().index, byName.info().index);
 }
 
+TEST(DeviceTest, OpensByUuid) {
+    const gl::Device byName = gl::Device::open({testDevice(), gl::DebugOutput::Off});
+    const std::string uuid = byName.info().uuid;
+    if (uuid.empty()) GTEST_SKIP() << byName.info().renderer << " tells no UUID";
+    for (const std::string& name : {uuid, "GPU-" + uuid}) {
+        const gl::Device byUuid = gl::Device::open({name, gl::DebugOutput::Off});
+        EXPECT_EQ(byUuid.info().renderer, byName.info().renderer);
+        EXPECT_EQ(byUuid.info().uuid, uuid);
+    }
+}
+
 TEST(DeviceTest, AutoPrefersHardware) {
     bool hasHardware = false;
     for (const gl::DeviceReport& report : gl::listDevices()) {
         hasHardware |= report.problem.empty() && !report.info.isSoftware;
     }
+    if (!hasHardware && !gl::unusedGpus().empty()) GTEST_SKIP() << "a GPU here does not serve";
     const gl::Device device = gl::Device::open({"auto", gl::DebugOutput::Off});
     EXPECT_EQ(device.info().isSoftware, !hasHardware);
 }
 
 TEST(DeviceTest, NamesWhatItCannotOpen) {
-    EXPECT_EQ(errorText([] {
-                  gl::Device::open({"gpu", gl::DebugOutput::Off});
-              }),
-              "unknown device 'gpu'; allowed: auto, software, or an index as 'gfxrepro doctor' "
-              "lists them");
-    EXPECT_THROW(gl::Device::open({"gpu", gl::DebugOutput::Off}), UsageError);
+    // One digit less than a UUID has.
+    for (const char* name : {"GPU", "6d657361-3232-2e33-2e36-00000000000"}) {
+        EXPECT_EQ(errorText([&] {
+                      gl::Device::open({name, gl::DebugOutput::Off});
+                  }),
+                  "unknown device '" + std::string(name) +
+                      "'; allowed: auto, gpu, software, or an index or a UUID as 'gfxrepro doctor' "
+                      "lists them");
+        EXPECT_THROW(gl::Device::open({name, gl::DebugOutput::Off}), UsageError);
+    }
 
     const std::string count = std::to_string(gl::listDevices().size());
     EXPECT_EQ(errorText([] {

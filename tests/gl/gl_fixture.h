@@ -1,4 +1,4 @@
-// What the tests on a device share: the software device with fatal debug output, and shaders
+// What the tests on a device share: the tests' device with fatal debug output, and shaders
 // written where they are used.
 #pragma once
 
@@ -12,10 +12,11 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "tests/support/support.h"
+#include "tests/support/test_device.h"
 
 namespace gfxrepro::test {
 
-/// Opens a software device for each test; a GL error of high severity fails the test that raised
+/// Opens the tests' device for each test; a GL error of high severity fails the test that raised
 /// it.
 class GlTest : public ::testing::Test {
   protected:
@@ -34,7 +35,7 @@ class GlTest : public ::testing::Test {
         return gl::Program(library, names, defines);
     }
 
-    gl::Device device = gl::Device::open({"software", gl::DebugOutput::Fatal});
+    gl::Device device = gl::Device::open({testDevice(), gl::DebugOutput::Fatal});
     TemporaryFolder folder;
     gl::ShaderLibrary library{folder.path()};
 };

@@ -324,7 +324,7 @@ TEST_F(GlTest, RefusesAnIncompleteFramebuffer) {
 
 TEST(ObjectsTest, AnUnknownFormatIsAnError) {
     // Not in the fixture: its debug output would count this error too.
-    const gl::Device device = gl::Device::open({"software", gl::DebugOutput::Off});
+    const gl::Device device = gl::Device::open({testDevice(), gl::DebugOutput::Off});
     EXPECT_EQ(errorText([] {
                   Texture::make2D(GL_RGBA, {4, 4});
               }),

@@ -11,6 +11,7 @@
 #include "runner/image/srgb.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/reflections/gbuffer.h"
+#include "tests/support/test_device.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/reflections/gl_calls.h"
 
@@ -48,7 +49,8 @@ struct Traced {
 class TracerTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        device_.emplace(gl::Device::open({.name = "auto", .debug = gl::DebugOutput::Fatal}));
+        device_.emplace(
+            gl::Device::open({.name = test::testDevice(), .debug = gl::DebugOutput::Fatal}));
     }
     static void TearDownTestSuite() { device_.reset(); }
     void TearDown() override { device_->finish("a test"); }

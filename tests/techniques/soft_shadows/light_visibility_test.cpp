@@ -10,6 +10,7 @@
 #include "techniques/soft_shadows/shadow_casters.h"
 #include "techniques/soft_shadows/shadow_errors.h"
 #include "tests/support/support.h"
+#include "tests/support/test_device.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {
@@ -87,7 +88,7 @@ class LightVisibilityTest : public testing::Test {
         EXPECT_EQ(wrong, 0U);
     }
 
-    gl::Device device = gl::Device::open({"software", gl::DebugOutput::Fatal});
+    gl::Device device = gl::Device::open({test::testDevice(), gl::DebugOutput::Fatal});
     gl::ShaderLibrary shaders{dataFolder("shaders")};
     scene::Scene scene;
     kit::DrawableScene drawable;

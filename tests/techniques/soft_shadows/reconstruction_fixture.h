@@ -9,6 +9,7 @@
 #include "runner/gl/device.h"
 #include "techniques/kit/depth_image_renderer.h"
 #include "techniques/soft_shadows/reconstruction.h"
+#include "tests/support/test_device.h"
 #include "tests/techniques/soft_shadows/reference_mesh.h"
 
 namespace gfxrepro::soft_shadows {
@@ -31,7 +32,8 @@ struct HostMesh {
 class ReconstructionTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        device_.emplace(gl::Device::open({.name = "auto", .debug = gl::DebugOutput::Fatal}));
+        device_.emplace(
+            gl::Device::open({.name = test::testDevice(), .debug = gl::DebugOutput::Fatal}));
     }
     static void TearDownTestSuite() { device_.reset(); }
     void TearDown() override { device_->finish("a test"); }

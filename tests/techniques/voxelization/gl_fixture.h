@@ -9,6 +9,7 @@
 #include "runner/gl/device.h"
 #include "runner/gl/profiler.h"
 #include "runner/technique/technique.h"
+#include "tests/support/test_device.h"
 
 namespace gfxrepro::voxelization {
 
@@ -16,7 +17,8 @@ namespace gfxrepro::voxelization {
 class GlTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        device_.emplace(gl::Device::open({.name = "auto", .debug = gl::DebugOutput::Fatal}));
+        device_.emplace(
+            gl::Device::open({.name = test::testDevice(), .debug = gl::DebugOutput::Fatal}));
     }
     static void TearDownTestSuite() { device_.reset(); }
     void TearDown() override { device_->finish("a test"); }

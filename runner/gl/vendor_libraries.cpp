@@ -1,4 +1,4 @@
-#include "runner/cli/vendor_libraries.h"
+#include "runner/gl/vendor_libraries.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 
-namespace gfxrepro::cli {
+namespace gfxrepro::gl {
 
 namespace fs = std::filesystem;
 
@@ -69,4 +69,4 @@ std::vector<std::string> vendorLibraryProblems() {
     return problems;
 }
 
-}  // namespace gfxrepro::cli
+}  // namespace gfxrepro::gl

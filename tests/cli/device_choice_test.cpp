@@ -1,0 +1,112 @@
+// --device: what a run measures on, is said to be measured on, and what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "runner/core/files.h"
+#include "runner/gl/device.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+bool hasRealGpu() {
+    return std::ranges::any_of(gl::listDevices(), [](const gl::DeviceReport& report) {
+        return report.problem.empty() && !report.info.isSoftware;
+    });
+}
+
+class DeviceChoice : public testing::Test {
+  protected:
+    /// One case of the mock on `device`, with the software device as a GPU that serves or not.
+    ProcessResult onPretended(const std::string& device, const std::string& how = "serves") {
+        return runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", device, "--quiet",
+                           "--out", folder.path() / ("run-" + std::to_string(++count))},
+                          {"LD_PRELOAD=" GFXREPRO_PRETENDED_GPU, "PRETENDED_GPU=" + how});
+    }
+    nlohmann::json lastManifest() const {
+        return nlohmann::json::parse(
+            readFile(folder.path() / ("run-" + std::to_string(count)) / "manifest.json"));
+    }
+
+    TemporaryFolder folder;
+    std::string config = writeMockConfig(folder, "");
+    int count = 0;
+};
+
+constexpr const char* kUuid = "00112233-4455-6677-8899-aabbccddeeff";
+
+TEST_F(DeviceChoice, TheFirstLineOfARunNamesTheDevice) {
+    const ProcessResult run = mockGfxrepro(
+        {"run", config, "--device", "software", "--quiet", "--out", folder.path() / "run"});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.err, testing::MatchesRegex("device [0-9]+: .* \\(software\\), OpenGL 4.*\n"));
+    const ProcessResult again = mockGfxrepro({"run", "--resume", folder.path() / "run"});
+    EXPECT_EQ(again.err.substr(0, run.err.size()), run.err);
+}
+
+TEST_F(DeviceChoice, AGpuIsTakenByItsKindIndexAndUuid) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
+    const std::string upper = "GPU-00112233-4455-6677-8899-AABBCCDDEEFF";
+    for (const std::string& name :
+         {std::string("auto"), std::string("gpu"), std::string("0"), std::string(kUuid), upper}) {
+        const ProcessResult run = onPretended(name);
+        EXPECT_EQ(run.exitCode, 0) << name << run.err;
+        EXPECT_THAT(run.err, StartsWith("device 0: Pretended GPU (gpu), OpenGL 4")) << name;
+        EXPECT_THAT(run.err, HasSubstr(std::string(", UUID ") + kUuid + "\n")) << name;
+        EXPECT_EQ(lastManifest()["device_class"], "gpu") << name;
+        EXPECT_EQ(lastManifest()["gl"]["uuid"], kUuid) << name;
+    }
+    const ProcessResult software = onPretended("software");
+    EXPECT_EQ(software.exitCode, 0) << software.err;
+    EXPECT_EQ(lastManifest()["device_class"], "software");
+}
+
+TEST_F(DeviceChoice, AnotherUuidIsRefused) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: its own UUID would be named";
+    const ProcessResult run = onPretended("00112233-4455-6677-8899-aabbccddee00");
+    EXPECT_EQ(run.exitCode, 3);
+    EXPECT_THAT(run.err,
+                StartsWith("gfxrepro: no usable OpenGL 4.5 device for "
+                           "'00112233-4455-6677-8899-aabbccddee00':\n|   device 0 (device): "
+                           "Pretended GPU has the UUID 00112233-4455-6677-8899-aabbccddeeff\n"));
+}
+
+TEST_F(DeviceChoice, NothingStandsInForAGpuThatDoesNotServe) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: it would be taken";
+    const std::string last =
+        "| This machine has a GPU that does not serve; --device software measures without it\n";
+    for (const std::string name : {"auto", "gpu"}) {
+        const ProcessResult run = onPretended(name, "refuses");
+        EXPECT_EQ(run.exitCode, 3) << name;
+        EXPECT_THAT(run.err, StartsWith("gfxrepro: no usable OpenGL 4.5 device for '" + name +
+                                        "':\n|   device 0 (device): eglInitialize failed: "))
+            << name;
+        EXPECT_THAT(run.err, HasSubstr(" is no GPU\n")) << name;
+        EXPECT_EQ(run.err.ends_with(last), name == "auto") << run.err;
+    }
+    const ProcessResult told = onPretended("software", "refuses");
+    EXPECT_EQ(told.exitCode, 0) << told.err;
+    EXPECT_THAT(told.err, HasSubstr(" (software), OpenGL 4"));
+}
+
+TEST_F(DeviceChoice, WithoutAGpuOnlyWhoAsksForOneIsRefused) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here";
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "gpu"});
+    EXPECT_EQ(run.exitCode, 3);
+    EXPECT_THAT(run.err,
+                StartsWith("gfxrepro: no usable OpenGL 4.5 device for 'gpu':\n|   device 0 "));
+    EXPECT_THAT(run.err, HasSubstr(" is no GPU\n"));
+}
+
+TEST_F(DeviceChoice, PlansForAGpuNeedNone) {
+    const ProcessResult plan = mockGfxrepro({"plan", config, "--device", "gpu"});
+    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
