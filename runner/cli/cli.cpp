@@ -136,8 +136,8 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
         ->add_option("name", o.describe.name, "what to describe; 'config' is the keys of configs")
         ->option_text("NAME");
     describeApp->add_flag("--json-schema", o.describe.asJsonSchema,
-                          "the schema for editors; NAME: experiment (the default), preset, scene, "
-                          "expectations");
+                          "schema for editors, of NAME: experiment (the default), preset, scene, "
+                          "expectations, documents");
     describeApp->add_flag("--markdown", o.describe.asMarkdown, "the keys of all files as tables");
     describeApp->add_flag("--json", o.describe.asJson, "what is described, for programs");
     addAssets(describeApp, o.describe.assets);
