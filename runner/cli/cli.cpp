@@ -40,6 +40,7 @@ struct Options {
     ImageCommandOptions image;
     std::vector<std::string> configs;  // that claims judges by
     std::string out;                   // of table, claims, report, export
+    bool embeds = false;               // of report
     std::string lane = "quality";
     bool asJson = false;
     std::function<int()> command;
@@ -197,7 +198,8 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
         ->option_text("RUN");
     reportApp->add_option("--out", o.out, "default RUN/report.html; of several: report.html")
         ->option_text("FILE");
-    reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out); }; });
+    reportApp->add_flag("--embed", o.embeds, "one file to send: every picture inside of it");
+    reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out, o.embeds); }; });
 
     CLI::App* exportApp =
         app.add_subcommand("export", "a run as an artifact: results, licences, checksums");

@@ -127,7 +127,7 @@ int table(const std::string& runDir, const std::string& out);
 int claims(const std::string& runDir, const std::vector<std::string>& configs,
            const std::string& out);
 /// Of several folders side by side: to `out`, or report.html where one is.
-int report(const std::vector<std::string>& runDirs, const std::string& out);
+int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);
 int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
