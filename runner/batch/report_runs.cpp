@@ -87,6 +87,10 @@ std::string commandOf(const Case& item, const Plan& plan, CaseNames& names) {
 
 }  // namespace
 
+html::ReportOptions reportOptions(bool embeds) {
+    return {config::readDocuments(dataFolder("configs") / "documents.yaml"), embeds};
+}
+
 html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
     html::ReportRun result{runDir,
                            reportContext(run),

@@ -9,6 +9,9 @@
 
 namespace gfxrepro::batch {
 
+/// What the shipped configs say of documents, for every report.
+html::ReportOptions reportOptions(bool embeds = false);
+
 /// With the plan's cases: the command that runs each again, and what log.jsonl says of it.
 html::ReportRun reportRun(const std::filesystem::path& runDir, const StoredRun& run);
 

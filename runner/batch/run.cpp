@@ -285,7 +285,7 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     }
     if (which.report) {
         const html::ReportRun shown = reportRun(runDir, run);
-        html::writeReport(out / "report.html", {&shown, 1});
+        html::writeReport(out / "report.html", {&shown, 1}, reportOptions(which.embeds));
     }
     return conclusion;
 }

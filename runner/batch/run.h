@@ -72,6 +72,7 @@ struct Results {
     bool tables = true;
     bool claims = true;
     bool report = true;
+    bool embeds = false;             // every picture inside of the report
     std::filesystem::path out = {};  // where they go; empty: the run's folder
 };
 /// What a run came to.

@@ -77,7 +77,7 @@ std::string shardCommand(const Submission& submission, int index) {
 
 std::string mergeCommand(const Submission& submission) {
     std::string command =
-        fmt::format("{} merge {}", programCommand(submission), shellQuoted(submission.out));
+        fmt::format("{} merge --out {}", programCommand(submission), shellQuoted(submission.out));
     for (int index = 1; index <= submission.shardCount; ++index) {
         command += ' ' + shellQuoted(submission.shardFolder(index));
     }

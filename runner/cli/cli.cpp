@@ -40,6 +40,7 @@ struct Options {
     ImageCommandOptions image;
     std::vector<std::string> configs;  // that claims judges by
     std::string out;                   // of table, claims, report, export
+    bool embeds = false;               // of report
     std::string lane = "quality";
     bool asJson = false;
     std::function<int()> command;
@@ -72,28 +73,26 @@ CLI::Option* addTables(CLI::App* app, std::vector<std::string>& names) {
         ->option_text("TABLE");
 }
 
+/// An option that may be given several times.
+void addEach(CLI::App* app, const char* name, std::vector<std::string>& values, const char* doc,
+             const char* value) {
+    app->add_option(name, values, doc)->allow_extra_args(false)->option_text(value);
+}
+
 void addSelection(CLI::App* app, Selection& selection) {
     addProfile(app, selection.profile);
-    app->add_option("--set", selection.sets, "laid over every config")
-        ->allow_extra_args(false)
-        ->option_text("KEY=VALUE");
-    app->add_option("--sweep", selection.sweeps, "replaces or adds an axis")
-        ->allow_extra_args(false)
-        ->option_text("AXIS=A,B");
+    addEach(app, "--set", selection.sets, "laid over every config", "KEY=VALUE");
+    addEach(app, "--sweep", selection.sweeps, "replaces or adds an axis", "AXIS=A,B");
     addDevice(app, selection.device);
     addAssets(app, selection.assets);
 }
 
 void addOnly(CLI::App* app, std::vector<std::string>& only) {
-    app->add_option("--only", only, "only the cases that have it")
-        ->allow_extra_args(false)
-        ->option_text("KEY=VALUE");
+    addEach(app, "--only", only, "only the cases that have it", "KEY=VALUE");
 }
 
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
-    app->add_option("--from", from, "predicts times from it (default: newest in runs/)")
-        ->allow_extra_args(false)
-        ->option_text("RUN");
+    addEach(app, "--from", from, "predicts times from it (default: newest in runs/)", "RUN");
 }
 
 void addRunOptions(CLI::App* app, RunOptions& options) {
@@ -138,9 +137,10 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
         ->add_option("name", o.describe.name, "what to describe; 'config' is the keys of configs")
         ->option_text("NAME");
     describeApp->add_flag("--json-schema", o.describe.asJsonSchema,
-                          "the schema for editors; NAME: experiment (the default), preset, scene, "
-                          "expectations");
+                          "schema for editors, of NAME: experiment (the default), preset, scene, "
+                          "expectations, documents");
     describeApp->add_flag("--markdown", o.describe.asMarkdown, "the keys of all files as tables");
+    describeApp->add_flag("--json", o.describe.asJson, "what is described, for programs");
     addAssets(describeApp, o.describe.assets);
     describeApp->callback([&] { o.command = [&] { return describe(context, o.describe); }; });
 
@@ -198,7 +198,8 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
         ->option_text("RUN");
     reportApp->add_option("--out", o.out, "default RUN/report.html; of several: report.html")
         ->option_text("FILE");
-    reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out); }; });
+    reportApp->add_flag("--embed", o.embeds, "one file to send: every picture inside of it");
+    reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out, o.embeds); }; });
 
     CLI::App* exportApp =
         app.add_subcommand("export", "a run as an artifact: results, licences, checksums");
@@ -211,11 +212,11 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
 
 void addCluster(CLI::App& app, const Context& context, Options& o) {
     CLI::App* mergeApp = app.add_subcommand("merge", "shards into one run; names what is missing");
-    mergeApp->add_option("out", o.name, "folder of the whole run")->required()->option_text("DIR");
-    mergeApp->add_option("shards", o.shards, "run directories of the shards")
+    mergeApp->add_option("shards", o.shards, "their run directories")
         ->required()
         ->option_text("RUN");
-    mergeApp->callback([&] { o.command = [&] { return merge(context, o.name, o.shards); }; });
+    mergeApp->add_option("--out", o.out, "folder of the whole run")->required()->option_text("DIR");
+    mergeApp->callback([&] { o.command = [&] { return merge(context, o.out, o.shards); }; });
 
     SubmitOptions& s = o.submit;
     CLI::App* submitApp =
@@ -236,9 +237,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
         ->option_text("N");
     submitApp->add_option("--partition", s.partition, "as for sbatch")->option_text("PARTITION");
     submitApp->add_option("--gres", s.gres, "as for sbatch: gpu:1")->option_text("LIST");
-    submitApp->add_option("--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x")
-        ->allow_extra_args(false)
-        ->option_text("FLAG");
+    addEach(submitApp, "--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x", "FLAG");
     submitApp->add_flag("--force", s.isForced, "also what may be queued: squeue does not answer");
     submitApp->add_flag("--dry-run", s.isDryRun, "print scripts and commands only");
     submitApp->add_flag("--status", s.isStatus, "of the submission in this folder");

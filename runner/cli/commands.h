@@ -80,6 +80,7 @@ struct DescribeOptions {
     std::string name;
     bool asJsonSchema = false;
     bool asMarkdown = false;
+    bool asJson = false;
     std::string assets;
 };
 
@@ -112,6 +113,9 @@ inline constexpr const char* kListed = "tables|techniques|scenes|configs|generat
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
 int describe(const Context& context, const DescribeOptions& options);
+using ParamInfos = std::vector<config::ParamInfo>;
+/// All parameters of a technique: those of its defaults, then those that single choices bring.
+ParamInfos paramsOf(const technique::TechniqueInfo& technique);
 int check(const Context& context, const Selection& selection);
 int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
          bool asJson);
@@ -123,7 +127,7 @@ int table(const std::string& runDir, const std::string& out);
 int claims(const std::string& runDir, const std::vector<std::string>& configs,
            const std::string& out);
 /// Of several folders side by side: to `out`, or report.html where one is.
-int report(const std::vector<std::string>& runDirs, const std::string& out);
+int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds);
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);
 int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);

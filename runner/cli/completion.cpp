@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
@@ -21,7 +22,8 @@ using Words = std::vector<std::string>;
 struct Typed {
     const CLI::App* command;
     const CLI::Option* pending = nullptr;  // the option whose value comes next
-    std::size_t arguments = 0;             // positionals that are complete
+    Words arguments = {};                  // positionals that are complete
+    std::string key = {};                  // of KEY=VALUE, where the shell took it apart
 };
 
 const CLI::Option* findOption(const CLI::App& command, const std::string& word) {
@@ -45,11 +47,25 @@ bool isEqualsSign(const std::string& word) {
     return word == "=";
 }
 
+/// Whether its value is KEY=VALUE, or AXIS=A,B.
+bool isPair(const CLI::Option& option) {
+    return valueName(option).find('=') != std::string::npos;
+}
+
 Typed readTyped(const CLI::App& app, const Words& words) {
     Typed typed{&app};
+    const CLI::Option* lastValued = nullptr;
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {
         const std::string& word = words[i];
-        if (isEqualsSign(word)) continue;
+        if (isEqualsSign(word)) {
+            if (lastValued) {  // what stood before the sign was not the whole value
+                typed.pending = lastValued;
+                typed.key = words[i - 1];
+            }
+            continue;
+        }
+        lastValued = typed.pending && isPair(*typed.pending) ? typed.pending : nullptr;
+        typed.key.clear();
         if (typed.pending) {
             typed.pending = nullptr;
         } else if (word.starts_with("-")) {
@@ -58,7 +74,7 @@ Typed readTyped(const CLI::App& app, const Words& words) {
         } else if (const CLI::App* command = findCommand(*typed.command, word)) {
             typed.command = command;
         } else {
-            ++typed.arguments;
+            typed.arguments.push_back(word);
         }
     }
     return typed;
@@ -150,6 +166,48 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
     return found == known.end() ? Words{} : found->second();
 }
 
+/// The techniques of the tables that are typed already; all where there are none.
+std::vector<technique::TechniqueInfo> techniquesOf(const Words& tables, const Context& context) {
+    std::set<std::string> names;
+    try {
+        batch::Request request;
+        if (!tables.empty()) request.configs = findPaperConfigs(tables);
+        for (const config::Experiment& experiment : loadExperiments(request, "full")) {
+            names.insert(experiment.technique);
+        }
+    } catch (const Error&) {  // half a name, or a config with a mistake: the command will say it
+    }
+    std::vector<technique::TechniqueInfo> infos;
+    for (const technique::TechniqueInfo& info : context.techniques) {
+        if (names.empty() || names.contains(std::string(info.name))) infos.push_back(info);
+    }
+    return infos;
+}
+
+/// The keys before the sign, and after it what is known of their values: a parameter's choices, or
+/// a technique's metrics.
+Words pairs(const Typed& typed, const Context& context, const std::string& prefix) {
+    constexpr const char* kMetricKey = "layout.cell.metric";
+    const std::size_t sign = prefix.find('=');
+    const std::string key = typed.key.empty() ? prefix.substr(0, sign) : typed.key;
+    const bool isValue = !typed.key.empty() || sign != std::string::npos;
+    const std::string before = typed.key.empty() && isValue ? key + "=" : "";
+    Words words;
+    for (const technique::TechniqueInfo& info : techniquesOf(typed.arguments, context)) {
+        for (const config::ParamInfo& param : paramsOf(info)) {
+            if (!isValue) words.push_back(param.name + "=");
+            if (!isValue || key != param.name) continue;
+            for (const std::string& choice : param.choices) words.push_back(before + choice);
+        }
+        if (!isValue || key != kMetricKey) continue;
+        for (const config::MetricInfo& metric : technique::outputsOf(info).metrics) {
+            words.push_back(before + metric.name);
+        }
+    }
+    if (!isValue) words.push_back(std::string(kMetricKey) + "=");
+    return words;
+}
+
 /// The argument at `index`, or the last one where it takes several.
 const CLI::Option* argumentAt(const CLI::App& command, std::size_t index) {
     const CLI::Option* last = nullptr;
@@ -163,18 +221,19 @@ const CLI::Option* argumentAt(const CLI::App& command, std::size_t index) {
 }
 
 Words candidates(const Typed& typed, const Context& context, const std::string& prefix) {
+    if (typed.pending && isPair(*typed.pending)) return pairs(typed, context, prefix);
     if (typed.pending) return valuesOf(valueName(*typed.pending), context, prefix);
     if (prefix.starts_with("-")) return optionNames(*typed.command);
     const Words names = commandNames(*typed.command);
     if (!names.empty()) return names;
-    const CLI::Option* argument = argumentAt(*typed.command, typed.arguments);
+    const CLI::Option* argument = argumentAt(*typed.command, typed.arguments.size());
     return argument ? valuesOf(valueName(*argument), context, prefix) : Words{};
 }
 
 constexpr const char* kBash = R"sh(# gfxrepro for bash: source <(gfxrepro completion bash)
 _gfxrepro() {
     mapfile -t COMPREPLY < <("${COMP_WORDS[0]/#\~/$HOME}" complete "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
-    if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == */ ]]; then compopt -o nospace 2>/dev/null; fi
+    if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *[/=] ]]; then compopt -o nospace 2>/dev/null; fi
     return 0
 }
 complete -o default -F _gfxrepro gfxrepro
@@ -185,8 +244,8 @@ constexpr const char* kZsh = R"sh(#compdef gfxrepro
 _gfxrepro() {
     local -a replies
     replies=("${(@f)$("${(Q)words[1]}" complete "${(@Q)words[2,CURRENT]}" 2>/dev/null)}")
-    compadd -- ${replies:#*/}
-    compadd -S '' -- ${(M)replies:#*/}
+    compadd -- ${replies:#*[/=]}
+    compadd -S '' -- ${(M)replies:#*[/=]}
 }
 if [ "$funcstack[1]" = _gfxrepro ]; then _gfxrepro "$@"; else compdef _gfxrepro gfxrepro; fi
 )sh";

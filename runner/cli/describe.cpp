@@ -14,6 +14,39 @@ namespace gfxrepro::cli {
 
 namespace {
 
+ParamInfos paramsGiven(const technique::TechniqueInfo& info, config::Node values) {
+    config::Params params(std::move(values), "technique '" + std::string(info.name) + "'");
+    // A choice may ask for others beside it: what was declared until then counts. So this catches.
+    try {
+        info.create(params);
+    } catch (const Error&) {
+    }
+    return params.declared();
+}
+
+}  // namespace
+
+ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
+    const ParamInfos usual = paramsGiven(technique, {});
+    ParamInfos all = usual;
+    for (const config::ParamInfo& param : usual) {
+        for (const std::string& choice : param.choices) {
+            const auto value = config::Node::scalar(choice, {}, true);
+            for (config::ParamInfo& info :
+                 paramsGiven(technique, config::Node::map({{param.name, value}}))) {
+                const bool isKnown = std::ranges::any_of(
+                    all, [&](const auto& known) { return known.name == info.name; });
+                if (isKnown) continue;
+                info.doc += fmt::format("; with {}: {}", param.name, choice);
+                all.push_back(std::move(info));
+            }
+        }
+    }
+    return all;
+}
+
+namespace {
+
 constexpr std::size_t kColumn = 28;
 
 /// "[256; 32 … 1024 voxels]"; a number that was given as a float is printed as one.
@@ -60,38 +93,6 @@ void printOutputs(const config::Outputs& outputs) {
     printMetrics(technique::commonMetrics());
 }
 
-using ParamInfos = std::vector<config::ParamInfo>;
-
-ParamInfos paramsGiven(const technique::TechniqueInfo& info, config::Node values) {
-    config::Params params(std::move(values), "technique '" + std::string(info.name) + "'");
-    // A choice may ask for others beside it: what was declared until then counts. So this catches.
-    try {
-        info.create(params);
-    } catch (const Error&) {
-    }
-    return params.declared();
-}
-
-/// All parameters of a technique: those of its defaults, then those that single choices bring.
-ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
-    const ParamInfos usual = paramsGiven(technique, {});
-    ParamInfos all = usual;
-    for (const config::ParamInfo& param : usual) {
-        for (const std::string& choice : param.choices) {
-            const auto value = config::Node::scalar(choice, {}, true);
-            for (config::ParamInfo& info :
-                 paramsGiven(technique, config::Node::map({{param.name, value}}))) {
-                const bool isKnown = std::ranges::any_of(
-                    all, [&](const auto& known) { return known.name == info.name; });
-                if (isKnown) continue;
-                info.doc += fmt::format("; with {}: {}", param.name, choice);
-                all.push_back(std::move(info));
-            }
-        }
-    }
-    return all;
-}
-
 void describeTechnique(const technique::TechniqueInfo& info) {
     fmt::print("{}",
                entryLines("technique " + std::string(info.name), std::string(info.summary), 4));
@@ -104,13 +105,23 @@ void describeGenerator(const scene::GeneratorInfo& info) {
     printParams(scene::declaredParams(info, {}));
 }
 
+std::string_view kindName(scene::Origin::Kind kind) {
+    switch (kind) {
+        case scene::Origin::Kind::Real:
+            return "real";
+        case scene::Origin::Kind::StandIn:
+            return "stand-in";
+        case scene::Origin::Kind::Generated:
+            break;
+    }
+    return "generated";
+}
+
 void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
     say("scene {}: {}\n", entry.name, entry.doc);
     if (!entry.canonical.empty()) say("real one  {}\n", entry.canonical);
     for (const scene::SceneSource& source : entry.sources) {
-        const char* kind = source.kind == scene::Origin::Kind::Real      ? "real"
-                           : source.kind == scene::Origin::Kind::StandIn ? "stand-in"
-                                                                         : "generated";
+        const std::string_view kind = kindName(source.kind);
         if (source.file.empty()) {
             say("source    {}: generator {}, seed {}\n", kind, source.generator->name, source.seed);
             continue;
@@ -149,6 +160,89 @@ void describeExperiment(const config::Experiment& experiment) {
     }
 }
 
+config::Json jsonOf(const ParamInfos& params) {
+    config::Json list = config::Json::array();
+    for (const config::ParamInfo& info : params) {
+        config::Json param = {{"name", info.name}, {"default", info.defaultValue}};
+        if (!info.range.empty()) param["range"] = info.range;
+        if (!info.choices.empty()) param["choices"] = info.choices;
+        if (!info.unit.empty()) param["unit"] = info.unit;
+        param["doc"] = info.doc;
+        list.push_back(std::move(param));
+    }
+    return list;
+}
+
+config::Json jsonOf(std::span<const config::MetricInfo> metrics) {
+    config::Json list = config::Json::array();
+    for (const config::MetricInfo& info : metrics) {
+        list.push_back({{"name", info.name},
+                        {"unit", info.unit},
+                        {"better", config::betterText(info.better)},
+                        {"doc", info.doc}});
+    }
+    return list;
+}
+
+config::Json jsonOf(const technique::TechniqueInfo& info) {
+    const config::Outputs outputs = info.outputs();
+    config::Json passes = config::Json::array();
+    for (const config::PassInfo& pass : outputs.passes) {
+        passes.push_back({{"name", pass.name}, {"doc", pass.doc}});
+    }
+    return {{"technique", info.name},
+            {"doc", info.summary},
+            {"parameters", jsonOf(paramsOf(info))},
+            {"metrics", jsonOf(outputs.metrics)},
+            {"passes", std::move(passes)},
+            {"metrics_of_every_technique", jsonOf(technique::commonMetrics())}};
+}
+
+config::Json jsonOf(const scene::GeneratorInfo& info) {
+    return {{"generator", info.name},
+            {"doc", info.summary},
+            {"parameters", jsonOf(scene::declaredParams(info, {}))}};
+}
+
+config::Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
+    config::Json sources = config::Json::array();
+    for (const scene::SceneSource& source : entry.sources) {
+        config::Json json = {{"kind", kindName(source.kind)}};
+        if (source.file.empty()) {
+            json["generator"] = source.generator->name;
+            json["seed"] = source.seed;
+        } else {
+            json["file"] = (catalog.assetsFolder() / source.file).string();
+            json["is_there"] = std::filesystem::exists(catalog.assetsFolder() / source.file);
+        }
+        sources.push_back(std::move(json));
+    }
+    return {{"scene", entry.name},
+            {"doc", entry.doc},
+            {"canonical", entry.canonical},
+            {"sources", std::move(sources)}};
+}
+
+config::Json jsonOf(const config::Experiment& experiment) {
+    config::Json claims = config::Json::array();
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        claims.push_back({{"id", claim.id}, {"says", claim.text}});
+    }
+    config::Json assumptions = config::Json::array();
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        assumptions.push_back({{"name", assumption.name}, {"why", assumption.why}});
+    }
+    return {{"experiment", experiment.id},
+            {"label", experiment.label()},
+            {"title", experiment.title},
+            {"file", experiment.file.string()},
+            {"technique", experiment.technique},
+            {"cases", config::expandCases(experiment).size()},
+            {"profiles", experiment.profiles},
+            {"claims", std::move(claims)},
+            {"assumptions", std::move(assumptions)}};
+}
+
 template <class Infos>
 auto findNamed(const Infos& infos, const std::string& name) {
     return std::find_if(infos.begin(), infos.end(),
@@ -185,26 +279,37 @@ bool describeSchema(const Context& context, const DescribeOptions& options) {
     return true;
 }
 
+int sayJson(const config::Json& json) {
+    fmt::print("{}\n", json.dump(2));
+    return kExitOk;
+}
+
 }  // namespace
 
 int describe(const Context& context, const DescribeOptions& options) {
-    if (describeSchema(context, options)) return kExitOk;
     const std::string& name = options.name;
+    if (options.asJson && (options.asJsonSchema || options.asMarkdown || name == "config")) {
+        throw UsageError("describe: --json is for techniques, generators, scenes and tables");
+    }
+    if (describeSchema(context, options)) return kExitOk;
     if (name.empty()) throw UsageError("describe: say what; see 'gfxrepro describe --help'");
     std::vector<std::string> known = {"config"};
     const auto technique = findNamed(context.techniques, name);
     if (technique != context.techniques.end()) {
+        if (options.asJson) return sayJson(jsonOf(*technique));
         describeTechnique(*technique);
         return kExitOk;
     }
     const auto generator = findNamed(context.generators, name);
     if (generator != context.generators.end()) {
+        if (options.asJson) return sayJson(jsonOf(*generator));
         describeGenerator(*generator);
         return kExitOk;
     }
     const scene::Catalog catalog = openCatalog(context, options.assets);
     const auto entry = catalog.entries().find(name);
     if (entry != catalog.entries().end()) {
+        if (options.asJson) return sayJson(jsonOf(entry->second, catalog));
         describeScene(entry->second, catalog);
         return kExitOk;
     }
@@ -215,6 +320,7 @@ int describe(const Context& context, const DescribeOptions& options) {
     if (isYamlFile(name)) request.configs = {name};
     for (const config::Experiment& experiment : loadExperiments(request, "full")) {
         if (experiment.id == name || isYamlFile(name)) {
+            if (options.asJson) return sayJson(jsonOf(experiment));
             describeExperiment(experiment);
             return kExitOk;
         }

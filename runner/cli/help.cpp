@@ -38,7 +38,7 @@ constexpr Place kPlaces[] = {
     {"sensitivity", "compare", "gfxrepro sensitivity zju2005/2.1"},
     {"image", "compare", "gfxrepro image diff a.exr b.exr"},
     {"submit", "cluster", "gfxrepro submit zju2005 --shards 8 --gres gpu:1 --out whole"},
-    {"merge", "cluster", "gfxrepro merge whole shard-1 shard-2"},
+    {"merge", "cluster", "gfxrepro merge shard-1 shard-2 --out whole"},
     {"completion", "shell", "source <(gfxrepro completion bash)"},
 };
 

@@ -35,7 +35,8 @@ Rows configs() {
     for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
         const fs::path path = fs::relative(file.path(), folder);
         const std::string first = *path.begin();
-        if (path.extension() == ".yaml" && first != "scenes" && first != "presets") {
+        if (path.extension() == ".yaml" && first != "scenes" && first != "presets" &&
+            first != "documents.yaml") {
             rows.push_back({file.path().lexically_normal().string()});
         }
     }

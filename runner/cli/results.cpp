@@ -65,6 +65,7 @@ std::size_t sayFailing(const std::vector<report::ClaimResult>& claims) {
         if (claim.verdict != report::Verdict::Fails || ++failing > kSaidFailing) continue;
         say("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id, claim.text,
             claim.measured, claim.required);
+        if (const std::string why = report::whyText(claim); !why.empty()) say("    {}\n", why);
     }
     if (failing > kSaidFailing) {
         say("  and {} more that fail, in the report\n", failing - kSaidFailing);
@@ -106,8 +107,10 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
 /// The verdicts; the exit code when all cases were measured.
 int sayClaims(const std::vector<report::ClaimResult>& claims) {
     for (const report::ClaimResult& claim : claims) {
+        const std::string why =
+            claim.verdict == report::Verdict::Holds ? claim.reason : report::whyText(claim);
         say("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
-            claim.isNews() ? " (news)" : "", claim.reason.empty() ? "" : "; " + claim.reason);
+            claim.isNews() ? " (news)" : "", why.empty() ? "" : fmt::format("; {}", why));
     }
     say("{}\n", report::originSummaryLine(claims));
     annotate(claims);
@@ -246,11 +249,11 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
     return code == kExitOk ? verdict : code;
 }
 
-int report(const std::vector<std::string>& runDirs, const std::string& out) {
+int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
         const batch::StoredRun run = batch::readRun(runDirs.front());
         batch::writeResults(runDirs.front(), run,
-                            {.tables = false, .claims = false, .report = true});
+                            {.tables = false, .claims = false, .embeds = embeds});
         sayNotes(run.manifest);
         sayReport(runDirs.front());
         return completenessCode(run);
@@ -277,11 +280,11 @@ int report(const std::vector<std::string>& runDirs, const std::string& out) {
     }
     const std::string from = joined(std::vector<std::string>(lines.begin(), lines.end()), "");
     if (!out.empty()) {
-        batch::requireMadeFrom(made, from);
+        if (!embeds) batch::requireMadeFrom(made, from);
         requireReport(file);
     }
-    html::writeReport(file, runs);
-    if (fs::exists(made)) batch::noteMadeFrom(made, from);
+    html::writeReport(file, runs, batch::reportOptions(embeds));
+    if (!embeds && fs::exists(made)) batch::noteMadeFrom(made, from);
     say("report: {}\n", file.string());
     return code;
 }

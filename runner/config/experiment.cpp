@@ -150,7 +150,7 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 void requireOnlyPrinted(const Node& document) {
     for (const char* key : {"scene", "scene_params", "scene_seed", "scene_instead", "params",
                             "params_by_scene", "params_instead", "output", "sweep", "measure",
-                            "picture_tolerance", "layout", "fit", "claims", "plots"}) {
+                            "picture_tolerance", "shows", "layout", "fit", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -220,6 +220,12 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     if (const Node* given = document.find("picture_tolerance")) {
         Params tolerance(*given, "picture_tolerance");
         experiment.pictureTolerance = readPictureTolerance(tolerance);
+    }
+    if (const Node* shows = document.find("shows")) {
+        if (!shows->isSequence()) throwNotAllowed(*shows, "shows", "a list of names of pictures");
+        for (const Node& name : shows->items()) {
+            experiment.shows.push_back(lineOf(name, "shows"));
+        }
     }
 }
 

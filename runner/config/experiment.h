@@ -243,6 +243,7 @@ struct Experiment {
     Measure measure;
     /// Given or not: then PictureTolerance's own of two builds, and nothing of one.
     std::optional<PictureTolerance> pictureTolerance;
+    std::vector<std::string> shows;  // names of the pictures that the document shows; or empty
     Layout layout;
     Printed printed;
     std::vector<ClaimSpec> claims;

@@ -14,8 +14,8 @@ namespace {
 
 using namespace types;
 
-constexpr std::array<std::string_view, 4> kKinds = {"experiment", "preset", "scene",
-                                                    "expectations"};
+constexpr std::array<std::string_view, 5> kKinds = {"experiment", "preset", "scene", "expectations",
+                                                    "documents"};
 
 /// A reference swallows what stands beside it in draft 7.
 Json beside(Json type) {

@@ -55,8 +55,8 @@ class Reader {
     Merged read(const fs::path& file) {
         const Node whole = parseYamlFile(file);
         if (!whole.isMap()) {
-            throw Error(SourceLocation{file.string(), 0, 0},
-                        "a config is a map, found " + whole.kindName());
+            throw Error(SourceLocation{file.string(), 1, 1},
+                        "a config is a map of keys and values, found " + whole.kindName());
         }
         requireFileKeys(whole);
         refuseTornTexts(whole);
@@ -91,6 +91,15 @@ class Reader {
         Names allowed = sectionKeys();
         allowed.insert(allowed.end(), identityKeys().begin(), identityKeys().end());
         for (std::string& key : keysOf("composition")) allowed.push_back(std::move(key));
+        for (const auto& [key, value] : whole.entries()) {
+            const bool isKnown = std::ranges::find(allowed, key) != allowed.end();
+            if (isKnown || !suggestion(key, allowed).empty()) continue;
+            throw Error(whole.keyLocation(key),
+                        "config: unknown key '" + key +
+                            "'; a parameter of the technique stands below `params:`, or with "
+                            "several values below `sweep:`; allowed here: " +
+                            joined(allowed));
+        }
         requireKeys(whole, "config", allowed);
         if (open_.empty()) return;
         for (const std::string& key : identityKeys()) {

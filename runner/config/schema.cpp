@@ -10,7 +10,7 @@ namespace gfxrepro::config {
 
 const std::vector<SchemaFile>& schema() {
     static const std::vector<SchemaFile> files = {experimentSchema(), sceneSchema(),
-                                                  expectationsSchema()};
+                                                  expectationsSchema(), documentsSchema()};
     return files;
 }
 

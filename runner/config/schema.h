@@ -57,7 +57,7 @@ struct SchemaSection {
 
 /// A kind of file and its sections, the top of the file first.
 struct SchemaFile {
-    std::string name;  // "experiment", "scene", "expectations"
+    std::string name;  // "experiment", "scene", "expectations", "documents"
     std::string doc;
     std::vector<SchemaSection> sections;
 };
@@ -78,7 +78,7 @@ struct SchemaNames {
     std::vector<std::string> generators;
 };
 
-/// `kind`: experiment, preset (what experiments extend), scene or expectations.
+/// `kind`: experiment, preset (what experiments extend), scene, expectations or documents.
 /// JSON Schema, draft 7, as text. Throws UsageError for an unknown kind.
 std::string jsonSchema(std::string_view kind, const SchemaNames& names);
 

@@ -84,6 +84,10 @@ SchemaSection content() {
           "values "
           "below, and of one build nothing",
           refTo("picture_tolerance")},
+         {"shows", "[name]", "those with a truth",
+          "pictures that the document shows, by the names that the technique gives them "
+          "(`classes` is also classes_0, …): the report folds the others",
+          listOf(text())},
          {"layout", "map", "none", "what the table looks like", refTo("layout")},
          {"printed", "map", "none", "what the paper printed; never reaches a worker",
           refTo("printed")},

@@ -9,6 +9,7 @@ SchemaFile experimentSchema();
 std::vector<SchemaSection> claimSections();
 SchemaFile sceneSchema();
 SchemaFile expectationsSchema();
+SchemaFile documentsSchema();
 
 /// The JSON schema of a declared parameter's values.
 Json jsonTypeOf(const ParamInfo& info);

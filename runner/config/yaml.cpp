@@ -2,6 +2,7 @@
 // scalars.
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include <yaml-cpp/eventhandler.h>
@@ -224,22 +225,94 @@ void requireText(std::string_view text, const std::string& fileName) {
     }
 }
 
-/// yaml-cpp's message in the right place.
+/// The place of the innermost bracket that is not closed, or is closed by another.
+std::optional<YAML::Mark> unclosedBracket(const std::vector<std::string>& lines) {
+    std::vector<std::pair<char, YAML::Mark>> open;
+    char quote = '\0';
+    for (std::size_t line = 0; line < lines.size(); ++line) {
+        for (std::size_t column = 0; column < lines[line].size(); ++column) {
+            const char c = lines[line][column];
+            const char before = column == 0 ? ' ' : lines[line][column - 1];
+            if (quote != '\0') {
+                if (c == quote && before != '\\') quote = '\0';
+                continue;
+            }
+            if (c == '#' && before == ' ') break;
+            const bool beginsValue = std::string_view(" [{,:").find(before) != std::string::npos;
+            if ((c == '"' || c == '\'') && beginsValue) quote = c;
+            if (c == '[' || c == '{') {
+                YAML::Mark mark;
+                mark.line = static_cast<int>(line);
+                mark.column = static_cast<int>(column);
+                open.emplace_back(c, mark);
+            }
+            if (c != ']' && c != '}') continue;
+            if (open.empty()) return std::nullopt;
+            if (open.back().first != (c == ']' ? '[' : '{')) return open.back().second;
+            open.pop_back();
+        }
+    }
+    if (open.empty()) return std::nullopt;
+    return open.back().second;
+}
+
+/// What a key in a place where none may stand comes from: mostly from the line before. Else says
+/// `otherwise`.
+[[noreturn]] void explainKey(const SourceLocation& where, const std::vector<std::string>& lines,
+                             const char* otherwise) {
+    const auto indentOf = [&](int line) {
+        return lines[static_cast<std::size_t>(line) - 1].find_first_not_of(' ');
+    };
+    const auto isEmpty = [&](int line) {
+        const std::string_view text = trimmed(lines[static_cast<std::size_t>(line) - 1]);
+        return text.empty() || text.starts_with('#');
+    };
+    const auto at = [&](int line) {
+        return SourceLocation{where.file, line, static_cast<int>(indentOf(line)) + 1};
+    };
+    int above = where.line - 1;
+    while (above > 0 && isEmpty(above)) --above;
+    if (above > 0) {
+        const std::string_view text = trimmed(lines[static_cast<std::size_t>(above) - 1]);
+        const std::size_t colon = text.find(": ");
+        if (colon == text.npos && !text.ends_with(':')) {
+            throw Error(at(above), "no ':' in the line; is it missing after '" +
+                                       std::string(text.substr(0, text.find(' '))) + "'?");
+        }
+        if (colon != text.npos && indentOf(where.line) > indentOf(above)) {
+            throw Error(at(where.line), "indented deeper than line " + std::to_string(above) +
+                                            ", which has its value already");
+        }
+    }
+    throw Error(where, otherwise);
+}
+
+/// yaml-cpp's message in the right place, in other words where it has none for people.
 [[noreturn]] void rethrow(const YAML::Exception& error, std::string_view text,
                           const std::string& fileName) {
     const std::vector<std::string> lines = split(text, '\n');
     SourceLocation where{fileName, error.mark.line + 1, error.mark.column + 1};
-    if (error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW ||
-        error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW) {
-        // A bracket that is never closed is noticed at the end, and reported at the beginning.
-        where.line = static_cast<int>(lines.size());
-        where.column = static_cast<int>(lines.back().size()) + 1;
-    }
     const std::string& line = lines[std::min(lines.size(), std::size_t(where.line)) - 1];
     const std::size_t tab = line.find('\t');
     if (tab != std::string::npos && line.find_first_not_of(" \t") > tab) {
         where.column = static_cast<int>(tab) + 1;
         throw Error(where, "a tab in the indentation; use spaces");
+    }
+    if (error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW ||
+        error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW || error.msg == YAML::ErrorMsg::FLOW_END) {
+        if (const auto mark = unclosedBracket(lines)) {
+            where = {fileName, mark->line + 1, mark->column + 1};
+            const char bracket =
+                lines[static_cast<std::size_t>(mark->line)][static_cast<std::size_t>(mark->column)];
+            throw Error(where, std::string("'") + bracket + "' is not closed");
+        }
+    }
+    const bool isInLine = where.line <= static_cast<int>(lines.size());
+    if (isInLine && error.msg == YAML::ErrorMsg::MAP_VALUE) {
+        explainKey(where, lines, "a second ': ' in one line; text that holds one stands in quotes");
+    }
+    if (isInLine && error.msg == YAML::ErrorMsg::END_OF_MAP) {
+        explainKey(where, lines, "indented like none of the lines that it could belong to");
     }
     throw Error(where, error.msg);
 }
@@ -249,6 +322,7 @@ void requireText(std::string_view text, const std::string& fileName) {
 Node parseYaml(std::string_view text, const std::string& fileName) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    if (text.ends_with('\r')) text.remove_suffix(1);  // of a last line without its line feed
     if (text.size() > kMaxBytes) {
         throw Error({fileName, 0, 0}, std::to_string(text.size()) + " bytes; at most 4 MiB");
     }

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "runner/core/files.h"
+#include "runner/core/hash.h"
 #include "runner/image/limits.h"
 #include "runner/image/png_io.h"
 #include "runner/image/resample.h"
@@ -25,8 +26,6 @@ namespace gfxrepro::html {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr int kThumbnailPx = 192;
 
 /// Whether `made` is there and no older than what it is made from.
 bool isCurrent(const fs::path& made, const fs::path& source) {
@@ -77,17 +76,36 @@ fs::path besides(const std::string& png, const fs::path& folder, const std::stri
 
 using ImageKey = std::tuple<std::string, int, std::string>;  // case, frame, name
 
+/// What an <img> of the page takes for a file.
+std::string addressOf(const fs::path& file, const GalleryPlace& place) {
+    if (place.embedding != GalleryPlace::Embedding::None) {
+        return "data:image/png;base64," + report::base64(readFile(file));
+    }
+    const fs::path folder = fs::absolute(place.page).parent_path();
+    return encodedAddress(fs::relative(fs::absolute(file), folder));
+}
+
+/// The file of a picture whose longer side is at most that, made in `folder` if it is not there;
+/// `file`, which holds `image`, where it is no longer.
+fs::path reducedFile(const fs::path& file, const image::Image8& image, int longestPx,
+                     const fs::path& made) {
+    const int longerPx = std::max(image.width(), image.height());
+    if (longerPx <= longestPx) return file;
+    if (!isCurrent(made, file)) {
+        makeFolderOf(made);
+        image::writePng(made,
+                        image::resizedTo(image, std::max(1, longestPx * image.width() / longerPx)));
+    }
+    return made;
+}
+
 /// One run's images on their way into a page.
 class Gallery {
   public:
-    Gallery(const fs::path& runDir, const fs::path& madeDir, const fs::path& file, bool embeds)
-        : runDir_(runDir),
-          madeDir_(madeDir),
-          pageFolder_(fs::absolute(file).parent_path()),
-          embeds_(embeds) {
-        for (report::ImageEntry& entry : report::readImages(runDir)) {
+    explicit Gallery(const GalleryPlace& place) : place_(place), runDir_(place.runDir) {
+        for (report::ImageEntry& entry : report::readImages(runDir_)) {
             std::error_code isAbsent;
-            if (entry.png.empty() || !fs::is_regular_file(runDir / entry.png, isAbsent)) continue;
+            if (entry.png.empty() || !fs::is_regular_file(runDir_ / entry.png, isAbsent)) continue;
             if (!entry.truthOf.empty()) {
                 truths_.try_emplace({entry.caseId, entry.frame, entry.truthOf}, entry);
             }
@@ -115,34 +133,36 @@ class Gallery {
         shot.caseId = entry.caseId;
         shot.caseTitle = entry.title;
         shot.name = nameOf(entry);
+        shot.baseName = entry.name;
+        shot.png = entry.png;
+        shot.bytes = fs::file_size(file);
         std::tie(shot.width, shot.height) = sizeOf(entry);
+        if (!entry.truthOf.empty()) shot.content = sha256OfFile(file);
         if (pixelsOf(entry) > metrics::kMaxFlipPixels) {
-            shot.thumbnail = addressOf(file);  // too large to be decoded for a thumbnail
+            shot.thumbnail = addressOf(file, place_);  // too large to be decoded for a thumbnail
             return shot;
         }
         const image::Image8 picture = image::readPng8(file);
-        const fs::path thumbnail = embeds_ ? file : thumbnailOf(entry.png, picture);
-        shot.thumbnail = addressOf(thumbnail);
-        if (thumbnail != file) shot.full = addressOf(file);
+        const fs::path thumbnail = shownFile(file, picture, besides(entry.png, "thumbnails", ""));
+        shot.thumbnail = addressOf(thumbnail, place_);
+        if (thumbnail != file && place_.embedding == Embedding::None) {
+            shot.full = addressOf(file, place_);
+        } else if (thumbnail != file) {
+            const image::PngRows rows(thumbnail, image::kMaxSidePx, image::ImageUse::Picture);
+            std::tie(shot.width, shot.height) = std::pair{rows.width(), rows.height()};
+        }
         const auto truth = truths_.find({entry.caseId, entry.frame, entry.name});
         if (truth != truths_.end()) compare(entry, picture, truth->second, shot);
         return shot;
     }
 
   private:
-    /// Where the thumbnail of an image lies, made if it is not there; the image itself if that is
-    /// small.
-    fs::path thumbnailOf(const std::string& png, const image::Image8& image) const {
-        const int longerPx = std::max(image.width(), image.height());
-        if (longerPx <= kThumbnailPx) return runDir_ / png;
-        const fs::path place = madeDir_ / besides(png, "thumbnails", "");
-        if (!isCurrent(place, runDir_ / png)) {
-            makeFolderOf(place);
-            image::writePng(
-                place,
-                image::resizedTo(image, std::max(1, kThumbnailPx * image.width() / longerPx)));
-        }
-        return place;
+    using Embedding = GalleryPlace::Embedding;
+
+    fs::path shownFile(const fs::path& file, const image::Image8& image,
+                       const fs::path& made) const {
+        if (place_.embedding == Embedding::Whole) return file;
+        return reducedFile(file, image, kShownPx, place_.madeDir / made);
     }
 
     /// A frame is named only where a case has several.
@@ -160,24 +180,20 @@ class Gallery {
         const auto values = map.values();
         shot.flipMean =
             std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-        const fs::path place = madeDir_ / besides(entry.png, "images", "-flip");
-        if (!isCurrent(place, runDir_ / entry.png)) {
-            makeFolderOf(place);
-            image::writePng(place, metrics::flipPicture(map));
+        const fs::path made = place_.madeDir / besides(entry.png, "images", "-flip");
+        const image::Image8 shown = metrics::flipPicture(map);
+        if (!isCurrent(made, runDir_ / entry.png)) {
+            makeFolderOf(made);
+            image::writePng(made, shown);
         }
-        shot.flip = addressOf(place);
+        // Beside the page the viewer opens what is shown: a map as large as its pictures.
+        const bool isReduced = place_.embedding == Embedding::Reduced;
+        const fs::path reduced = besides(entry.png, "thumbnails", "-flip");
+        shot.flip = addressOf(isReduced ? shownFile(made, shown, reduced) : made, place_);
     }
 
-    /// What an <img> of the page takes for a file.
-    std::string addressOf(const fs::path& file) const {
-        if (embeds_) return "data:image/png;base64," + report::base64(readFile(file));
-        return encodedAddress(fs::relative(fs::absolute(file), pageFolder_));
-    }
-
+    GalleryPlace place_;
     fs::path runDir_;
-    fs::path madeDir_;
-    fs::path pageFolder_;
-    bool embeds_;
     std::vector<report::ImageEntry> entries_;
     std::map<ImageKey, report::ImageEntry> truths_;  // by the image that they are the truth of
     std::map<std::string, std::set<int>> frames_;    // of each case
@@ -185,15 +201,21 @@ class Gallery {
 
 }  // namespace
 
-std::vector<Shot> gatherShots(const fs::path& runDir, const fs::path& madeDir, const fs::path& file,
-                              bool embeds) {
-    const Gallery gallery(runDir, madeDir, file, embeds);
+std::vector<Shot> gatherShots(const GalleryPlace& place) {
+    const Gallery gallery(place);
     const std::vector<report::ImageEntry>& entries = gallery.entries();
     std::vector<Shot> shots(entries.size());
     metrics::forEachPicture(
         shots.size(), [&](std::size_t i) { return gallery.pixelsOf(entries[i]); },
         [&](std::size_t i) { shots[i] = gallery.shotOf(entries[i]); });
     return shots;
+}
+
+std::string smallPicture(const Shot& shot, const GalleryPlace& place) {
+    if (std::int64_t{shot.width} * shot.height > metrics::kMaxFlipPixels) return shot.thumbnail;
+    const fs::path file = place.runDir / shot.png;
+    const fs::path made = place.madeDir / besides(shot.png, "thumbnails", "-small");
+    return addressOf(reducedFile(file, image::readPng8(file), kSmallPx, made), place);
 }
 
 }  // namespace gfxrepro::html

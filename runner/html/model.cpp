@@ -82,16 +82,17 @@ std::string shownFrom(const fs::path& page, const fs::path& file) {
     return fs::relative(fs::absolute(file), fs::absolute(page).parent_path()).generic_string();
 }
 
-void addRun(std::size_t index, const fs::path& file, bool embeds,
-            std::chrono::milliseconds& patience, Model& model) {
+void addRun(std::size_t index, const GalleryPlace& place, std::chrono::milliseconds& patience,
+            Model& model) {
     const ReportRun& run = model.runs[index];
     std::vector<report::Table> tables =
         report::buildTables(run.experiments, run.planned, run.records);
     report::addCalibrations(run.context.calibrations, tables);
-    const fs::path made = madeFolder(run.folder, index, file);
+    const fs::path& made = place.madeDir;
     const std::vector<report::PlotFile> plots =
         report::writePlots(made, tables, run.experiments, patience);
-    const std::vector<Shot> shots = gatherShots(run.folder, made, file, embeds);
+    const std::vector<Shot> shots = gatherShots(place);
+    const bool isAlone = !place.isKept;
     for (std::size_t i = 0; i < run.experiments.size(); ++i) {
         const config::Experiment& experiment = run.experiments[i];
         Page& page = pageOf(experiment.id, model);
@@ -106,9 +107,9 @@ void addRun(std::size_t index, const fs::path& file, bool embeds,
                              [&](const Shot& shot) { return shot.table == experiment.id; });
         for (const report::PlotFile& plot : plots) {
             if (plot.table != experiment.id) continue;
-            part.curves.push_back({plot.title, plot.svg.empty() ? "" : readFile(made / plot.svg),
-                                   plot.problem,
-                                   plot.script.empty() ? "" : shownFrom(file, made / plot.script)});
+            part.curves.push_back(
+                {plot.title, plot.svg.empty() ? "" : readFile(made / plot.svg), plot.problem,
+                 plot.script.empty() || isAlone ? "" : shownFrom(place.page, made / plot.script)});
         }
         for (const ReportCase& item : run.cases) {
             if (item.table == experiment.id) part.cases.push_back(&item);
@@ -140,13 +141,62 @@ std::string Model::letter(std::size_t run) {
     return before += static_cast<char>('A' + run % 26);
 }
 
-Model buildModel(std::span<const ReportRun> runs, const fs::path& file) {
-    Model model{runs, {}};
+std::vector<const Page*> DocumentPages::pages() const {
+    std::vector<const Page*> all;
+    for (const Chapter& chapter : chapters) {
+        all.insert(all.end(), chapter.pages.begin(), chapter.pages.end());
+    }
+    return all;
+}
+
+std::vector<DocumentPages> Model::byDocument() const {
+    std::vector<DocumentPages> result;
+    for (const Page& page : pages) {
+        auto of = std::ranges::find(result, page.paper(), &DocumentPages::id);
+        if (of == result.end()) of = result.insert(of, {page.paper(), "", {}});
+        const std::string name = page.id.substr(page.id.find('/') + 1);
+        std::string title;
+        const auto known = std::ranges::find(documents, of->id, &config::Document::id);
+        if (known != documents.end()) {
+            of->title = known->title;
+            for (const config::Chapter& chapter : known->chapters) {
+                const auto& has = chapter.experiments;
+                if (std::ranges::find(has, name) != has.end()) title = chapter.title;
+            }
+        }
+        auto chapter = std::ranges::find(of->chapters, title, &DocumentPages::Chapter::title);
+        if (chapter == of->chapters.end()) {
+            chapter = of->chapters.insert(chapter, DocumentPages::Chapter{title, {}});
+        }
+        chapter->pages.push_back(&page);
+    }
+    for (DocumentPages& of : result) {
+        const auto known = std::ranges::find(documents, of.id, &config::Document::id);
+        if (known == documents.end()) continue;
+        std::ranges::stable_sort(of.chapters, {}, [&](const DocumentPages::Chapter& one) {
+            return std::ranges::find(known->chapters, one.title, &config::Chapter::title) -
+                   known->chapters.begin();
+        });
+    }
+    return result;
+}
+
+Model buildModel(std::span<const ReportRun> runs, const fs::path& file,
+                 const ReportOptions& options, const fs::path& made) {
+    using Embedding = GalleryPlace::Embedding;
+    Model model{runs, {}, {}, options.documents};
     std::chrono::milliseconds patience = report::kGnuplotPatience;
     std::uintmax_t bytes = 0;
     for (const ReportRun& run : runs) bytes += imagesBytes(run);
+    const Embedding embedding = bytes <= kEmbeddedImagesBytes ? Embedding::Whole
+                                : options.embeds              ? Embedding::Reduced
+                                                              : Embedding::None;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-        addRun(i, file, bytes <= kEmbeddedImagesBytes, patience, model);
+        const fs::path& folder = runs[i].folder;
+        model.places.push_back(
+            {folder, made.empty() ? madeFolder(folder, i, file) : made / Model::letter(i), file,
+             embedding, made.empty()});
+        addRun(i, model.places.back(), patience, model);
     }
     return model;
 }

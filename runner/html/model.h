@@ -56,18 +56,36 @@ struct Page {
     std::string heading() const;
 };
 
+/// A document, or experiments of one's own, with the pages of each chapter; none is empty.
+struct DocumentPages {
+    struct Chapter {
+        std::string title;  // empty: pages that no chapter names
+        std::vector<const Page*> pages;
+    };
+    std::string id;     // "zju2005"; "sweep"
+    std::string title;  // empty where `documents` does not know it
+    std::vector<Chapter> chapters;
+
+    std::vector<const Page*> pages() const;
+};
+
 struct Model {
     std::span<const ReportRun> runs;
     std::vector<Page> pages;
+    std::vector<GalleryPlace> places;  // beside `runs`
+    std::vector<config::Document> documents;
 
     bool isComparison() const { return runs.size() > 1; }
-    /// One experiment of one's own, on whose page the report opens.
-    bool isOneOwn() const { return !isComparison() && pages.size() == 1 && pages[0].isOwn(); }
+    /// One table, on whose page the report opens.
+    bool isOneTable() const { return !isComparison() && pages.size() == 1; }
+    std::vector<DocumentPages> byDocument() const;
     /// "A", "B", … "Z", "AA", …
     static std::string letter(std::size_t run);
 };
 
-/// Builds the tables and judges the claims. `file` is where the report will lie.
-Model buildModel(std::span<const ReportRun> runs, const std::filesystem::path& file);
+/// Builds the tables and judges the claims. `file` is where the report will lie; `made` takes what
+/// is made for it of each run, else (empty) the run's folder or one beside the page.
+Model buildModel(std::span<const ReportRun> runs, const std::filesystem::path& file,
+                 const ReportOptions& options, const std::filesystem::path& made);
 
 }  // namespace gfxrepro::html

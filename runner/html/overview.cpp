@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
 
-#include "runner/config/schema.h"
+#include "runner/html/highlights.h"
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
-#include "runner/report/printed_parameters.h"
 
 namespace gfxrepro::html {
 
@@ -21,124 +19,194 @@ namespace {
 
 constexpr std::array kVerdicts = {Verdict::Holds, Verdict::Fails, Verdict::Ambiguous,
                                   Verdict::Unmeasured, Verdict::NotApplicable};
+/// More examples than these are no summary.
+constexpr std::size_t kExamples = 3;
 
-/// What the manifest says at "gl.renderer", as text; empty where it says nothing.
-std::string manifestText(const nlohmann::ordered_json& manifest, const std::string& path) {
-    const nlohmann::ordered_json* node = &manifest;
-    std::string_view rest = path;
-    while (!rest.empty()) {
-        const std::size_t dot = std::min(rest.find('.'), rest.size());
-        const std::string key(rest.substr(0, dot));
-        if (!node->is_object() || !node->contains(key)) return "";
-        node = &(*node)[key];
-        rest.remove_prefix(std::min(dot + 1, rest.size()));
-    }
-    return node->is_string() ? node->get<std::string>() : node->dump();
+using Counts = std::map<Verdict, std::size_t>;
+
+std::size_t countOf(const Counts& counts, Verdict verdict) {
+    const auto found = counts.find(verdict);
+    return found == counts.end() ? 0 : found->second;
 }
 
-std::string processorText(const nlohmann::ordered_json& manifest) {
-    const std::string cpu = manifestText(manifest, "cpu");
-    const std::string cores = manifestText(manifest, "cores");
-    return cores.empty() ? cpu : fmt::format("{}, {} cores", cpu, cores);
+std::size_t sumOf(const Counts& counts) {
+    std::size_t sum = 0;
+    for (const auto& [verdict, count] : counts) sum += count;
+    return sum;
 }
 
-/// "7 real, 6 stand-ins, 12 generated" and each by name.
-std::string scenesHtml(const nlohmann::ordered_json& manifest) {
-    if (!manifest.is_object() || !manifest.contains("scenes")) return "";
-    std::map<std::string, std::vector<std::string>> ofKind;
-    const nlohmann::ordered_json& scenes = manifest["scenes"];
-    for (const auto& [name, scene] : scenes.items()) {
-        ofKind[manifestText(scene, "kind")].push_back(name);
-    }
-    std::string html;
-    for (const auto& [kind, names] : ofKind) {
-        html += fmt::format("{}{} {} <span class=\"soft\">({})</span>", html.empty() ? "" : "; ",
-                            names.size(), escapeXml(kind),
-                            escapeXml(fmt::format("{}", fmt::join(names, ", "))));
-    }
-    return html;
-}
-
-/// What ran on what: a line a fact, a column a run.
-std::string factsHtml(const Model& model) {
-    using Fact = std::string (*)(const ReportRun&);
-    static const std::pair<const char*, Fact> kFacts[] = {
-        {"Device",
-         [](const ReportRun& run) {
-             return escapeXml(fmt::format("{} ({})", run.context.device, run.context.deviceClass));
-         }},
-        {"OpenGL",
-         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "gl.version")); }},
-        {"Processor", [](const ReportRun& run) { return escapeXml(processorText(run.manifest)); }},
-        {"Profile", [](const ReportRun& run) { return escapeXml(run.context.profile); }},
-        {"Commit", [](const ReportRun& run) { return escapeXml(run.context.commit); }},
-        {"Build",
-         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "build")); }},
-        {"Started",
-         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "started")); }},
-        {"Command", [](const ReportRun& run) { return escapeXml(run.context.command); }},
-        {"Scenes", [](const ReportRun& run) { return scenesHtml(run.manifest); }},
-        {"Notes",
-         [](const ReportRun& run) {
-             if (!run.manifest.is_object()) return std::string();
-             const auto notes = run.manifest.value("notes", std::vector<std::string>{});
-             return escapeXml(fmt::format("{}", fmt::join(notes, "; ")));
-         }},
-        {"Folder",
-         [](const ReportRun& run) {
-             return escapeXml(run.folder.lexically_normal().filename().string());
-         }},
-    };
-    std::string html = "<div class=\"scroll\"><table class=\"facts\">\n";
-    if (model.isComparison()) {
-        html += "<thead><tr><th></th>";
-        for (std::size_t i = 0; i < model.runs.size(); ++i) {
-            html += fmt::format("<th>{}</th>", Model::letter(i));
+/// The documents' own claims, or all the others, of one run.
+Counts countClaims(const std::vector<const Page*>& pages, std::size_t run, bool isOwn) {
+    Counts counts;
+    for (const Page* page : pages) {
+        for (const ClaimResult& claim : page->parts[run].claims) {
+            if (claim.isOfDocument() == isOwn) ++counts[claim.verdict];
         }
-        html += "</tr></thead>\n";
     }
-    html += "<tbody>\n";
-    for (const auto& [name, fact] : kFacts) {
-        std::string cells;
-        bool isSaid = false;
-        for (const ReportRun& run : model.runs) {
-            const std::string text = fact(run);
-            isSaid |= !text.empty();
-            cells += fmt::format("<td>{}</td>", text);
-        }
-        if (isSaid) html += fmt::format("<tr><th scope=\"row\">{}</th>{}</tr>\n", name, cells);
-    }
-    return html + "</tbody></table></div>\n";
+    return counts;
 }
 
-/// A line a run: how many of the documents' own claims have which verdict; below it the others.
-std::string countsHtml(const Model& model) {
-    std::string html;
-    for (std::size_t run = 0; run < model.runs.size(); ++run) {
-        std::map<Verdict, std::vector<ClaimResult>> own;
-        std::vector<ClaimResult> others;
-        for (const Page& page : model.pages) {
-            for (const ClaimResult& claim : page.parts[run].claims) {
-                (claim.isOfDocument() ? own[claim.verdict] : others).push_back(claim);
+/// "9 hold · 2 fail · 1 ambiguous".
+std::string countsText(const Counts& counts) {
+    std::string text;
+    for (const Verdict verdict : kVerdicts) {
+        const std::size_t count = countOf(counts, verdict);
+        if (count == 0) continue;
+        const std::string word = verdict == Verdict::Holds   ? count == 1 ? "holds" : "hold"
+                                 : verdict == Verdict::Fails ? count == 1 ? "fails" : "fail"
+                                                             : std::string(verdictName(verdict));
+        text += fmt::format("{}{} {}", text.empty() ? "" : " · ", count, word);
+    }
+    return text;
+}
+
+/// The shares as lengths; each names itself by its sign and number.
+std::string tallyHtml(const Counts& counts) {
+    std::string html =
+        fmt::format("<div class=\"tally\" role=\"img\" aria-label=\"{}\">", countsText(counts));
+    for (const Verdict verdict : kVerdicts) {
+        const std::size_t count = countOf(counts, verdict);
+        if (count == 0) continue;
+        html += fmt::format("<span class=\"{}\" style=\"flex-grow:{}\">{} {}</span>",
+                            verdictName(verdict), count, verdictSign(verdict), count);
+    }
+    return html + "</div>\n";
+}
+
+/// The first claims of that verdict, one a chapter first.
+std::vector<std::pair<const Page*, const ClaimResult*>> examples(const DocumentPages& document,
+                                                                 Verdict verdict) {
+    std::vector<std::pair<const Page*, const ClaimResult*>> first, further;
+    for (const DocumentPages::Chapter& chapter : document.chapters) {
+        bool isFirst = true;
+        for (const Page* page : chapter.pages) {
+            for (const ClaimResult& claim : page->parts.front().claims) {
+                const bool isMeant = claim.isOfDocument() && claim.verdict == verdict;
+                // A sentence that goes on from the one before says nothing alone.
+                if (!isMeant || claim.text.empty() || claim.text.starts_with("…")) continue;
+                (isFirst ? first : further).emplace_back(page, &claim);
+                isFirst = false;
             }
         }
-        html += "<p class=\"counts\">";
+    }
+    first.insert(first.end(), further.begin(), further.end());
+    if (first.size() > kExamples) first.resize(kExamples);
+    return first;
+}
+
+std::string examplesHtml(const char* before, const DocumentPages& document, Verdict verdict,
+                         std::size_t count) {
+    std::string items;
+    for (const auto& [page, claim] : examples(document, verdict)) {
+        items += fmt::format("{}“{}” (<a href=\"#{}\">{}</a>)", items.empty() ? "" : "; ",
+                             escapeXml(claim->text), escapeXml(page->slug), escapeXml(page->label));
+    }
+    if (items.empty()) return "";
+    return fmt::format("{}{}: {}. ", before, count > kExamples ? ", among others" : "", items);
+}
+
+/// What one could judge, what of it holds, and what does not.
+std::string paragraphHtml(const DocumentPages& document, const Counts& own) {
+    const std::size_t holding = countOf(own, Verdict::Holds);
+    const std::size_t failing = countOf(own, Verdict::Fails);
+    const std::size_t open = countOf(own, Verdict::Ambiguous) + countOf(own, Verdict::Unmeasured);
+    const std::size_t elsewhere = countOf(own, Verdict::NotApplicable);
+    std::string html = fmt::format(
+        "Of {} statement{} of the document, {} could be judged here: <strong>{} hold{}</strong>, "
+        "<strong>{} fail{}</strong>. ",
+        sumOf(own), sumOf(own) == 1 ? "" : "s", holding + failing, holding, holding == 1 ? "s" : "",
+        failing, failing == 1 ? "s" : "");
+    if (open > 0) html += fmt::format("The numbers of {} do not tell. ", open);
+    if (elsewhere > 0) html += fmt::format("{} ask for a GPU or another profile. ", elsewhere);
+    return html + examplesHtml("Reproduced", document, Verdict::Holds, holding) +
+           examplesHtml("Not reproduced", document, Verdict::Fails, failing);
+}
+
+std::string chaptersHtml(const DocumentPages& document) {
+    if (document.chapters.size() < 2) return "";
+    std::string html;
+    for (const DocumentPages::Chapter& chapter : document.chapters) {
+        const Counts own = countClaims(chapter.pages, 0, true);
+        if (own.empty()) continue;
+        html +=
+            fmt::format("<li><span>{}</span>{}</li>\n", escapeXml(chapter.title), tallyHtml(own));
+    }
+    return html.empty() ? "" : "<ul class=\"chapters\">\n" + html + "</ul>\n";
+}
+
+std::string highlightsHtml(const DocumentPages& document, const Model& model) {
+    std::string html;
+    for (const Highlight& one : highlightsOf(document.pages())) {
+        html += fmt::format(
+            "<figure><a href=\"#{0}\"><img src=\"{1}\" alt=\"{2}\" width=\"{3}\" "
+            "height=\"{4}\"></a><figcaption>{5} {6} <a href=\"#{0}\">{7}</a></figcaption>"
+            "</figure>\n",
+            escapeXml(one.page->slug), smallPicture(*one.shot, model.places[one.run]),
+            escapeXml(one.shot->caseTitle + " · " + one.shot->name), one.shot->width,
+            one.shot->height, verdictBadge(one.claim->verdict), escapeXml(one.claim->text),
+            escapeXml(one.page->label));
+    }
+    return html.empty() ? "" : "<div class=\"highlights\">\n" + html + "</div>\n";
+}
+
+/// What of a document reproduced: a bar, a paragraph, a bar for each chapter, pictures.
+std::string documentHtml(const DocumentPages& document, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < model.runs.size(); ++run) {
+        const Counts own = countClaims(document.pages(), run, true);
+        const Counts others = countClaims(document.pages(), run, false);
+        if (own.empty() && others.empty()) continue;
         if (model.isComparison()) {
-            html += fmt::format("<b>{}</b> {} ", Model::letter(run),
+            html += fmt::format("<p><b>{}</b> {}</p>\n", Model::letter(run),
                                 escapeXml(runName(model.runs[run])));
         }
-        html += own.empty() ? "No claim of a document. " : "Of the documents' own claims ";
-        for (const auto& [verdict, claims] : own) {
-            html += fmt::format("<span class=\"badge {}\">{}</span>", verdictName(verdict),
-                                claimSummaryLine(claims));
+        if (!own.empty()) {
+            html += tallyHtml(own);
+            if (run == 0) html += fmt::format("<p>{}</p>\n", paragraphHtml(document, own));
         }
         if (!others.empty()) {
-            html += fmt::format("<br><span class=\"soft\">Not counted: {}</span>",
-                                originSummaryLine(others));
+            html += fmt::format(
+                "<p class=\"soft small\">Not counted, as the document does not state it: {}.</p>\n",
+                countsText(others));
         }
-        html += "</p>\n";
     }
-    return html;
+    if (html.empty()) return "";
+    if (!model.isComparison()) html += chaptersHtml(document);
+    return fmt::format("<section class=\"document\">\n<h2>{}{}</h2>\n{}{}</section>\n",
+                       escapeXml(document.id),
+                       document.title.empty() ? "" : fmt::format(". {}", escapeXml(document.title)),
+                       html, highlightsHtml(document, model));
+}
+
+std::string pageLink(const Page& page) {
+    const std::string rest = page.isOwn() ? "" : fmt::format(" {}", escapeXml(page.title));
+    return fmt::format("<a href=\"#{}\">{}</a>{}", escapeXml(page.slug),
+                       escapeXml(page.isOwn() ? page.title : page.label), rest);
+}
+
+/// Every table with its claims in words, chapter by chapter.
+std::string saidHtml(const Model& model) {
+    std::string html = "<div class=\"said\">\n";
+    const std::vector<DocumentPages> documents = model.byDocument();
+    for (const DocumentPages& document : documents) {
+        for (const DocumentPages::Chapter& chapter : document.chapters) {
+            html += fmt::format("<section class=\"chapter\" data-paper=\"{}\">\n",
+                                escapeXml(document.id));
+            std::string title = chapter.title;
+            if (documents.size() > 1 || title.empty()) {
+                title = title.empty() ? document.id : fmt::format("{} · {}", document.id, title);
+            }
+            if (!model.isOneTable()) html += fmt::format("<h3>{}</h3>\n", escapeXml(title));
+            for (const Page* page : chapter.pages) {
+                html +=
+                    fmt::format("<div class=\"of-page\" data-text=\"{}\">\n<h4>{}</h4>\n{}</div>\n",
+                                escapeXml(page->label + ' ' + page->title), pageLink(*page),
+                                claimsHtml(*page, model, ClaimDetail::Short));
+            }
+            html += "</section>\n";
+        }
+    }
+    return html + "</div>\n";
 }
 
 /// Verdicts that are not what the configs know.
@@ -158,143 +226,6 @@ std::string newsHtml(const Model& model) {
     }
     if (items.empty()) return "";
     return fmt::format("<h3>What is news</h3>\n<ul>\n{}</ul>\n", items);
-}
-
-/// A line a run: how many printed numbers of tables were measured, and at the printed parameters.
-std::string printedHtml(const Model& model) {
-    std::string html;
-    for (std::size_t run = 0; run < model.runs.size(); ++run) {
-        report::PrintedCells count;
-        for (const Page& page : model.pages) {
-            const RunPart& part = page.parts[run];
-            if (part.experiment) count.add(*part.experiment, part.table);
-        }
-        const std::string line = report::printedCellsLine(count);
-        if (line.empty()) continue;
-        const std::string letter =
-            model.isComparison() ? fmt::format("<b>{}</b> ", Model::letter(run)) : "";
-        html += fmt::format("<p class=\"parameters\">{}{}</p>\n", letter, escapeXml(line));
-    }
-    return html;
-}
-
-/// What the script filters the grid by; without it there is nothing to press.
-std::string filtersHtml(const Model& model) {
-    std::set<std::string> papers;
-    for (const Page& page : model.pages) papers.insert(page.paper());
-    std::string html =
-        "<form class=\"filters\" hidden>\n<label>paper <select name=\"paper\">"
-        "<option value=\"\">all</option>";
-    for (const std::string& paper : papers) {
-        html += fmt::format("<option>{}</option>", escapeXml(paper));
-    }
-    html +=
-        "</select></label>\n<label>whose <select name=\"origin\"><option value=\"\">all</option>";
-    for (const std::string_view origin : config::kOrigins) {
-        html += fmt::format("<option>{}</option>", origin);
-    }
-    html +=
-        "</select></label>\n<label>claim <input type=\"search\" name=\"text\" "
-        "placeholder=\"id or words\"></label>\n<fieldset>";
-    for (const Verdict verdict : kVerdicts) {
-        html += fmt::format(
-            "<label class=\"badge {0}\"><input type=\"checkbox\" name=\"verdict\" "
-            "value=\"{0}\" checked> {0}</label>\n",
-            verdictName(verdict));
-    }
-    html += "</fieldset>\n";
-    if (model.isComparison()) {
-        html += "<label><input type=\"checkbox\" name=\"differ\"> only where runs differ</label>\n";
-    }
-    return html + "<output></output>\n</form>\n";
-}
-
-/// One claim in one run, as a coloured link to its table.
-std::string claimBadge(const ClaimResult& claim, const Page& page, const std::string& word) {
-    const std::string measured =
-        claim.measured.empty() ? claim.reason : fmt::format("measured {}", claim.measured);
-    return fmt::format(
-        "<a class=\"badge {0}{6}\" data-verdict=\"{0}\" data-origin=\"{5}\" data-text=\"{1}\" "
-        "href=\"#{2}\" title=\"{3}\">{4}</a>",
-        verdictName(claim.verdict), escapeXml(claim.id + ' ' + claim.text), escapeXml(page.slug),
-        escapeXml(fmt::format("{}: {}; {}", verdictName(claim.verdict), claim.text, measured)),
-        escapeXml(word), config::originName(claim.origin),
-        claim.isOfDocument() ? "" : " uncounted");
-}
-
-std::string pageLink(const Page& page) {
-    if (page.isOwn()) {
-        return fmt::format("<a href=\"#{}\">{}</a>", escapeXml(page.slug), escapeXml(page.title));
-    }
-    return fmt::format("<a href=\"#{}\">{}</a> <span class=\"soft\">{}</span>",
-                       escapeXml(page.slug), escapeXml(page.label), escapeXml(page.title));
-}
-
-/// A line a table; the claims of one device stand in it side by side.
-std::string gridOfOneHtml(const Model& model) {
-    std::string html =
-        "<div class=\"scroll\"><table class=\"grid\"><thead><tr><th>paper</th>"
-        "<th>table</th><th>claims</th></tr></thead>\n<tbody>\n";
-    for (const Page& page : model.pages) {
-        std::string badges;
-        for (const ClaimResult& claim : page.parts.front().claims) {
-            badges += claimBadge(claim, page, claim.id);
-        }
-        html += fmt::format("<tr data-paper=\"{0}\"><td>{0}</td><td>{1}</td><td>{2}</td></tr>\n",
-                            escapeXml(page.paper()), pageLink(page), badges);
-    }
-    return html + "</tbody></table></div>\n";
-}
-
-const ClaimResult* findClaim(const RunPart& part, const std::string& id) {
-    for (const ClaimResult& claim : part.claims) {
-        if (claim.id == id) return &claim;
-    }
-    return nullptr;
-}
-
-/// The lines of a table's claims, a column a run.
-std::string comparedClaimsHtml(const Page& page) {
-    std::string html;
-    std::set<std::string> done;
-    for (const RunPart& any : page.parts) {
-        for (const ClaimResult& claim : any.claims) {
-            if (!done.insert(claim.id).second) continue;
-            std::string cells;
-            std::set<Verdict> verdicts;
-            std::string says = claim.text;  // kept verdicts come without it
-            for (const RunPart& part : page.parts) {
-                const ClaimResult* result = findClaim(part, claim.id);
-                if (result) verdicts.insert(result->verdict);
-                if (result && says.empty()) says = result->text;
-                cells += fmt::format(
-                    "<td>{}</td>",
-                    result ? claimBadge(*result, page, std::string(verdictName(result->verdict)))
-                           : "");
-            }
-            html += fmt::format(
-                "<tr data-paper=\"{0}\"{1}><td>{0}</td><td><a href=\"#{2}\">{3}</a></td>"
-                "<td><b>{4}</b> <span class=\"soft\">{5}</span></td>{6}</tr>\n",
-                escapeXml(page.paper()), verdicts.size() > 1 ? " class=\"differs\"" : "",
-                escapeXml(page.slug), escapeXml(page.label), escapeXml(claim.id), escapeXml(says),
-                cells);
-        }
-    }
-    return html;
-}
-
-/// A line a claim, a column a run.
-std::string gridOfSeveralHtml(const Model& model) {
-    std::string html =
-        "<div class=\"scroll\"><table class=\"grid\"><thead><tr><th>paper</th>"
-        "<th>table</th><th>claim</th>";
-    for (std::size_t i = 0; i < model.runs.size(); ++i) {
-        html += fmt::format("<th title=\"{}\">{}</th>", escapeXml(runName(model.runs[i])),
-                            Model::letter(i));
-    }
-    html += "</tr></thead>\n<tbody>\n";
-    for (const Page& page : model.pages) html += comparedClaimsHtml(page);
-    return html + "</tbody></table></div>\n";
 }
 
 /// Cells without a value, by table: what keeps this run from being whole.
@@ -330,29 +261,29 @@ std::string missingHtml(const Model& model) {
 
 }  // namespace
 
-std::string verdictBadge(Verdict verdict) {
-    return fmt::format("<span class=\"badge {0}\">{0}</span>", verdictName(verdict));
-}
-
-std::string runName(const ReportRun& run) {
-    return fmt::format("{}, {}", run.context.profile, run.context.device);
-}
-
 std::string overviewHtml(const Model& model) {
     const bool isOwn = std::ranges::all_of(model.pages, &Page::isOwn);
-    const std::string title = model.isOneOwn() ? escapeXml(model.pages.front().title)
-                              : isOwn          ? "Experiments"
-                                               : "Published tables, measured again";
+    const char* title = model.isOneTable() ? "The run"
+                        : isOwn            ? "Experiments"
+                                           : "What reproduced, and what did not";
     const bool hasClaims = std::ranges::any_of(model.pages, [](const Page& page) {
         return std::ranges::any_of(page.parts,
                                    [](const RunPart& part) { return !part.claims.empty(); });
     });
-    return fmt::format("<section class=\"page\" id=\"overview\">\n<h1>{}</h1>\n", title) +
-           (isOwn && !hasClaims ? "" : countsHtml(model)) + printedHtml(model) +
-           filtersHtml(model) +
-           (model.isComparison() ? gridOfSeveralHtml(model) : gridOfOneHtml(model)) +
-           newsHtml(model) + missingHtml(model) + "<h3>What ran on what</h3>\n" + factsHtml(model) +
-           "</section>\n";
+    std::string html =
+        fmt::format("<section class=\"page\" id=\"overview\">\n<h1 tabindex=\"-1\">{}</h1>\n",
+                    title) +
+        machineHtml(model) + printedHtml(model);
+    if (!model.isOneTable()) {
+        for (const DocumentPages& document : model.byDocument()) {
+            html += documentHtml(document, model);
+        }
+    }
+    if (hasClaims && !model.isOneTable())
+        html += "<h3>What the verdicts mean</h3>\n" + legendHtml();
+    html += fmt::format("<h2>{}</h2>\n", hasClaims ? "Every claim, in words" : "All tables");
+    return html + filtersHtml(model) + saidHtml(model) + newsHtml(model) + missingHtml(model) +
+           "<h3>Machine and run</h3>\n" + factsHtml(model) + "</section>\n";
 }
 
 }  // namespace gfxrepro::html

@@ -15,86 +15,10 @@ std::string paragraph(const char* cssClass, const char* label, const std::string
                        escapeXml(text));
 }
 
-/// Every claim of any run, in the first run's order.
-std::vector<const report::ClaimResult*> claimsOf(const Page& page) {
-    std::vector<const report::ClaimResult*> claims;
-    for (const RunPart& part : page.parts) {
-        for (const report::ClaimResult& claim : part.claims) {
-            bool isKnown = false;
-            for (const report::ClaimResult* known : claims) isKnown |= known->id == claim.id;
-            if (!isKnown) claims.push_back(&claim);
-        }
-    }
-    return claims;
-}
-
-/// Whose claim it is, and of a time what kind.
-std::string whoseHtml(const report::ClaimResult& claim) {
-    std::string html(config::originName(claim.origin));
-    if (claim.timeKind) html += fmt::format(", {}", config::timeKindName(*claim.timeKind));
-    return html;
-}
-
-std::string requiredHtml(const report::ClaimResult& claim) {
-    std::string html = escapeXml(claim.required);
-    if (claim.boundFrom) {
-        const std::string_view source = config::boundSourceName(*claim.boundFrom);
-        html += fmt::format(" <span class=\"soft\">({})</span>", source);
-    }
-    return html;
-}
-
-std::string newsHtml(const report::ClaimResult& claim) {
-    if (!claim.isNews()) return "";
-    return fmt::format(" <span class=\"news\" title=\"known: {}\">news</span>",
-                       verdictName(claim.known));
-}
-
-/// What the judging noted, and the known cause.
-std::string whyHtml(const report::ClaimResult& claim) {
-    const std::string cause =
-        claim.because.empty()
-            ? ""
-            : fmt::format("{}{}",
-                          claim.verdict == claim.known
-                              ? ""
-                              : fmt::format("Where it is {}: ", verdictName(claim.known)),
-                          escapeXml(claim.because));
-    return escapeXml(claim.reason) + (claim.reason.empty() || cause.empty() ? "" : ". ") + cause;
-}
-
-std::string claimsHtml(const Page& page, const Model& model) {
-    const auto claims = claimsOf(page);
-    if (claims.empty()) return "";
-    std::string html =
-        "<h3>Claims</h3>\n<div class=\"scroll\"><table class=\"claims\"><thead><tr>"
-        "<th>claim</th>";
-    if (model.isComparison()) html += "<th>run</th>";
-    html +=
-        "<th>verdict</th><th>whose</th><th>what it says</th><th>required</th><th>measured</th>"
-        "<th>why</th><th>rests on</th></tr></thead>\n<tbody>\n";
-    for (const report::ClaimResult* claim : claims) {
-        for (std::size_t run = 0; run < page.parts.size(); ++run) {
-            for (const report::ClaimResult& result : page.parts[run].claims) {
-                if (result.id != claim->id) continue;
-                html += fmt::format("<tr><td class=\"id\">{}</td>", escapeXml(result.id));
-                if (model.isComparison()) html += fmt::format("<td>{}</td>", Model::letter(run));
-                html += fmt::format(
-                    "<td>{}{}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"measured\">{}</td>"
-                    "<td class=\"soft\">{}</td><td class=\"soft\">{}</td></tr>\n",
-                    verdictBadge(result.verdict), newsHtml(result), whoseHtml(result),
-                    escapeXml(result.text), requiredHtml(result), escapeXml(result.measured),
-                    whyHtml(result), escapeXml(result.restsOn));
-            }
-        }
-    }
-    return html + "</tbody></table></div>\n";
-}
-
 std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions) {
     if (assumptions.empty()) return "";
     std::string html =
-        "<h3>Assumptions</h3>\n<div class=\"scroll\"><table class=\"claims\"><thead><tr>"
+        "<h3>Assumptions</h3>\n<div class=\"scroll\"><table class=\"assumed\"><thead><tr>"
         "<th>what the paper left open</th><th>taken</th><th>range</th><th>why</th></tr></thead>\n"
         "<tbody>\n";
     for (const config::Assumption& assumption : assumptions) {
@@ -121,8 +45,13 @@ std::string curvesHtml(const Page& page, const Model& model) {
                             model.isComparison() ? Model::letter(run) + ": " : "",
                             escapeXml(curve.title), escapeXml(curve.script),
                             curve.problem.empty() ? "" : ": " + escapeXml(curve.problem));
+            std::string svg = curve.svg;
+            if (const std::size_t at = svg.find("<svg"); at != svg.npos) {
+                svg.insert(at + 4,
+                           fmt::format(" role=\"img\" aria-label=\"{}\"", escapeXml(curve.title)));
+            }
             html += fmt::format("<figure class=\"curve\">{}<figcaption>{}</figcaption></figure>\n",
-                                curve.svg, caption);
+                                svg, caption);
         }
     }
     return html.empty() ? "" : "<h3>Curves</h3>\n<div class=\"curves\">\n" + html + "</div>\n";
@@ -155,19 +84,33 @@ std::string againHtml(const RunPart& part, const report::ReportContext& context)
 }  // namespace
 
 std::string pageHtml(const Page& page, const Model& model) {
+    const char* heading = model.isOneTable() ? "h1" : "h2";
     std::string html = fmt::format(
-        "<section class=\"page\" id=\"{}\">\n<h2>{}</h2>\n<p class=\"soft small\">{}</p>\n",
-        escapeXml(page.slug), escapeXml(page.heading()), escapeXml(page.id));
+        "<section class=\"page\" id=\"{0}\">\n<{1} tabindex=\"-1\">{2}</{1}>\n"
+        "<p class=\"soft small\">{3}</p>\n{4}",
+        escapeXml(page.slug), heading, escapeXml(page.heading()), escapeXml(page.id),
+        model.isOneTable() ? machineHtml(model) : "");
+    std::string claims = claimsHtml(page, model, ClaimDetail::Full);
+    if (!claims.empty()) claims = "<h3>Claims</h3>\n" + claims;
+    if (!claims.empty() && model.isOneTable()) {
+        claims +=
+            "<details><summary>What the verdicts mean</summary>\n" + legendHtml() + "</details>\n";
+    }
     const RunPart* shown = page.shown();
-    if (!shown) return html + claimsHtml(page, model) + "</section>\n";
+    if (!shown) return html + claims + "</section>\n";
+    const std::string images = imagesHtml(page, model);
+    // Of a figure, or a table of pictures, the numbers come after them.
+    const bool isPicture = shown->experiment->kind == config::Experiment::Kind::Figure ||
+                           !shown->experiment->shows.empty();
+    if (isPicture) html += images;
     html += tableHtml(page, model);
     html += paragraph("small", "Printed numbers: ", shown->table.hardware);
     html += paragraph("small", "Remark: ", shown->table.remark);
     for (const std::string& note : shown->table.notes) html += paragraph("small soft", "", note);
     html += curvesHtml(page, model);
-    html += claimsHtml(page, model);
+    html += claims;
     html += failuresHtml(page, model);
-    html += imagesHtml(page, model);
+    if (!isPicture) html += images;
     html += assumptionsHtml(shown->experiment->assumptions);
     html +=
         againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())].context);

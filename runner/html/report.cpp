@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+
 #include "runner/core/files.h"
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
@@ -29,7 +34,7 @@ std::string navigationHtml(const Model& model) {
 }
 
 std::string titleOf(const Model& model) {
-    if (model.isOneOwn()) return model.pages.front().title;
+    if (model.isOneTable()) return model.pages.front().heading();
     std::string names;
     for (const ReportRun& run : model.runs) {
         const std::string name = fs::absolute(run.folder).lexically_normal().filename().string();
@@ -38,14 +43,40 @@ std::string titleOf(const Model& model) {
     return names;
 }
 
+/// A folder of its own that goes when the report is written.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::string name = (fs::temp_directory_path() / "gfxrepro-report-XXXXXX").string();
+        if (!::mkdtemp(name.data())) {
+            throw Error(fmt::format("cannot create {}: {}", name, std::strerror(errno)));
+        }
+        path_ = name;
+    }
+    ~ScratchFolder() {
+        std::error_code isLeft;
+        fs::remove_all(path_, isLeft);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
 }  // namespace
 
 std::string caseAnchor(std::size_t run, const std::string& caseId) {
     return fmt::format("{}-{}", Model::letter(run), caseId);
 }
 
-void writeReport(const fs::path& file, std::span<const ReportRun> runs) {
-    const Model model = buildModel(runs, file);
+void writeReport(const fs::path& file, std::span<const ReportRun> runs,
+                 const ReportOptions& options) {
+    std::optional<ScratchFolder> scratch;
+    if (options.embeds) scratch.emplace();
+    const Model model = buildModel(runs, file, options, scratch ? scratch->path() : fs::path());
     std::string html = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -54,9 +85,9 @@ void writeReport(const fs::path& file, std::span<const ReportRun> runs) {
         escapeXml(titleOf(model)), kStyle);
     html += navigationHtml(model) + "<main>\n";
     // The first section is the one that the report opens with.
-    if (!model.isOneOwn()) html += overviewHtml(model);
+    if (!model.isOneTable()) html += overviewHtml(model);
     for (const Page& page : model.pages) html += pageHtml(page, model);
-    if (model.isOneOwn()) html += overviewHtml(model);
+    if (model.isOneTable()) html += overviewHtml(model);
     html += fmt::format(
         "</main>\n<aside class=\"cases-shown\" hidden></aside>\n{}<script>\n{}"
         "</script>\n</body>\n</html>\n",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/config/documents.h"
 #include "runner/config/experiment.h"
 #include "runner/report/case_records.h"
 #include "runner/report/claims.h"
@@ -36,12 +37,20 @@ struct ReportRun {
     std::vector<report::ClaimResult> keptClaims;
 };
 
-/// One file that asks no network and no other file but images: an overview of all claims, then a
-/// page a table. Images lie inside up to 20 MB; beyond, the page shows thumbnails, and links
-/// both, relative to `file`. What is made for it (plots, FLIP maps, thumbnails) goes into the run's
-/// folder where `file` lies there; else beside `file`, into <stem>-files/, and the run stays as it
-/// is. Several runs are lettered A, B, … and stand side by side. Throws Error when a file cannot be
-/// written.
-void writeReport(const std::filesystem::path& file, std::span<const ReportRun> runs);
+struct ReportOptions {
+    std::vector<config::Document> documents = {};  // titles and chapters, for the first screen
+    bool embeds = false;                           // every picture inside of the file
+};
+
+/// One file that asks no network and no other file but images: what reproduced and what did not,
+/// then a page a table; of one table its page first. Images lie inside up to 20 MB; beyond, the
+/// page shows thumbnails, and links
+/// both, relative to `file`. With `embeds` they always lie inside, beyond 20 MB at 512 pixels at
+/// most, and nothing else is written. What else is made for it (plots, FLIP maps, thumbnails) goes
+/// into the run's folder where `file` lies there; else beside `file`, into <stem>-files/, and the
+/// run stays as it is. Several runs are lettered A, B, … and stand side by side. Throws Error when
+/// a file cannot be written.
+void writeReport(const std::filesystem::path& file, std::span<const ReportRun> runs,
+                 const ReportOptions& options = {});
 
 }  // namespace gfxrepro::html

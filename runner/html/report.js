@@ -25,34 +25,52 @@
     const details = target && target.closest('details');
     if (details) details.open = true;
     if (target && target !== page) target.scrollIntoView(); else window.scrollTo(0, 0);
+    return page;
   }
 
-  // --- filters over the grid of claims ---
+  // Who reads by keyboard goes on from the head of the page, not from the top of the file.
+  function turnAndFocus() {
+    one('h1, h2', turn()).focus({preventScroll: true});
+  }
+
+  // ← and → turn pages where no control, table or viewer takes them.
+  function onPageKey(e) {
+    if (e.altKey || e.ctrlKey || e.metaKey || e.shiftKey || viewer.open) return;
+    if (e.target.closest('input, select, textarea, .scroll')) return;
+    const link = {ArrowLeft: '.previous', ArrowRight: '.next'}[e.key];
+    const anchor = link && one(link, nav);
+    if (anchor && anchor.hasAttribute('href')) location.hash = anchor.getAttribute('href');
+  }
+
+  // --- filters over the claims ---
 
   const filters = one('.filters');
-  const badges = all('.grid .badge');
+  const claims = all('.said .claim');
 
   function filter() {
     const wanted = new FormData(filters);
-    const verdicts = new Set(wanted.getAll('verdict'));
+    const verdicts = wanted.getAll('verdict');
     const words = wanted.get('text').trim().toLowerCase();
-    const isAll = verdicts.size === all('input[name=verdict]', filters).length && !words && !wanted.get('origin');
+    const isAll = verdicts.length === all('input[name=verdict]', filters).length && !words && !wanted.get('differ');
     let shown = 0;
-    for (const row of all('.grid tbody tr')) {
-      const isHere = (!wanted.get('paper') || row.dataset.paper === wanted.get('paper')) &&
-                     (!wanted.get('differ') || row.classList.contains('differs'));
-      let count = 0;
-      for (const badge of all('.badge', row)) {
-        badge.hidden = !(verdicts.has(badge.dataset.verdict) &&
-                         (!wanted.get('origin') || badge.dataset.origin === wanted.get('origin')) &&
-                         (!words || badge.dataset.text.toLowerCase().includes(words) ||
-                          row.textContent.toLowerCase().includes(words)));
-        if (!badge.hidden) ++count;
+    for (const chapter of all('.said .chapter')) {
+      for (const page of all('.of-page', chapter)) {
+        const isNamed = words && page.dataset.text.toLowerCase().includes(words);
+        let count = 0;
+        for (const claim of all('.claim', page)) {
+          claim.hidden = !(claim.dataset.verdict.split(' ').some(v => verdicts.includes(v)) &&
+                           (!wanted.get('origin') || claim.dataset.origin === wanted.get('origin')) &&
+                           (!wanted.get('differ') || claim.classList.contains('differs')) &&
+                           (!words || isNamed || claim.dataset.text.toLowerCase().includes(words)));
+          if (!claim.hidden) ++count;
+        }
+        const isHere = !wanted.get('paper') || chapter.dataset.paper === wanted.get('paper');
+        page.hidden = !isHere || (!count && !isAll && !isNamed);
+        if (!page.hidden) shown += count;
       }
-      row.hidden = !isHere || (!count && !isAll);
-      if (!row.hidden) shown += count;
+      chapter.hidden = all('.of-page', chapter).every(page => page.hidden);
     }
-    one('output', filters).value = shown === badges.length ? '' : `${shown} of ${badges.length} verdicts`;
+    one('output', filters).value = shown === claims.length ? '' : `${shown} of ${claims.length} claims`;
   }
 
   // --- the cases behind a row: on pointing or focus; a click keeps them ---
@@ -139,15 +157,14 @@
   const shotOf = name => shots[Number(field(name).value)];
   const addressOf = shot => shot.dataset.full || one('img', shot).getAttribute('src');
   const titleOf = shot =>
-    (shot.dataset.run ? shot.dataset.run + ': ' : '') + shot.dataset.name + ' · ' + shot.dataset.title.replace(/^\S+ ?/, '');
+    (shot.dataset.run ? shot.dataset.run + ': ' : '') + shot.dataset.name + ' · ' + shot.dataset.title;
   const mode = () => bar.elements.mode.value;
   const gain = () => 2 ** Number(field('gain').value);
 
   // Its truth; else the image of that name of another case or run; else its neighbour.
   function partnerOf(shot) {
     const isOther = s => s !== shot;
-    const sameCase = s => s.dataset.case === shot.dataset.case && s.dataset.run === shot.dataset.run;
-    const found = shots.find(s => isOther(s) && sameCase(s) && s.dataset.name === shot.dataset.truth) ||
+    const found = shots.find(s => s.id === shot.dataset.truth) ||
                   shots.find(s => isOther(s) && s.dataset.name === shot.dataset.name) ||
                   shots.find(isOther) || shot;
     return shots.indexOf(found);
@@ -155,12 +172,14 @@
 
   // The FLIP map of the pair, whichever of the two is the truth.
   function flipMapOf(a, b) {
-    const isPair = (s, truth) => s.dataset.flip && s.dataset.truth === truth.dataset.name &&
-      s.dataset.case === truth.dataset.case && s.dataset.run === truth.dataset.run;
-    return isPair(a, b) ? a.dataset.flip : isPair(b, a) ? b.dataset.flip : '';
+    const mapOf = (s, truth) => {
+      const map = s.dataset.truth === truth.id && one(`.error[data-of="${s.id}"] img`);
+      return map ? map.getAttribute('src') : '';
+    };
+    return mapOf(a, b) || mapOf(b, a);
   }
 
-  function openViewer(shot) {
+  function openViewer(shot, mode) {
     shots = all('.shot', shot.closest('.page'));
     for (const name of ['a', 'b']) {
       field(name).replaceChildren(...shots.map((s, i) => new Option(titleOf(s), i)));
@@ -168,6 +187,7 @@
     field('a').value = shots.indexOf(shot);
     field('b').value = partnerOf(shot);
     viewer.showModal();
+    if (mode) bar.elements.mode.value = mode;
     load();
   }
 
@@ -364,18 +384,22 @@
     addEventListener('resize', () => { if (viewer.open) fit(); });
     document.addEventListener('click', e => {
       const shot = e.target.closest('.shot');
+      const map = e.target.closest('.error');
       if (shot) openViewer(shot);
+      if (map) openViewer(document.getElementById(map.dataset.of), 'flip-map');
     });
   }
 
   document.body.classList.add('paged');
   nav.hidden = false;
   one('select', nav).addEventListener('change', e => { location.hash = e.target.value; });
-  addEventListener('hashchange', turn);
+  addEventListener('hashchange', turnAndFocus);
+  addEventListener('keydown', onPageKey);
   addEventListener('keydown', e => { if (e.key === 'Escape') hideCases(); });
-  filters.hidden = badges.length === 0;
+  filters.hidden = claims.length === 0;
   filters.addEventListener('input', filter);
   filters.addEventListener('submit', e => e.preventDefault());
   listenToViewer();
+  filter();
   turn();
 })();

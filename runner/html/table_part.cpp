@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 
+#include "runner/html/labels.h"
+#include "runner/html/overlay.h"
 #include "runner/html/parts.h"
 #include "runner/report/markup.h"
 #include "runner/report/printed_parameters.h"
@@ -17,118 +19,6 @@ using report::Table;
 using report::TableRow;
 
 namespace {
-
-/// The tables of several runs laid over one another: a row or column that any of them has. Runs of
-/// other profiles have other rows.
-class Overlay {
-  public:
-    explicit Overlay(const Page& page) {
-        std::set<std::vector<std::string>> seen;
-        for (std::size_t run = 0; run < page.parts.size(); ++run) {
-            if (!page.parts[run].experiment) continue;
-            const Table& table = page.parts[run].table;
-            runs_.push_back(run);
-            tables_.push_back(&table);
-            for (const report::TableColumn& column : table.columns) {
-                const auto isSame = [&](const auto& known) { return known.label == column.label; };
-                if (std::ranges::none_of(columns_, isSame)) columns_.push_back(column);
-            }
-            std::map<std::vector<std::string>, const TableRow*>& byLabels = rowOf_.emplace_back();
-            for (const TableRow& row : table.rows) {
-                byLabels.try_emplace(row.labels, &row);
-                if (seen.insert(row.labels).second) rows_.push_back(row.labels);
-                for (std::size_t c = 0; c < row.cells.size(); ++c) {
-                    if (row.cells[c].printed) printedColumns_.insert(table.columns[c].label);
-                }
-            }
-        }
-    }
-
-    const std::vector<std::size_t>& runs() const { return runs_; }
-    const std::vector<report::TableColumn>& columns() const { return columns_; }
-    const std::vector<std::vector<std::string>>& rows() const { return rows_; }
-
-    /// A row of the i-th table; null where it has none.
-    const TableRow* find(std::size_t i, const std::vector<std::string>& labels) const {
-        const auto row = rowOf_[i].find(labels);
-        return row == rowOf_[i].end() ? nullptr : row->second;
-    }
-    const Cell* find(std::size_t i, const TableRow* row, const std::string& column) const {
-        if (!row) return nullptr;
-        for (std::size_t c = 0; c < tables_[i]->columns.size(); ++c) {
-            if (tables_[i]->columns[c].label == column) return &row->cells[c];
-        }
-        return nullptr;
-    }
-    /// What the paper printed there; the same in every run that has the cell.
-    std::optional<std::string> printed(const std::vector<std::string>& labels,
-                                       const std::string& column) const {
-        for (std::size_t i = 0; i < tables_.size(); ++i) {
-            const Cell* cell = find(i, find(i, labels), column);
-            if (cell && cell->printed) return cell->printed;
-        }
-        return std::nullopt;
-    }
-    bool hasPrinted(const std::string& column) const { return printedColumns_.contains(column); }
-    bool isOnlyPrinted() const { return tables_.front()->isOnlyPrinted; }
-    const Table& first() const { return *tables_.front(); }
-    bool isEmpty() const { return tables_.empty() || columns_.empty() || rows_.empty(); }
-    /// What stands under one column's head: the printed number, then a number a run.
-    std::size_t widthOf(const std::string& column) const {
-        return isOnlyPrinted() ? 1 : (hasPrinted(column) ? 1 : 0) + runs_.size();
-    }
-
-  private:
-    std::vector<std::size_t> runs_;  // beside tables_: its index in the model
-    std::vector<const Table*> tables_;
-    std::vector<std::map<std::vector<std::string>, const TableRow*>> rowOf_;  // likewise
-    std::set<std::string> printedColumns_;
-    std::vector<report::TableColumn> columns_;
-    std::vector<std::vector<std::string>> rows_;
-};
-
-/// Which way a column is better.
-std::string directionHtml(config::Better better) {
-    if (better == config::Better::Neither) return "";
-    return fmt::format(" <span class=\"sub\" title=\"{}\">{}</span>", config::betterText(better),
-                       better == config::Better::Lower ? "↓" : "↑");
-}
-
-std::string headHtml(const Overlay& overlay, bool isComparison) {
-    const auto isGroup = [&](const auto& column) { return overlay.widthOf(column.label) > 1; };
-    const bool isTwoLines = std::ranges::any_of(overlay.columns(), isGroup);
-    const char* rowSpan = isTwoLines ? " rowspan=\"2\"" : "";
-    std::string head = "<thead><tr>";
-    std::string below;
-    for (const std::string& axis : overlay.first().rowAxes) {
-        head += fmt::format("<th class=\"axis\"{}>{}</th>", rowSpan, escapeXml(axis));
-    }
-    for (const report::TableColumn& column : overlay.columns()) {
-        // "draw_ms" and "triangles" say their unit already.
-        const bool isSaid = column.label.find(column.unit) != std::string::npos;
-        const std::string unit =
-            isSaid || column.unit == "1"
-                ? ""
-                : fmt::format(" <span class=\"sub\">{}</span>", escapeXml(column.unit));
-        const std::string span = isGroup(column)
-                                     ? fmt::format(" colspan=\"{}\"", overlay.widthOf(column.label))
-                                     : std::string(rowSpan);
-        const std::string title =
-            column.doc.empty() ? "" : fmt::format(" title=\"{}\"", escapeXml(column.doc));
-        head +=
-            fmt::format("<th class=\"{}\"{}{}>{}{}{}</th>", isGroup(column) ? "group" : "num", span,
-                        title, escapeXml(column.label), unit, directionHtml(column.better));
-        if (!isGroup(column)) continue;
-        if (overlay.hasPrinted(column.label)) below += "<th class=\"sub\">printed</th>";
-        for (const std::size_t run : overlay.runs()) {
-            below += fmt::format("<th class=\"sub\">{}</th>",
-                                 isComparison ? Model::letter(run) : "measured");
-        }
-    }
-    head += "</tr>";
-    if (isTwoLines) head += fmt::format("<tr>{}</tr>", below);
-    return head + "</thead>\n";
-}
 
 /// "×1.2" of the printed number, where both are of the same parameters; a rate of what was, not a
 /// comparison of machines.
@@ -188,11 +78,45 @@ bool isStandIn(const Overlay& overlay, const std::vector<std::string>& labels) {
     return false;
 }
 
-std::string rowHtml(const Overlay& overlay, const std::vector<std::string>& labels) {
+/// How many rows from `row` on agree on the axes up to `axis`: their label stands once.
+std::size_t heightOf(const Overlay& overlay, std::size_t row, std::size_t axis) {
+    const auto& rows = overlay.rows();
+    if (axis + 1 == rows[row].size()) return 1;
+    const auto isSame = [&](std::size_t other) {
+        return std::equal(rows[row].begin(),
+                          rows[row].begin() + static_cast<std::ptrdiff_t>(axis) + 1,
+                          rows[other].begin()) &&
+               isStandIn(overlay, rows[row]) == isStandIn(overlay, rows[other]);
+    };
+    std::size_t last = row + 1;
+    while (last < rows.size() && isSame(last)) ++last;
+    return last - row;
+}
+
+using ShownLabels = std::vector<std::map<std::string, std::string>>;  // beside the row axes
+
+ShownLabels shownLabels(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::set<std::string>> names;
+    for (const std::vector<std::string>& labels : rows) {
+        names.resize(std::max(names.size(), labels.size()));
+        for (std::size_t i = 0; i < labels.size(); ++i) names[i].insert(labels[i]);
+    }
+    ShownLabels shown;
+    for (const auto& axis : names) shown.push_back(shownNames(axis));
+    return shown;
+}
+
+std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& shown) {
+    const std::vector<std::string>& labels = overlay.rows()[row];
     std::string html = "<tr>";
     for (std::size_t i = 0; i < labels.size(); ++i) {
+        const std::size_t height = heightOf(overlay, row, i);
+        if (row > 0 && heightOf(overlay, row - 1, i) > 1) continue;  // the row above has it
         const bool isMarked = i == 0 && isStandIn(overlay, labels);
-        html += fmt::format("<th scope=\"row\">{}{}</th>", escapeXml(labels[i]),
+        html += fmt::format("<th scope=\"{}\"{}{} title=\"{}\">{}{}</th>",
+                            height > 1 ? "rowgroup" : "row", i == 0 ? " class=\"first\"" : "",
+                            height > 1 ? fmt::format(" rowspan=\"{}\"", height) : "",
+                            escapeXml(labels[i]), escapeXml(shown[i].at(labels[i])),
                             isMarked ? " <abbr title=\"stand-in\">†</abbr>" : "");
     }
     for (const report::TableColumn& column : overlay.columns()) {
@@ -233,6 +157,69 @@ std::string constantsHtml(const Page& page) {
                        escapeXml(fmt::format("{}", fmt::join(shown->table.constants, ", "))));
 }
 
+/// What stands under the numbers of this table.
+std::string smallPrintHtml(const Page& page) {
+    bool hasIntervals = false, hasRanges = false, hasShares = false, hasRatios = false;
+    for (const RunPart& part : page.parts) {
+        if (!part.experiment || part.table.isOnlyPrinted) continue;
+        for (const TableRow& row : part.table.rows) {
+            for (const Cell& cell : row.cells) {
+                hasRatios |= !ratioHtml(cell).empty();
+                if (!cell.hasShownBounds()) continue;
+                const bool isInterval = cell.bounds() == report::Bounds::Interval;
+                hasIntervals |= isInterval;
+                hasRanges |= !isInterval;
+                hasShares |= isInterval && cell.unit == "%";
+            }
+        }
+    }
+    std::string says;
+    const auto add = [&](const char* text) {
+        says += fmt::format("{}{}", says.empty() ? "" : " · ", text);
+    };
+    if (hasIntervals) add("95 % interval a–b");
+    if (hasShares)
+        add("of a share that was counted once by its count alone: other scenes may differ by more");
+    if (hasRanges) add("range a … b, of too few processes for an interval");
+    if (hasRatios) {
+        add("× measured ÷ printed, where it was measured at the printed parameters, as far as they "
+            "are given");
+    }
+    if (!says.empty()) says = "Small print under a number: " + says + ". ";
+    return fmt::format(
+        "<p class=\"soft small\">{}Point at a row for its cases; click to keep them.</p>\n", says);
+}
+
+/// Printed rows that this run has not, folded.
+std::string absentRowsHtml(const Page& page) {
+    const RunPart* shown = page.shown();
+    if (!shown || shown->table.printedRows.empty()) return "";
+    const Table& table = shown->table;
+    std::string html = fmt::format(
+        "<details class=\"absent\"><summary>{} printed row{} not part of this run</summary>\n"
+        "<div class=\"scroll\"><table class=\"results\"><thead><tr>",
+        table.printedRows.size(), table.printedRows.size() == 1 ? " is" : "s are");
+    for (const std::string& axis : table.rowAxes) {
+        html += fmt::format("<th class=\"axis\" scope=\"col\">{}</th>", escapeXml(shownName(axis)));
+    }
+    for (const report::TableColumn& column : table.columns) {
+        html += fmt::format("<th scope=\"col\">{}</th>", escapeXml(shownName(column.label)));
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for (const TableRow& row : table.printedRows) {
+        html += "<tr>";
+        for (const std::string& label : row.labels) {
+            html += fmt::format("<th scope=\"row\">{}</th>", escapeXml(shownName(label)));
+        }
+        for (const Cell& cell : row.cells) {
+            html += fmt::format("<td class=\"num printed\">{}</td>",
+                                escapeXml(cell.printed.value_or("")));
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div></details>\n";
+}
+
 std::string tableHtml(const Page& page, const Model& model) {
     const Overlay overlay(page);
     if (overlay.isEmpty()) return "";
@@ -240,20 +227,12 @@ std::string tableHtml(const Page& page, const Model& model) {
                        "<div class=\"scroll\"><table class=\"results\">\n" +
                        headHtml(overlay, model.isComparison()) + "<tbody>\n";
     bool hasStandIn = false;
-    for (const std::vector<std::string>& labels : overlay.rows()) {
-        html += rowHtml(overlay, labels);
-        hasStandIn |= isStandIn(overlay, labels);
+    const ShownLabels shown = shownLabels(overlay.rows());
+    for (std::size_t row = 0; row < overlay.rows().size(); ++row) {
+        html += rowHtml(overlay, row, shown);
+        hasStandIn |= isStandIn(overlay, overlay.rows()[row]);
     }
-    html += "</tbody></table></div>\n";
-    if (!overlay.isOnlyPrinted()) {
-        html +=
-            "<p class=\"soft small\">Under a number: its 95 % interval a–b (of a share that was "
-            "counted once: by its count alone, other scenes may differ by more), or, of too few "
-            "processes for one, the range a … b; and, where it was measured at the printed "
-            "parameters, as far as they are given, × what is printed. Point at a row for its "
-            "cases; click to keep "
-            "them.</p>\n";
-    }
+    html += "</tbody></table></div>\n" + absentRowsHtml(page) + smallPrintHtml(page);
     const auto isMarked = [&](std::size_t run) { return page.parts[run].table.hasCalibrated(); };
     if (std::ranges::any_of(overlay.runs(), isMarked)) {
         html += fmt::format("<p class=\"soft small\">{} {}.</p>\n", report::kCalibratedMark,

@@ -249,6 +249,15 @@ int severity(Verdict verdict) {
     return 4;
 }
 
+std::string whyText(const ClaimResult& claim) {
+    const std::string cause =
+        claim.because.empty() ? ""
+        : claim.verdict == claim.known
+            ? claim.because
+            : fmt::format("Where it is {}: {}", verdictName(claim.known), claim.because);
+    return claim.reason + (claim.reason.empty() || cause.empty() ? "" : ". ") + cause;
+}
+
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,
                                         const ReportContext& context) {
     std::vector<ClaimResult> results;

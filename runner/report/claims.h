@@ -79,6 +79,10 @@ struct ClaimResult {
     std::string restsOn = {};
 };
 
+/// Why it does not hold, for people: what the judging noted, then the known cause; of another
+/// verdict than the known one with that verdict. Empty where neither is known.
+std::string whyText(const ClaimResult& claim);
+
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required
 /// range. Of values that are no times it is computed and judged as it is (judge(),
 /// claim_quantity.h); of times in each round, and a 95 % interval over rounds wholly inside of the

@@ -125,7 +125,6 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
             layInto(row, printedRow);
         }
         if (isPlaced) continue;
-        table.notes.push_back("printed, but not part of this run: " + joined(printedRow));
         Cell unplanned;
         unplanned.isPlanned = false;
         TableRow row{{}, SceneSource::Unknown, std::vector<Cell>(columns.size(), unplanned)};
@@ -143,7 +142,8 @@ void layPrintedAlone(const config::Printed& printed, Table& table) {
     table.isOnlyPrinted = true;
     table.rowAxes = {printed.header[0]};
     for (std::size_t i = 1; i < printed.header.size(); ++i) {
-        table.columns.push_back({printed.header[i], ""});
+        table.columns.push_back(
+            {printed.header[i], "", {}, config::Better::Neither, {printed.header[i]}});
     }
     for (const std::vector<std::string>& printedRow : printed.rows) {
         TableRow row{{printedRow[0]}, SceneSource::Unknown, {}};
@@ -266,7 +266,9 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
     const LayoutCases cases = gatherCases(experiment, planned, records);
     const std::vector<Key> columns = collectKeys(layout.columns, cases);
     table.rowAxes = axisNames(layout.rows);
-    for (const Key& column : columns) table.columns.push_back({joined(column, "_"), ""});
+    for (const Key& column : columns) {
+        table.columns.push_back({joined(column, "_"), "", {}, config::Better::Neither, column});
+    }
     for (Key& row : collectKeys(layout.rows, cases)) {
         table.rows.push_back({std::move(row), SceneSource::Unknown, {}});
     }

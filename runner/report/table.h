@@ -105,6 +105,7 @@ struct TableColumn {
     /// Of a table that nobody laid out: what the technique declares of the metric.
     std::string doc = {};
     config::Better better = config::Better::Neither;
+    std::vector<std::string> parts = {};  // the label's, a column axis each
 };
 
 struct Table {

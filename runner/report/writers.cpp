@@ -168,6 +168,18 @@ std::string tableMarkdown(const Table& table) {
     if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
     for (const std::string& note : table.notes)
         text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
+    std::vector<std::string> absent;
+    for (const TableRow& row : table.printedRows) {
+        std::vector<std::string> said = row.labels;
+        for (const Cell& cell : row.cells) {
+            if (cell.printed) said.push_back(*cell.printed);
+        }
+        absent.push_back(joined(said));
+    }
+    if (!absent.empty()) {
+        text += fmt::format("\nNote: printed, but not part of this run: {}\n",
+                            escapeMarkdown(joined(absent, "; ")));
+    }
     return text;
 }
 

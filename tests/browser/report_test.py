@@ -2,6 +2,7 @@
 """The report in a real browser: report_test.py MOCK_PROGRAM OUT. Exit 77: something is not installed."""
 
 import csv
+import json
 import os
 import pathlib
 import shutil
@@ -36,12 +37,20 @@ printed:
     1,2.0
     2,2.0
 claims:
-  H: {{says: the first is small, bound: ok, below: 5, at: {{number: 1}}}}
-  F: {{says: the third is small, bound: ok, below: 2, at: {{number: 3}}}}
-  U: {{says: what was thrown is small, bound: throw, below: 2}}
+  H: {{says: the first is small, origin: document, bound_from: text, bound: ok, below: 5, at: {{number: 1}}}}
+  F: {{says: the third is small, origin: document, bound_from: text, bound: ok, below: 2, at: {{number: 3}},
+      because: {{verdict: fails, reason: three is not below two}}}}
+  U: {{says: what was thrown is small, origin: document, bound_from: text, bound: throw, below: 2}}
   G: {{says: on a GPU it is faster, bound: ok, below: 1, device: gpu}}
 assumptions:
   view: {{value: front, range: [front, back], why: the paper does not say}}
+"""
+DOCUMENTS = """
+demo2026:
+  title: A demonstration
+  chapters:
+    - {title: Chapter 1. Small things, has: [1]}
+    - {title: Chapter 2. Quick things, has: [2]}
 """
 QUICKER = "profiles: {quick: {params: {pause_ms: 1}}}\n"  # of the second table, which is thus not at what is printed
 
@@ -83,6 +92,7 @@ class Report(unittest.TestCase):
             (cls.data / "configs" / "demo2026" / f"table-{number}.yaml").write_text(
                 TABLE.format(number=number) + (QUICKER if number == 2 else ""))
         (cls.data / "shaders").mkdir()
+        (cls.data / "configs" / "documents.yaml").write_text(DOCUMENTS)
         cls.folder = make_run(cls.data, OUT / "run")
         # Left A is darker than its truth, right it is equal; "other" is brighter on the left.
         add_images(cls.folder, [("c1", "result", "", halves(DARK, GREY)), ("c1", "truth", "result", halves(LIGHT, GREY)),
@@ -109,12 +119,95 @@ class Report(unittest.TestCase):
         with open(self.folder / "claims.csv", encoding="utf-8") as file:
             claims = list(csv.DictReader(file))
         self.assertEqual(len(claims), 8)
-        self.assertEqual(self.shown(".grid .badge"), len(claims))
+        self.assertEqual(self.shown(".said .claim"), 6, "those of the document, until one asks for others")
+        self.browser.script("const s = document.querySelector('.filters [name=origin]'); s.value = '';"
+                            "s.dispatchEvent(new Event('input', {bubbles: true}))")
+        self.assertEqual(self.shown(".said .claim"), len(claims))
         for verdict in {c["verdict"] for c in claims}:
-            self.assertEqual(self.shown(f".grid .badge.{verdict}"), sum(c["verdict"] == verdict for c in claims))
+            self.assertEqual(self.shown(f".said .badge.{verdict}"), sum(c["verdict"] == verdict for c in claims))
         self.assertEqual(self.shown(".page"), 1)
         self.assertEqual(self.shown("b"), 0, "a title's markup must stay text")
         self.browser.screenshot(OUT / "overview.png")
+
+    def test_the_first_screen_says_what_reproduced(self):
+        self.open()
+        for selector, words in ((".machine", "quick profile"), (".document h2", "demo2026. A demonstration"),
+                                (".document > p", "Of 6 statements of the document, 4 could be judged here: 2 hold, 2 fail."),
+                                (".document > p", "Not reproduced: “the third is small” (Table 1)"),
+                                (".legend-of-verdicts", "a result, no error of the run")):
+            self.assertIn(words, self.browser.script("return document.querySelector(arguments[0]).textContent", selector))
+        self.assertEqual(self.browser.script("return [...document.querySelectorAll('.chapters li > span')].map(s => s.textContent)"),
+                         ["Chapter 1. Small things", "Chapter 2. Quick things"])
+        self.assertEqual(self.shown(".highlights img"), 1, "table 1 alone has pictures")
+        self.assertIn("fails", self.browser.script("return document.querySelector('.highlights figcaption').textContent"))
+        bars = self.browser.script("return [...document.querySelector('.tally').children].map(s => [s.textContent, s.getBoundingClientRect().width])")
+        self.assertEqual([text for text, _ in bars], ["✓ 2", "✗ 2", "○ 2"])
+        self.near([width for _, width in bars], [bars[0][1]] * 3, 2)
+        self.assertIn("three is not below two",
+                      self.browser.script("return document.querySelector('.said .claim[data-verdict=fails] p').textContent"))
+        self.assertLess(self.browser.script("return document.querySelector('.highlights').getBoundingClientRect().top"), 900,
+                        "the pictures begin on the first screen")
+
+    def test_keys_turn_pages_and_lead_the_focus(self):
+        self.open()
+        self.browser.press("\ue014")  # right
+        self.browser.wait("return document.getElementById('demo2026-1').checkVisibility()")
+        self.assertEqual(self.browser.script("return document.activeElement.textContent"), "Table 1. Times <b>&</b> numbers")
+        self.browser.press("\ue014")
+        self.browser.wait("return document.getElementById('demo2026-2').checkVisibility()")
+        self.browser.press("\ue012")  # left
+        self.browser.wait("return document.getElementById('demo2026-1').checkVisibility()")
+
+    def test_verdicts_have_a_sign_and_a_word(self):
+        self.open()
+        found = set(map(tuple, self.browser.script(
+            "return [...document.querySelectorAll('.legend-of-verdicts .badge')].map(b => b.textContent.split(' '))")))
+        self.assertEqual(found, {("✓", "holds"), ("✗", "fails"), ("?", "ambiguous"), ("○", "unmeasured"), ("–", "not-applicable")})
+
+    def test_pictures_lie_as_the_table_with_each_truth_once(self):
+        folder = make_run(self.data, OUT / "pictures", "demo2026/1")
+        cases = [case["id"] for case in json.loads((folder / "plan.json").read_text())["cases"]]
+        self.assertEqual(len(cases), 6)  # three numbers, ok and throw
+        images = []
+        for i, case in enumerate(cases):
+            images += [(case, "result", "", halves((20 * i, 50, 50), GREY)), (case, "truth", "result", halves(LIGHT, (0, 0, 20 * (i // 2))))]
+        add_images(folder, images)
+        run("report", folder, data=self.data)
+        self.open("", folder)
+        self.assertEqual(self.browser.script("return document.querySelector('.page.current').id"), "demo2026-1",
+                         "a run of one table opens on its page")
+        boxes = self.browser.script(
+            "return [...document.querySelectorAll('.pictures img')].map(i => {"
+            "const b = i.getBoundingClientRect(), s = i.closest('button');"
+            "return [s.className, s.dataset.name || '', Math.round(b.left), Math.round(b.top), Math.round(b.width)]})")
+        heads = self.browser.script("return [...document.querySelectorAll('.pictures thead th')].map(h => h.textContent)")
+        self.assertEqual(heads, ["truth", "ok", "throw"])
+        truths = [b for b in boxes if b[1] == "truth"]
+        results = [b for b in boxes if b[1] == "result"]
+        errors = [b for b in boxes if b[0] == "error"]
+        self.assertEqual((len(truths), len(results), len(errors)), (3, 6, 6))
+        for row in range(3):
+            first, second = results[2 * row:2 * row + 2]
+            self.assertEqual(truths[row][3], first[3])
+            self.assertEqual(first[3], second[3])
+            self.assertLess(truths[row][2], first[2])
+            self.assertLess(first[2], second[2])
+            self.assertGreater(errors[2 * row][3], first[3], "the error is below its picture")
+            self.assertEqual(errors[2 * row][2], first[2])
+        self.assertGreater(results[0][4], 250, "large")
+        self.browser.click(".pictures tbody:nth-of-type(2) .error")
+        self.browser.wait("return document.getElementById('viewer').open")
+        self.assertEqual(self.browser.script("return document.querySelector('#viewer [value=flip-map]').checked"), True)
+
+    def test_one_file_to_send(self):
+        folder = OUT / "sent"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        run("report", self.folder, "--embed", "--out", folder / "all.html", data=self.data)
+        self.assertEqual([f.name for f in folder.iterdir()], ["all.html"])
+        self.browser.open(folder / "all.html", "#demo2026-1")
+        self.browser.wait("return [...document.querySelectorAll('#demo2026-1 img[src]')].every(i => i.complete && i.naturalWidth)")
+        self.assertEqual(self.browser.script("return [...document.querySelectorAll('img[src]')].filter(i => !i.src.startsWith('data:')).length"), 0)
 
     def test_a_number_is_a_multiple_of_print_at_the_printed_parameters_alone(self):
         self.open()
@@ -131,18 +224,19 @@ class Report(unittest.TestCase):
         self.open()
         for verdict in ("holds", "ambiguous", "unmeasured", "not-applicable"):
             self.browser.click(f".filters input[value={verdict}]")
-        self.assertEqual(self.shown(".grid .badge"), 2)
-        self.assertEqual(self.shown(".grid .badge.fails"), 2)
-        self.assertEqual(self.browser.script("return document.querySelector('.filters output').value"), "2 of 8 verdicts")
+        self.assertEqual(self.shown(".said .claim"), 2)
+        self.assertEqual(self.shown(".said .badge.fails"), 2)
+        self.assertEqual(self.browser.script("return document.querySelector('.filters output').value"), "2 of 8 claims")
         self.browser.type(".filters [name=text]", "no such words")
-        self.assertEqual(self.shown(".grid tbody tr"), 0)
+        self.assertEqual(self.shown(".said .of-page"), 0)
         self.open()
+        self.browser.script("document.querySelector('.filters [name=origin]').value = ''")
         self.browser.type(".filters [name=text]", "GPU")
-        self.assertEqual(self.shown(".grid .badge"), 2)
+        self.assertEqual(self.shown(".said .claim"), 2)
 
     def test_pages_turn(self):
         self.open()
-        self.browser.click(".grid a[href='#demo2026-1']")
+        self.browser.click(".said h4 a[href='#demo2026-1']")
         self.browser.wait("return document.getElementById('demo2026-1').checkVisibility()")
         self.assertEqual(self.shown(".page"), 1)
         self.browser.click("nav .next")
@@ -289,7 +383,7 @@ class Report(unittest.TestCase):
                             "document.querySelectorAll('img').forEach(i => { i.loading = 'eager'; })")
         self.browser.wait("return [...document.querySelectorAll('.gallery img')].every(i => i.complete)")
         self.assertEqual(self.browser.script("return [...document.querySelectorAll('.gallery img')].filter(i => !i.naturalWidth).length"), 0)
-        self.assertEqual(self.shown(".gallery img"), 4)
+        self.assertEqual(self.shown(".gallery img"), 4 + 2, "and two error maps")
         names = self.browser.script("return performance.getEntriesByType('resource').map(e => e.name)")
         self.assertEqual([n for n in names if not n.startswith(("file:", "data:"))], [])
 
@@ -345,8 +439,8 @@ class Report(unittest.TestCase):
         result = run("report", self.folder, other, "--out", both, data=self.data)
         self.assertEqual(result.returncode, 4, result.stderr)  # as for one run: cases threw
         self.browser.open(both)
-        self.assertEqual(self.shown(".grid thead th"), 5)  # paper, table, claim, A, B
-        self.assertEqual(self.shown(".grid .badge"), 8 + 4)
+        self.assertEqual(self.shown(".said .claim"), 6)
+        self.assertEqual(self.shown(".said .badge"), 6 + 3)
         self.browser.open(both, "#demo2026-1")
         self.assertEqual(self.browser.script(
             "return [...document.querySelectorAll('#demo2026-1 .results thead .sub')].map(h => h.textContent)"),

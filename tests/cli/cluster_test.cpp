@@ -108,7 +108,7 @@ TEST(Shards, MergeToTheTablesOfOneRun) {
     const std::string merged = folder.path() / "merged";
     ASSERT_EQ(measure(config, whole).exitCode, 0);
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
-    std::vector<std::string> merge = {"merge", merged};
+    std::vector<std::string> merge = {"merge", "--out", merged};
     std::size_t rows = 0;
     for (const char* k : {"3", "1", "2"}) {  // in no order
         const std::string dir = folder.path() / (std::string("s") + k);
@@ -148,7 +148,7 @@ TEST(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
     const std::string merged = folder.path() / "merged", whole = folder.path() / "whole";
     ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
-    const ProcessResult partial = mockGfxrepro({"merge", merged, s1, s2});
+    const ProcessResult partial = mockGfxrepro({"merge", "--out", merged, s1, s2});
     EXPECT_EQ(partial.exitCode, 4);
     EXPECT_EQ(partial.err, s2 + ": holds no run\n");
     EXPECT_THAT(partial.out, HasSubstr("missing: shard 2/2\nmissing: sweep/mock number=2\n"
@@ -164,7 +164,7 @@ TEST(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
     expectSameTables(merged, whole);
     // What was measured into it is not overwritten.
-    const ProcessResult again = mockGfxrepro({"merge", merged, s1});
+    const ProcessResult again = mockGfxrepro({"merge", "--out", merged, s1});
     EXPECT_EQ(again.exitCode, 2);
     EXPECT_EQ(again.err, "gfxrepro: " + merged +
                              ": holds a run that is no merge of these shards; give another "
@@ -178,12 +178,12 @@ TEST(Shards, MergeRefusesOtherPlansAndNoRuns) {
     const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
     ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
     ASSERT_EQ(measure(config, s2, {"--shard", "2/2", "--set", "pause_ms=1"}).exitCode, 0);
-    const ProcessResult result = mockGfxrepro({"merge", folder.path() / "m", s1, s2});
+    const ProcessResult result = mockGfxrepro({"merge", "--out", folder.path() / "m", s1, s2});
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_THAT(result.err, HasSubstr(s1 + " and " + s2 + " are shards of different plans ("));
     EXPECT_THAT(result.err, HasSubstr("the config " + config + " changed\n"));
     EXPECT_FALSE(fs::exists(folder.path() / "m/plan.json"));
-    const ProcessResult none = mockGfxrepro({"merge", folder.path() / "m", folder.path()});
+    const ProcessResult none = mockGfxrepro({"merge", "--out", folder.path() / "m", folder.path()});
     EXPECT_EQ(none.exitCode, 2);
     EXPECT_THAT(none.err, HasSubstr("gfxrepro: merge: none of the folders holds a run\n"));
 }
@@ -233,7 +233,7 @@ TEST(Shards, ValuesOfSeveralMachinesAreMarked) {
         }
     };
     const std::string merged = folder.path() / "merged";
-    ASSERT_EQ(mockGfxrepro({"merge", merged, dir, other}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"merge", "--out", merged, dir, other}).exitCode, 0);
     hasNote(merged);
     const ProcessResult beside =
         mockGfxrepro({"report", dir, other, "--out", folder.path() / "both.html"});

@@ -256,7 +256,7 @@ TEST_F(FrozenExpectations, EveryCommandThatReadsARunGoesByThem) {
                                           "when the run was planned\n"));
     }
     EXPECT_EQ(mockGfxrepro({"compare", dir, dir, "--out", out}).exitCode, 0);
-    const ProcessResult merge = mockGfxrepro({"merge", merged, shard});
+    const ProcessResult merge = mockGfxrepro({"merge", "--out", merged, shard});
     EXPECT_EQ(merge.exitCode, 0);
     EXPECT_THAT(merge.out, HasSubstr(": 1 of 2 measured, 0 failed, 0 missing, 1 failed or skipped "
                                      "as expected\n"));

@@ -129,7 +129,7 @@ TEST(Mutation, OfRunFolders) {
                                             {"report", dir, "--out", out + ".html"},
                                             {"export", dir, "--out", out},
                                             {"compare", whole, dir, "--out", out},
-                                            {"merge", out, dir},
+                                            {"merge", "--out", out, dir},
                                             {"run", "--resume", dir, "--jobs", "1"}};
         return all[random() % all.size()];
     };

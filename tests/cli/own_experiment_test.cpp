@@ -39,8 +39,8 @@ TEST(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
     EXPECT_TRUE(table.starts_with("brightness,frame_ms_printed,frame_ms_measured")) << table;
     const std::string page = readFile(dir / "report.html");
     EXPECT_THAT(page, HasSubstr("<title>gfxrepro: Mine at three</title>"));
-    EXPECT_THAT(page, HasSubstr("<h2>Mine at three</h2>"));
-    EXPECT_THAT(page, HasSubstr("<h4>brightness=0.25</h4>"));
+    EXPECT_THAT(page, HasSubstr("<h1 tabindex=\"-1\">Mine at three</h1>"));
+    EXPECT_THAT(page, HasSubstr("<figcaption>brightness 0.25: result</figcaption>"));
     EXPECT_THAT(page, Not(HasSubstr("ambiguous</span>")));
     EXPECT_LT(page.find("id=\"sweep-mine\""), page.find("id=\"overview\""));
     if (runProgram({"/bin/sh", "-c", "command -v gnuplot"}).exitCode == 0) {

@@ -104,7 +104,7 @@ TEST_F(Seal, AMergeSaysWhichShardWasChanged) {
               0);
     changeRecords();
     const std::string merged = folder.path() / "merged";
-    EXPECT_EQ(mockGfxrepro({"merge", merged, dir}).exitCode, 0);
+    EXPECT_EQ(mockGfxrepro({"merge", "--out", merged, dir}).exitCode, 0);
     EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(dir + ": records.csv was changed"));
     EXPECT_EQ(manifest(merged)["sha256"].size(), 2U);
     const ProcessResult table = mockGfxrepro({"table", merged});

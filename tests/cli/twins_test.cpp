@@ -200,7 +200,7 @@ TEST(Twins, ShardsKeepThemTogetherAndMerge) {
     const TemporaryFolder folder;
     const std::vector<std::string> configs = writeTables(folder);
     const std::string merged = folder.path() / "merged";
-    std::vector<std::string> merge = {"merge", merged};
+    std::vector<std::string> merge = {"merge", "--out", merged};
     int measured = 0;
     for (const char* shard : {"1/2", "2/2"}) {
         const std::string dir = folder.path() / (std::string("shard-") + shard[0]);

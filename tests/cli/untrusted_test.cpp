@@ -171,7 +171,7 @@ TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
         expectRefused({"run", "--resume", dir}, why);
         expectRefused({"plan", (folder.path() / "mock.yaml").string(), "--from", dir}, why);
         expectRefused({"export", dir, "--out", out}, why);
-        expectRefused({"merge", out, dir}, why);
+        expectRefused({"merge", "--out", out, dir}, why);
         fs::remove_all(out);
         // Nor need what does not read the log be without its tables.
         const bool isLog = name == std::string_view("log.jsonl");
@@ -266,7 +266,7 @@ TEST_F(Untrusted, APlanIsWhatItsHashesSay) {
                                                         {"claims", dir},
                                                         {"report", dir},
                                                         {"compare", dir, dir, "--out", out},
-                                                        {"merge", out, dir},
+                                                        {"merge", "--out", out, dir},
                                                         {"run", "--resume", dir},
                                                         {"export", dir, "--out", out}}) {
             expectRefused(command, file + ": " + why + " planned: plan.json was changed\n");
@@ -352,7 +352,7 @@ TEST_F(Untrusted, AllThatAPlanSaysIsHashed) {
                 HasSubstr("that its assumptions and published parameters are those that were "
                           "planned cannot be verified\n"));
     // A merge does not make it whole again.
-    EXPECT_EQ(mockGfxrepro({"merge", out, dir}).exitCode, 0);
+    EXPECT_EQ(mockGfxrepro({"merge", "--out", out, dir}).exitCode, 0);
     expectRefused({"run", "--resume", out}, "cannot be resumed: its plan has no frozen_hash: ");
 }
 

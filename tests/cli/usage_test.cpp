@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "tests/cli/cli_support.h"
@@ -175,8 +176,9 @@ TEST(Usage, DescribeSaysWhatItCannot) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"describe"}, folder),
               "gfxrepro: describe: say what; see 'gfxrepro describe --help'\n");
-    EXPECT_EQ(refusal({"describe", "--json-schema", "table"}, folder),
-              "gfxrepro: schema 'table'; allowed: experiment, preset, scene, expectations\n");
+    EXPECT_EQ(
+        refusal({"describe", "--json-schema", "table"}, folder),
+        "gfxrepro: schema 'table'; allowed: experiment, preset, scene, expectations, documents\n");
     EXPECT_EQ(refusal({"describe", "--markdown", "voxelization"}, folder),
               "gfxrepro: describe: --markdown is for 'config' alone\n");
     // The name of a command is not taken for one.
@@ -198,6 +200,26 @@ TEST(Usage, DescribeListsMetricsAndPassesOnAScreen) {
     EXPECT_THAT(
         gfxrepro({"describe", "voxelization"}).out,
         HasSubstr("  memory_bytes              mesh, fragments and worksheets on the device"));
+}
+
+TEST(Usage, DescribesForProgramsToo) {
+    const auto described = [](const char* name) {
+        return nlohmann::json::parse(gfxrepro({"describe", name, "--json"}).out);
+    };
+    const auto technique = described("voxelization");
+    const auto namesOf = [](const nlohmann::json& list) {
+        std::set<std::string> names;
+        for (const auto& item : list) names.insert(item.at("name").get<std::string>());
+        return names;
+    };
+    EXPECT_THAT(namesOf(technique.at("parameters")), testing::IsSupersetOf({"resolution", "rule"}));
+    EXPECT_THAT(namesOf(technique.at("metrics")), testing::Contains("voxels"));
+    EXPECT_FALSE(technique.at("passes").empty());
+    EXPECT_EQ(described("models/duck").at("sources")[0].at("kind"), "stand-in");
+    EXPECT_EQ(described("sdf_model").at("generator"), "sdf_model");
+    EXPECT_EQ(described("zju2005/2.1").at("label"), "Table 2.1");
+    EXPECT_EQ(gfxrepro({"describe", "config", "--json"}).err,
+              "gfxrepro: describe: --json is for techniques, generators, scenes and tables\n");
 }
 
 TEST(Usage, HelpAndVersionAreCommandsToo) {

@@ -149,6 +149,22 @@ TEST(Completion, OffersWhatTheCommandLineTakes) {
     EXPECT_THAT(completed({"scene", "models/bu"}), ElementsAre("models/buddha", "models/bunny"));
 }
 
+TEST(Completion, OffersParametersTheirChoicesAndMetrics) {
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.1", "--set", "voxel_b"}),
+                ElementsAre("voxel_bits="));
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.1", "--set", "light_"}), IsEmpty())
+        << "of another technique";
+    EXPECT_THAT(completed({"run", "--only", "light_r"}), Contains("light_ratio="));
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.1", "--sweep", "rule=c"}),
+                ElementsAre("rule=conservative"));
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.1", "--sweep", "rule", "=", "c"}),
+                ElementsAre("conservative"));  // as bash takes it apart
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.1", "--set", "layout.cell.metric=voxe"}),
+                Contains("layout.cell.metric=voxels"));
+    EXPECT_THAT(completed({"reproduce", "zju2005/2.1", "--sweep", "rule", "=", "x", "--prof"}),
+                ElementsAre("--profile"));
+}
+
 TEST(Completion, OffersFilesByWhatTheyAre) {
     const TemporaryFolder folder;
     folder.write("a.yaml", "");
@@ -164,7 +180,8 @@ TEST(Completion, OffersFilesByWhatTheyAre) {
 
 TEST(Completion, SaysNothingToNonsense) {
     EXPECT_THAT(completed({"run", "--nonsense="}), IsEmpty());
-    EXPECT_THAT(completed({"run", "--set", "reso"}), IsEmpty());
+    EXPECT_THAT(completed({"run", "--set", "no_such"}), IsEmpty());
+    EXPECT_THAT(completed({"run", "--set", "resolution=6"}), IsEmpty());
     EXPECT_THAT(completed({"table", "/not/there/"}), IsEmpty());
     EXPECT_THAT(completed({"describe", "--nonsense", "no such name"}), IsEmpty());
     completed({});

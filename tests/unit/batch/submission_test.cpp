@@ -34,9 +34,10 @@ TEST(Submission, Commands) {
               "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet /c/t.yaml "
               "--set 'a=[1, 2]' --from '/out put/predictions.csv' "
               "--shard 2/2 --resume '/out put/shards/2'");
-    EXPECT_EQ(batch::mergeCommand(makeSubmission()),
-              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put' '/out "
-              "put/shards/1' '/out put/shards/2'");
+    EXPECT_EQ(
+        batch::mergeCommand(makeSubmission()),
+        "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge --out '/out put' '/out "
+        "put/shards/1' '/out put/shards/2'");
 }
 
 TEST(Submission, Scripts) {
@@ -52,12 +53,13 @@ TEST(Submission, Scripts) {
               "--set 'a=[1, 2]' --from "
               "'/out put/predictions.csv' --shard \"$SLURM_ARRAY_TASK_ID\"/2 --resume "
               "'/out put/shards'/\"$SLURM_ARRAY_TASK_ID\"\n");
-    EXPECT_EQ(batch::mergeScript(s),
-              "#!/bin/sh\n#SBATCH --job-name=gfxrepro-zju2005-merge\n#SBATCH --ntasks=1\n"
-              "#SBATCH --time=60\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
-              "#SBATCH --partition=p\n#SBATCH --account=x\n"
-              "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put' "
-              "'/out put/shards/1' '/out put/shards/2'\n");
+    EXPECT_EQ(
+        batch::mergeScript(s),
+        "#!/bin/sh\n#SBATCH --job-name=gfxrepro-zju2005-merge\n#SBATCH --ntasks=1\n"
+        "#SBATCH --time=60\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
+        "#SBATCH --partition=p\n#SBATCH --account=x\n"
+        "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge --out '/out put' "
+        "'/out put/shards/1' '/out put/shards/2'\n");
 }
 
 TEST(Submission, ArrayIndices) {

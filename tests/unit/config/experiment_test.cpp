@@ -309,7 +309,8 @@ TEST_F(ExperimentTest, ExtendsIsFollowedAndChecked) {
     folder.write("presets/bad.yaml", "\nmeasure: {repeats: 0}\n");
     EXPECT_EQ(errorWith("extends: presets/bad.yaml"),
               "DIR/presets/bad.yaml:2:20: measure: repeats is 0; allowed: 1 … 1000000");
-    EXPECT_EQ(loadError(""), "DIR/zju/a.yaml: a config is a map, found nothing");
+    EXPECT_EQ(loadError(""),
+              "DIR/zju/a.yaml:1:1: a config is a map of keys and values, found nothing");
     EXPECT_EQ(errorText([&] { loadExperiment(folder.path() / "x.yaml", {}, folder.path()); },
                         folder.path()),
               "cannot read DIR/x.yaml: No such file or directory");

@@ -88,10 +88,23 @@ TEST(Node, ParseErrorsSayWhere) {
               "a.yaml:1:3: a key must be text, found a list; perhaps a bracket is not closed");
     EXPECT_EQ(parseError("~: 2\n"), "a.yaml:1:1: a key must be text, found nothing");
     EXPECT_EQ(parseError("a: 1\n---\nb: 2\n"), "a.yaml:2:1: a second document; one file holds one");
-    EXPECT_EQ(parseError("a: [1, 2"), "a.yaml:1:9: end of sequence flow not found");
+    EXPECT_EQ(parseError("a: [1, 2"), "a.yaml:1:4: '[' is not closed");
+    EXPECT_EQ(parseError("x: 1\na: {b: \"[\", c: [1, 2]  # ]\nd: 2\n"),
+              "a.yaml:2:4: '{' is not closed");
+    EXPECT_EQ(parseError("a: {b: [1, 2}\n"), "a.yaml:1:8: '[' is not closed");
     EXPECT_EQ(parseError("{a: 1"),
               "a.yaml:1:1: a key must be text, found a map; perhaps a bracket is not closed");
-    EXPECT_EQ(parseError("a: b: c"), "a.yaml:1:5: illegal map value");
+    EXPECT_EQ(parseError("a: b: c"),
+              "a.yaml:1:5: a second ': ' in one line; text that holds one stands in quotes");
+    EXPECT_EQ(parseError("a: 1\n# more\n  b: 2\n"),
+              "a.yaml:3:3: indented deeper than line 1, which has its value already");
+    EXPECT_EQ(parseError("sweep_of mine\ntitle: x\n"),
+              "a.yaml:1:1: no ':' in the line; is it missing after 'sweep_of'?");
+    EXPECT_EQ(parseError("a:\n  b: 1\n  title x\n  c: d\n"),
+              "a.yaml:3:3: no ':' in the line; is it missing after 'title'?");
+    EXPECT_EQ(parseError("a:\n    b: 1\n  c: 2\n"),
+              "a.yaml:3:3: indented like none of the lines that it could belong to");
+    EXPECT_EQ(parse("a: b\r").find("a")->text(), "b");
     EXPECT_EQ(parseError("a: *b"), "a.yaml:1:4: the referenced anchor is not defined");
     EXPECT_EQ(parseError("a: &b [*b]"), "a.yaml:1:8: an alias inside of its own anchor");
     EXPECT_EQ(parseError("a:\n\tb: 1\n"), "a.yaml:2:1: a tab in the indentation; use spaces");

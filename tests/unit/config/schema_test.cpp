@@ -8,6 +8,7 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "runner/config/documents.h"
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
 #include "runner/report/records.h"
@@ -60,13 +61,14 @@ class JsonSchema {
 
 std::string kindOf(const fs::path& config) {
     if (config.filename().string().starts_with("expect-")) return "expectations";
+    if (config.filename() == "documents.yaml") return "documents";
     const std::string folder = *config.lexically_relative(kConfigs).begin();
     return folder == "scenes" ? "scene" : folder == "presets" ? "preset" : "experiment";
 }
 
 TEST(JsonSchema, TakesEveryShippedFile) {
     int count = 0;
-    for (const std::string kind : {"experiment", "preset", "scene", "expectations"}) {
+    for (const std::string kind : {"experiment", "preset", "scene", "expectations", "documents"}) {
         const JsonSchema schema(kind);
         for (const auto& file : fs::recursive_directory_iterator(kConfigs)) {
             if (file.path().extension() != ".yaml" || kindOf(file.path()) != kind) continue;
@@ -97,8 +99,42 @@ TEST(Configs, OfADocumentMeasureEveryTechnique) {
     EXPECT_EQ(measured, known);
 }
 
+TEST(Documents, NameEveryShippedExperimentOnce) {
+    std::set<std::string> named;
+    for (const Document& document : readDocuments(kConfigs / "documents.yaml")) {
+        for (const Chapter& chapter : document.chapters) {
+            for (const std::string& name : chapter.experiments) {
+                EXPECT_TRUE(named.insert(document.id + '/' + name).second) << name;
+            }
+        }
+    }
+    std::set<std::string> shipped;
+    for (const char* document : {"xie2017", "zhang2012", "zju2005"}) {
+        for (const auto& file : fs::directory_iterator(kConfigs / document)) {
+            if (file.path().extension() != ".yaml") continue;
+            shipped.insert(loadExperiment(file.path(), {}, kConfigs).id);
+        }
+    }
+    EXPECT_EQ(named, shipped);
+}
+
+TEST(Documents, SayWhereTheyAreWrong) {
+    const test::TemporaryFolder folder;
+    const auto errorOf = [&](const char* text) {
+        const fs::path file = folder.write("documents.yaml", text);
+        return test::errorText([&] { (void)readDocuments(file); }).substr(file.string().size());
+    };
+    EXPECT_TRUE(readDocuments(folder.path() / "none.yaml").empty());
+    EXPECT_EQ(errorOf("a: {chapters: []}"), ":1:4: a: 'title' is missing");
+    EXPECT_EQ(errorOf("a: {title: b, chapter: []}"),
+              ":1:15: a: unknown key 'chapter'; did you mean 'chapters'?");
+    EXPECT_EQ(errorOf("a:\n  title: b\n  chapters:\n    - {title: c, has: [1]}\n"
+                      "    - {title: d, has: [figure-1, 1]}"),
+              ":5:7: a: '1' is of 'c' already");
+}
+
 TEST(JsonSchema, RefusesWhatIsNoDocumentAtAll) {
-    for (const char* kind : {"experiment", "preset", "scene", "expectations"}) {
+    for (const char* kind : {"experiment", "preset", "scene", "expectations", "documents"}) {
         const JsonSchema schema(kind);
         for (const char* yaml : {"[]", "text", "12", "nonsense: 1"}) {
             EXPECT_NE(schema.complaintAbout(yaml), "") << kind << ": " << yaml;
@@ -339,7 +375,7 @@ TEST(Schema, DescribesEveryKeyInWordsAndInMarkdown) {
 
 TEST(Schema, UnknownKindIsAUsageError) {
     EXPECT_EQ(test::errorText([] { (void)jsonSchema("table", {}); }),
-              "schema 'table'; allowed: experiment, preset, scene, expectations");
+              "schema 'table'; allowed: experiment, preset, scene, expectations, documents");
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/report/images.h"
@@ -86,12 +88,12 @@ TEST(Report, IsOneSafeFile) {
     const std::string html = readFile(folder.path() / "report.html");
     for (const char* part : {
              "src=\"data:image/png;base64,iVBORw0KGgo",
-             "alt=\"zju2005/9.9 scene=&lt;img onerror=x&gt; · surface\"",
+             "alt=\"scene=&lt;img onerror=x&gt; · surface\"",
              "<td>Xeon &lt;script&gt;</td>",
              "<td>1 stand-in <span class=\"soft\">(models/duck)</span></td>",
-             "<th scope=\"row\">&lt;b&gt;&amp;|_%</th>",
-             "models/duck <abbr title=\"stand-in\">†</abbr>",
-             "<span class=\"badge fails\">fails</span>",
+             "title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>",
+             "title=\"models/duck\">duck <abbr title=\"stand-in\">†</abbr>",
+             "<span class=\"badge fails\"><span aria-hidden=\"true\">✗</span> fails</span>",
              "<td class=\"id\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
              "<td>not &lt;said&gt;</td>",
              "<span class=\"status\">crash</span> — signal &lt;11&gt;",
@@ -182,7 +184,8 @@ TEST(Report, ImagesWithATruthGetAFlipMap) {
                  {"c", "zju2005/9.9", 0, "truth", "images/x/truth.png", "", "t", "result"}});
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
-    EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"truth\" data-flip=\"data:"));
+    EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"A-zju2005-9.9-1\""));
+    EXPECT_THAT(html, HasSubstr("class=\"error\" data-of=\"A-zju2005-9.9-0\"><img src=\"data:"));
     EXPECT_THAT(html, testing::ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
     EXPECT_THAT(html, Not(HasSubstr("FLIP 0.0000")));
     const image::Image8 map = image::readPng8(folder.path() / "images/x/result-flip.png");
@@ -217,9 +220,216 @@ TEST(Report, LargeGalleriesLieBesideThePage) {
     EXPECT_THAT(html, HasSubstr("data-full=\"images/a%20b%231.png\""));
     EXPECT_LT(html.size(), 150'000U);
     const image::Image8 thumbnail = image::readPng8(folder.path() / "thumbnails/a b#1.png");
-    EXPECT_EQ(thumbnail.width(), 185);
-    EXPECT_EQ(thumbnail.height(), 191);
-    EXPECT_NEAR(thumbnail.at(80, 80, 0), 150, 100) << "the mean light of some ten random values";
+    EXPECT_EQ(thumbnail.width(), 495);
+    EXPECT_EQ(thumbnail.height(), 512);
+    EXPECT_NEAR(thumbnail.at(80, 80, 0), 150, 100) << "the mean light of some random values";
+}
+
+TEST(Report, EmbedsEveryPictureWhereItIsAsked) {
+    const test::TemporaryFolder folder, out;
+    const ReportRun run = runIn(folder.path());
+    image::Image8 noise(600, 620, 3);
+    std::uint32_t state = 1;
+    for (std::uint8_t& value : noise.values()) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<std::uint8_t>(state >> 24U);
+    }
+    for (int i = 1; i <= 20; ++i) {  // a megabyte each: more than a page takes unasked
+        const std::string name = fmt::format("images/{}.png", i);
+        std::filesystem::create_directories(folder.path() / "images");
+        image::writePng(folder.path() / name, noise);
+        report::ImageWriter(folder.path())
+            .append(
+                {{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t", i == 1 ? "2" : ""}});
+    }
+    writeReport(out.path() / "one.html", {&run, 1}, {{}, true});
+    const std::string html = readFile(out.path() / "one.html");
+    std::size_t images = 0;
+    for (std::size_t at = html.find("<img src=\""); at != html.npos;
+         at = html.find("<img src=\"", at + 1)) {
+        EXPECT_EQ(html.compare(at, 32, "<img src=\"data:image/png;base64,"), 0);
+        ++images;
+    }
+    EXPECT_EQ(images, 21U) << "with the error map of the second";
+    EXPECT_THAT(html, Not(HasSubstr("data-full=")));
+    EXPECT_THAT(html, HasSubstr("width=\"495\" height=\"512\""));
+    int files = 0;
+    for (const auto& file : std::filesystem::directory_iterator(out.path())) {
+        EXPECT_EQ(file.path().filename(), "one.html");
+        ++files;
+    }
+    EXPECT_EQ(files, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "thumbnails"));
+}
+
+/// A picture of its own brightness.
+image::Image8 grey(std::uint8_t value) {
+    return image::Image8(8, 8, 3, value);
+}
+
+/// Two scenes by two methods, one truth a scene, two measures of each picture.
+TEST(Report, PicturesLieAsTheTable) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments = {report::experimentFrom(R"(
+sweep: {scene: [models/duck, models/hugo], method: [coarse, fine]}
+layout:
+  axes: {measure: {error: {metric: error}, voxels: {metric: voxels}}}
+  rows: [scene, measure]
+  columns: method
+)")};
+    report::RecordMaker maker;
+    std::vector<report::ImageEntry> images;
+    for (const char* scene : {"models/duck", "models/hugo"}) {
+        for (const char* method : {"coarse", "fine"}) {
+            maker.beginCase(scene, fmt::format(R"({{"method":"{}"}})", method)).add("error", {1.0});
+            const std::string id = maker.records().back().caseId;
+            for (const bool isTruth : {false, true}) {
+                const std::string file = fmt::format("images/{}.png", images.size());
+                std::filesystem::create_directories(folder.path() / "images");
+                const auto value = static_cast<std::uint8_t>(isTruth ? scene[7] : images.size());
+                image::writePng(folder.path() / file, grey(value));
+                images.push_back({id, "zju2005/9.9", 0, isTruth ? "truth" : "result", file, "",
+                                  fmt::format("zju2005/9.9 {} {}", scene, method),
+                                  isTruth ? "result" : ""});
+            }
+        }
+    }
+    run.records = maker.records();
+    run.planned = report::planOf(run.experiments[0], maker.records());
+    report::ImageWriter(folder.path()).append(images);
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("<th scope=\"col\">truth</th><th scope=\"col\">coarse</th>"
+                                "<th scope=\"col\">fine</th></tr></thead>"));
+    std::vector<std::string> order;
+    for (const char* part :
+         {">duck</th></tr>", "data-title=\"models/duck coarse\" data-name=\"truth\"",
+          "data-title=\"models/duck coarse\" data-name=\"result\"",
+          "data-title=\"models/duck fine\" data-name=\"result\"", ">hugo</th></tr>",
+          "data-title=\"models/hugo coarse\" data-name=\"truth\"",
+          "data-title=\"models/hugo fine\" data-name=\"result\""}) {
+        ASSERT_THAT(html, HasSubstr(part));
+        order.push_back(fmt::format("{:09}", html.find(part)));
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(order)) << testing::PrintToString(order);
+    EXPECT_THAT(html, Not(HasSubstr("data-title=\"models/duck fine\" data-name=\"truth\"")))
+        << "the truth of both stands once";
+}
+
+/// What the document shows comes first; the other pictures of the cases are folded.
+TEST(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    const std::string id = run.records[0].caseId;
+    std::filesystem::create_directories(folder.path() / "images");
+    std::vector<report::ImageEntry> images;
+    for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
+        const std::string file = fmt::format("images/{}.png", name);
+        image::writePng(folder.path() / file, grey(static_cast<std::uint8_t>(40 + images.size())));
+        images.push_back({id, "zju2005/9.9", 0, name, file, "", "t",
+                          std::string(name) == "truth" ? "result" : ""});
+    }
+    report::ImageWriter(folder.path()).append(images);
+    const auto orderOf = [&](const std::vector<std::string>& shows) {
+        run.experiments[0].shows = shows;
+        writeReport(folder.path() / "report.html", {&run, 1});
+        const std::string html = readFile(folder.path() / "report.html");
+        std::map<std::size_t, std::string> order;
+        for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
+            order[html.find(fmt::format("data-name=\"{}\"", name))] = name;
+        }
+        order[html.find("<summary>Further pictures")] = "|";
+        std::string text;
+        for (const auto& [at, name] : order) text += name + ' ';
+        return text;
+    };
+    EXPECT_EQ(orderOf({}), "truth result | classes_0 reflection ");
+    EXPECT_EQ(orderOf({"classes"}), "classes_0 | truth result reflection ");
+    EXPECT_EQ(orderOf({"no_such"}), "truth result | classes_0 reflection ");
+}
+
+TEST(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments = {report::experimentFrom(R"(
+sweep: {scene: [outdoor/bird_nest], padding: [1, 2], method: [one_layer, two_layers]}
+layout:
+  axes: {measure: {mean: {metric: error}, draw_ms: {metric: gpu_time_ms}}}
+  rows: [scene, padding]
+  columns: [method, measure]
+)")};
+    report::RecordMaker maker;
+    for (const int padding : {1, 2}) {
+        for (const char* method : {"one_layer", "two_layers"}) {
+            maker
+                .beginCase("outdoor/bird_nest",
+                           fmt::format(R"({{"padding":{},"method":"{}"}})", padding, method))
+                .add("error", {1.0})
+                .add("gpu_time_ms", {2.0});
+        }
+    }
+    run.records = maker.records();
+    run.planned = report::planOf(run.experiments[0], maker.records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    for (const char* part : {
+             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">one layer</th>"
+             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">two layers</th>",
+             "title=\"one_layer_draw_ms\">draw <span class=\"sub\">ms</span>",
+             "<th scope=\"rowgroup\" class=\"first\" rowspan=\"2\" "
+             "title=\"outdoor/bird_nest\">bird "
+             "nest</th>",
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    EXPECT_EQ(html.find(">bird nest</th>"), html.rfind(">bird nest</th>"));
+}
+
+/// What a chapter holds and what it does not, in words, with the pictures that show it.
+TEST(Report, FirstScreenSaysWhatReproduced) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments.push_back(run.experiments[0]);
+    run.experiments[1].id = "zju2005/figure-1";
+    for (config::Experiment& one : run.experiments) {
+        for (config::ClaimSpec& claim : one.claims) {
+            claim.origin = config::ClaimSpec::Origin::Document;
+        }
+    }
+    run.experiments[0].claims[1].because = {
+        {"fails", std::nullopt, std::nullopt, "the time is of another machine"}};
+    std::filesystem::create_directories(folder.path() / "images");
+    image::writePng(folder.path() / "images/a.png", grey(100));
+    report::ImageWriter(folder.path())
+        .append({{"case", "zju2005/9.9", 0, "surface", "images/a.png", "", "t"}});
+    const config::Document document{
+        "zju2005", "Thesis on <models>", {{"Later", {"9.9"}}, {"Earlier", {"figure-1"}}}};
+    writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false});
+    const std::string html = readFile(folder.path() / "report.html");
+    std::size_t at = 0;
+    for (const char* part : {
+             "llvmpipe on Xeon &lt;script&gt; · quick profile · commit abc123 · 2 experiments",
+             "<h2>zju2005. Thesis on &lt;models&gt;</h2>",
+             "<span class=\"holds\"",
+             "<span class=\"fails\"",
+             "could be judged here",
+             "Not reproduced: “no” (<a href=\"#zju2005-9.9\">",
+             "<span>Later</span>",
+             "<span>Earlier</span>",
+             "<div class=\"highlights\">",
+             "<h3>What the verdicts mean</h3>",
+             "<h2>Every claim, in words</h2>",
+             "<h3>Later</h3>",
+             "<span class=\"says\">no</span> <span class=\"soft code\"><a "
+             "href=\"#zju2005-9.9\">B</a>, document</span>\n<p><span class=\"soft\">why: </span>",
+             "the time is of another machine</p>",
+             "<h3>Earlier</h3>",
+         }) {
+        const std::size_t next = html.find(part, at);
+        ASSERT_NE(next, html.npos) << part;
+        at = next;
+    }
 }
 
 TEST(Report, RunsStandSideBySide) {
@@ -230,7 +440,9 @@ TEST(Report, RunsStandSideBySide) {
     const std::string html = readFile(out.path() / "both.html");
     EXPECT_THAT(html, HasSubstr("<th class=\"sub\">printed</th><th class=\"sub\">A</th>"
                                 "<th class=\"sub\">B</th>"));
-    EXPECT_THAT(html, HasSubstr("class=\"differs\"><td>zju2005</td>"));  // claim A, 8 against 12
+    EXPECT_THAT(html,
+                HasSubstr("<li class=\"claim uncounted differs\" data-verdict=\"holds fails\""))
+        << "claim A, 8 against 12";
     for (const char* part : {
              "<p class=\"parameters\"><b>A</b> cells measured at the printed parameters: 2 of 2",
              "<p class=\"parameters\"><b>B</b> cells measured at the printed parameters: 0 of 2",
@@ -259,10 +471,9 @@ TEST(Report, KeptVerdictsStandBesideARun) {
     const std::vector<ReportRun> runs = {other, runIn(a.path())};
     writeReport(a.path() / "both.html", runs);
     const std::string html = readFile(a.path() / "both.html");
-    EXPECT_THAT(html,
-                HasSubstr("<b>A</b> <span class=\"soft\">a &lt; b &amp; &quot;c&quot;</span>"));
+    EXPECT_THAT(html, HasSubstr("<span class=\"says\">a &lt; b &amp; &quot;c&quot;</span>"));
     EXPECT_THAT(html, HasSubstr("<section class=\"page\" id=\"zju2005-1.1\">"));
-    EXPECT_THAT(html, HasSubstr("<td class=\"soft\">bias (of 3 tried)</td>"));
+    EXPECT_THAT(html, HasSubstr("<span class=\"soft\">rests on </span>bias (of 3 tried)</p>"));
 }
 
 TEST(Report, RefusesVerdictsThatAreNone) {

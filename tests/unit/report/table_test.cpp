@@ -144,8 +144,11 @@ TEST(Table, PrintedStandsBesideMeasured) {
     EXPECT_EQ(table.rows[0].cells[0].printed, "1254");
     EXPECT_EQ(table.rows[1].cells[1].printed, "12.0");
     EXPECT_EQ(table.rows[1].cells[1].printedValues[0], 12.0);
-    EXPECT_THAT(table.notes,
-                ElementsAre("printed, but not part of this run: models/hugo, 16928, 9.7"));
+    ASSERT_EQ(table.printedRows.size(), 1U);
+    EXPECT_THAT(table.printedRows[0].labels, ElementsAre("models/hugo"));
+    EXPECT_EQ(table.printedRows[0].cells[0].printed, "16928");
+    EXPECT_EQ(table.printedRows[0].cells[1].printed, "9.7");
+    EXPECT_TRUE(table.notes.empty());
 }
 
 TEST(Table, PrintedColumnsThatASweepTookAwayAreNoted) {
