@@ -34,6 +34,7 @@ constexpr Place kPlaces[] = {
     {"claims", "results", "gfxrepro claims runs/my-run"},
     {"report", "results", "gfxrepro report runs/my-run"},
     {"export", "results", "gfxrepro export runs/my-run --out artifact"},
+    {"import", "results", "gfxrepro import theirs.csv --metric render_time_ms=ms"},
     {"compare", "compare", "gfxrepro compare runs/before runs/after"},
     {"sensitivity", "compare", "gfxrepro sensitivity zju2005/2.1"},
     {"image", "compare", "gfxrepro image diff a.exr b.exr"},

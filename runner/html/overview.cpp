@@ -39,7 +39,7 @@ std::string manifestText(const nlohmann::ordered_json& manifest, const std::stri
 std::string processorText(const nlohmann::ordered_json& manifest) {
     const std::string cpu = manifestText(manifest, "cpu");
     const std::string cores = manifestText(manifest, "cores");
-    return cores.empty() ? cpu : fmt::format("{}, {} cores", cpu, cores);
+    return cores.empty() || cores == "0" ? cpu : fmt::format("{}, {} cores", cpu, cores);
 }
 
 /// "7 real, 6 stand-ins, 12 generated" and each by name.

@@ -145,7 +145,30 @@ std::string failuresHtml(const Page& page, const Model& model) {
     return "<h3>Cases that did not finish well</h3>\n<ul class=\"small\">\n" + items + "</ul>\n";
 }
 
-std::string againHtml(const RunPart& part, const report::ReportContext& context) {
+bool isImported(const ReportRun& run) {
+    return run.manifest.is_object() && run.manifest.contains("imported");
+}
+
+/// Which numbers were measured elsewhere, where there are some.
+std::string importedHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const ReportRun& from = model.runs[run];
+        if (!page.parts[run].experiment || !isImported(from)) continue;
+        html += fmt::format(
+            "<p class=\"small\"><span class=\"badge ambiguous\">imported</span> {}measured "
+            "elsewhere, on {}, and not by this program; the numbers of {}.</p>\n",
+            model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(from.context.device),
+            escapeXml(from.manifest["imported"].value("file", "a file")));
+    }
+    return html;
+}
+
+std::string againHtml(const RunPart& part, const ReportRun& run) {
+    const report::ReportContext& context = run.context;
+    if (isImported(run)) {
+        return fmt::format("<h3>Import it again</h3>\n<pre>{}</pre>\n", escapeXml(context.command));
+    }
     const bool isOwn = part.experiment->kind == config::Experiment::Kind::Sweep;
     return fmt::format("<h3>Run it again</h3>\n<pre>gfxrepro reproduce {} --profile {}</pre>\n",
                        escapeXml(isOwn ? part.experiment->file.string() : part.table.id),
@@ -160,6 +183,7 @@ std::string pageHtml(const Page& page, const Model& model) {
         escapeXml(page.slug), escapeXml(page.heading()), escapeXml(page.id));
     const RunPart* shown = page.shown();
     if (!shown) return html + claimsHtml(page, model) + "</section>\n";
+    html += importedHtml(page, model);
     html += tableHtml(page, model);
     html += paragraph("small", "Printed numbers: ", shown->table.hardware);
     html += paragraph("small", "Remark: ", shown->table.remark);
@@ -169,8 +193,7 @@ std::string pageHtml(const Page& page, const Model& model) {
     html += failuresHtml(page, model);
     html += imagesHtml(page, model);
     html += assumptionsHtml(shown->experiment->assumptions);
-    html +=
-        againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())].context);
+    html += againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())]);
     html += casesHtml(page, model);
     return html + "</section>\n";
 }
