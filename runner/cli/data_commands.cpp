@@ -46,12 +46,25 @@ void addImport(CLI::App& app, const Context& context, ImportOptions& o,
     importApp->callback([&] { command = [&] { return importRun(context, o); }; });
 }
 
+void addHistory(CLI::App& app, HistoryOptions& o, std::function<int()>& command) {
+    CLI::App* historyApp =
+        app.add_subcommand("history", "many nights as a page: curves, changes, their commits");
+    historyApp->add_option("files", o.files, "what compare --history and scripts/nightly keep")
+        ->required()
+        ->option_text("FILE");
+    historyApp->add_option("--out", o.out, "the page (default history.html)")->option_text("FILE");
+    historyApp->add_option("--sqlite", o.sqlite, "the same as a file of SQLite")
+        ->option_text("FILE");
+    historyApp->callback([&] { command = [&] { return historyPage(o); }; });
+}
+
 }  // namespace
 
 void addDataCommands(CLI::App& app, const Context& context, DataOptions& options,
                      std::function<int()>& command) {
     addExport(app, context, options.exported, command);
     addImport(app, context, options.imported, command);
+    addHistory(app, options.history, command);
 }
 
 }  // namespace gfxrepro::cli

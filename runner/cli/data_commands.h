@@ -1,4 +1,4 @@
-// Data that leaves and comes in: `export`, `import`; options in, exit code out.
+// Data that leaves and comes in: `export`, `import`, `history`; options in, exit code out.
 #pragma once
 
 #include <functional>
@@ -33,13 +33,22 @@ struct ImportOptions {
     bool isOfGpu = false;
 };
 
+/// Histories that `compare --history` has kept.
+struct HistoryOptions {
+    std::vector<std::string> files;
+    std::string out = "history.html";
+    std::string sqlite;  // empty: none
+};
+
 struct DataOptions {
     ExportOptions exported;
     ImportOptions imported;
+    HistoryOptions history;
 };
 
 int exportRun(const Context& context, const ExportOptions& options);
 int importRun(const Context& context, const ImportOptions& options);
+int historyPage(const HistoryOptions& options);
 
 /// Adds them to the program's; `command` becomes the one that was chosen.
 void addDataCommands(CLI::App& app, const Context& context, DataOptions& options,

@@ -1,4 +1,4 @@
-// Numbers that leave and come in: export --tidy, import.
+// Numbers that leave and come in: export --tidy, import, history.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -203,6 +203,31 @@ TEST_F(Data, ExportGoesOverNothing) {
     folder_.write("there/a.txt", "mine");
     EXPECT_EQ(refusal({"export", dir("run"), "--tidy", "--out", dir("there")}),
               "gfxrepro: DIR/there: is there already; give another folder\n");
+}
+
+TEST_F(Data, AHistoryBecomesAPageAndAFileForQueries) {
+    std::string csv =
+        "time,commit,machine,table,technique,method,scene,params,pass,metric,unit,value\n";
+    for (int night = 10; night < 40; ++night) {
+        csv += "2026-01-" + std::to_string(night) + "T00:00:00Z,c" + std::to_string(night) +
+               ",m,t,k,,,{},,wall_time_ms,ms," + (night < 25 ? "1" : "2") + "." +
+               std::to_string(night) + "\n";
+    }
+    const std::string file = folder_.write("history.csv", csv);
+    const ProcessResult made = mockGfxrepro(
+        {"history", file, "--out", dir("history.html"), "--sqlite", dir("history.sqlite")});
+    EXPECT_EQ(made.exitCode, 0) << made.err;
+    EXPECT_EQ(made.out, "m: 30 nights, 1 series, 1 changes\nhistory: " + dir("history.html") +
+                            "\nqueries: " + dir("history.sqlite") + "\n");
+    EXPECT_THAT(readFile(dir("history.html")), HasSubstr("<td>c24</td><td>c25</td>"));
+    EXPECT_EQ(readFile(dir("history.sqlite")).substr(0, 15), "SQLite format 3");
+    const std::string text = folder_.write("thesis.html", "four years");
+    EXPECT_EQ(refusal({"history", file, "--out", text}),
+              "gfxrepro: DIR/thesis.html: is there and is not a report; give another file\n");
+    EXPECT_EQ(refusal({"history", dir("none.csv")}),
+              "gfxrepro: cannot read DIR/none.csv: No such file or directory\n");
+    const std::string header = folder_.write("empty.csv", csv.substr(0, csv.find('\n') + 1));
+    EXPECT_EQ(refusal({"history", header}), "gfxrepro: DIR/empty.csv: has no night\n");
 }
 
 }  // namespace
