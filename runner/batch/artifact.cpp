@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "runner/batch/import_run.h"
 #include "runner/batch/made_from.h"
 #include "runner/batch/predictions.h"
 #include "runner/batch/run_files.h"
@@ -188,6 +189,8 @@ void writeArtifact(const fs::path& runDir, const StoredRun& run, const scene::Ca
                    const fs::path& target) {
     if (fs::exists(target))
         throw Error(target.string() + ": is there already; give another folder");
+    requireNotImported(run.manifest, runDir.string(),
+                       "measure again; `export --tidy` gives its numbers");
     takeFolder(target, runDir, run.manifest);
     writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
     copyMeasured(runDir, target);

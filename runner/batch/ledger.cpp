@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runner/batch/case_variation.h"
+#include "runner/config/imported.h"
 #include "runner/config/scene_reference.h"
 #include "runner/core/text.h"
 #include "runner/report/case_records.h"
@@ -287,7 +288,7 @@ void requireMeasuredWithin(const Assumption& assumption, const std::vector<Case>
 void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& cases,
                      const scene::Catalog& catalog,
                      std::span<const technique::TechniqueInfo> techniques) {
-    if (experiment.technique.empty()) return;  // only printed
+    if (!config::isMeasuredHere(experiment)) return;
     const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
     for (Assumption& assumption : experiment.assumptions) {
         const config::ParamInfo* info = findInfo(declared, assumption.name);

@@ -153,6 +153,7 @@ void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
 
 std::string machineName(const Json& manifest) {
     const Json& gl = manifest.at("gl");
+    if (manifest.contains("imported")) return "imported: " + gl.at("renderer").get<std::string>();
     return manifest.at("cpu").get<std::string>() + ", " +
            std::to_string(manifest.at("cores").get<long>()) + " cores, " +
            gl.at("renderer").get<std::string>() + ", " + gl.at("version").get<std::string>();

@@ -44,7 +44,8 @@ std::vector<std::string> notesOf(const Json& manifest);
 /// Adds what workers loaded, one entry a reference.
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
 
-/// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6": times of two names are not compared.
+/// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6", or "imported: " and what the importing
+/// person calls it: times of two names are not compared.
 std::string machineName(const Json& manifest);
 /// The machine that the times of an experiment come from: all of them from one.
 std::string timingMachine(const Json& manifest, const std::string& experiment);

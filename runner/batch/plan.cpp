@@ -7,6 +7,7 @@
 #include "runner/batch/expectations.h"
 #include "runner/batch/ledger.h"
 #include "runner/batch/plan_hash.h"
+#include "runner/config/imported.h"
 #include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
@@ -24,6 +25,14 @@ std::string hashOf(const Plan& plan) {
         documents.push_back(experiment.document.toJson());
     }
     return planHash(plan, documents);
+}
+
+void requireNoImport(const config::Experiment& experiment) {
+    if (experiment.technique != config::kImported) return;
+    throw Error(experiment.document.find("technique")->location(),
+                "technique 'imported': its numbers are measured elsewhere; `gfxrepro import "
+                "FILE.csv --config " +
+                    experiment.file.filename().string() + "` takes them");
 }
 
 }  // namespace
@@ -124,6 +133,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     plan.buildId = programBuildId();
     plan.experiments = experiments;
     for (config::Experiment& experiment : plan.experiments) {
+        requireNoImport(experiment);
         experiment.paperCases = resolvePaperCases(experiment, catalog, techniques);
     }
     std::set<std::string> experimentIds;

@@ -102,9 +102,12 @@ html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
                            {}};
     auto logs = caseLogs(runDir);
     CaseNames names(run.plan);
+    const bool isImported = run.manifest.contains("imported");
     for (const Case& item : run.plan.cases) {
-        result.cases.push_back({item.id, item.experiment, item.title(),
-                                commandOf(item, run.plan, names), std::move(logs[item.id])});
+        result.cases.push_back(
+            {item.id, item.experiment, item.title(),
+             isImported ? result.context.command : commandOf(item, run.plan, names),
+             std::move(logs[item.id])});
     }
     return result;
 }

@@ -10,6 +10,7 @@
 
 #include "runner/batch/case_variation.h"
 #include "runner/batch/plan.h"
+#include "runner/config/imported.h"
 #include "runner/config/scene_reference.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
@@ -63,7 +64,7 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
 /// What is laid out is recorded: metrics and passes of the technique.
 void requireOutputs(const config::Experiment& experiment,
                     std::span<const technique::TechniqueInfo> techniques) {
-    if (experiment.technique.empty()) return;
+    if (!config::isMeasuredHere(experiment)) return;
     const technique::TechniqueInfo& info =
         technique::findTechnique(techniques, experiment.technique, {});
     const config::Outputs outputs = technique::outputsOf(info);
@@ -167,7 +168,7 @@ namespace {
 void forEachCase(const config::Experiment& experiment, const scene::Catalog& catalog,
                  std::span<const technique::TechniqueInfo> techniques, std::uint64_t seed,
                  const std::function<void(Case, technique::SceneNeed)>& take) {
-    if (experiment.technique.empty()) return;  // only printed
+    if (!config::isMeasuredHere(experiment)) return;
     const config::Node* named = experiment.document.find("technique");
     const SourceLocation where =
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0};

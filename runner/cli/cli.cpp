@@ -15,6 +15,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
 #include "runner/cli/console.h"
+#include "runner/cli/data_commands.h"
 #include "runner/cli/help.h"
 #include "runner/cli/image_commands.h"
 #include "runner/cli/man_page.h"
@@ -38,8 +39,9 @@ struct Options {
     std::string name;                 // of list; a run directory; a shell
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
+    DataOptions data;
     std::vector<std::string> configs;  // that claims judges by
-    std::string out;                   // of table, claims, report, export
+    std::string out;                   // of table, claims, report
     bool embeds = false;               // of report
     std::string lane = "quality";
     bool asJson = false;
@@ -200,14 +202,6 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
         ->option_text("FILE");
     reportApp->add_flag("--embed", o.embeds, "one file to send: every picture inside of it");
     reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out, o.embeds); }; });
-
-    CLI::App* exportApp =
-        app.add_subcommand("export", "a run as an artifact: results, licences, checksums");
-    addRunDirectory(exportApp, o.name);
-    exportApp->add_option("--out", o.out, "folder (default RUN-artifact)")->option_text("DIR");
-    addAssets(exportApp, o.selection.assets);
-    exportApp->callback(
-        [&] { o.command = [&] { return exportRun(context, o.name, o.out, o.selection.assets); }; });
 }
 
 void addCluster(CLI::App& app, const Context& context, Options& o) {
@@ -366,6 +360,7 @@ int runCommand(int argc, const char* const* argv,
     addCluster(app, context, options);
     addSensitivity(app, context, options);
     addTools(app, context, options);
+    addDataCommands(app, context, options.data, options.command);
     addCompare(app, options.compare, options.command);
     addShell(app, options);
     arrangeHelp(app);

@@ -132,9 +132,6 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
 int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
 int sensitivity(const Context& context, const SensitivityOptions& options);
-/// To `out`, or DIR-artifact.
-int exportRun(const Context& context, const std::string& runDir, const std::string& out,
-              const std::string& assets);
 int scene(const Context& context, const SceneOptions& options);
 
 }  // namespace gfxrepro::cli

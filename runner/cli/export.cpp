@@ -2,18 +2,24 @@
 #include <filesystem>
 
 #include "runner/batch/artifact.h"
-#include "runner/cli/commands.h"
+#include "runner/batch/tidy.h"
 #include "runner/cli/console.h"
+#include "runner/cli/data_commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
 
 namespace gfxrepro::cli {
 
-int exportRun(const Context& context, const std::string& runDir, const std::string& out,
-              const std::string& assets) {
-    const std::string target = out.empty() ? runDir + "-artifact" : out;
-    const batch::StoredRun run = batch::readRun(runDir);
-    batch::writeArtifact(runDir, run, openCatalog(context, assets), target);
+int exportRun(const Context& context, const ExportOptions& options) {
+    const std::string target = options.out.empty()
+                                   ? options.runDir + (options.isTidy ? "-tidy" : "-artifact")
+                                   : options.out;
+    const batch::StoredRun run = batch::readRun(options.runDir);
+    if (options.isTidy) {
+        batch::writeTidy(options.runDir, run, target);
+    } else {
+        batch::writeArtifact(options.runDir, run, openCatalog(context, options.assets), target);
+    }
     sayNotes(run.manifest);
     say("{}\n", target);
     return kExitOk;

@@ -188,7 +188,12 @@ void requireNoOtherRun(const fs::path& folder, const std::vector<html::ReportRun
     throw Error(folder.string() + ": holds another run; give another folder");
 }
 
-/// Throws Error where the file is there and is not a report.
+void sayReport(const fs::path& runDir) {
+    say("report: {}\n", (runDir / "report.html").string());
+}
+
+}  // namespace
+
 void requireReport(const fs::path& file) {
     std::error_code isAbsent;
     if (!fs::exists(file, isAbsent)) return;
@@ -199,12 +204,6 @@ void requireReport(const fs::path& file) {
     }
     throw Error(file.string() + ": is there and is not a report; give another file");
 }
-
-void sayReport(const fs::path& runDir) {
-    say("report: {}\n", (runDir / "report.html").string());
-}
-
-}  // namespace
 
 void sayNotes(const batch::Json& manifest) {
     for (const std::string& note : batch::notesOf(manifest)) say("warning: {}\n", note);

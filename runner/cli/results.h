@@ -10,6 +10,9 @@ namespace gfxrepro::cli {
 /// Prints what a reader of the run's results must know: a warning a line.
 void sayNotes(const batch::Json& manifest);
 
+/// Throws Error where the file is there and is not a page of ours.
+void requireReport(const std::filesystem::path& file);
+
 /// Makes tables, claims and report; says what the claims came to. kExitClaimFailed when one fails,
 /// else kExitOk.
 int conclude(const std::filesystem::path& runDir);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "runner/batch/budget.h"
+#include "runner/batch/import_run.h"
 #include "runner/batch/not_survived.h"
 #include "runner/batch/run_files.h"
 #include "runner/batch/shards.h"
@@ -179,6 +180,7 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                         const batch::Request& request, batch::PhaseClock& phases) {
     batch::RunDirectory directory = batch::RunDirectory::open(options.resume);
     batch::StoredRun stored = batch::readRun(options.resume);
+    batch::requireNotImported(stored.manifest, options.resume, "go on with");
     requireSameRequest(options, request, stored.plan);
     batch::SchedulerOptions scheduler{stored.plan.request.device,
                                       fs::absolute(assetsFolder(options.selection.assets)),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "runner/config/imported.h"
 #include "runner/config/node.h"
 #include "runner/config/schema_files.h"
 #include "runner/config/schema_types.h"
@@ -197,6 +198,7 @@ void addNames(const SchemaNames& names, Json& root) {
         Json& technique = (*map)["properties"]["technique"];
         technique.erase("type");
         technique["enum"] = techniques;
+        technique["enum"].push_back(kImported);
         technique["enum"].push_back(nullptr);
     }
 }

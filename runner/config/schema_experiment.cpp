@@ -51,7 +51,9 @@ SchemaSection content() {
         "",
         "What is measured and shown.",
         {{"title", "line", "required", "what is shown, in the paper's words", text()},
-         {"technique", "name", "none", "what measures; without it the file is only `printed`",
+         {"technique", "name", "none",
+          "what measures; `imported`: numbers that `gfxrepro import` takes; without it the file is "
+          "only `printed`",
           text()},
          {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
          {"scene_params", "{name: value}", "{}",

@@ -31,7 +31,7 @@ std::string manifestText(const nlohmann::ordered_json& manifest, const std::stri
 std::string processorText(const nlohmann::ordered_json& manifest) {
     const std::string cpu = manifestText(manifest, "cpu");
     const std::string cores = manifestText(manifest, "cores");
-    return cores.empty() ? cpu : fmt::format("{}, {} cores", cpu, cores);
+    return cores.empty() || cores == "0" ? cpu : fmt::format("{}, {} cores", cpu, cores);
 }
 
 /// "llvmpipe (LLVM 15.0.6, 256 bits) on Intel Xeon, 2 cores · quick profile · 2026-11-25".

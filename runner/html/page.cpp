@@ -74,7 +74,30 @@ std::string failuresHtml(const Page& page, const Model& model) {
     return "<h3>Cases that did not finish well</h3>\n<ul class=\"small\">\n" + items + "</ul>\n";
 }
 
-std::string againHtml(const RunPart& part, const report::ReportContext& context) {
+bool isImported(const ReportRun& run) {
+    return run.manifest.is_object() && run.manifest.contains("imported");
+}
+
+/// Which numbers were measured elsewhere, where there are some.
+std::string importedHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const ReportRun& from = model.runs[run];
+        if (!page.parts[run].experiment || !isImported(from)) continue;
+        html += fmt::format(
+            "<p class=\"small\"><span class=\"badge ambiguous\">imported</span> {}measured "
+            "elsewhere, on {}, and not by this program; the numbers of {}.</p>\n",
+            model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(from.context.device),
+            escapeXml(from.manifest["imported"].value("file", "a file")));
+    }
+    return html;
+}
+
+std::string againHtml(const RunPart& part, const ReportRun& run) {
+    const report::ReportContext& context = run.context;
+    if (isImported(run)) {
+        return fmt::format("<h3>Import it again</h3>\n<pre>{}</pre>\n", escapeXml(context.command));
+    }
     const bool isOwn = part.experiment->kind == config::Experiment::Kind::Sweep;
     return fmt::format("<h3>Run it again</h3>\n<pre>gfxrepro reproduce {} --profile {}</pre>\n",
                        escapeXml(isOwn ? part.experiment->file.string() : part.table.id),
@@ -98,6 +121,7 @@ std::string pageHtml(const Page& page, const Model& model) {
     }
     const RunPart* shown = page.shown();
     if (!shown) return html + claims + "</section>\n";
+    html += importedHtml(page, model);
     const std::string images = imagesHtml(page, model);
     // Of a figure, or a table of pictures, the numbers come after them.
     const bool isPicture = shown->experiment->kind == config::Experiment::Kind::Figure ||
@@ -112,8 +136,7 @@ std::string pageHtml(const Page& page, const Model& model) {
     html += failuresHtml(page, model);
     if (!isPicture) html += images;
     html += assumptionsHtml(shown->experiment->assumptions);
-    html +=
-        againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())].context);
+    html += againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())]);
     html += casesHtml(page, model);
     return html + "</section>\n";
 }

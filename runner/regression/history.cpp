@@ -64,6 +64,7 @@ void appendNight(const std::filesystem::path& path, const Night& night) {
     std::string text = std::filesystem::exists(path) ? readFile(path) : std::string(kHeader);
     // A night that was torn by a crash is cut off.
     text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
+    if (text.empty()) text = kHeader;
     for (const auto& [key, all] : night.series) {
         const Series values = key.isTime() ? standing(all) : all;
         if (values.empty()) continue;
@@ -76,24 +77,35 @@ void appendNight(const std::filesystem::path& path, const Night& night) {
     writeFileAtomic(path, text);
 }
 
-SeriesMap readHistory(const std::filesystem::path& path, const std::string& machine) {
-    SeriesMap history;
-    if (!std::filesystem::exists(path)) return history;
+std::vector<HistoryRow> readHistoryRows(const std::filesystem::path& path) {
     const std::string text = readFile(path);
     report::CsvReader reader(text, path.string());
     std::vector<std::string> fields;
-    bool isHeader = true;
-    while (reader.next(fields)) {
+    std::vector<HistoryRow> rows;
+    if (!text.empty() && !text.starts_with(kHeader)) {
+        throw Error({path.string(), 1, 0}, fmt::format("is no history; expected the header '{}'",
+                                                       kHeader.substr(0, kHeader.size() - 1)));
+    }
+    for (bool isHeader = true; reader.next(fields); isHeader = false) {
+        if (isHeader) continue;
         if (fields.size() != kColumns) {
             throw Error(reader.location(),
                         fmt::format("{} columns; a history has {}", fields.size(), kColumns));
         }
-        if (!isHeader && fields[2] == machine) {
-            const SeriesKey key{fields[3], fields[4], fields[5], fields[6],
-                                fields[7], fields[8], fields[9], fields[10]};
-            history[key].push_back(numberFrom(fields[11], reader.location()));
-        }
-        isHeader = false;
+        const double value = numberFrom(fields[11], reader.location());
+        rows.push_back({fields[0], fields[1], fields[2],
+                        SeriesKey{fields[3], fields[4], fields[5], fields[6], fields[7], fields[8],
+                                  fields[9], fields[10]},
+                        value});
+    }
+    return rows;
+}
+
+SeriesMap readHistory(const std::filesystem::path& path, const std::string& machine) {
+    SeriesMap history;
+    if (!std::filesystem::exists(path)) return history;
+    for (const HistoryRow& row : readHistoryRows(path)) {
+        if (row.machine == machine) history[row.key].push_back(row.value);
     }
     return history;
 }
@@ -114,11 +126,66 @@ std::optional<Step> findStep(const Series& nights, double significance, double e
     return Step{skipped + best.first, after / before, chance};
 }
 
+namespace {
+
+/// The first nights of new levels within [first, last), appended to `steps`.
+void collectSteps(const Series& nights, std::size_t first, std::size_t last, double significance,
+                  double effectFloor, std::vector<Step>& steps) {
+    const auto at = [&](std::size_t index) {
+        return nights.begin() + static_cast<std::ptrdiff_t>(index);
+    };
+    std::size_t end = last;
+    for (; end >= first + 2 * kFewestNights; end -= std::min(end, kMostNights / 2)) {
+        if (auto step = findStep(Series(at(first), at(end)), significance, effectFloor)) {
+            step->first += first;
+            const std::size_t place = step->first;
+            collectSteps(nights, first, place, significance, effectFloor, steps);
+            steps.push_back(*step);
+            collectSteps(nights, place, last, significance, effectFloor, steps);
+            return;
+        }
+        if (end - first <= kMostNights) return;  // all were looked at
+    }
+}
+
+}  // namespace
+
+std::vector<Step> findAllSteps(const Series& nights, double significance, double effectFloor) {
+    std::vector<Step> steps;
+    collectSteps(nights, 0, nights.size(), significance, effectFloor, steps);
+    const std::span<const double> all(nights);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const std::size_t begin = i == 0 ? 0 : steps[i - 1].first;
+        const std::size_t end = i + 1 == steps.size() ? nights.size() : steps[i + 1].first;
+        const std::size_t first = steps[i].first;
+        steps[i].ratio =
+            medianOf(all.subspan(first, end - first)) / medianOf(all.subspan(begin, first - begin));
+    }
+    return steps;
+}
+
+double significanceOf(std::size_t timeSeries, const StepRules& rules) {
+    return rules.familyError / (static_cast<double>(timeSeries) * rules.nightsAYear);
+}
+
+std::vector<std::size_t> findChanges(const Series& nights) {
+    constexpr double kTolerance = 1e-4;
+    std::vector<std::size_t> changes;
+    for (std::size_t i = 1; i < nights.size(); ++i) {
+        const double before = nights[i - 1], after = nights[i];
+        const bool isWhole = before == std::round(before) && after == std::round(after);
+        const double most =
+            isWhole ? 0.0 : kTolerance * std::max(std::abs(before), std::abs(after));
+        const bool isSame = std::isfinite(most) && std::abs(after - before) <= most;
+        if (before != after && !isSame) changes.push_back(i);
+    }
+    return changes;
+}
+
 std::vector<SeriesStep> findSteps(const SeriesMap& history, const StepRules& rules) {
     const auto count =
         std::ranges::count_if(history, [](const auto& entry) { return entry.first.isTime(); });
-    const double significance =
-        rules.familyError / (static_cast<double>(count) * rules.nightsAYear);
+    const double significance = significanceOf(static_cast<std::size_t>(count), rules);
     std::vector<SeriesStep> steps;
     for (const auto& [key, nights] : history) {
         if (!key.isTime()) continue;

@@ -23,8 +23,18 @@ struct Night {
 /// time,commit,machine,table,technique,method,scene,params,pass,metric,unit,value. Throws Error.
 void appendNight(const std::filesystem::path& path, const Night& night);
 
-/// The values of `machine` by series, oldest first. A missing file has none; a torn last row is not
-/// read. Throws Error with file and line for a row of another form.
+/// One number of a history.
+struct HistoryRow {
+    std::string time, commit, machine;  // as Night has them
+    SeriesKey key;
+    double value = 0.0;
+};
+/// All rows, as they stand in the file; a torn last row is not read. Throws Error with file and
+/// line for a row of another form, and where the header is not that of a history.
+std::vector<HistoryRow> readHistoryRows(const std::filesystem::path& path);
+
+/// The values of `machine` by series, oldest first. A missing file has none. Throws as
+/// readHistoryRows().
 SeriesMap readHistory(const std::filesystem::path& path, const std::string& machine);
 
 /// A lasting change of level.
@@ -47,6 +57,18 @@ struct StepRules {
 /// splits. None where it exceeds `significance`, or the change of level is below `effectFloor`.
 /// Assumes nights without a change to be exchangeable.
 std::optional<Step> findStep(const Series& nights, double significance, double effectFloor);
+
+/// Every lasting change of level, oldest first: where the last nights have no further step, the
+/// nights before them are looked at, as they were when they were the last; what lies before and
+/// behind a step is looked at by itself. Ratios are of the levels on either side.
+std::vector<Step> findAllSteps(const Series& nights, double significance, double effectFloor);
+
+/// The chance of a false alarm that each of `timeSeries` series may have at each night.
+double significanceOf(std::size_t timeSeries, const StepRules& rules = {});
+
+/// The nights on which a value that is no time is another than the night before: whole numbers
+/// exactly, others by more than 1e-4 of the larger.
+std::vector<std::size_t> findChanges(const Series& nights);
 
 struct SeriesStep {
     SeriesKey key;

@@ -58,6 +58,13 @@ bool isNoParameter(const std::string& name) {
     return name == "output" || name == kPictures || name == kStandsFor || name == kSceneSample;
 }
 
+/// A parameter that is null or empty is one that a case has not got: the tables of a run that was
+/// exported, which tells these apart no more, and imported again say the same.
+bool isNothing(const Json& value) {
+    const bool isEmptyText = value.is_string() && value.get<std::string>().empty();
+    return isEmptyText || (!value.is_string() && value.empty());
+}
+
 /// Of a generated scene at another seed ("outdoor/city@3") the name in the table: another sample of
 /// it, not another parameter. Its generator's parameters are among the case's.
 std::string sceneNameOf(const CaseRecords& item, const Json& params) {
@@ -79,7 +86,7 @@ Settings settingsOf(const CaseRecords& item, int frameCount, const config::Print
                                                     settingText((*output)["height"])));
     }
     for (const auto& [name, value] : params.items()) {
-        if (isNoParameter(name)) continue;
+        if (isNoParameter(name) || isNothing(value)) continue;
         settings.emplace_back(name, settingText(value));
     }
     settings.emplace_back("frames", settingText(frames));

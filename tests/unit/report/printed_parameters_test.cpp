@@ -35,6 +35,11 @@ TEST(PrintedParameters, AreTheSame) {
         << "numbers compare as numbers, names in any order";
     EXPECT_TRUE(cellAt(R"({"pictures": true})", R"({"pictures": false})").isAtPrintedParameters)
         << "more is recorded, nothing else";
+    const char* empty = R"({"bias": 1, "cut": null, "name": "", "list": [], "map": {}})";
+    EXPECT_TRUE(cellAt(empty, R"({"bias": 1})").isAtPrintedParameters) << "nothing is no value";
+    EXPECT_TRUE(cellAt(R"({"bias": 1})", empty).isAtPrintedParameters);
+    EXPECT_THAT(cellAt(R"({"cut": null})", R"({"cut": 5})").departures,
+                ElementsAre(Departure{"cut", {}, {"5"}}));
 }
 
 TEST(PrintedParameters, Differ) {

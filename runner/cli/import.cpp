@@ -1,0 +1,60 @@
+// Numbers that were measured elsewhere become a run.
+#include <filesystem>
+
+#include "runner/batch/import_run.h"
+#include "runner/cli/console.h"
+#include "runner/cli/data_commands.h"
+#include "runner/cli/experiments.h"
+#include "runner/cli/results.h"
+
+namespace gfxrepro::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::pair<std::string, std::string> metricFrom(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == text.npos || equals + 1 == text.size()) {
+        throw UsageError("--metric '" + text +
+                         "'; allowed: COLUMN=UNIT, such as render_time_ms=ms; 1 is the "
+                         "unit of what has none");
+    }
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+}  // namespace
+
+int importRun(const Context& context, const ImportOptions& options) {
+    batch::ImportRequest request;
+    request.files = {options.file, options.cases, {}};
+    for (const std::string& metric : options.metrics) {
+        request.files.metrics.push_back(metricFrom(metric));
+    }
+    request.profile = options.profile;
+    if (!options.machine.empty()) request.machine = options.machine;
+    request.isOfGpu = options.isOfGpu;
+    request.commandLine = context.commandLine;
+    if (!options.configs.empty()) {
+        Selection selection;
+        request.experiments = loadExperiments(
+            requestOf(selection, findPaperConfigs(options.configs)), options.profile);
+    }
+    const batch::StoredRun run =
+        batch::importRun(request, openCatalog(context, options.assets), context.techniques);
+    const fs::path dir =
+        options.out.empty() ? batch::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
+    {
+        const batch::RunDirectory directory = batch::RunDirectory::create(dir);
+        batch::writeImported(directory, run);
+    }
+    say("imported {} numbers of {} case{} into {}\n", run.records.size(), run.plan.cases.size(),
+        run.plan.cases.size() == 1 ? "" : "s", dir.string());
+    const int verdict = conclude(dir);
+    const batch::Completeness counts = batch::completeness(run);
+    if (counts.isComplete()) return verdict;
+    say("incomplete: {} not measured, {} failed\n", counts.missing, counts.failed);
+    return kExitIncomplete;
+}
+
+}  // namespace gfxrepro::cli

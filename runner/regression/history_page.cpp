@@ -1,0 +1,284 @@
+#include "runner/regression/history_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "runner/core/files.h"
+#include "runner/html/parts.h"
+#include "runner/regression/chart.h"
+#include "runner/report/figure.h"
+#include "runner/report/frame.h"
+#include "runner/report/markup.h"
+
+namespace gfxrepro::regression {
+
+using report::escapeXml;
+using report::Frame;
+using report::FrameValue;
+
+namespace {
+
+using NightOf = MachineHistory::NightOf;
+
+/// The nights of a machine by time and commit, in order, with their place.
+using Places = std::map<std::pair<std::string, std::string>, std::size_t>;
+
+void findSeriesChanges(SeriesHistory& series, double significance) {
+    const auto add = [&](std::size_t at, double ratio, double chance) {
+        series.changes.push_back({series.nights[at], series.nights[at - 1], ratio, chance});
+    };
+    if (series.key.isTime()) {
+        for (const Step& step :
+             findAllSteps(series.values, significance, StepRules{}.effectFloor)) {
+            add(step.first, step.ratio, step.chance);
+        }
+        return;
+    }
+    for (const std::size_t at : findChanges(series.values)) {
+        add(at, series.values[at] / series.values[at - 1], 0.0);
+    }
+}
+
+MachineHistory historyOf(const std::string& machine, std::span<const HistoryRow* const> rows) {
+    MachineHistory history;
+    history.machine = machine;
+    Places places;
+    for (const HistoryRow* row : rows) places[{row->time, row->commit}] = 0;
+    for (auto& [night, place] : places) {
+        place = history.nights.size();
+        history.nights.push_back({night.first, night.second});
+    }
+    std::map<SeriesKey, std::map<std::size_t, double>> values;
+    std::size_t timeCount = 0;
+    for (const HistoryRow* row : rows) {
+        auto& own = values[row->key];
+        if (own.empty() && row->key.isTime()) ++timeCount;
+        own[places.at({row->time, row->commit})] = row->value;
+    }
+    for (const auto& [key, own] : values) {
+        SeriesHistory series{key, {}, {}, {}};
+        for (const auto& [night, value] : own) {
+            series.nights.push_back(night);
+            series.values.push_back(value);
+        }
+        findSeriesChanges(series, significanceOf(timeCount));
+        history.series.push_back(std::move(series));
+    }
+    return history;
+}
+
+std::string dayOf(const std::string& time) {
+    return time.substr(0, 10);
+}
+
+std::string changeText(const SeriesHistory& series, const SeriesChange& change) {
+    if (series.key.isTime()) return fmt::format("× {:.3f}", change.ratio);
+    const auto valueAt = [&](std::size_t night) {
+        const auto at = std::ranges::find(series.nights, night) - series.nights.begin();
+        return series.values[static_cast<std::size_t>(at)];
+    };
+    return fmt::format("{:.6g} → {:.6g}", valueAt(change.before), valueAt(change.night));
+}
+
+bool isWorse(const SeriesHistory& series, const SeriesChange& change) {
+    return !series.key.isTime() || change.ratio > 1.0;
+}
+
+std::string wordOf(const SeriesHistory& series, const SeriesChange& change) {
+    if (!series.key.isTime()) return "changed";
+    return change.ratio > 1.0 ? "slower" : "faster";
+}
+
+/// Titles, with the parameters where several series have one.
+std::vector<std::string> titlesOf(const MachineHistory& history) {
+    std::map<std::string, int> counts;
+    for (const SeriesHistory& series : history.series) ++counts[series.key.title()];
+    std::vector<std::string> titles;
+    for (const SeriesHistory& series : history.series) {
+        titles.push_back(series.key.title());
+        if (counts[titles.back()] > 1) titles.back() += " " + series.key.params;
+    }
+    return titles;
+}
+
+std::string anchorOf(std::size_t machine, std::size_t series) {
+    return fmt::format("series-{}-{}", machine, series);
+}
+
+std::string changesHtml(const MachineHistory& history, std::size_t machine,
+                        const std::vector<std::string>& titles) {
+    std::map<std::size_t, std::string, std::greater<>> rows;  // the newest first
+    for (std::size_t i = 0; i < history.series.size(); ++i) {
+        const SeriesHistory& series = history.series[i];
+        for (const SeriesChange& change : series.changes) {
+            const NightOf& after = history.nights[change.night];
+            rows[change.night] += fmt::format(
+                "<tr><th scope=\"row\">{}</th><td><span class=\"badge {}\">{}</span></td><td><a "
+                "href=\"#{}\">{}</a></td><td class=\"num\">{}</td><td>{}</td><td>{}</td><td "
+                "class=\"num\">{}</td></tr>\n",
+                escapeXml(after.time), isWorse(series, change) ? "fails" : "holds",
+                wordOf(series, change), anchorOf(machine, i), escapeXml(titles[i]),
+                escapeXml(changeText(series, change)),
+                escapeXml(history.nights[change.before].commit), escapeXml(after.commit),
+                series.key.isTime() ? fmt::format("{:.1g}", change.chance) : "");
+        }
+    }
+    if (rows.empty()) return "<p>No series changed.</p>\n";
+    std::string html =
+        "<div class=\"scroll\"><table><thead><tr><th>since</th><th></th><th>series</th><th "
+        "class=\"num\">after / before</th><th>last commit before</th><th>first commit after</th>"
+        "<th class=\"num\">chance</th></tr></thead>\n<tbody>\n";
+    for (const auto& [night, text] : rows) html += text;
+    return html + "</tbody></table></div>\n";
+}
+
+std::string curveHtml(const MachineHistory& history, const SeriesHistory& series,
+                      const std::string& title, const std::string& anchor,
+                      const std::vector<ChartNight>& nights) {
+    ChartSeries chart{series.key.unit, {}, {}, series.key.isTime()};
+    chart.values.resize(history.nights.size());
+    for (std::size_t i = 0; i < series.nights.size(); ++i) {
+        chart.values[series.nights[i]] = series.values[i];
+    }
+    for (const SeriesChange& change : series.changes) {
+        chart.marks.push_back({change.night, series.key.isTime() ? changeText(series, change) : "",
+                               isWorse(series, change)});
+    }
+    return fmt::format(
+        "<figure class=\"curve\" id=\"{}\">\n{}<figcaption>{}</figcaption></figure>\n", anchor,
+        chartSvg(nights, chart), escapeXml(title));
+}
+
+std::string nightsHtml(const MachineHistory& history) {
+    std::string html =
+        "<details class=\"cases\"><summary>Nights and commits</summary>\n<div class=\"scroll\">"
+        "<table><thead><tr><th>night</th><th>commit</th></tr></thead>\n<tbody>\n";
+    for (const NightOf& night : history.nights) {
+        html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escapeXml(night.time),
+                            escapeXml(night.commit));
+    }
+    return html + "</tbody></table></div></details>\n";
+}
+
+std::string machineHtml(const MachineHistory& history, std::size_t machine) {
+    const std::vector<std::string> titles = titlesOf(history);
+    std::vector<ChartNight> nights;
+    for (const NightOf& night : history.nights) {
+        nights.push_back({dayOf(night.time), night.time + ", " + night.commit});
+    }
+    std::size_t unchanged = 0;
+    std::string curves, table;
+    for (std::size_t i = 0; i < history.series.size(); ++i) {
+        const SeriesHistory& series = history.series[i];
+        if (!series.key.isTime() && series.changes.empty()) {
+            ++unchanged;
+            continue;
+        }
+        if (table != series.key.table) {
+            if (!table.empty()) curves += "</div>\n";
+            curves +=
+                fmt::format("<h3>{}</h3>\n<div class=\"curves\">\n", escapeXml(series.key.table));
+            table = series.key.table;
+        }
+        curves += curveHtml(history, series, titles[i], anchorOf(machine, i), nights);
+    }
+    if (!table.empty()) curves += "</div>\n";
+    std::string html = fmt::format(
+        "<section class=\"page\">\n<h2>{}</h2>\n<p class=\"soft\">{} {}, {} to {}; {} series.</p>\n"
+        "<h3>Changes</h3>\n{}",
+        escapeXml(history.machine), history.nights.size(),
+        history.nights.size() == 1 ? "night" : "nights", dayOf(history.nights.front().time),
+        dayOf(history.nights.back().time), history.series.size(),
+        changesHtml(history, machine, titles));
+    html += curves;
+    if (unchanged > 0) {
+        html += fmt::format("<p class=\"soft\">{} that {} no {} never changed.</p>\n",
+                            unchanged == 1 ? "One series" : fmt::format("{} series", unchanged),
+                            unchanged == 1 ? "is" : "are", unchanged == 1 ? "time" : "times");
+    }
+    return html + nightsHtml(history) + "</section>\n";
+}
+
+std::vector<FrameValue> keyValues(const SeriesKey& key) {
+    return {key.table,  key.technique, key.method, key.scene,
+            key.params, key.pass,      key.metric, key.unit};
+}
+
+std::vector<std::string> keyColumns() {
+    return {"experiment", "technique", "method", "scene", "params", "pass", "metric", "unit"};
+}
+
+Frame frameOf(std::string name, std::vector<std::string> first, std::vector<std::string> last,
+              std::vector<std::vector<FrameValue>> rows) {
+    for (const auto& part : {keyColumns(), last})
+        first.insert(first.end(), part.begin(), part.end());
+    const std::size_t count = rows.size();
+    return {std::move(name), std::move(first), count,
+            [rows = std::move(rows)](std::size_t i) { return rows[i]; }};
+}
+
+}  // namespace
+
+std::vector<MachineHistory> historiesOf(std::span<const HistoryRow> rows) {
+    std::map<std::string, std::vector<const HistoryRow*>> machines;
+    for (const HistoryRow& row : rows) machines[row.machine].push_back(&row);
+    std::vector<MachineHistory> histories;
+    for (const auto& [machine, own] : machines) histories.push_back(historyOf(machine, own));
+    return histories;
+}
+
+void writeHistoryPage(const std::filesystem::path& file, const std::string& title,
+                      std::span<const MachineHistory> histories) {
+    std::string html = fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<link rel=\"icon\" href=\"data:,\">\n<title>gfxrepro: {0}</title>\n<style>\n{1}</style>\n"
+        "</head>\n<body>\n<main>\n<h1>{0}</h1>\n"
+        "<p>One point a night: the median over the processes of that night; its commit is the "
+        "point's title. A line is the median of a level. A time has a step where the levels before "
+        "and after differ by 5 % or more and the exact chance of so clear a difference, were there "
+        "none, is within what the nightly may take: one false alarm in twenty years over all "
+        "series "
+        "of the machine. Other values are marked where they are another than the night before.</p>"
+        "\n",
+        escapeXml(title), html::kStyle);
+    for (std::size_t i = 0; i < histories.size(); ++i) html += machineHtml(histories[i], i);
+    writeFileAtomic(file, html + "</main>\n</body>\n</html>\n");
+}
+
+void writeHistorySqlite(const std::filesystem::path& file,
+                        std::span<const MachineHistory> histories) {
+    std::vector<std::vector<FrameValue>> numbers, changes;
+    for (const MachineHistory& history : histories) {
+        const auto rowOf = [&](const SeriesHistory& series, std::size_t night) {
+            const NightOf& at = history.nights[night];
+            std::vector<FrameValue> row = {at.time, at.commit, history.machine};
+            const std::vector<FrameValue> key = keyValues(series.key);
+            row.insert(row.end(), key.begin(), key.end());
+            return row;
+        };
+        for (const SeriesHistory& series : history.series) {
+            for (std::size_t i = 0; i < series.nights.size(); ++i) {
+                numbers.push_back(rowOf(series, series.nights[i]));
+                numbers.back().emplace_back(series.values[i]);
+            }
+            for (const SeriesChange& change : series.changes) {
+                changes.push_back(rowOf(series, change.night));
+                changes.back().emplace_back(history.nights[change.before].commit);
+                changes.back().emplace_back(change.ratio);
+                changes.back().emplace_back(change.chance);
+            }
+        }
+    }
+    const std::vector<std::string> first = {"time", "commit_id", "machine"};
+    const Frame frames[] = {
+        frameOf("history", first, {"value"}, std::move(numbers)),
+        frameOf("changes", first, {"commit_before", "ratio", "chance"}, std::move(changes))};
+    report::writeSqlite(file, frames);
+}
+
+}  // namespace gfxrepro::regression

@@ -1,0 +1,234 @@
+// Numbers that leave and come in: export --tidy, import, history.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/core/files.h"
+#include "runner/report/csv.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+// A claim that holds, one that fails, a time, a case that fails, and a column a method.
+constexpr const char* kLines =
+    "scene: shapes/torus\n"
+    "sweep: {number: [1, 2, 4], behaviour: [ok, throw]}\n"
+    "measure: {lane: timing, processes: 6, time_budget_s: 600}\n"
+    "layout: {rows: number, columns: {out: {metric: number, where: {behaviour: ok}}, "
+    "ms: {metric: wall_time_ms, where: {behaviour: ok}}, "
+    "bad: {metric: number, where: {behaviour: throw}}}}\n"
+    "claims:\n"
+    "  grows: {says: it grows, trend: out, over: number, direction: increasing}\n"
+    "  small: {says: it is small, bound: out, below: 3, bound_from: ours}\n"
+    "  bad: {says: what failed, bound: bad, below: 3, bound_from: ours}\n"
+    "plots: [{x: number, y: out}]\n";
+
+class Data : public testing::Test {
+  protected:
+    ProcessResult run(const std::string& lines) {
+        config_ = writeMockConfig(folder_, lines);
+        return mockGfxrepro({"reproduce", config_, "--device", "software", "--out", dir("run")});
+    }
+    std::string dir(const std::string& name) const { return folder_.path() / name; }
+    /// Standard error of a call that must end with exit code 2, with the folder's path as DIR.
+    std::string refusal(const std::vector<std::string>& arguments) const {
+        ProcessResult result = mockGfxrepro(arguments);
+        EXPECT_EQ(result.exitCode, 2) << result.out;
+        const std::string prefix = folder_.path().string();
+        for (std::size_t at; (at = result.err.find(prefix)) != std::string::npos;) {
+            result.err.replace(at, prefix.size(), "DIR");
+        }
+        return result.err;
+    }
+    /// "grows holds", … of a run's claims.csv.
+    std::vector<std::string> verdicts(const std::string& name) const {
+        const std::string text = readFile(dir(name) + "/claims.csv");
+        report::CsvReader reader(text, "claims.csv");
+        std::vector<std::string> fields, lines;
+        while (reader.next(fields)) lines.push_back(fields[0] + " " + fields[7]);
+        return lines;
+    }
+
+    const TemporaryFolder folder_;
+    std::string config_;
+};
+
+TEST_F(Data, ARunThatWasExportedAndImportedHasTheSameTables) {
+    const ProcessResult made = run(kLines);
+    ASSERT_EQ(made.exitCode, 4) << made.err;
+    const ProcessResult exported = mockGfxrepro({"export", dir("run"), "--tidy"});
+    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    EXPECT_EQ(exported.out, dir("run-tidy") + "\n");
+    const ProcessResult imported =
+        mockGfxrepro({"import", dir("run-tidy/records.csv"), "--cases", dir("run-tidy/cases.csv"),
+                      "--config", config_, "--machine", "the same one", "--out", dir("back")});
+    EXPECT_EQ(imported.exitCode, 4) << imported.err;
+    const std::string table = "/tables/sweep-mock.csv";
+    EXPECT_EQ(readFile(dir("back") + table), readFile(dir("run") + table));
+    EXPECT_EQ(verdicts("back"), verdicts("run"));
+    EXPECT_THAT(verdicts("back"), testing::Contains("grows holds"));
+    EXPECT_THAT(verdicts("back"), testing::Contains("small fails"));
+    // And out again: the same cases under other ids, the same numbers.
+    ASSERT_EQ(mockGfxrepro({"export", dir("back"), "--tidy"}).exitCode, 0);
+    const auto withoutIds = [&](const std::string& name) {
+        const std::string text = readFile(dir(name));
+        report::CsvReader reader(text, name);
+        std::vector<std::string> fields;
+        std::string rest;
+        while (reader.next(fields)) {
+            for (std::size_t i = 1; i < fields.size(); ++i) rest += fields[i] + "|";
+            rest += '\n';
+        }
+        return rest;
+    };
+    EXPECT_EQ(withoutIds("back-tidy/records.csv"), withoutIds("run-tidy/records.csv"));
+}
+
+TEST_F(Data, AnImportedRunSaysSoEverywhere) {
+    const std::string csv = folder_.write("theirs.csv", "samples,mse\n4,0.5\n16,0.125\n64,0.03\n");
+    const ProcessResult imported = mockGfxrepro(
+        {"import", csv, "--metric", "mse=1", "--machine", "RTX 4090", "--out", dir("theirs")});
+    EXPECT_EQ(imported.exitCode, 0) << imported.err;
+    EXPECT_THAT(imported.out,
+                HasSubstr("imported 3 numbers of 3 cases into " + dir("theirs") + "\n"));
+    const std::string mark =
+        "imported: these numbers were measured elsewhere, on RTX 4090, and not by this program; "
+        "they are those of theirs.csv (SHA-256 ";
+    EXPECT_THAT(imported.out, HasSubstr("warning: " + mark));
+    EXPECT_EQ(readFile(dir("theirs") + "/tables/sweep-theirs.csv").substr(0, 8), "samples,");
+    EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.md"), HasSubstr(mark));
+    const std::string page = readFile(dir("theirs") + "/report.html");
+    EXPECT_THAT(page, HasSubstr(mark));
+    EXPECT_THAT(page, HasSubstr("gfxrepro import "));
+    EXPECT_THAT(page, Not(HasSubstr("gfxrepro run ")));
+    EXPECT_THAT(page, Not(HasSubstr("gfxrepro reproduce ")));
+    EXPECT_THAT(page, HasSubstr("<span class=\"badge ambiguous\">imported</span> measured "
+                                "elsewhere, on RTX 4090, "));
+    const auto manifest = nlohmann::json::parse(readFile(dir("theirs") + "/manifest.json"));
+    EXPECT_EQ(manifest["imported"]["file"], "theirs.csv");
+    EXPECT_EQ(manifest["imported"]["rows"], 3);
+    EXPECT_TRUE(manifest["sha256"].contains("records.csv"));
+    EXPECT_EQ(mockGfxrepro({"table", dir("theirs")}).exitCode, 0);
+    EXPECT_THAT(
+        mockGfxrepro({"compare", dir("theirs"), dir("theirs"), "--out", dir("compared")}).out,
+        HasSubstr(dir("theirs") + ": " + mark));
+}
+
+TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
+    const std::string config = folder_.write(
+        "theirs.yaml",
+        "sweep_of: theirs\ntitle: Another renderer\ntechnique: imported\n"
+        "sweep: {samples: [4, 16, 64]}\n"
+        "layout: {rows: samples, columns: {mse: {metric: mse}}}\n"
+        "claims:\n  slope: {says: error falls as 1 / samples, trend: mse, over: samples, "
+        "exponent: [-1.1, -0.9], bound_from: text}\n"
+        "plots: [{x: samples, y: mse, log: [x, y]}]\n");
+    EXPECT_EQ(mockGfxrepro({"check", config}).out,
+              config + ": ok, sweep/theirs, 0 cases, 1 claim\n");
+    EXPECT_EQ(refusal({"run", config, "--device", "software", "--out", dir("none")}),
+              "gfxrepro: DIR/theirs.yaml:3:12: technique 'imported': its numbers are measured "
+              "elsewhere; `gfxrepro import FILE.csv --config theirs.yaml` takes them\n");
+    const std::string csv =
+        folder_.write("theirs.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.125\n64,mse,0.03\n");
+    const ProcessResult imported =
+        mockGfxrepro({"import", csv, "--config", config, "--out", dir("theirs")});
+    EXPECT_EQ(imported.exitCode, 0) << imported.err << imported.out;
+    EXPECT_THAT(verdicts("theirs"), testing::Contains("slope holds"));
+    const std::string flat =
+        folder_.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
+    EXPECT_EQ(mockGfxrepro({"import", flat, "--config", config, "--out", dir("flat")}).exitCode, 1);
+    EXPECT_THAT(verdicts("flat"), testing::Contains("slope fails"));
+}
+
+TEST_F(Data, WhatIsMissingOfAnImportMakesItIncomplete) {
+    const std::string csv = folder_.write(
+        "a.csv", "n,metric,value,process,status\n1,mse,5,0,\n1,mse,6,2,\n2,,,0,crash\n");
+    const ProcessResult imported = mockGfxrepro({"import", csv, "--out", dir("a")});
+    EXPECT_EQ(imported.exitCode, 4) << imported.err;
+    EXPECT_THAT(imported.out, HasSubstr("incomplete: 1 not measured, 1 failed\n"));
+}
+
+TEST_F(Data, NothingIsMeasuredIntoAnImportedRun) {
+    const std::string csv = folder_.write("a.csv", "n,metric,value\n1,mse,5\n2,mse,6\n");
+    ASSERT_EQ(mockGfxrepro({"import", csv, "--out", dir("a")}).exitCode, 0);
+    EXPECT_EQ(refusal({"run", "--resume", dir("a"), "--device", "software"}),
+              "gfxrepro: DIR/a: was imported; there is nothing to go on with\n");
+    EXPECT_EQ(refusal({"export", dir("a"), "--out", dir("b")}),
+              "gfxrepro: DIR/a: was imported; there is nothing to measure again; `export --tidy` "
+              "gives its numbers\n");
+    EXPECT_THAT(refusal({"import", csv, "--out", dir("a")}), HasSubstr("DIR/a"));
+}
+
+TEST_F(Data, BadImportsAreOneErrorEach) {
+    const std::string csv = folder_.write("a.csv", "n,metric,value\n1,mse,fast\n");
+    EXPECT_EQ(
+        refusal({"import", csv, "--out", dir("a")}),
+        "gfxrepro: DIR/a.csv:2: column 'value': 'fast'; allowed: a number, inf, or nothing in "
+        "a row whose status is not ok\n");
+    EXPECT_FALSE(fs::exists(dir("a")));
+    EXPECT_EQ(refusal({"import", csv, "--metric", "value", "--out", dir("a")}),
+              "gfxrepro: --metric 'value'; allowed: COLUMN=UNIT, such as render_time_ms=ms; 1 is "
+              "the unit of "
+              "what has none\n");
+    const std::string config = writeMockConfig(folder_,
+                                               "layout: {rows: number, columns: {n: "
+                                               "{metric: number}}}\nsweep: {number: [1]}\n");
+    const std::string other =
+        folder_.write("b.csv", "experiment,number,metric,value\nsweep/mine,1,number,5\n");
+    EXPECT_EQ(
+        refusal({"import", other, "--config", config, "--out", dir("a")}),
+        "gfxrepro: DIR/b.csv:2: column 'experiment': 'sweep/mine'; allowed, as of the configs "
+        "given: sweep/mock\n");
+    const std::string twice = folder_.write("c.csv", "n,metric,value\n1,mse,5\n1.0,mse,6\n");
+    EXPECT_EQ(refusal({"import", twice, "--out", dir("a")}),
+              "gfxrepro: DIR/c.csv:3: the same case as in line 2: sweep/c\n");
+    const std::string time = folder_.write("e.csv", "n,time\n1,5\n");
+    EXPECT_EQ(
+        refusal({"import", time, "--metric", "time=s", "--out", dir("a")}),
+        "gfxrepro: DIR/e.csv:2: 'time' has the unit 's'; a time has a name that ends in _ms and "
+        "the unit ms, by which claims know it, and nothing else has\n");
+    const std::string size = folder_.write("d.csv", "output.width,metric,value\nwide,mse,5\n");
+    EXPECT_EQ(
+        refusal({"import", size, "--out", dir("a")}),
+        "gfxrepro: DIR/d.csv:2: column 'output.width': 'wide'; allowed: a whole number from 1 "
+        "to 16384\n");
+}
+
+TEST_F(Data, ExportGoesOverNothing) {
+    ASSERT_EQ(run("").exitCode, 0);
+    folder_.write("there/a.txt", "mine");
+    EXPECT_EQ(refusal({"export", dir("run"), "--tidy", "--out", dir("there")}),
+              "gfxrepro: DIR/there: is there already; give another folder\n");
+}
+
+TEST_F(Data, AHistoryBecomesAPageAndAFileForQueries) {
+    std::string csv =
+        "time,commit,machine,table,technique,method,scene,params,pass,metric,unit,value\n";
+    for (int night = 10; night < 40; ++night) {
+        csv += "2026-01-" + std::to_string(night) + "T00:00:00Z,c" + std::to_string(night) +
+               ",m,t,k,,,{},,wall_time_ms,ms," + (night < 25 ? "1" : "2") + "." +
+               std::to_string(night) + "\n";
+    }
+    const std::string file = folder_.write("history.csv", csv);
+    const ProcessResult made = mockGfxrepro(
+        {"history", file, "--out", dir("history.html"), "--sqlite", dir("history.sqlite")});
+    EXPECT_EQ(made.exitCode, 0) << made.err;
+    EXPECT_EQ(made.out, "m: 30 nights, 1 series, 1 changes\nhistory: " + dir("history.html") +
+                            "\nqueries: " + dir("history.sqlite") + "\n");
+    EXPECT_THAT(readFile(dir("history.html")), HasSubstr("<td>c24</td><td>c25</td>"));
+    EXPECT_EQ(readFile(dir("history.sqlite")).substr(0, 15), "SQLite format 3");
+    const std::string text = folder_.write("thesis.html", "four years");
+    EXPECT_EQ(refusal({"history", file, "--out", text}),
+              "gfxrepro: DIR/thesis.html: is there and is not a report; give another file\n");
+    EXPECT_EQ(refusal({"history", dir("none.csv")}),
+              "gfxrepro: cannot read DIR/none.csv: No such file or directory\n");
+    const std::string header = folder_.write("empty.csv", csv.substr(0, csv.find('\n') + 1));
+    EXPECT_EQ(refusal({"history", header}), "gfxrepro: DIR/empty.csv: has no night\n");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

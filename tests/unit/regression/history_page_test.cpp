@@ -1,0 +1,196 @@
+#include "runner/regression/history_page.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "runner/core/files.h"
+#include "runner/regression/chart.h"
+#include "tests/support/support.h"
+#include "tests/unit/regression/nights.h"
+
+namespace gfxrepro::regression {
+namespace {
+
+using gfxrepro::test::errorText;
+using gfxrepro::test::TemporaryFolder;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kSignificance = 1e-5;
+constexpr double kFloor = 0.05;
+
+/// Levels of `length` nights each, with noise.
+Series levels(std::uint64_t seed, const std::vector<double>& values, int length,
+              double noise = 0.02) {
+    Random random(seed);
+    Series nights;
+    for (const double value : values) {
+        for (int i = 0; i < length; ++i) {
+            nights.push_back(value * std::exp(noise * test::normal(random)));
+        }
+    }
+    return nights;
+}
+
+std::vector<std::size_t> firstNights(const Series& nights) {
+    std::vector<std::size_t> firsts;
+    for (const Step& step : findAllSteps(nights, kSignificance, kFloor)) {
+        firsts.push_back(step.first);
+    }
+    return firsts;
+}
+
+TEST(AllSteps, FindsEachChangeOfLevel) {
+    const Series nights = levels(1, {10, 12, 9, 9.9}, 30);
+    const std::vector<Step> steps = findAllSteps(nights, kSignificance, kFloor);
+    ASSERT_EQ(steps.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(static_cast<double>(steps[i].first), 30.0 * static_cast<double>(i + 1), 1.0);
+    }
+    EXPECT_NEAR(steps[0].ratio, 1.2, 0.03);
+    EXPECT_NEAR(steps[1].ratio, 0.75, 0.03);
+    EXPECT_NEAR(steps[2].ratio, 1.1, 0.03);
+}
+
+// The nightly looks at its last hundred nights alone: what is older must be found all the same.
+TEST(AllSteps, FindsWhatLiesFarBack) {
+    const Series old = levels(2, {10, 13}, 40), later = levels(3, {13}, 400);
+    Series nights = old;
+    nights.insert(nights.end(), later.begin(), later.end());
+    ASSERT_FALSE(findStep(nights, kSignificance, kFloor));
+    const std::vector<std::size_t> firsts = firstNights(nights);
+    ASSERT_EQ(firsts.size(), 1U);
+    EXPECT_NEAR(static_cast<double>(firsts[0]), 40.0, 2.0);
+}
+
+TEST(AllSteps, TwoYearsOfNoiseHaveNone) {
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        EXPECT_EQ(firstNights(levels(seed, {10}, 730, 0.15)), std::vector<std::size_t>{}) << seed;
+    }
+    EXPECT_TRUE(firstNights({}).empty());
+    EXPECT_TRUE(firstNights({1, 2, 3}).empty());
+}
+
+TEST(Changes, WholeNumbersExactlyAndOthersBeyondRounding) {
+    EXPECT_EQ(findChanges({100000, 100000, 100001, 100001}), std::vector<std::size_t>{2});
+    EXPECT_EQ(findChanges({0.5, 0.50001, 0.501, 0.501}), std::vector<std::size_t>{2});
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(findChanges({infinity, infinity, 40.5}), std::vector<std::size_t>{2});
+    EXPECT_TRUE(findChanges({7.5}).empty());
+}
+
+HistoryRow rowOf(int night, const SeriesKey& key, double value,
+                 const std::string& machine = "a <machine>") {
+    return {fmt::format("2026-{:02}-{:02}T03:00:00Z", 1 + night / 28, 1 + night % 28),
+            fmt::format("c{:03}", night), machine, key, value};
+}
+
+/// A time with a step at night 20, a value that changes at night 12, one that does not.
+std::vector<HistoryRow> someRows() {
+    SeriesKey value = test::timeOf("m"), constant = value;
+    value.metric = "triangles";
+    value.unit = "count";
+    constant.metric = "psnr_db";
+    std::vector<HistoryRow> rows;
+    const Series times = levels(4, {10, 12}, 20);
+    for (int night = 0; night < 40; ++night) {
+        rows.push_back(rowOf(night, test::timeOf("m"), times[static_cast<std::size_t>(night)]));
+        if (night != 30) rows.push_back(rowOf(night, value, night < 12 ? 500 : 512));
+        rows.push_back(rowOf(night, constant, 40.5));
+    }
+    rows.push_back(rowOf(0, test::timeOf("m"), 3.0, "b"));
+    return rows;
+}
+
+TEST(HistoryPage, EachMachineHasItsNightsAndChanges) {
+    std::vector<HistoryRow> rows = someRows();
+    std::ranges::reverse(rows);  // of several files, the newest first
+    const std::vector<MachineHistory> histories = historiesOf(rows);
+    ASSERT_EQ(histories.size(), 2U);
+    const MachineHistory& first = histories[0];
+    EXPECT_EQ(first.machine, "a <machine>");
+    ASSERT_EQ(first.nights.size(), 40U);
+    EXPECT_EQ(first.nights[20].commit, "c020");
+    ASSERT_EQ(first.series.size(), 3U);
+    const SeriesHistory& constant = first.series[0];
+    EXPECT_EQ(constant.key.metric, "psnr_db");
+    EXPECT_TRUE(constant.changes.empty());
+    const SeriesHistory& value = first.series[1];
+    EXPECT_EQ(value.nights.size(), 39U);
+    ASSERT_EQ(value.changes.size(), 1U);
+    EXPECT_EQ(value.changes[0].before, 11U);
+    EXPECT_EQ(value.changes[0].night, 12U);
+    const SeriesHistory& time = first.series[2];
+    ASSERT_EQ(time.changes.size(), 1U);
+    EXPECT_EQ(time.changes[0].before, 19U);
+    EXPECT_EQ(time.changes[0].night, 20U);
+    EXPECT_NEAR(time.changes[0].ratio, 1.2, 0.03);
+    EXPECT_LT(time.changes[0].chance, significanceOf(1));
+    EXPECT_EQ(histories[1].nights.size(), 1U);
+}
+
+TEST(HistoryPage, ShowsCurvesMarksAndCommitsWithoutAScript) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "history.html";
+    writeHistoryPage(file, "Nights & days", historiesOf(someRows()));
+    const std::string page = readFile(file);
+    EXPECT_THAT(page, HasSubstr("<title>gfxrepro: Nights &amp; days</title>"));
+    EXPECT_THAT(page, HasSubstr("<h2>a &lt;machine&gt;</h2>"));
+    EXPECT_THAT(page, HasSubstr("<td>c019</td><td>c020</td>"));  // of the step
+    EXPECT_THAT(page, HasSubstr("500 → 512"));
+    EXPECT_THAT(page, HasSubstr("<td>c011</td><td>c012</td>"));
+    EXPECT_THAT(page, HasSubstr("One series that is no time never changed."));
+    EXPECT_THAT(page, HasSubstr("<title>2026-01-21T03:00:00Z, c020: "));
+    EXPECT_THAT(page, Not(HasSubstr("<script")));
+    EXPECT_THAT(page, Not(HasSubstr("http")));
+    std::size_t curves = 0;
+    for (std::size_t at = 0; (at = page.find("<svg", at)) != page.npos; ++at) ++curves;
+    EXPECT_EQ(curves, 3U);  // two of the first machine, one of the second
+}
+
+TEST(Chart, TicksAreRoundAndWithinTheirRange) {
+    EXPECT_EQ(roundTicks(0.0, 10.0), (std::vector<double>{0, 5, 10}));
+    EXPECT_EQ(roundTicks(9.6, 12.5), (std::vector<double>{10, 11, 12}));
+    EXPECT_EQ(roundTicks(3.0, 3.0), std::vector<double>{3.0});
+    for (const double high : {1e-6, 0.37, 4.0, 123456.0}) {
+        const std::vector<double> ticks = roundTicks(0.0, high);
+        EXPECT_GE(ticks.size(), 3U) << high;
+        EXPECT_LE(ticks.size(), 6U) << high;
+        EXPECT_LE(ticks.back(), high);
+    }
+}
+
+TEST(Chart, ANightWithoutAValueIsAGap) {
+    const std::vector<ChartNight> nights = {{"1", "one"}, {"2", "two"}, {"3", "three"}, {"4", "4"}};
+    const std::string svg = chartSvg(nights, {"ms", {1.0, 2.0, std::nullopt, 3.0}, {}, true});
+    EXPECT_THAT(svg, HasSubstr("<title>one: 1 ms</title>"));
+    EXPECT_THAT(svg, Not(HasSubstr("three:")));
+    const std::size_t path = svg.find("<path d=\"") + 9;
+    const std::string line = svg.substr(path, svg.find('"', path) - path);
+    EXPECT_EQ(std::ranges::count(line, 'M'), 2);
+    EXPECT_EQ(std::ranges::count(line, 'L'), 1);
+}
+
+TEST(HistoryRows, AFileThatIsNoHistoryIsRefused) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.csv", "samples,mse\n4,1\n");
+    EXPECT_EQ(errorText([&] { readHistoryRows(file); }, folder.path()),
+              "DIR/a.csv:1: is no history; expected the header "
+              "'time,commit,machine,table,technique,method,scene,params,pass,metric,unit,value'");
+    EXPECT_EQ(errorText([&] { readHistoryRows(folder.path() / "none.csv"); }, folder.path()),
+              "cannot read DIR/none.csv: No such file or directory");
+}
+
+TEST(HistoryRows, AHeaderThatWasTornIsWrittenAgain) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("history.csv", "time,com");
+    appendNight(file, {"2026-01-01T00:00:00Z", "abc", "a", {{test::timeOf("m"), {1.0}}}});
+    ASSERT_EQ(readHistoryRows(file).size(), 1U);
+    EXPECT_EQ(readHistoryRows(file)[0].commit, "abc");
+}
+
+}  // namespace
+}  // namespace gfxrepro::regression
