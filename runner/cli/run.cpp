@@ -81,13 +81,15 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, std::optional<batch::Plan> submitted,
                     batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
-    const batch::SchedulerOptions scheduler{request.device,
+    // Experiments are read first: what is wrong in a config is said before a device is asked for.
+    const std::string choice =
+        deviceFor(context, request.device,
+                  submitted ? submitted->experiments : loadExperiments(request, selection.profile));
+    const batch::SchedulerOptions scheduler{choice,
                                             fs::absolute(assetsFolder(selection.assets)),
                                             jobsOf(options),
                                             {},
                                             context.commandLine};
-    // Experiments are read first: what is wrong in a config is said before a device is asked for.
-    if (!submitted) loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     batch::Plan plan = submitted ? std::move(*submitted)
                                  : planFor(context, request, selection.profile,
@@ -171,11 +173,12 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     batch::RunDirectory directory = batch::RunDirectory::open(options.resume);
     batch::StoredRun stored = batch::readRun(options.resume);
     requireSameRequest(options, request, stored.plan);
-    const batch::SchedulerOptions scheduler{stored.plan.request.device,
-                                            fs::absolute(assetsFolder(options.selection.assets)),
-                                            jobsOf(options),
-                                            {},
-                                            context.commandLine};
+    const batch::SchedulerOptions scheduler{
+        deviceFor(context, stored.plan.request.device, stored.plan.experiments),
+        fs::absolute(assetsFolder(options.selection.assets)),
+        jobsOf(options),
+        {},
+        context.commandLine};
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
     const std::string reason = batch::whyNotResumable(
         stored.plan, deviceClassOf(device), openCatalog(context, options.selection.assets));
@@ -262,7 +265,9 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     run.directory.log({{"event", outcome.isInterrupted ? "interrupted" : "end"},
                        {"finished", outcome.finished},
                        {"failed", outcome.failed}});
+    run.directory.removeScratch();
     batch::addScenes(run.manifest, outcome.scenes);
+    batch::addPrograms(run.manifest, outcome.programs);
     run.manifest["rounds"] = rounds.endings();
     saveManifest(context, run, phases);
     const std::string path = run.directory.path().string();

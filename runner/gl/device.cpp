@@ -19,7 +19,7 @@
 namespace gfxrepro::gl {
 
 struct Device::Impl {
-    egl::Context context;
+    std::optional<egl::Context> context;  // none: of "none"
     DeviceInfo info;
     DeviceLimits limits;
     std::set<std::string, std::less<>> extensions;
@@ -146,7 +146,7 @@ Device::~Device() = default;
 Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug) {
     auto impl = std::make_unique<Impl>(
         Impl{egl::Context(candidate, debug != DebugOutput::Off), {}, {}, {}, {}});
-    impl->context.makeCurrent();
+    impl->context->makeCurrent();
     impl->info = readInfo(candidate);
     impl->limits = readLimits();
     impl->extensions = readExtensions();
@@ -155,6 +155,13 @@ Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug)
 }
 
 Device Device::open(const DeviceChoice& choice) {
+    if (choice.name == "none") {
+        auto impl = std::make_unique<Impl>();
+        impl->info.platform = "none";
+        impl->info.renderer = "no graphics device";
+        impl->info.isSoftware = true;
+        return Device(std::move(impl));
+    }
     const std::optional<long long> index = parseInteger(choice.name);
     if (choice.name != "auto" && choice.name != "software" && !index) {
         throw UsageError(fmt::format(
@@ -188,11 +195,15 @@ Device Device::open(const DeviceChoice& choice) {
         }
     }
     if (software) {
-        software->impl_->context.makeCurrent();
+        software->impl_->context->makeCurrent();
         return std::move(*software);
     }
     throw NoDeviceError(fmt::format("no usable OpenGL 4.5 device for '{}':\n  {}", choice.name,
                                     joined(problems, "\n  ")));
+}
+
+bool Device::isNone() const {
+    return !impl_->context;
 }
 
 const DeviceInfo& Device::info() const {
@@ -213,6 +224,7 @@ void Device::checkDebug(const char* what) {
 }
 
 void Device::finish(const char* what) {
+    if (isNone()) return;
     glFinish();
     if (const std::string reason = resetReason(); !reason.empty()) {
         throw DeviceLostError(fmt::format("{}: the device was reset {}", what, reason));

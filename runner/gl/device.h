@@ -42,8 +42,8 @@ enum class DebugOutput {
             // not pass through the driver's frames.
 };
 
-/// "auto": the first hardware device, else the software one; "software"; or an index from
-/// listDevices().
+/// "auto": the first hardware device, else the software one; "software"; an index from
+/// listDevices(); or "none", for what needs no device.
 struct DeviceChoice {
     std::string name = "auto";
     DebugOutput debug = DebugOutput::Log;
@@ -60,6 +60,8 @@ class Device {
     Device& operator=(Device&&) noexcept;
     ~Device();
 
+    /// Nothing may be drawn on "none": it has no context, and no driver is loaded.
+    bool isNone() const;
     const DeviceInfo& info() const;
     const DeviceLimits& limits() const;
     bool hasExtension(const std::string& name) const;
