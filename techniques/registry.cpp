@@ -3,6 +3,7 @@
 #include "runner/technique/technique.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/depth_sampling/depth_sampling.h"
+#include "techniques/external/external.h"
 #include "techniques/point_splatting/point_splatting.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
 #include "techniques/shadow_mapping/shadow_mapping.h"
@@ -19,6 +20,7 @@ std::span<const TechniqueInfo> registeredTechniques() {
     static const TechniqueInfo kTechniques[] = {
         clustered_reflections::kClusteredReflections,
         depth_sampling::kDepthSampling,
+        external::kExternal,
         point_splatting::kPointSplatting,
         reflection_reuse::kReflectionReuse,
         shadow_mapping::kShadowMapping,

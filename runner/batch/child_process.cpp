@@ -116,10 +116,21 @@ bool ChildProcess::isSuspended() const {
     return name != text.npos && (text[name + 2] == 'T' || text[name + 2] == 't');
 }
 
+/// Where the child has ended, what it started must not outlive it. As long as it is not reaped the
+/// group is surely its own.
+void ChildProcess::killWhatIsLeft() const {
+    siginfo_t ended{};
+    const int flags = WEXITED | WNOHANG | WNOWAIT;
+    if (::waitid(P_PID, static_cast<id_t>(pid_), &ended, flags) == 0 && ended.si_pid == pid_) {
+        ::kill(-pid_, SIGKILL);
+    }
+}
+
 std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point limit = Clock::now() + patience;
     for (auto pause = std::chrono::microseconds(100); !isReaped_; pause *= 2) {
+        killWhatIsLeft();
         const pid_t ended = ::waitpid(pid_, &waitStatus_, WNOHANG);
         isReaped_ = ended == pid_ || (ended < 0 && errno != EINTR);
         if (isReaped_) break;

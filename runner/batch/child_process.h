@@ -15,7 +15,8 @@ namespace gfxrepro::batch {
 inline constexpr int kMessageFd = 3;
 
 /// Owns the process: it is killed and reaped when the object goes. The child is in a process group
-/// of its own (a Ctrl-C on the terminal reaches the runner alone) and dies with the runner.
+/// of its own (a Ctrl-C on the terminal reaches the runner alone), which dies with it, and it with
+/// the runner.
 class ChildProcess {
   public:
     /// Starts `arguments[0]`. Throws Error when no process can be made.
@@ -46,6 +47,8 @@ class ChildProcess {
     static constexpr std::chrono::seconds kKillPatience{5};
 
   private:
+    void killWhatIsLeft() const;
+
     pid_t pid_ = -1;
     int inputFd_ = -1;
     int messageFd_ = -1;

@@ -26,7 +26,8 @@ constexpr const char* kView = "view";
 std::vector<config::ParamInfo> declaredBy(const config::Experiment& experiment,
                                           std::span<const technique::TechniqueInfo> techniques) {
     config::Params none(Node::map({}), "technique '" + experiment.technique + "'");
-    technique::findTechnique(techniques, experiment.technique, {}).create(none);
+    technique::makeTechnique(technique::findTechnique(techniques, experiment.technique, {}),
+                             config::programOf(experiment), none);
     return none.declared();
 }
 
@@ -258,7 +259,7 @@ void requireReadable(const config::Experiment& experiment, const Assumption& ass
             takeInstead(spec, Node::map({{assumption.name, value}}), item);
             config::Params params(item.given, "technique '" + std::string(info.name) + "'");
             if (!item.offered.isNull()) params.offer(item.offered);
-            info.create(params);
+            technique::makeTechnique(info, config::programOf(experiment), params);
         }
     }
 }

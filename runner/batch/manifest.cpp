@@ -151,6 +151,22 @@ void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
     }
 }
 
+void addPrograms(Json& manifest, const std::set<ProgramUse>& programs) {
+    for (const ProgramUse& use : programs) {
+        const Json entry = {{"file", use.file}, {"sha256", use.sha256}, {"version", use.version}};
+        Json& known = manifest["programs"];
+        if (std::ranges::find(known, entry) == known.end()) known.push_back(entry);
+    }
+}
+
+std::set<ProgramUse> programsOf(const Json& manifest) {
+    std::set<ProgramUse> programs;
+    for (const Json& use : manifest.value("programs", Json::array())) {
+        programs.insert({use.at("file"), use.at("sha256"), use.at("version")});
+    }
+    return programs;
+}
+
 std::string machineName(const Json& manifest) {
     const Json& gl = manifest.at("gl");
     if (manifest.contains("imported")) return "imported: " + gl.at("renderer").get<std::string>();

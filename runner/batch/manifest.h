@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,9 @@ std::vector<std::string> notesOf(const Json& manifest);
 
 /// Adds what workers loaded, one entry a reference.
 void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
+/// Adds the programs that workers ran and the files that these read, each of its versions once.
+void addPrograms(Json& manifest, const std::set<ProgramUse>& programs);
+std::set<ProgramUse> programsOf(const Json& manifest);
 
 /// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6", or "imported: " and what the importing
 /// person calls it: times of two names are not compared.

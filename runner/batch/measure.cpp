@@ -9,6 +9,7 @@
 #include "runner/batch/equal_work.h"
 #include "runner/batch/process_memory.h"
 #include "runner/batch/recorder.h"
+#include "runner/batch/run_directory.h"
 
 namespace gfxrepro::batch {
 
@@ -177,7 +178,11 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
                 const double processTimeMs = gl::processTimeMs() - processBeginMs;
                 recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
                 recorder.metric("frame_rate", 1000.0 / wallTimeMs, "1/s", "");
-                if (isSoftware) recorder.metric("process_time_ms", processTimeMs, "ms", "");
+                if (const auto elsewhere = technique.usageElsewhere()) {
+                    recorder.metric("process_time_ms", elsewhere->processTimeMs, "ms", "");
+                } else if (isSoftware) {
+                    recorder.metric("process_time_ms", processTimeMs, "ms", "");
+                }
                 recordPasses(profiler, isSoftware, recorder);
                 guard.endRepeat(technique, recorder);
             }
@@ -199,14 +204,22 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     const SourceLocation nowhere;
     const technique::TechniqueInfo& info =
         technique::findTechnique(context.techniques, item.technique, nowhere);
-    RunRecorder recorder(context.runDir, context.command, item, technique::outputsOf(info), result);
+    RunRecorder recorder(context.runDir, context.command, item,
+                         technique::outputsOf(info, item.program), result);
     config::Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
 
     const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();
     context.scenes.beginCase(sceneName);
     resetPeakResident();
-    const std::unique_ptr<technique::Technique> technique = info.create(params);
+    const std::unique_ptr<technique::Technique> technique =
+        technique::makeTechnique(info, item.program, params);
+    if (context.device.isNone() && technique::needsDevice(info, item.program)) {
+        throw UnsupportedError("technique '" + item.technique + "' needs a graphics device");
+    }
+    if (!item.program.isNull()) {
+        result.programs = context.programs.require(item, params.resolved());
+    }
     const SceneCache::Entry* scene = nullptr;
     if (!sceneName.empty()) {
         const PhaseScope phase(context, "load", result.cost.loadS);
@@ -221,7 +234,8 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
                                   scene ? &scene->scene : nullptr,
                                   {item.outputWidthPx, item.outputHeightPx},
                                   item.seed,
-                                  profiler};
+                                  profiler,
+                                  context.runDir / kScratchFolder};
     {
         const PhaseScope phase(context, "setup", result.cost.setupS);
         const Clock::time_point begin = Clock::now();
@@ -233,7 +247,12 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     renderAndRecord(item, *technique, profiler, context, recorder, result);
     recorder.setIteration(report::kSetup, report::kSetup);
     result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
-    if (scene) recordMemory(context, *scene, recorder);
+    if (const auto elsewhere = technique->usageElsewhere()) {
+        result.cost.peakBytes += elsewhere->peakBytes;
+        recorder.metric("peak_memory_bytes", static_cast<double>(elsewhere->peakBytes), "byte", "");
+    } else if (scene) {
+        recordMemory(context, *scene, recorder);
+    }
 
     for (const SceneCache::Entry& entry : context.scenes.entries()) {
         if (!entry.isOfThisCase) continue;

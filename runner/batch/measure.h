@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "runner/batch/plan.h"
+#include "runner/batch/program_cache.h"
 #include "runner/batch/protocol.h"
 #include "runner/batch/scene_cache.h"
 
@@ -16,6 +17,7 @@ struct MeasureContext {
     gl::Device& device;
     const gl::ShaderLibrary& shaders;
     SceneCache& scenes;
+    ProgramCache& programs;
     std::span<const technique::TechniqueInfo> techniques;
     std::filesystem::path runDir;
     std::string command;            // as typed

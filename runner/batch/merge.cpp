@@ -107,6 +107,7 @@ Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& comm
             manifest["notes"].push_back(shard.path.string() + ": " + note);
         }
         manifest["scenes"].update(from.at("scenes"));
+        addPrograms(manifest, programsOf(from));
         if (from.contains("rounds")) rounds.update(from.at("rounds"));
         manifest["merged"].push_back(
             {{"folder", shard.path.string()},

@@ -42,6 +42,7 @@ std::string caseId(const Case& item, Json written, const Plan& plan) {
         item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
     written["id"] = "";
     written["scene"] = scene == plan.sceneKeys.end() ? "" : scene->second;
+    if (written.contains("program")) written["program"].erase(config::placeholder::kHere);
     written["device_class"] = plan.deviceClass;
     written["build"] = plan.buildId;
     return sha256(written.dump()).substr(0, 12);
@@ -138,6 +139,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     }
     std::set<std::string> experimentIds;
     std::set<std::string> caseIds;
+    config::FileDigests digests;
     for (config::Experiment& experiment : plan.experiments) {
         if (!experimentIds.insert(experiment.id).second) {
             throw Error(experiment.file.string() + ": the experiment '" + experiment.id +
@@ -146,8 +148,9 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);
         if (experiment.hasDefaultLayout()) {
-            experiment.outputs = technique::outputsOf(
-                technique::findTechnique(techniques, experiment.technique, {}));
+            experiment.outputs =
+                technique::outputsOf(technique::findTechnique(techniques, experiment.technique, {}),
+                                     config::programOf(experiment));
         }
         requireCaseCount(plan.cases.size() + cases.size(), experiment);
         for (Case& item : cases) {
@@ -155,6 +158,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
                 std::string& known = plan.sceneKeys[item.scene.text()];
                 if (known.empty()) known = catalog.contentKey(item.scene);
             }
+            item.programKey = programKeyOf(item, digests);
             item.id = caseId(item, item.toJson(), plan);
             if (!caseIds.insert(item.id).second) {
                 throw Error(experiment.file.string() + ": the sweep gives the case '" +
@@ -173,6 +177,12 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
     for (const ExpectationList& list : plan.expectations) readExpectations(list);  // or throws
     plan.hash = hashOf(plan);
     return plan;
+}
+
+std::string programKeyOf(const Case& item, config::FileDigests& digests) {
+    if (item.program.isNull()) return "";
+    const config::Program program = config::readProgram(item.program);
+    return config::programKey(config::filesOf(program, program.valuesOf(item.params)), digests);
 }
 
 void rebind(Plan& plan, const std::string& deviceClass) {
@@ -197,6 +207,13 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
     for (const auto& [reference, key] : plan.sceneKeys) {
         if (catalog.contentKey(config::Node::scalar(reference)) != key) {
             return "the scene '" + reference + "' changed";
+        }
+    }
+    config::FileDigests digests;
+    for (const Case& item : plan.cases) {
+        if (item.programKey.empty()) continue;  // of none, or one that was not at hand then
+        if (programKeyOf(item, digests) != item.programKey) {
+            return "the program of " + item.experiment + ", or a file of it, changed";
         }
     }
     return "";

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/config/program.h"
 #include "runner/report/case_records.h"
 #include "runner/scene/catalog.h"
 #include "runner/technique/technique.h"
@@ -25,6 +26,8 @@ struct Case {
     std::string id;          // 12 hexadecimal digits of the content hash
     std::string experiment;  // "zju2005/2.1"
     std::string technique;
+    config::Node program;            // null, or the config's `program`
+    std::string programKey;          // identity of its files; empty where it is not at hand
     config::Node scene;              // null or a reference: what is loaded
     config::Node standsFor;          // what the config calls it, where that is another; else null
     std::optional<int> sceneSample;  // from 0, where several seeds are measured
@@ -138,6 +141,9 @@ std::vector<config::PaperCase> resolvePaperCases(
 Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
               std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
               const std::string& deviceClass, std::uint64_t seed);
+
+/// Identity of the program's files as the case has it, as Case::programKey.
+std::string programKeyOf(const Case& item, config::FileDigests& digests);
 
 /// Makes it a plan for another class of device: the same cases, under the ids that they have there.
 void rebind(Plan& plan, const std::string& deviceClass);

@@ -234,6 +234,10 @@ Json Case::toJson() const {
                  {"measure", batch::toJson(measure)},
                  {"seed", std::to_string(seed)}};
     if (!offered.isNull()) json["offered"] = offered.toJson();
+    if (!program.isNull()) {
+        json["program"] = program.toJson();
+        json["program_key"] = programKey;
+    }
     addSceneTo(json);
     return json;
 }
@@ -254,6 +258,10 @@ Case Case::fromJson(const config::Node& node) {
     item.measure = measureFrom(required(node, "measure"));
     item.seed = requiredSeed(node);
     if (const config::Node* offered = node.find("offered")) item.offered = *offered;
+    if (const config::Node* program = node.find("program")) {
+        item.program = *program;
+        item.programKey = requiredText(node, "program_key");
+    }
     if (const config::Node* name = node.find(report::kStandsFor)) item.standsFor = *name;
     if (const config::Node* sample = node.find(report::kSceneSample)) {
         item.sceneSample = intFrom(*sample, report::kSceneSample, report::kMostSceneSample);

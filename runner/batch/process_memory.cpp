@@ -3,8 +3,10 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace gfxrepro::batch {
 
@@ -14,6 +16,30 @@ long long residentBytes(pid_t pid) {
     long long residentPages = 0;
     if (!(file >> totalPages >> residentPages)) return 0;
     return residentPages * ::sysconf(_SC_PAGESIZE);
+}
+
+namespace {
+
+/// Adds the processes that a thread of `pid` started; proc(5).
+void addChildren(pid_t pid, std::vector<pid_t>& all) {
+    std::error_code isGone;
+    const std::filesystem::path tasks = "/proc/" + std::to_string(pid) + "/task";
+    for (const auto& task : std::filesystem::directory_iterator(tasks, isGone)) {
+        std::ifstream file(task.path() / "children");
+        for (pid_t child; file >> child;) all.push_back(child);
+    }
+}
+
+}  // namespace
+
+long long residentBytesOfTree(pid_t pid) {
+    std::vector<pid_t> all = {pid};
+    long long bytes = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        bytes += residentBytes(all[i]);
+        addChildren(all[i], all);
+    }
+    return bytes;
 }
 
 long long peakResidentBytes() {

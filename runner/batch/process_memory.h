@@ -8,6 +8,9 @@ namespace gfxrepro::batch {
 /// Resident bytes of any process; 0 when it is gone.
 long long residentBytes(pid_t pid);
 
+/// The same of the process with all that it started and these started in turn.
+long long residentBytesOfTree(pid_t pid);
+
 /// Highest resident size of this process since the last reset.
 long long peakResidentBytes();
 /// Gives unused heap back and starts the peak at the present size.

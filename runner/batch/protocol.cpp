@@ -36,6 +36,7 @@ constexpr JsonKind kSample[] = {JsonKind::Int,    JsonKind::Int,  JsonKind::Text
 constexpr JsonKind kImage[] = {JsonKind::Text, JsonKind::Text, JsonKind::Int,  JsonKind::Text,
                                JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
 constexpr JsonKind kScene[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
+constexpr JsonKind kProgram[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text};
 
 /// What a worker says stands in no file.
 const SourceLocation kAnswer{"the worker's answer", 0, 0};
@@ -105,7 +106,8 @@ Json toJson(const CaseResult& result) {
                  {"cost", toJson(result.cost)},
                  {"samples", Json::array()},
                  {"images", Json::array()},
-                 {"scenes", Json::array()}};
+                 {"scenes", Json::array()},
+                 {"programs", Json::array()}};
     for (const Sample& s : result.samples) {
         json["samples"].push_back(
             {s.frame, s.repeat, s.pass, s.metric, s.unit, numberJson(s.value), s.isVoid});
@@ -117,6 +119,9 @@ Json toJson(const CaseResult& result) {
     for (const SceneUse& s : result.scenes) {
         json["scenes"].push_back({s.reference, s.kind, s.description, s.sha256});
     }
+    for (const ProgramUse& p : result.programs) {
+        json["programs"].push_back({p.file, p.sha256, p.version});
+    }
     return json;
 }
 
@@ -125,6 +130,7 @@ CaseResult caseResultFromJson(const Json& json) {
     config::requireRows(json, "/samples", kSample, kAnswer);
     config::requireRows(json, "/images", kImage, kAnswer);
     config::requireRows(json, "/scenes", kScene, kAnswer);
+    config::requireRows(json, "/programs", kProgram, kAnswer);
     CaseResult result;
     result.status = report::statusFromName(json.at("status").get<std::string>());
     json.at("message").get_to(result.message);
@@ -140,6 +146,9 @@ CaseResult caseResultFromJson(const Json& json) {
     }
     for (const Json& s : json.at("scenes")) {
         result.scenes.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
+    }
+    for (const Json& p : json.at("programs")) {
+        result.programs.push_back({p.at(0), p.at(1), p.at(2)});
     }
     return result;
 }

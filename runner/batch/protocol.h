@@ -3,9 +3,10 @@
 //   runner → worker   {"case": {…}, "process": 0}
 //   worker → runner   {"ready": {device}}  or  {"unavailable": "reason"}, once, after its start
 //                     {"begin": "load"}, {"end": "load"}: load, setup, render, record
-//                     {"done": {status, message, samples, images, scenes, cost}}
+//                     {"done": {status, message, samples, images, scenes, programs, cost}}
 #pragma once
 
+#include <compare>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -39,6 +40,15 @@ struct SceneUse {
     std::string sha256;
 };
 
+/// A program that a case ran, or another file that decided what it did.
+struct ProgramUse {
+    std::string file;  // as the config calls it
+    std::string sha256;
+    std::string version;  // what it prints when asked; empty where nobody asked
+
+    auto operator<=>(const ProgramUse&) const = default;
+};
+
 /// What a unit took: what later runs are predicted from.
 struct Cost {
     double loadS = 0.0;  // 0 for a scene that the worker had already
@@ -58,6 +68,7 @@ struct CaseResult {
     std::vector<Sample> samples;
     std::vector<report::ImageEntry> images;
     std::vector<SceneUse> scenes;
+    std::vector<ProgramUse> programs;
     Cost cost;  // of a case that ended `ok`
     /// Someone outside killed the worker: nothing that the case did. Known to the runner only.
     bool isOutsideKill = false;

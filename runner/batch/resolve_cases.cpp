@@ -67,7 +67,7 @@ void requireOutputs(const config::Experiment& experiment,
     if (!config::isMeasuredHere(experiment)) return;
     const technique::TechniqueInfo& info =
         technique::findTechnique(techniques, experiment.technique, {});
-    const config::Outputs outputs = technique::outputsOf(info);
+    const config::Outputs outputs = technique::outputsOf(info, config::programOf(experiment));
     const std::string owner = "technique '" + experiment.technique + "'";
     const auto require = [&](const config::Selection& selection) {
         const SourceLocation& where = selection.location;
@@ -116,7 +116,7 @@ void offerPictures(const technique::TechniqueInfo& info, Case& item) {
     if (item.given.find(kPictures) || (item.offered.isMap() && item.offered.find(kPictures)))
         return;
     config::Params params(item.given, "technique '" + std::string(info.name) + "'");
-    info.create(params);
+    technique::makeTechnique(info, item.program, params);
     const bool isTaken = std::ranges::any_of(
         params.declared(), [](const auto& param) { return param.name == kPictures; });
     if (isTaken) item.offered.set(kPictures, config::Node::scalar("true"));
@@ -180,10 +180,12 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         const config::CaseSpec spec = std::move(given);
         Case item;
         takeInstead(spec, experiment.paramsInstead, item);
+        item.program = config::programOf(experiment);
         if (experiment.hasDefaultLayout()) offerPictures(info, item);
         config::Params params(item.given, "technique '" + std::string(info.name) + "'");
         if (!item.offered.isNull()) params.offer(item.offered);
-        const technique::SceneNeed need = info.create(params)->sceneNeed();
+        const technique::SceneNeed need =
+            technique::makeTechnique(info, item.program, params)->sceneNeed();
         params.finish();
         item.experiment = experiment.id;
         item.technique = experiment.technique;

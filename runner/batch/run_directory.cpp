@@ -74,8 +74,14 @@ std::string utcTime(const char* format) {
     return text;
 }
 
+void removeScratchOf(const fs::path& folder) {
+    std::error_code isAbsent;
+    fs::remove_all(folder / kScratchFolder, isAbsent);  // of a link the link
+}
+
 /// What killed processes left of files that they were writing; the folder is locked.
 void removeTemporaryFiles(const fs::path& folder) {
+    removeScratchOf(folder);
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (entry.is_regular_file() && isTemporary(entry.path())) files.push_back(entry.path());
@@ -93,7 +99,7 @@ std::string foreignFile(const fs::path& folder) {
     if (isBegun(folder)) return "";
     for (const char* name :
          {"manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html", "log.jsonl",
-          "images", "tables", "plots", "thumbnails", "artifacts"}) {
+          "images", "tables", "plots", "thumbnails", "artifacts", kScratchFolder}) {
         if (fs::exists(fs::symlink_status(folder / name))) return name;
     }
     return "";
@@ -123,6 +129,10 @@ void requirePlainFiles(const fs::path& runDir) {
     std::error_code problem;
     fs::recursive_directory_iterator entry(runDir, problem);
     for (; !problem && entry != fs::recursive_directory_iterator(); entry.increment(problem)) {
+        if (entry.depth() == 0 && entry->path().filename() == kScratchFolder) {
+            entry.disable_recursion_pending();
+            if (!entry->is_symlink()) continue;
+        }
         std::error_code isGone;  // meanwhile
         const bool isLink = entry->is_symlink(isGone);
         if (!isLink && (entry->is_regular_file(isGone) || entry->is_directory(isGone))) continue;
@@ -183,6 +193,10 @@ RunDirectory RunDirectory::open(const fs::path& path) {
     RunDirectory directory(path);
     removeTemporaryFiles(path);
     return directory;
+}
+
+void RunDirectory::removeScratch() const {
+    removeScratchOf(path_);
 }
 
 void RunDirectory::requireOurs() const {

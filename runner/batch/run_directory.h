@@ -26,6 +26,8 @@ class RunDirectory {
     std::filesystem::path planFile() const { return path_ / "plan.json"; }
     std::filesystem::path manifestFile() const { return path_ / "manifest.json"; }
     std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
+    /// Removes what cases keep for each other only while the run is under way.
+    void removeScratch() const;
 
     /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
     /// outputs left out once it has 64 MiB, and all of it written in short beyond
@@ -48,8 +50,12 @@ class RunDirectory {
     int logFd_ = -1;
 };
 
+/// Below a run folder, where programs of any kind work while it is under way; it goes at the end.
+inline constexpr const char* kScratchFolder = "scratch";
+
 /// Below a run folder there are files and folders alone: what is written to it goes nowhere else,
-/// and nothing is waited for. The folder itself may be a link. Throws Error naming what is neither.
+/// and nothing is waited for. The folder itself may be a link; what programs left in
+/// kScratchFolder is not looked at, nor ever read. Throws Error naming what is neither.
 void requirePlainFiles(const std::filesystem::path& runDir);
 
 /// "2026-11-21T03:14:00Z", for manifests and logs.

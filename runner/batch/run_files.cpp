@@ -44,6 +44,8 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/invocations", JsonKind::List},
                                     {"/invocations", JsonKind::Objects},
                                     {"/scenes", JsonKind::Objects},
+                                    {"/programs", JsonKind::List, false},
+                                    {"/programs", JsonKind::Objects, false},
                                     {"/sha256", JsonKind::Texts, false},
                                     {"/notes", JsonKind::List, false},
                                     {"/notes", JsonKind::Lines, false},
@@ -60,6 +62,8 @@ constexpr JsonMember kInvocation[] = {{"/command", JsonKind::Text},
                                       {"/machine", JsonKind::Line, false}};
 constexpr JsonMember kScene[] = {
     {"/kind", JsonKind::Text}, {"/description", JsonKind::Text}, {"/sha256", JsonKind::Text}};
+constexpr JsonMember kProgram[] = {
+    {"/file", JsonKind::Text}, {"/sha256", JsonKind::Text}, {"/version", JsonKind::Text}};
 constexpr JsonMember kMerged[] = {{"/machine", JsonKind::Line},
                                   {"/invocations", JsonKind::List},
                                   {"/invocations", JsonKind::Objects}};
@@ -99,6 +103,7 @@ Json readManifest(const fs::path& file) {
     requireMembers(manifest, kManifest, where);
     requireEach(manifest, "/invocations", kInvocation, where);
     requireEach(manifest, "/scenes", kScene, where);
+    requireEach(manifest, "/programs", kProgram, where);
     requireEach(manifest, "/merged", kMerged, where);
     if (manifest["invocations"].empty()) throw Error(where, "'/invocations' is empty");
     return manifest;

@@ -39,8 +39,7 @@ class SignalWatch {
         fd_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
     }
     ~SignalWatch() {
-        signalfd_siginfo ignored;
-        while (::read(fd_, &ignored, sizeof(ignored)) > 0) {
+        for (signalfd_siginfo ignored; ::read(fd_, &ignored, sizeof(ignored)) > 0;) {
         }
         ::close(fd_);
         ::sigprocmask(SIG_SETMASK, &before_, nullptr);
@@ -303,6 +302,7 @@ class Scheduler {
         noteFailure(unit, result.status);
         outcome_.voided += result.voidReason.empty() ? 0 : 1;
         outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
+        outcome_.programs.insert(result.programs.begin(), result.programs.end());
     }
 
     /// Stops the run where the machine cannot be trusted any more, or as often as was asked for.

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ struct RunOutcome {
     bool isInterrupted = false;         // by SIGINT, SIGTERM or SIGHUP
     std::string stopReason;             // of a stop before the end that nobody asked for then
     std::vector<SceneUse> scenes;
+    std::set<ProgramUse> programs;
 };
 
 /// The command of a worker process: this program, with `worker` and the options.

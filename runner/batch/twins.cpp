@@ -62,6 +62,9 @@ std::string workKey(const Case& item) {
                     {"measure",
                      {measure.warmup, measure.repeats, measure.processes, measure.frames,
                       measure.timeLimitS, measure.memoryLimitBytes}}};
+    if (!item.program.isNull()) {
+        content["program"] = {item.program.toJson(), item.programKey};
+    }
     content["params"].erase("pictures");
     spellNumbersAlike(content);
     content["seed"] = std::to_string(item.seed);

@@ -47,6 +47,8 @@ CaseResult resultOf(const Case& item, MeasureContext& context) {
         return measureCase(item, context);
     } catch (const UnsupportedError& error) {
         return failure(report::Status::Unsupported, error.what());
+    } catch (const technique::CrashError& error) {
+        return failure(report::Status::Crash, error.what());
     } catch (const DeviceLostError& error) {
         return failure(report::Status::DeviceLost, error.what());
     } catch (const std::bad_alloc&) {
@@ -63,11 +65,13 @@ void serve(gl::Device& device, const WorkerOptions& options,
                                  generators);
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     // A timing worker keeps nothing but the scene at hand, so that memory is the case's own.
+    ProgramCache programs;
     SceneCache scenes(catalog,
                       options.lane == config::Measure::Lane::Timing ? 0 : kSceneBudgetBytes);
     MeasureContext context{device,
                            shaders,
                            scenes,
+                           programs,
                            techniques,
                            options.runDir,
                            options.command,

@@ -233,7 +233,7 @@ std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
                                  : "the worker was not ready after " +
                                        secondsText(static_cast<double>(startLimit_.count())));
     } else if (measure.memoryLimitBytes > 0) {
-        const long long usedBytes = residentBytes(process_.pid());
+        const long long usedBytes = residentBytesOfTree(process_.pid());
         if (usedBytes > measure.memoryLimitBytes) {
             result = failure(report::Status::Oom, "resident memory of " + mebibytesText(usedBytes) +
                                                       " is over the limit of " +

@@ -11,6 +11,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/program.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
@@ -109,6 +110,21 @@ void requireReadable(const std::vector<batch::Case>& cases, const scene::Catalog
     }
 }
 
+/// Says which programs are not on this machine: other machines may have them.
+void sayAbsent(const std::string& file, const std::vector<batch::Case>& cases) {
+    std::set<std::string> absent;
+    for (const batch::Case& item : cases) {
+        if (item.program.isNull()) continue;
+        const config::Program program = config::readProgram(item.program);
+        const auto files = config::filesOf(program, program.valuesOf(item.params));
+        if (const config::ProgramFile* one = config::absentOf(files)) absent.insert(one->name);
+    }
+    for (const std::string& name : absent) {
+        say("{}: the program '{}' is not on this machine: its cases will be unsupported\n", file,
+            name);
+    }
+}
+
 }  // namespace
 
 int check(const Context& context, const Selection& selection) {
@@ -127,6 +143,7 @@ int check(const Context& context, const Selection& selection) {
             const config::Node* node = experiment.document.find(section);
             if (node) requireNamedSweeps(*node);
         }
+        sayAbsent(file, cases);
         const std::size_t caseCount = cases.size();
         const report::Table table = report::buildTable(experiment, batch::plannedCases(cases), {});
         report::requireProvenance(experiment, table);

@@ -7,6 +7,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
+#include "runner/config/program.h"
 #include "runner/config/schema.h"
 #include "runner/core/text.h"
 
@@ -18,7 +19,7 @@ ParamInfos paramsGiven(const technique::TechniqueInfo& info, config::Node values
     config::Params params(std::move(values), "technique '" + std::string(info.name) + "'");
     // A choice may ask for others beside it: what was declared until then counts. So this catches.
     try {
-        info.create(params);
+        if (info.create) info.create(params);
     } catch (const Error&) {
     }
     return params.declared();
@@ -96,8 +97,37 @@ void printOutputs(const config::Outputs& outputs) {
 void describeTechnique(const technique::TechniqueInfo& info) {
     fmt::print("{}",
                entryLines("technique " + std::string(info.name), std::string(info.summary), 4));
-    printParams(paramsOf(info));
+    if (info.createFrom != nullptr) {
+        fmt::print("{}", entryLines("\nparameters, metrics and passes",
+                                    "those that 'program' of its config declares: 'gfxrepro "
+                                    "describe config'; and these",
+                                    4));
+    } else {
+        printParams(paramsOf(info));
+    }
     printOutputs(info.outputs());
+}
+
+void describeProgram(const config::Experiment& experiment) {
+    const config::Program program = config::readProgram(config::programOf(experiment));
+    config::Params params(config::Node::map({}), "program");
+    program.declare(params);
+    fmt::print("\nprogram\n");
+    for (const config::ProgramFile& file :
+         config::filesOf(program, program.valuesOf(params.resolved()))) {
+        fmt::print("{}", entryLines("  " + file.name,
+                                    file.path.empty() ? "not on this machine" : file.path.string(),
+                                    kColumn));
+    }
+    fmt::print("\ncommand\n  {}\n", joined(program.command, " "));
+    printParams(params.declared());
+    fmt::print("\nmetrics\n");
+    printMetrics(program.outputs.metrics);
+    if (program.outputs.passes.empty()) return;
+    fmt::print("\npasses\n");
+    for (const config::PassInfo& info : program.outputs.passes) {
+        fmt::print("{}", entryLines("  " + info.name, info.doc, kColumn));
+    }
 }
 
 void describeGenerator(const scene::GeneratorInfo& info) {
@@ -158,6 +188,7 @@ void describeExperiment(const config::Experiment& experiment) {
         say("assumed    {}{}{}: {}\n", assumption.name, isFreeText ? " = " : "",
             isFreeText ? assumption.value.toFlowText() : "", assumption.why);
     }
+    if (!config::programOf(experiment).isNull()) describeProgram(experiment);
 }
 
 config::Json jsonOf(const ParamInfos& params) {
@@ -252,8 +283,8 @@ auto findNamed(const Infos& infos, const std::string& name) {
 config::SchemaNames schemaNames(const Context& context) {
     config::SchemaNames names;
     for (const technique::TechniqueInfo& info : context.techniques) {
-        names.techniques.push_back(
-            {std::string(info.name), paramsOf(info), technique::outputsOf(info)});
+        names.techniques.push_back({std::string(info.name), paramsOf(info),
+                                    technique::outputsOf(info), info.createFrom != nullptr});
     }
     for (const scene::GeneratorInfo& info : context.generators) {
         names.generators.emplace_back(info.name);

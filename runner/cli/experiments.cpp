@@ -22,10 +22,14 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1;
 
+/// One with tables, figures or sections.
 bool isPaperFolder(const fs::path& folder) {
-    static const std::set<std::string> kOthers = {"calibration", "nightly", "presets", "scenes",
-                                                  "schema",      "smoke",   "sweeps"};
-    return fs::is_directory(folder) && !kOthers.contains(folder.filename().string());
+    if (!fs::is_directory(folder)) return false;
+    return std::ranges::any_of(fs::directory_iterator(folder), [](const auto& file) {
+        const std::string name = file.path().filename().string();
+        return name.starts_with("table-") || name.starts_with("figure-") ||
+               name.starts_with("section-");
+    });
 }
 
 std::string paperOf(const fs::path& file) {
@@ -172,12 +176,29 @@ std::string deviceClassFor(const Selection& selection) {
     }
 }
 
+std::string deviceFor(const Context& context, const std::string& asked,
+                      const std::vector<config::Experiment>& experiments) {
+    const auto isOpened = [&](const config::Experiment& experiment) {
+        return !experiment.technique.empty() &&
+               technique::needsDevice(
+                   technique::findTechnique(context.techniques, experiment.technique,
+                                            experiment.document.find("technique")->location()),
+                   config::programOf(experiment));
+    };
+    const bool measures = std::ranges::any_of(
+        experiments, [](const auto& experiment) { return !experiment.technique.empty(); });
+    return asked == "auto" && measures && std::ranges::none_of(experiments, isOpened) ? "none"
+                                                                                      : asked;
+}
+
 batch::Plan planFor(const Context& context, const batch::Request& request,
                     const std::string& profile, const std::string& assets,
                     const std::string& deviceClass) {
+    const std::vector<config::Experiment> experiments = loadExperiments(request, profile);
+    const bool needsNone = deviceFor(context, request.device, experiments) == "none";
     batch::Plan plan =
-        batch::makePlan(loadExperiments(request, profile), openCatalog(context, assets),
-                        context.techniques, profile, deviceClass, kSeed);
+        batch::makePlan(experiments, openCatalog(context, assets), context.techniques, profile,
+                        needsNone ? "software" : deviceClass, kSeed);
     plan.request = request;
     batch::keepOnly(plan, request.only);
     return plan;

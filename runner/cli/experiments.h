@@ -39,6 +39,10 @@ batch::Request requestOf(const Selection& selection, const std::vector<std::stri
 /// "software" | "gpu". A case's identity holds it; a machine without a device plans for software.
 std::string deviceClassFor(const Selection& selection);
 
+/// `asked`, or "none" for "auto" where nothing of the experiments needs a device.
+std::string deviceFor(const Context& context, const std::string& asked,
+                      const std::vector<config::Experiment>& experiments);
+
 batch::Plan planFor(const Context& context, const batch::Request& request,
                     const std::string& profile, const std::string& assets,
                     const std::string& deviceClass);

@@ -52,6 +52,7 @@ std::string deviceClassOf(const gl::DeviceInfo& device) {
 /// Says on what a run measures, and keeps its workers to that: "auto" could find another later.
 gl::DeviceInfo settleDevice(batch::SchedulerOptions& scheduler, batch::PhaseClock& phases) {
     const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
+    if (device.platform == "none") return device;
     scheduler.device = std::to_string(device.index);
     tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer, deviceClassOf(device),
          device.version, device.uuid.empty() ? "" : ", UUID " + device.uuid);
@@ -91,13 +92,15 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
                     const batch::Request& request, std::optional<batch::Plan> submitted,
                     batch::PhaseClock& phases) {
     const Selection& selection = options.selection;
-    batch::SchedulerOptions scheduler{request.device,
+    // Experiments are read first: what is wrong in a config is said before a device is asked for.
+    const std::string choice =
+        deviceFor(context, request.device,
+                  submitted ? submitted->experiments : loadExperiments(request, selection.profile));
+    batch::SchedulerOptions scheduler{choice,
                                       fs::absolute(assetsFolder(selection.assets)),
                                       jobsOf(options),
                                       {},
                                       context.commandLine};
-    // Experiments are read first: what is wrong in a config is said before a device is asked for.
-    if (!submitted) loadExperiments(request, selection.profile);
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     batch::Plan plan = submitted ? std::move(*submitted)
                                  : planFor(context, request, selection.profile,
@@ -182,11 +185,12 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     batch::StoredRun stored = batch::readRun(options.resume);
     batch::requireNotImported(stored.manifest, options.resume, "go on with");
     requireSameRequest(options, request, stored.plan);
-    batch::SchedulerOptions scheduler{stored.plan.request.device,
-                                      fs::absolute(assetsFolder(options.selection.assets)),
-                                      jobsOf(options),
-                                      {},
-                                      context.commandLine};
+    batch::SchedulerOptions scheduler{
+        deviceFor(context, stored.plan.request.device, stored.plan.experiments),
+        fs::absolute(assetsFolder(options.selection.assets)),
+        jobsOf(options),
+        {},
+        context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     const std::string reason = batch::whyNotResumable(
         stored.plan, deviceClassOf(device), openCatalog(context, options.selection.assets));
@@ -273,7 +277,9 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     run.directory.log({{"event", outcome.isInterrupted ? "interrupted" : "end"},
                        {"finished", outcome.finished},
                        {"failed", outcome.failed}});
+    run.directory.removeScratch();
     batch::addScenes(run.manifest, outcome.scenes);
+    batch::addPrograms(run.manifest, outcome.programs);
     run.manifest["rounds"] = rounds.endings();
     saveManifest(context, run, phases);
     const std::string path = run.directory.path().string();

@@ -8,6 +8,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/params.h"
+#include "runner/config/program.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
@@ -148,9 +149,10 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key : {"scene", "scene_params", "scene_seed", "scene_instead", "params",
-                            "params_by_scene", "params_instead", "output", "sweep", "measure",
-                            "picture_tolerance", "shows", "layout", "fit", "claims", "plots"}) {
+    for (const char* key :
+         {"program", "scene", "scene_params", "scene_seed", "scene_instead", "params",
+          "params_by_scene", "params_instead", "output", "sweep", "measure", "picture_tolerance",
+          "shows", "layout", "fit", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -192,6 +194,29 @@ Node paramsByScene(const Node& document) {
     return scenes;
 }
 
+/// What a program is not told of it cannot follow.
+void requireTold(const Node& document, const Experiment& experiment) {
+    if (programOf(experiment).isNull()) return;
+    const Program program = readProgram(programOf(experiment));
+    const auto require = [&](const char* key, bool isGiven, const std::string& names, bool isTold) {
+        if (!isGiven || isTold) return;
+        const Node* node = document.find(key);
+        throw Error(node ? document.keyLocation(key) : document.location(),
+                    std::string("'") + key + "': the program's command has no " + names);
+    };
+    const auto isSwept = [&](std::string_view axis) {
+        return experiment.sweep.isMap() && experiment.sweep.find(axis);
+    };
+    const bool hasScene = !experiment.scene.isNull() || isSwept("scene");
+    const bool hasSize =
+        document.find("output") || isSwept("output.width") || isSwept("output.height");
+    require("scene", hasScene, "{scene}", program.uses(placeholder::kScene));
+    require("output", hasSize, "{width} or {height}",
+            program.uses(placeholder::kWidth) || program.uses(placeholder::kHeight));
+    require("measure", experiment.measure.frames > 1, "{frame}, of which there are several",
+            program.uses(placeholder::kFrame));
+}
+
 void readMeasurement(const Node& document, Experiment& experiment) {
     const auto section = [&](const char* key) {
         const Node* node = document.find(key);
@@ -217,6 +242,7 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     Params measure(section("measure"), "measure");
     experiment.measure =
         readMeasure(measure, experiment.kind == Kind::Sweep && !document.find("layout"));
+    requireTold(document, experiment);
     if (const Node* given = document.find("picture_tolerance")) {
         Params tolerance(*given, "picture_tolerance");
         experiment.pictureTolerance = readPictureTolerance(tolerance);

@@ -189,10 +189,11 @@ void addNames(const SchemaNames& names, Json& root) {
     Json& definitions = root["definitions"];
     Json techniques = Json::array();
     for (const SchemaNames::Technique& technique : names.techniques) {
+        techniques.push_back(technique.name);
+        if (technique.isOpen) continue;
         defineTechnique(technique, definitions);
         defineLayout(technique, definitions);
         root["allOf"].push_back(conditionOf(technique));
-        techniques.push_back(technique.name);
     }
     for (Json* map : {&root, &definitions["content"]}) {
         Json& technique = (*map)["properties"]["technique"];

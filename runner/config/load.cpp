@@ -6,6 +6,7 @@
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
 #include "runner/config/fit.h"
+#include "runner/config/program.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
@@ -192,6 +193,7 @@ Node withSceneFileKeys(const Node& map) {
 }
 
 void resolveScenes(Node& document) {
+    setProgramFolder(document);
     if (Node* scene = document.find("scene")) *scene = withSceneFile(*scene);
     if (Node* params = document.find("params_by_scene")) *params = withSceneFileKeys(*params);
     if (Node* sweep = document.find("sweep")) *sweep = withSceneFiles(*sweep, true);

@@ -73,6 +73,7 @@ struct SchemaNames {
         std::string name;
         std::vector<ParamInfo> params;
         Outputs outputs;
+        bool isOpen = false;  // further parameters, metrics and passes are the config's
     };
     std::vector<Technique> techniques;
     std::vector<std::string> generators;

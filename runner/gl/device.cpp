@@ -24,7 +24,7 @@
 namespace gfxrepro::gl {
 
 struct Device::Impl {
-    egl::Context context;
+    std::optional<egl::Context> context;  // none: of "none"
     DeviceInfo info;
     DeviceLimits limits;
     std::set<std::string, std::less<>> extensions;
@@ -231,7 +231,7 @@ void shareCores(int processes) {
 Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug) {
     auto impl = std::make_unique<Impl>(
         Impl{egl::Context(candidate, debug != DebugOutput::Off), {}, {}, {}, {}});
-    impl->context.makeCurrent();
+    impl->context->makeCurrent();
     impl->info = readInfo(candidate);
     impl->limits = readLimits();
     impl->extensions = readExtensions();
@@ -241,6 +241,13 @@ Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug)
 
 Device Device::open(const DeviceChoice& choice) {
     shareCores(choice.processes);
+    if (choice.name == "none") {
+        auto impl = std::make_unique<Impl>();
+        impl->info.platform = "none";
+        impl->info.renderer = "no graphics device";
+        impl->info.isSoftware = true;
+        return Device(std::move(impl));
+    }
     const Wanted wanted = Wanted::parse(choice.name);
     auto [candidates, problems] = egl::findCandidates();
     if (wanted.kind == Wanted::Kind::Index &&
@@ -273,7 +280,7 @@ Device Device::open(const DeviceChoice& choice) {
         append(problems, unused);
     }
     if (software && !isGpuThere) {
-        software->impl_->context.makeCurrent();
+        software->impl_->context->makeCurrent();
         return std::move(*software);
     }
     std::string text = fmt::format("no usable OpenGL 4.5 device for '{}':\n  {}", choice.name,
@@ -283,6 +290,10 @@ Device Device::open(const DeviceChoice& choice) {
             "\nThis machine has a GPU that does not serve; --device software measures without it";
     }
     throw NoDeviceError(text);
+}
+
+bool Device::isNone() const {
+    return !impl_->context;
 }
 
 const DeviceInfo& Device::info() const {
@@ -303,6 +314,7 @@ void Device::checkDebug(const char* what) {
 }
 
 void Device::finish(const char* what) {
+    if (isNone()) return;
     glFinish();
     if (const std::string reason = resetReason(); !reason.empty()) {
         throw DeviceLostError(fmt::format("{}: the device was reset {}", what, reason));

@@ -44,7 +44,8 @@ enum class DebugOutput {
 };
 
 /// "auto": the first GPU, where the machine shows none the software device; "gpu"; "software"; an
-/// index from listDevices(); or a UUID as `nvidia-smi -L` prints it, with "GPU-" or without.
+/// index from listDevices(); a UUID as `nvidia-smi -L` prints it, with "GPU-" or without; or
+/// "none", for what needs no device.
 struct DeviceChoice {
     std::string name = "auto";
     DebugOutput debug = DebugOutput::Log;
@@ -63,6 +64,8 @@ class Device {
     Device& operator=(Device&&) noexcept;
     ~Device();
 
+    /// Nothing may be drawn on "none": it has no context, and no driver is loaded.
+    bool isNone() const;
     const DeviceInfo& info() const;
     const DeviceLimits& limits() const;
     bool hasExtension(const std::string& name) const;

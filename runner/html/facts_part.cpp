@@ -77,6 +77,20 @@ std::string scenesHtml(const nlohmann::ordered_json& manifest) {
     return html;
 }
 
+/// "povray (version 3.7, SHA-256 0123456789ab); scene.pov (SHA-256 …)".
+std::string programsHtml(const nlohmann::ordered_json& manifest) {
+    if (!manifest.is_object() || !manifest.contains("programs")) return "";
+    std::string html;
+    for (const nlohmann::ordered_json& program : manifest["programs"]) {
+        const std::string version = manifestText(program, "version");
+        html += fmt::format("{}{} <span class=\"soft\">({}SHA-256 {})</span>",
+                            html.empty() ? "" : "; ", escapeXml(manifestText(program, "file")),
+                            version.empty() ? "" : escapeXml(version) + ", ",
+                            escapeXml(manifestText(program, "sha256").substr(0, 12)));
+    }
+    return html;
+}
+
 }  // namespace
 
 std::string machineHtml(const Model& model) {
@@ -124,6 +138,7 @@ std::string factsHtml(const Model& model) {
          [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "started")); }},
         {"Command", [](const ReportRun& run) { return escapeXml(run.context.command); }},
         {"Scenes", [](const ReportRun& run) { return scenesHtml(run.manifest); }},
+        {"Programs", [](const ReportRun& run) { return programsHtml(run.manifest); }},
         {"Notes",
          [](const ReportRun& run) {
              if (!run.manifest.is_object()) return std::string();

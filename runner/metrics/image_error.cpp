@@ -117,6 +117,17 @@ double peakSignalToNoiseDb(const ImageF& a, const ImageF& b) {
     return 10.0 * std::log10(1.0 / meanSquaredError(a, b));
 }
 
+double relativeMeanSquaredError(const ImageF& truth, const ImageF& test) {
+    requireComparable(truth, test);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < truth.values().size(); ++i) {
+        const double value = truth.values()[i];
+        const double difference = value - double{test.values()[i]};
+        sum += difference * difference / (value * value + 0.01);
+    }
+    return sum / static_cast<double>(truth.values().size());
+}
+
 double maxAbsoluteError(const ImageF& a, const ImageF& b) {
     requireComparable(a, b);
     double largest = 0.0;

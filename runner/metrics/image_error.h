@@ -14,6 +14,10 @@ void requireComparable(const image::ImageF& a, const image::ImageF& b);
 double meanSquaredError(const image::ImageF& a, const image::ImageF& b);
 /// 10·log10(1 / MSE), for values in [0, 1]; infinity for equal images.
 double peakSignalToNoiseDb(const image::ImageF& a, const image::ImageF& b);
+/// The mean over all values of (truth − test)² ÷ (truth² + 0.01): an error in the dark counts as
+/// much as one in the light, and the 0.01 keeps black from dividing by zero. Throws as
+/// meanSquaredError().
+double relativeMeanSquaredError(const image::ImageF& truth, const image::ImageF& test);
 /// Largest absolute difference.
 double maxAbsoluteError(const image::ImageF& a, const image::ImageF& b);
 /// Mean structural similarity of luminance (Wang et al. 2004: 11×11 Gaussian window, σ 1.5, K 0.01

@@ -1,5 +1,6 @@
 #include "runner/technique/technique.h"
 
+#include "runner/config/program.h"
 #include "runner/core/error.h"
 #include "runner/core/text.h"
 
@@ -46,12 +47,46 @@ std::span<const config::MetricInfo> commonMetrics() {
     return metrics;
 }
 
-config::Outputs outputsOf(const TechniqueInfo& technique) {
+config::Outputs outputsOf(const TechniqueInfo& technique, const config::Node& program) {
     const config::Outputs own = technique.outputs();
     const std::span<const config::MetricInfo> common = commonMetrics();
     config::Outputs all{{common.begin(), common.end()}, own.passes};
+    if (program.isNull()) {
+        all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
+        return all;
+    }
+    const config::Outputs said = config::readProgram(program).outputs;
+    for (const config::MetricInfo& info : said.metrics) {
+        const auto isTaken = [&](const config::Outputs& outputs) {
+            return outputs.find(info.name);
+        };
+        if (!isTaken(all) && !isTaken(own)) continue;
+        throw Error(program.find("metrics")->keyLocation(info.name),
+                    "program: metric '" + info.name +
+                        "' is recorded of every case already; give it another name");
+    }
+    all.metrics.insert(all.metrics.end(), said.metrics.begin(), said.metrics.end());
     all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
+    all.passes.insert(all.passes.end(), said.passes.begin(), said.passes.end());
     return all;
+}
+
+std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const config::Node& program,
+                                         config::Params& params) {
+    if (info.createFrom && program.isNull()) {
+        throw Error("technique '" + std::string(info.name) +
+                    "' needs 'program': see 'gfxrepro describe config'");
+    }
+    if (info.createFrom) return info.createFrom(program, params);
+    if (!program.isNull()) {
+        throw Error(program.location(),
+                    "'program': technique '" + std::string(info.name) + "' takes none");
+    }
+    return info.create(params);
+}
+
+bool needsDevice(const TechniqueInfo& info, const config::Node& program) {
+    return !info.createFrom || program.isNull() || config::readProgram(program).usesGpu;
 }
 
 const TechniqueInfo& findTechnique(std::span<const TechniqueInfo> techniques, std::string_view name,

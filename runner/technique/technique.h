@@ -39,6 +39,9 @@ struct SetupContext {
     glm::ivec2 outputSizePx;
     std::uint64_t seed;
     gl::Profiler& profiler;
+    /// For files that go when the run ends; it need not exist. What one case leaves there others of
+    /// the run find.
+    std::filesystem::path scratchFolder = {};
 };
 
 /// One measured iteration: frame `frame` of `frameCount`, repeated.
@@ -88,8 +91,19 @@ class Recorder {
     virtual std::filesystem::path artifact(std::string_view fileName) = 0;
 };
 
+/// A program that had a technique's work to do died of a signal (status `crash`).
+class CrashError : public Error {
+    using Error::Error;
+};
+
 /// A model has triangles or points.
 enum class SceneNeed { Nothing, Model, HeightMap };
+
+/// What other processes took, in which a technique has its work done.
+struct ProcessUsage {
+    double processTimeMs = 0.0;  // CPU time, user and system, in the last render()
+    long long peakBytes = 0;     // most that one of them held at once, in all render() so far
+};
 
 /// A method under measurement with its competitors. Life: constructor (parameters only, no GL) →
 /// setup → render, repeatedly → record, after the last repeat of a frame. Errors are thrown.
@@ -105,21 +119,37 @@ class Technique {
     virtual const gl::Texture* frameImage() const { return nullptr; }
     /// What it asks of the case's scene: known without a device.
     virtual SceneNeed sceneNeed() const { return SceneNeed::Nothing; }
+    /// Of one that does not work in this process: recorded instead of what this one took.
+    virtual std::optional<ProcessUsage> usageElsewhere() const { return std::nullopt; }
 };
 
 struct TechniqueInfo {
     std::string_view name;
     std::string_view summary;
+    /// Null where `createFrom` is not.
     std::unique_ptr<Technique> (*create)(config::Params& params);
     /// All that record() may give and render() may scope: nothing else can be recorded.
     config::Outputs (*outputs)();
+    /// Of a technique that is made of a program, as `program` of its config says
+    /// (config/program.h): what that declares comes to parameters and outputs.
+    std::unique_ptr<Technique> (*createFrom)(const config::Node& program,
+                                             config::Params& params) = nullptr;
 };
+
+/// The technique with the program of its config, null for none. Throws Error where it takes one and
+/// there is none, or the other way about, and as its constructor does.
+std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const config::Node& program,
+                                         config::Params& params);
+
+/// Whether cases of the technique open a device.
+bool needsDevice(const TechniqueInfo& info, const config::Node& program);
 
 /// What the runner records of every case, whatever the technique.
 std::span<const config::MetricInfo> commonMetrics();
 
-/// What a case of the technique records: that, and its own.
-config::Outputs outputsOf(const TechniqueInfo& technique);
+/// What a case of the technique records: that, its own, and what its program says. Throws Error
+/// where the program declares a metric that is recorded anyway.
+config::Outputs outputsOf(const TechniqueInfo& technique, const config::Node& program = {});
 
 /// Every technique, from techniques/registry.cpp.
 std::span<const TechniqueInfo> registeredTechniques();

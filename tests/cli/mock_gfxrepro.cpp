@@ -1,4 +1,5 @@
-// The program with one technique that fails in every way that a technique can.
+// The program with one technique that fails in every way that a technique can, and with the one
+// that runs programs.
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "runner/cli/cli.h"
 #include "runner/technique/technique.h"
 #include "scenes/registry.h"
+#include "techniques/external/external.h"
 
 namespace {
 
@@ -190,6 +192,7 @@ int main(int argc, char** argv) {
         std::getenv("GFXREPRO_MOCK_DRIVER_HANGS")) {
         ::pause();
     }
-    const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create, outputs}};
+    const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create, outputs},
+                                                   external::kExternal};
     return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }

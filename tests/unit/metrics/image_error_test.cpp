@@ -27,6 +27,9 @@ TEST(ImageError, KnownAnswers) {
     b.at(1, 0, 2) = 0.75F;
     EXPECT_DOUBLE_EQ(meanSquaredError(a, b), 0.0625 / 6.0);
     EXPECT_DOUBLE_EQ(peakSignalToNoiseDb(a, b), 10.0 * std::log10(96.0));
+    // One value in six: (0.5 − 0.75)² ÷ (0.5² + 0.01), and the other way about by 0.75².
+    EXPECT_DOUBLE_EQ(relativeMeanSquaredError(a, b), 0.0625 / 0.26 / 6.0);
+    EXPECT_DOUBLE_EQ(relativeMeanSquaredError(b, a), 0.0625 / 0.5725 / 6.0);
     EXPECT_DOUBLE_EQ(maxAbsoluteError(a, b), 0.25);
     EXPECT_EQ(peakSignalToNoiseDb(a, a), std::numeric_limits<double>::infinity());
     const ImageF difference = absoluteDifference(b, a, 4.0F);

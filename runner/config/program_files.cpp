@@ -1,0 +1,108 @@
+// Which files decide what a program does.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "runner/config/program.h"
+#include "runner/config/sections.h"
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::config {
+
+namespace fs = std::filesystem;
+
+fs::path findExecutable(const std::string& name, const fs::path& here) {
+    const auto isProgram = [](const fs::path& path) {
+        std::error_code isAbsent;
+        return fs::is_regular_file(path, isAbsent) && ::access(path.c_str(), X_OK) == 0;
+    };
+    if (name.find('/') != std::string::npos) {
+        const fs::path path = here / name;
+        return isProgram(path) ? path.lexically_normal() : fs::path();
+    }
+    const char* folders = std::getenv("PATH");
+    for (const std::string& folder : split(folders ? folders : "/usr/bin:/bin", ':')) {
+        if (isProgram(fs::path(folder) / name)) return fs::path(folder) / name;
+    }
+    return {};
+}
+
+void setProgramFolder(Node& document) {
+    Node* program = document.find("program");
+    const Node* command = program && program->isMap() ? program->find("command") : nullptr;
+    if (!command) return;
+    const auto folderOf = [&](const Node& node) {
+        const std::string& file = node.location().file.text();
+        const bool isTyped = file.starts_with(kCommandLine);
+        return fs::path(isTyped ? document.location().file.text() : file).parent_path();
+    };
+    fs::path here = folderOf(*command);
+    if (const Node* given = program->find("here")) {
+        here = folderOf(*given) / lineOf(*given, "program: here");
+    }
+    here = (fs::current_path() / here).lexically_normal();  // of a file in it: ""
+    if (!here.has_filename()) here = here.parent_path();
+    program->set("here", Node::scalar(here.string(), command->location(), true));
+}
+
+std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& values) {
+    const std::string name = filled(program.command.front(), values);
+    const fs::path here = program.here;
+    std::vector<ProgramFile> files = {{name, findExecutable(name, here)}};
+    for (const std::string& other : program.starts) {
+        files.push_back({other, findExecutable(other, here)});
+    }
+    const auto add = [&](const fs::path& path) {
+        const bool isKnown = std::ranges::any_of(
+            files, [&](const ProgramFile& known) { return known.path == path; });
+        if (!isKnown) files.push_back({path.lexically_relative(here).string(), path});
+    };
+    const std::string mark = std::string("{") + placeholder::kHere + "}";
+    const auto addNamed = [&](const std::string& text) {
+        const std::size_t at = text.find(mark);
+        if (at == std::string::npos) return;
+        const fs::path path = fs::path(filled(text.substr(at), values)).lexically_normal();
+        std::error_code isAbsent;
+        if (fs::is_regular_file(path, isAbsent)) add(path);
+    };
+    for (const std::string& argument : program.command) addNamed(argument);
+    for (const auto& [variable, text] : program.environment) addNamed(text);
+    for (const std::string& file : program.files) {
+        const fs::path path = (here / file).lexically_normal();
+        if (!fs::is_regular_file(path)) {
+            throw Error("program: files: there is no file " + path.string());
+        }
+        add(path);
+    }
+    return files;
+}
+
+const std::string& FileDigests::of(const fs::path& path) {
+    Entry& entry = entries_[path];
+    std::error_code problem;
+    const std::uintmax_t sizeBytes = fs::file_size(path, problem);
+    const fs::file_time_type time = fs::last_write_time(path, problem);
+    if (entry.sha256.empty() || problem || entry.sizeBytes != sizeBytes || entry.time != time) {
+        entry = {sizeBytes, time, sha256OfFile(path)};
+    }
+    return entry.sha256;
+}
+
+const ProgramFile* absentOf(const std::vector<ProgramFile>& files) {
+    const auto found =
+        std::ranges::find_if(files, [](const ProgramFile& file) { return file.path.empty(); });
+    return found == files.end() ? nullptr : &*found;
+}
+
+std::string programKey(const std::vector<ProgramFile>& files, FileDigests& digests) {
+    if (absentOf(files)) return "";
+    std::string content;
+    for (const ProgramFile& file : files) {
+        content += file.name + ' ' + digests.of(file.path) + '\n';
+    }
+    return sha256(content);
+}
+
+}  // namespace gfxrepro::config

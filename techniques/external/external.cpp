@@ -1,0 +1,251 @@
+#include "techniques/external/external.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "runner/config/program.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/scene/load.h"
+#include "techniques/external/metric_lines.h"
+#include "techniques/external/pictures.h"
+#include "techniques/external/process.h"
+
+namespace gfxrepro::external {
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace placeholder = config::placeholder;
+
+constexpr std::size_t kLoggedBytes = 4096;  // of what a program prints
+
+std::string lastLine(std::string_view output) {
+    const std::string_view text = trimmed(output);
+    const std::size_t at = text.find_last_of("\r\n");
+    return std::string(at == text.npos ? text : text.substr(at + 1));
+}
+
+/// A folder that goes with the object.
+class Folder {
+  public:
+    explicit Folder(fs::path path) : path_(std::move(path)) {
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    ~Folder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+class External : public technique::Technique {
+  public:
+    External(const config::Node& program, config::Params& params)
+        : program_(config::readProgram(program)) {
+        program_.declare(params);
+        params.finish();
+        values_ = program_.valuesOf(params.resolved());
+    }
+
+    technique::SceneNeed sceneNeed() const override {
+        return program_.uses(placeholder::kScene) ? technique::SceneNeed::Model
+                                                  : technique::SceneNeed::Nothing;
+    }
+
+    void setup(technique::SetupContext& context) override {
+        scratch_ = fs::absolute(context.scratchFolder);
+        folder_.emplace(scratch_ / std::to_string(::getpid()));
+        size_ = context.outputSizePx;
+        values_[placeholder::kWidth] = std::to_string(size_.x);
+        values_[placeholder::kHeight] = std::to_string(size_.y);
+        values_[placeholder::kSeed] = std::to_string(context.seed);
+        if (sceneNeed() == technique::SceneNeed::Nothing) return;
+        if (!context.scene) throw Error("the program takes {scene}, and the case has none");
+        const fs::path scene = folder_->path() / "scene.glb";
+        scene::saveGlb(scene, *context.scene);
+        values_[placeholder::kScene] = scene.string();
+    }
+
+    void render(technique::FrameContext& context) override {
+        values_[placeholder::kFrame] = std::to_string(context.frame);
+        values_[placeholder::kFrames] = std::to_string(context.frameCount);
+        frame_ = context.frame;
+        end_ = run(values_, "out");
+        peakBytes_ = std::max(peakBytes_, end_.peakBytes);
+    }
+
+    std::optional<technique::ProcessUsage> usageElsewhere() const override {
+        return technique::ProcessUsage{end_.processTimeMs, peakBytes_};
+    }
+
+    void record(technique::Recorder& recorder) override {
+        logOutput(end_.output);
+        recordMetrics(recorder);
+        for (const config::ProgramPicture& picture : program_.pictures) {
+            recordPicture(picture, recorder);
+        }
+    }
+
+  private:
+    fs::path metricsFile() const { return folder_->path() / "metrics.jsonl"; }
+
+    /// Runs the program in an empty folder of this name. Throws Error where it fails, and
+    /// CrashError where it dies of a signal.
+    ProcessEnd run(config::Placeholders values, const std::string& folderName) const {
+        const fs::path out = folder_->path() / folderName;
+        fs::remove_all(out);
+        fs::create_directories(out);
+        values[placeholder::kOut] = out.string();
+        ProcessStart start{{}, {}, out, metricsFile()};
+        for (const std::string& argument : program_.command) {
+            start.arguments.push_back(config::filled(argument, values));
+        }
+        const std::string name = start.arguments.front();
+        start.arguments.front() = config::filesOf(program_, values).front().path.string();
+        for (const auto& [variable, text] : program_.environment) {
+            start.environment.emplace_back(variable, config::filled(text, values));
+        }
+        ProcessEnd end;
+        try {
+            end = runProcess(start);
+        } catch (const Error& error) {
+            throw Error(fmt::format("program '{}': {}", name, error.what()));
+        }
+        if (const std::string why = whyEnded(end.waitStatus); !why.empty()) {
+            logOutput(end.output);
+            const std::string line = lastLine(end.output);
+            const std::string message = fmt::format("program '{}' ended with {}{}{}", name, why,
+                                                    line.empty() ? "" : ": ", line);
+            if (WIFSIGNALED(end.waitStatus)) throw technique::CrashError(message);
+            throw Error(message);
+        }
+        return end;
+    }
+
+    /// The end of it, for the run's log.
+    static void logOutput(const std::string& output) {
+        const std::size_t begin = output.size() - std::min(output.size(), kLoggedBytes);
+        std::fwrite(output.data() + begin, 1, output.size() - begin, stderr);
+    }
+
+    void recordMetrics(technique::Recorder& recorder) const {
+        std::vector<std::string> given;
+        for (const GivenMetric& one : metricsIn(metricsFile(), frame_)) {
+            recorder.metric(one.metric, one.value, one.unit, one.pass);
+            given.push_back(one.metric);
+        }
+        for (const config::ProgramPattern& pattern : program_.patterns) {
+            const std::optional<double> value = numberIn(end_.output, pattern);
+            if (!value) continue;
+            recorder.metric(pattern.metric, *value, program_.outputs.find(pattern.metric)->unit,
+                            "");
+            given.push_back(pattern.metric);
+        }
+        const auto isIn = [](const std::vector<std::string>& names, const std::string& name) {
+            return std::ranges::find(names, name) != names.end();
+        };
+        for (const config::MetricInfo& info : program_.outputs.metrics) {
+            if (isIn(given, info.name) || isIn(program_.optionalMetrics, info.name)) continue;
+            const bool isRead = std::ranges::any_of(
+                program_.patterns, [&](const auto& one) { return one.metric == info.name; });
+            throw Error(fmt::format(
+                "metric '{}': the program {}", info.name,
+                isRead ? "prints nothing that its pattern matches" : "gave no value of it"));
+        }
+    }
+
+    void recordPicture(const config::ProgramPicture& picture, technique::Recorder& recorder) {
+        const std::string what = fmt::format("image '{}'", picture.name);
+        const bool isAsked =
+            program_.uses(placeholder::kWidth) && program_.uses(placeholder::kHeight);
+        const glm::ivec2 size = isAsked ? size_ : glm::ivec2(0);
+        const Picture own = readPicture(placeOf(picture.file, values_, "out"), what, size);
+        recorder.image(picture.name, own.linear);
+        if (!picture.hasTruth()) return;
+        const Picture truth = truthOf(picture, what + ": truth", size);
+        technique::ImageOptions options;
+        options.truthOf = picture.name;
+        recorder.image(picture.name + "_truth", truth.linear, options);
+        recordErrors(own, truth, picture.name, recorder);
+    }
+
+    fs::path placeOf(const std::string& file, config::Placeholders values,
+                     const std::string& folderName) const {
+        const fs::path out = folder_->path() / folderName;
+        values[placeholder::kOut] = out.string();
+        return out / config::filled(file, values);
+    }
+
+    Picture truthOf(const config::ProgramPicture& picture, const std::string& what,
+                    glm::ivec2 size) const {
+        if (picture.truthParams.isNull()) {
+            return readPicture(placeOf(picture.truthFile, values_, "out"), what, size);
+        }
+        config::Placeholders values = values_;
+        for (const auto& [name, value] : picture.truthParams.entries()) values[name] = value.text();
+        const fs::path kept = scratch_ / ("truth-" + truthKey(values, picture.name) +
+                                          fs::path(picture.file).extension().string());
+        if (!fs::exists(kept)) {
+            run(values, "truth");
+            const fs::path made = placeOf(picture.file, values, "truth");
+            readPicture(made, what, size);  // as a whole, or not at all
+            // Another worker may make the same one meanwhile.
+            const fs::path mine = folder_->path() / "truth.tmp";
+            fs::copy_file(made, mine, fs::copy_options::overwrite_existing);
+            fs::rename(mine, kept);
+        }
+        return readPicture(kept, what, size);
+    }
+
+    /// Of all that the picture depends on but for the program itself, which is the same in a run.
+    std::string truthKey(config::Placeholders values, const std::string& name) const {
+        values[placeholder::kOut] = "";
+        if (const auto scene = values.find(placeholder::kScene); scene != values.end()) {
+            scene->second = sha256OfFile(scene->second);
+        }
+        std::string content = name;
+        for (const std::string& argument : program_.command) {
+            content += '\0' + config::filled(argument, values);
+        }
+        for (const auto& [variable, text] : program_.environment) {
+            content += '\0' + variable + '=' + config::filled(text, values);
+        }
+        return sha256(content).substr(0, 16);
+    }
+
+    config::Program program_;
+    config::Placeholders values_;
+    fs::path scratch_;
+    std::optional<Folder> folder_;
+    glm::ivec2 size_{0};
+    int frame_ = 0;
+    ProcessEnd end_;
+    long long peakBytes_ = 0;
+};
+
+std::unique_ptr<technique::Technique> createFrom(const config::Node& program,
+                                                 config::Params& params) {
+    return std::make_unique<External>(program, params);
+}
+
+}  // namespace
+
+const technique::TechniqueInfo kExternal{"external",
+                                         "any program: 'program' of the config says how to call it",
+                                         nullptr, errorOutputs, createFrom};
+
+}  // namespace gfxrepro::external

@@ -1,0 +1,102 @@
+#include "techniques/external/metric_lines.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::external {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
+constexpr std::size_t kLongestShown = 80;
+constexpr std::size_t kLongestMatched = 4096;  // std::regex takes stack with every letter
+
+std::string shown(std::string_view line) {
+    return line.size() <= kLongestShown ? std::string(line)
+                                        : std::string(line.substr(0, kLongestShown)) + "…";
+}
+
+std::string textOf(const Json& line, const char* key, bool isRequired, const std::string& what) {
+    const auto found = line.find(key);
+    if (found == line.end() && !isRequired) return "";
+    if (found != line.end() && found->is_string()) return found->get<std::string>();
+    throw Error(fmt::format("{}: {}; allowed: text", what,
+                            found == line.end() ? fmt::format("no \"{}\"", key)
+                                                : fmt::format("\"{}\" is {}", key, found->dump())));
+}
+
+GivenMetric metricOf(std::string_view text, int number, int frame) {
+    const std::string what = fmt::format("line {} of its metrics", number);
+    const Json line = Json::parse(text, nullptr, false);
+    if (!line.is_object()) {
+        const bool isNan = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
+        throw Error(fmt::format("{} is no JSON object{}: {}", what,
+                                isNan ? ", which has no NaN and no Infinity" : "", shown(text)));
+    }
+    static constexpr std::string_view kKeys[] = {"metric", "pass", "frame", "value", "unit"};
+    for (const auto& [key, value] : line.items()) {
+        if (std::ranges::find(kKeys, key) != std::end(kKeys)) continue;
+        throw Error(fmt::format("{}: unknown key \"{}\"; allowed: metric, pass, frame, value, unit",
+                                what, key));
+    }
+    GivenMetric given{textOf(line, "metric", true, what), textOf(line, "unit", true, what),
+                      textOf(line, "pass", false, what)};
+    const auto value = line.find("value");
+    if (value == line.end() || !value->is_number()) {
+        throw Error(fmt::format(
+            "{}: {}; allowed: a number", what,
+            value == line.end() ? "no \"value\"" : fmt::format("\"value\" is {}", value->dump())));
+    }
+    given.value = value->get<double>();
+    const auto drawn = line.find("frame");
+    if (drawn != line.end() && !drawn->is_null() && *drawn != frame) {
+        throw Error(fmt::format("{}: \"frame\" is {}; it was asked for frame {}", what,
+                                drawn->dump(), frame));
+    }
+    return given;
+}
+
+}  // namespace
+
+std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame) {
+    if (std::filesystem::file_size(file) > kMostBytes) {
+        throw Error(fmt::format("its metrics have more than {} MiB", kMostBytes >> 20));
+    }
+    std::vector<GivenMetric> metrics;
+    int number = 0;
+    for (const std::string& line : split(readFile(file), '\n')) {
+        ++number;
+        if (!trimmed(line).empty()) metrics.push_back(metricOf(line, number, frame));
+    }
+    return metrics;
+}
+
+std::optional<double> numberIn(std::string_view output, const config::ProgramPattern& pattern) {
+    const std::regex regex(pattern.regex);
+    std::optional<std::string> last;
+    while (!output.empty()) {
+        const std::string_view line = output.substr(0, output.find_first_of("\r\n"));
+        output.remove_prefix(std::min(line.size() + 1, output.size()));
+        std::match_results<std::string_view::const_iterator> match;
+        if (line.size() <= kLongestMatched &&
+            std::regex_search(line.begin(), line.end(), match, regex)) {
+            last = match[1].str();
+        }
+    }
+    if (!last) return std::nullopt;
+    const std::optional<double> number = parseDouble(*last);
+    if (!number) {
+        throw Error(fmt::format("metric '{}': its pattern finds '{}'; allowed: a number",
+                                pattern.metric, shown(*last)));
+    }
+    return number;
+}
+
+}  // namespace gfxrepro::external

@@ -1,0 +1,29 @@
+// What a program says that it measured.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/config/program.h"
+
+namespace gfxrepro::external {
+
+struct GivenMetric {
+    std::string metric;
+    std::string unit;
+    std::string pass;
+    double value = 0.0;
+};
+
+/// The lines of JSON, {"metric": …, "value": …, "unit": …} with "pass" and "frame" where there are
+/// such; a frame must be `frame`. Throws Error with the number of a line that is none.
+std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame);
+
+/// The number that the pattern finds last in what the program printed, line by line. Throws Error
+/// where its group is no number.
+std::optional<double> numberIn(std::string_view output, const config::ProgramPattern& pattern);
+
+}  // namespace gfxrepro::external

@@ -1,0 +1,61 @@
+// The configs of configs/external and README.md's example, on real programs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+bool isHere(const std::string& program) {
+    return runProgram({"/bin/sh", "-c", "command -v " + program}).exitCode == 0;
+}
+
+/// Every claim of the shipped config holds.
+void expectClaimsHold(const std::string& config, const std::string& dir) {
+    const ProcessResult result = gfxrepro(
+        {"reproduce", std::string(GFXREPRO_CONFIGS) + "/external/" + config, "--out", dir});
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    EXPECT_THAT(result.out, Not(HasSubstr("fails")));
+}
+
+TEST(ShippedPrograms, ErrorOfPovRayFallsAsTheRootOfItsSamples) {
+    if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
+    const TemporaryFolder folder;
+    expectClaimsHold("povray-samples.yaml", folder.path() / "run");
+}
+
+TEST(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
+    if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
+    const fs::path configs = GFXREPRO_CONFIGS;
+    const std::string readme = readFile(configs.parent_path() / "README.md");
+    const std::size_t section = readme.find("## Measure your own renderer");
+    const std::size_t begin = readme.find("```yaml\n", section) + 8;
+    ASSERT_LT(section, begin);
+    const TemporaryFolder folder;
+    const std::string config =
+        folder.write("mine.yaml", readme.substr(begin, readme.find("```", begin) - begin));
+    folder.write("configs/external/hall.pov", readFile(configs / "external" / "hall.pov"));
+    const std::string dir = folder.path() / "run";
+    const ProcessResult result = gfxrepro({"reproduce", config, "--out", dir});
+    ASSERT_EQ(result.exitCode, 0) << result.out << result.err;
+    EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 18U);
+    for (const char* metric : {"rmse", "ssim", "flip", "rel_mse", "psnr_db", "process_time_ms"}) {
+        EXPECT_FALSE(rowsOf(dir, metric).empty()) << metric;
+    }
+    EXPECT_THAT(readFile(dir + "/tables/sweep-mine.csv"), HasSubstr("rmse"));
+}
+
+TEST(ShippedPrograms, VolumeOfABallOfOpenScad) {
+    if (!isHere("openscad")) GTEST_SKIP() << "openscad is not here";
+    const TemporaryFolder folder;
+    expectClaimsHold("openscad-ball.yaml", folder.path() / "run");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

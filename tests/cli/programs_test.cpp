@@ -1,0 +1,396 @@
+// Programs that are measured from outside: what they give, and what becomes of bad ones.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "runner/core/files.h"
+#include "runner/image/png_io.h"
+#include "runner/report/images.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A shell script as a renderer: `renderer.sh BEHAVIOUR NUMBER OUT`, with pictures to copy.
+constexpr const char* kRenderer = R"(#!/bin/sh
+here=$(dirname "$0")
+say() { echo "{\"metric\": \"$1\", \"value\": $2, \"unit\": \"$3\"}" >>"$GFXREPRO_METRICS_FILE"; }
+echo "drawing $1"
+cp "$here/picture.png" "$3/result.png"
+case $1 in
+    ok) say number "$2" 1 ;;
+    crash) kill -SEGV $$ ;;
+    fails) echo "no such scene" >&2; exit 3 ;;
+    hangs) sleep 100 ;;
+    silent) ;;
+    not_a_number) say number NaN 1 ;;
+    wrong_unit) say number "$2" m ;;
+    undeclared) say nmuber "$2" 1 ;;
+    no_json) echo "number: 1" >>"$GFXREPRO_METRICS_FILE" ;;
+    twice) say number "$2" 1; say number "$2" 1 ;;
+    no_picture) say number "$2" 1; rm "$3/result.png" ;;
+    half_picture) say number "$2" 1; head -c 200 "$here/picture.png" >"$3/result.png" ;;
+    other_size) say number "$2" 1; cp "$here/small.png" "$3/result.png" ;;
+    leaks) x=$(head -c 700000000 /dev/zero | tr '\0' x); echo ${#x} ;;
+esac
+)";
+
+/// The head of a config of that renderer.
+constexpr const char* kProgram =
+    "sweep_of: mine\ntitle: Mine\ntechnique: external\n"
+    "program:\n"
+    "  command: \"{here}/renderer.sh {behaviour} {number} {out} {width} {height}\"\n"
+    "  params:\n"
+    "    behaviour: ok\n"
+    "    number: {default: 1, min: 0, max: 100, doc: given back}\n"
+    "  metrics: {number: \"1\"}\n"
+    "  files: [picture.png]\n";
+
+class ExternalProgram : public testing::Test {
+  protected:
+    ExternalProgram() {
+        fs::permissions(folder.write("renderer.sh", kRenderer), fs::perms::owner_all);
+        image::Image8 picture(32, 16, 3, 100);
+        for (std::size_t i = 0; i < picture.values().size(); ++i) {
+            picture.values()[i] = static_cast<std::uint8_t>(37 * i * i % 251);
+        }
+        image::writePng(folder.path() / "picture.png", picture);
+        image::writePng(folder.path() / "small.png", image::Image8(8, 8, 3, 100));
+        image::writePng(folder.path() / "truth.png", image::Image8(32, 16, 3, 120));
+    }
+
+    std::string write(const std::string& lines) const {
+        return folder.write("mine.yaml", kProgram + lines).string();
+    }
+    ProcessResult run(const std::string& config, std::vector<std::string> more = {}) const {
+        std::vector<std::string> arguments = {"run", config, "--out", dir};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return gfxrepro(arguments);
+    }
+    nlohmann::json manifest() const {
+        return nlohmann::json::parse(readFile(dir + "/manifest.json"));
+    }
+
+    TemporaryFolder folder;
+    std::string dir = (folder.path() / "run").string();
+};
+
+const std::string kPicture =
+    "  images: {result: {file: result.png, truth: \"{here}/truth.png\"}}\n"
+    "output: {width: 32, height: 16}\n";
+
+TEST_F(ExternalProgram, EveryFailureBecomesARow) {
+    const std::string config =
+        write(kPicture +
+              "sweep: {behaviour: [ok, crash, fails, hangs, silent, not_a_number, wrong_unit, "
+              "undeclared, no_json, twice, no_picture, half_picture, other_size]}\n"
+              "measure: {lane: quality, time_limit_s: 2}\n");
+    const ProcessResult result = run(config, {"--jobs", "2"});
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.out, HasSubstr("1 of 13 finished, 12 failed; "));
+    std::vector<std::string> lines = statusLines(dir);
+    std::ranges::sort(lines);
+    const std::string program = "program '" + folder.path().string() + "/renderer.sh'";
+    ASSERT_EQ(lines.size(), 13U);
+    EXPECT_EQ(lines[0], "crash: crash (" + program + " ended with SIGSEGV: drawing crash)");
+    EXPECT_EQ(lines[1], "fails: error (" + program + " ended with exit code 3: no such scene)");
+    EXPECT_THAT(lines[2],
+                testing::MatchesRegex("half_picture: error .image 'result': .*result.png: .*"));
+    EXPECT_EQ(lines[3], "hangs: timeout (not finished after 2 s (in render))");
+    EXPECT_EQ(lines[4], "no_json: error (line 1 of its metrics is no JSON object: number: 1)");
+    EXPECT_EQ(lines[5], "no_picture: error (image 'result': there is no file result.png)");
+    EXPECT_EQ(lines[6],
+              "not_a_number: error (line 1 of its metrics is no JSON object, which has no NaN and "
+              "no Infinity: {\"metric\": \"number\", \"value\": NaN, \"unit\": \"1\"})");
+    EXPECT_EQ(lines[7], "ok: ok");
+    EXPECT_EQ(lines[8],
+              "other_size: error (image 'result': has 8 × 8 pixels; 32 × 16 were asked for)");
+    EXPECT_EQ(lines[9], "silent: error (metric 'number': the program gave no value of it)");
+    EXPECT_EQ(lines[10], "twice: error (metric 'number' is given twice for frame 0, repeat 0)");
+    EXPECT_EQ(lines[11],
+              "undeclared: error (technique 'external' has no metric 'nmuber'; did you mean "
+              "'number'?)");
+    EXPECT_EQ(lines[12],
+              "wrong_unit: error (metric 'number' is recorded in 'm', but declared in '1')");
+    // What it printed is in the log.
+    EXPECT_THAT(readFile(dir + "/log.jsonl"), HasSubstr("drawing fails\\nno such scene"));
+    EXPECT_FALSE(fs::exists(dir + "/scratch"));
+}
+
+TEST_F(ExternalProgram, MemoryOfWhatItStartedIsLimited) {
+    const std::string config = write(
+        "params: {behaviour: leaks}\n"
+        "measure: {lane: quality, memory_limit_bytes: 314572800}\n");
+    EXPECT_EQ(run(config).exitCode, 4);
+    EXPECT_THAT(statusLines(dir),
+                ElementsAre(testing::MatchesRegex("leaks: oom .resident memory of .* MiB is over "
+                                                  "the limit of 300 MiB.")));
+}
+
+TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
+    const ProcessResult result =
+        run(write(kPicture + "sweep: {number: [3, 5]}\nmeasure: {lane: quality}\n"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
+    EXPECT_EQ(rowsOf(dir, "number").at(0).unit, "1");
+    const auto params = paramsOf(dir);
+    for (const report::Record& row : rowsOf(dir, "number")) {
+        EXPECT_EQ(row.value, params.at(row.caseId).at("number").get<double>());
+    }
+    for (const char* metric : {"mse", "rmse", "rel_mse", "psnr_db", "ssim", "flip"}) {
+        ASSERT_EQ(rowsOf(dir, metric).size(), 2U) << metric;
+        EXPECT_EQ(rowsOf(dir, metric).front().pass, "result");
+    }
+    // The runner's own: wall time, processor time and peak memory of the program.
+    for (const char* metric : {"wall_time_ms", "process_time_ms", "peak_memory_bytes"}) {
+        ASSERT_EQ(rowsOf(dir, metric).size(), 2U) << metric;
+        EXPECT_GT(rowsOf(dir, metric).front().value, 0.0) << metric;
+    }
+    EXPECT_LT(rowsOf(dir, "peak_memory_bytes").front().value, 64e6);
+    const auto images = report::readImages(dir + "/images/index.csv");
+    ASSERT_EQ(images.size(), 4U);
+    EXPECT_EQ(images[0].name, "result");
+    EXPECT_EQ(images[1].name, "result_truth");
+    EXPECT_EQ(images[1].truthOf, "result");
+    EXPECT_TRUE(fs::exists(fs::path(dir) / images[0].exr));
+    // No device was opened.
+    EXPECT_EQ(manifest()["gl"]["platform"], "none");
+}
+
+TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
+    const std::string config = write("measure: {lane: quality}\n");
+    const std::string text = readFile(config);
+    folder.write("mine.yaml", text.substr(0, text.find("  params:")) +
+                                  "  version: [echo, \"Renderer 1.2\"]\n" +
+                                  text.substr(text.find("  params:")));
+    ASSERT_EQ(run(config).exitCode, 0);
+    const nlohmann::json programs = manifest()["programs"];
+    ASSERT_EQ(programs.size(), 2U) << programs;
+    EXPECT_EQ(programs[0]["file"], folder.path().string() + "/renderer.sh");
+    EXPECT_EQ(programs[0]["sha256"].get<std::string>().size(), 64U);
+    EXPECT_EQ(programs[0]["version"], "Renderer 1.2");
+    EXPECT_EQ(programs[1]["file"], "picture.png");
+    EXPECT_EQ(gfxrepro({"report", dir}).exitCode, 0);
+    EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("Renderer 1.2"));
+}
+
+TEST_F(ExternalProgram, AChangedOneIsNotResumed) {
+    const std::string config = write("sweep: {behaviour: [ok, fails]}\nmeasure: {lane: quality}\n");
+    EXPECT_EQ(run(config).exitCode, 4);
+    EXPECT_EQ(gfxrepro({"run", "--resume", dir}).exitCode, 4);
+    image::writePng(folder.path() / "picture.png", image::Image8(32, 16, 3, 7));
+    const ProcessResult changed = gfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(changed.exitCode, 2);
+    EXPECT_THAT(
+        changed.err,
+        HasSubstr("cannot be resumed: the program of sweep/mine, or a file of it, changed"));
+    EXPECT_EQ(gfxrepro({"table", dir}).exitCode, 0);
+}
+
+TEST_F(ExternalProgram, OneThatIsNotHereIsUnsupported) {
+    const std::string config =
+        folder.write("none.yaml",
+                     "sweep_of: none\ntitle: T\ntechnique: external\n"
+                     "program: {command: no-such-program-anywhere}\nmeasure: {lane: quality}\n");
+    const ProcessResult check = gfxrepro({"check", config});
+    EXPECT_EQ(check.exitCode, 0) << check.err;
+    EXPECT_THAT(check.out, HasSubstr("the program 'no-such-program-anywhere' is not on this "
+                                     "machine: its cases will be unsupported"));
+    EXPECT_EQ(run(config).exitCode, 4);
+    const std::vector<report::Record> rows = rowsOf(dir, "");
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_EQ(rows[0].status, report::Status::Unsupported);
+    EXPECT_EQ(rows[0].message, "the program 'no-such-program-anywhere' is not on this machine");
+}
+
+TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
+    // Says of each run with which number it was made.
+    fs::permissions(folder.write("renderer.sh",
+                                 "#!/bin/sh\necho $2 >>\"$(dirname \"$0\")/runs\"\n"
+                                 "cp \"$(dirname \"$0\")/picture.png\" \"$3/result.png\"\n"
+                                 "echo '{\"metric\": \"number\", \"value\": 1, \"unit\": \"1\"}' "
+                                 ">&3\n"),
+                    fs::perms::owner_all);
+    const std::string config = write(
+        "  images: {result: {file: result.png, truth: {number: 99}}}\n"
+        "output: {width: 32, height: 16}\n"
+        "sweep: {number: [1, 2, 3]}\nmeasure: {lane: quality}\n");
+    ASSERT_EQ(run(config, {"--jobs", "1"}).exitCode, 0);
+    EXPECT_EQ(readFile(folder.path() / "runs"), "1\n99\n2\n3\n");
+    for (const report::Record& row : rowsOf(dir, "mse")) EXPECT_EQ(row.value, 0.0);
+}
+
+/// Processes that work in the run's scratch folder.
+std::vector<pid_t> processesIn(const std::string& dir) {
+    std::vector<pid_t> pids;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        std::error_code isGone;  // or nobody's that we may ask
+        const fs::path folder = fs::read_symlink(entry.path() / "cwd", isGone);
+        if (isGone || !folder.string().starts_with(dir + "/scratch")) continue;
+        pids.push_back(std::stoi(entry.path().filename().string()));
+    }
+    return pids;
+}
+
+template <class Condition>
+void waitFor(Condition&& condition) {
+    for (int i = 0; i < 600 && !condition(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    EXPECT_TRUE(condition());
+}
+
+TEST_F(ExternalProgram, AllThatItStartedDiesWithItsWorkerAndWithAnInterruptedRun) {
+    const std::string config = write("params: {behaviour: hangs}\nmeasure: {lane: quality}\n");
+    BackgroundProgram run({GFXREPRO_PROGRAM, "run", config, "--out", dir});
+    waitFor([&] { return processesIn(dir).size() == 2; });  // the shell and its child
+    const std::vector<pid_t> first = processesIn(dir);
+    const std::vector<pid_t> workers = backgroundWorkers();
+    ASSERT_EQ(workers.size(), 1U);
+    ::kill(workers[0], SIGKILL);
+    waitFor([&] {  // the second try
+        const std::vector<pid_t> now = processesIn(dir);
+        return now.size() == 2 && std::ranges::none_of(now, [&](pid_t pid) {
+                   return std::ranges::find(first, pid) != first.end();
+               });
+    });
+    run.signal(SIGTERM);
+    run.wait();
+    waitFor([&] { return processesIn(dir).empty(); });
+    EXPECT_FALSE(fs::exists(dir + "/scratch"));
+}
+
+TEST_F(ExternalProgram, DiesWithAKilledRunWhoseLeftoversHarmNobody) {
+    folder.write("renderer.sh", "#!/bin/sh\nln -s / link\nexec sleep 100\n");
+    const std::string config = write("measure: {lane: quality}\n");
+    BackgroundProgram run({GFXREPRO_PROGRAM, "run", config, "--out", dir});
+    waitFor([&] { return processesIn(dir).size() == 1; });
+    run.signal(SIGKILL);
+    run.wait();
+    waitFor([&] { return processesIn(dir).empty(); });
+    EXPECT_TRUE(fs::exists(dir + "/scratch"));
+    EXPECT_EQ(gfxrepro({"table", dir}).exitCode, 0);
+    folder.write("renderer.sh", "#!/bin/sh\nexit 1\n");
+    EXPECT_EQ(gfxrepro({"run", "--resume", dir}).exitCode, 2);  // it changed
+    EXPECT_FALSE(fs::exists(dir + "/scratch"));
+    EXPECT_TRUE(fs::exists("/bin/sh"));
+}
+
+TEST_F(ExternalProgram, IsTimedInRoundsAndComparedWithItself) {
+    const std::string config =
+        write("sweep: {number: [1, 2]}\nmeasure: {lane: timing, processes: 6}\n");
+    ASSERT_EQ(run(config).exitCode, 0);
+    EXPECT_GE(rowsOf(dir, "wall_time_ms").size(), 12U);
+    const std::string again = (folder.path() / "again").string();
+    ASSERT_EQ(gfxrepro({"run", config, "--out", again}).exitCode, 0);
+    const ProcessResult compared =
+        gfxrepro({"compare", dir, again, "--out", folder.path() / "compared"});
+    EXPECT_LE(compared.exitCode, 1) << compared.err;  // an alarm may be
+    EXPECT_THAT(compared.out, HasSubstr("comparison.md"));
+}
+
+TEST_F(ExternalProgram, ShardsOfItMergeIntoTheRun) {
+    const std::string config = write(
+        "sweep: {number: [1, 2, 3, 4]}\nmeasure: {lane: quality}\n"
+        "layout: {rows: number, columns: {n: {metric: number, format: \"{median:.0f}\"}}}\n");
+    ASSERT_EQ(run(config).exitCode, 0);
+    std::vector<std::string> shards;
+    for (const char* shard : {"1/2", "2/2"}) {
+        shards.push_back((folder.path() / ("shard" + std::string(1, shard[0]))).string());
+        ASSERT_EQ(gfxrepro({"run", config, "--shard", shard, "--out", shards.back()}).exitCode, 0);
+    }
+    const std::string merged = (folder.path() / "merged").string();
+    ASSERT_EQ(gfxrepro({"merge", merged, shards[0], shards[1]}).exitCode, 0);
+    for (const std::string& one : {dir, merged}) EXPECT_EQ(gfxrepro({"table", one}).exitCode, 0);
+    EXPECT_EQ(readFile(merged + "/tables/sweep-mine.csv"),
+              readFile(dir + "/tables/sweep-mine.csv"));
+    EXPECT_EQ(nlohmann::json::parse(readFile(merged + "/manifest.json"))["programs"],
+              manifest()["programs"]);
+}
+
+TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
+    const auto check = [&](const std::string& lines) {
+        const ProcessResult result = gfxrepro({"check", write(lines)});
+        const std::string& text = result.exitCode == 0 ? result.out : result.err;
+        return text.substr(text.find("mine.yaml"));
+    };
+    EXPECT_EQ(check("sweep: {number: [1, 2]}\n"), "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
+    EXPECT_EQ(check("sweep: {number: [1, 200]}\n"),
+              "mine.yaml:11:21: technique 'external': number is 200; allowed: 0 … 100\n");
+    EXPECT_EQ(check("params: {nubmer: 1}\n"),
+              "mine.yaml:11:10: technique 'external': unknown parameter 'nubmer'; did you mean "
+              "'number'?\n");
+    EXPECT_EQ(check("sweep: {number: [1, 2]}\n"
+                    "layout: {rows: number, columns: {n: {metric: nmuber}}}\n"),
+              "mine.yaml:12:37: technique 'external' has no metric 'nmuber'; did you mean "
+              "'number'?\n");
+    EXPECT_EQ(check("scene: models/duck\n"),
+              "mine.yaml:11:1: 'scene': the program's command has no {scene}\n");
+    EXPECT_EQ(check("measure: {lane: quality, frames: 2}\n"),
+              "mine.yaml:11:1: 'measure': the program's command has no {frame}, of which there are "
+              "several\n");
+    write("");
+    const std::string inItsFolder =
+        "cd " + folder.path().string() + " && " + GFXREPRO_PROGRAM + " check mine.yaml";
+    EXPECT_EQ(runProgram({"/bin/sh", "-c", inItsFolder}).out,
+              "mine.yaml: ok, sweep/mine, 1 case, 0 claims\n");
+    const ProcessResult described = gfxrepro({"describe", write("")});
+    EXPECT_EQ(described.exitCode, 0) << described.err;
+    EXPECT_THAT(described.out, HasSubstr("given back [1; 0 … 100]"));
+    EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {number} {out}"));
+    EXPECT_THAT(gfxrepro({"describe", "external"}).out, HasSubstr("rel_mse"));
+    const std::string other = folder.write(
+        "other.yaml", "sweep_of: o\ntitle: T\ntechnique: mock\nprogram: {command: sh}\n");
+    EXPECT_THAT(gfxrepro({"check", other}).err,
+                HasSubstr("'program': technique 'mock' takes none"));
+    const std::string without =
+        folder.write("without.yaml", "sweep_of: o\ntitle: T\ntechnique: external\n");
+    EXPECT_THAT(gfxrepro({"check", without}).err,
+                HasSubstr("technique 'external' needs 'program': see 'gfxrepro describe config'"));
+    const std::string taken = folder.write("taken.yaml",
+                                           "sweep_of: o\ntitle: T\ntechnique: external\n"
+                                           "program: {command: sh, metrics: {wall_time_ms: ms}}\n");
+    EXPECT_THAT(gfxrepro({"check", taken}).err,
+                HasSubstr("program: metric 'wall_time_ms' is recorded of every case already; give "
+                          "it another name"));
+}
+
+TEST(NoDevice, IsNoneForATechniqueThatDraws) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok]}\n");
+    const std::string dir = folder.path() / "run";
+    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "none", "--out", dir}).exitCode, 4);
+    EXPECT_THAT(statusLines(dir),
+                ElementsAre("ok: unsupported (technique 'mock' needs a graphics device)"));
+}
+
+TEST_F(ExternalProgram, TakesASceneOfTheCatalogue) {
+    fs::permissions(folder.write("renderer.sh",
+                                 "#!/bin/sh\nprintf '{\"metric\": \"number\", \"value\": %s, "
+                                 "\"unit\": \"1\"}\\n' $(stat -c %s \"$1\") >&3\n"),
+                    fs::perms::owner_all);
+    const std::string config = folder.write(
+        "scene.yaml",
+        "sweep_of: scene\ntitle: T\ntechnique: external\n"
+        "program: {command: \"{here}/renderer.sh {scene}\", metrics: {number: \"1\"}}\n"
+        "scene: shapes/sphere\nmeasure: {lane: quality}\n");
+    const ProcessResult result = run(config);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_GT(rowsOf(dir, "number").at(0).value, 1000.0);
+    EXPECT_EQ(rowsOf(dir, "scene_triangles").size(), 1U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

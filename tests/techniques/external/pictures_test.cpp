@@ -1,0 +1,99 @@
+#include "techniques/external/pictures.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "runner/core/files.h"
+#include "runner/image/exr_io.h"
+#include "runner/image/png_io.h"
+#include "tests/support/support.h"
+#include "tests/techniques/technique_recorder.h"
+
+namespace gfxrepro::external {
+namespace {
+
+using image::ImageF;
+using test::errorText;
+using test::TemporaryFolder;
+
+std::filesystem::path writeExr(const TemporaryFolder& folder, const std::string& name,
+                               const ImageF& image) {
+    image::ExrImage exr;
+    exr.add(image, {"R", "G", "B"}, image::ExrPixelType::Float);
+    image::writeExr(folder.path() / name, exr);
+    return folder.path() / name;
+}
+
+std::filesystem::path writePng(const TemporaryFolder& folder, const std::string& name, int width,
+                               std::uint8_t value) {
+    image::writePng(folder.path() / name, image::Image8(width, 16, 3, value));
+    return folder.path() / name;
+}
+
+TEST(Pictures, ErrorsAreThoseOfKnownPictures) {
+    const TemporaryFolder folder;
+    const Picture truth = readPicture(writeExr(folder, "t.exr", ImageF(16, 16, 3, 0.5F)), "t");
+    const Picture test = readPicture(writeExr(folder, "p.exr", ImageF(16, 16, 3, 0.75F)), "p");
+    test::MetricRecorder recorder;
+    recordErrors(test, truth, "result", recorder);
+    EXPECT_DOUBLE_EQ(recorder.metrics.at("mse/result"), 0.0625);
+    EXPECT_DOUBLE_EQ(recorder.metrics.at("rmse/result"), 0.25);
+    EXPECT_NEAR(recorder.metrics.at("rel_mse/result"), 0.0625 / 0.26, 1e-12);
+    EXPECT_NEAR(recorder.metrics.at("psnr_db/result"), 12.0412, 1e-4);
+    EXPECT_LT(recorder.metrics.at("ssim/result"), 1.0);
+    EXPECT_GT(recorder.metrics.at("flip/result"), 0.0);
+    config::Outputs declared = errorOutputs();
+    declared.passes.push_back({"result", ""});
+    recorder.expectDeclared(declared);
+}
+
+TEST(Pictures, APngIsComparedAsItIsStored) {
+    const TemporaryFolder folder;
+    const Picture truth = readPicture(writePng(folder, "t.png", 16, 51), "t");
+    const Picture test = readPicture(writePng(folder, "p.png", 16, 102), "p");
+    test::MetricRecorder recorder;
+    recordErrors(test, truth, "result", recorder);
+    EXPECT_NEAR(recorder.metrics.at("rmse/result"), 0.2, 1e-6);
+    EXPECT_NEAR(test.linear.at(0, 0), 0.1329, 1e-4);  // what is recorded: sRGB 0.4 in linear light
+}
+
+TEST(Pictures, RefusesHalfAndWrongOnes) {
+    const TemporaryFolder folder;
+    const auto errorOf = [&](const std::filesystem::path& file, glm::ivec2 size = {0, 0}) {
+        return errorText([&] { readPicture(file, "image 'result'", size); }, folder.path());
+    };
+    EXPECT_EQ(errorOf(folder.path() / "none.exr"), "image 'result': there is no file none.exr");
+    EXPECT_EQ(errorOf(folder.write("x.jpg", "x")).substr(0, 16), "image 'result': ");
+    const auto png = writePng(folder, "p.png", 16, 51);
+    EXPECT_EQ(errorOf(png, {16, 16}), "no error");
+    EXPECT_EQ(errorOf(png, {32, 16}), "image 'result': has 16 × 16 pixels; 32 × 16 were asked for");
+    const std::string whole = readFile(png);
+    const auto half = folder.write("half.png", whole.substr(0, whole.size() / 2));
+    EXPECT_TRUE(errorOf(half).starts_with("image 'result': DIR/half.png: ")) << errorOf(half);
+    ImageF image(16, 16, 3, 0.5F);
+    const auto exr = writeExr(folder, "e.exr", image);
+    const std::string wholeExr = readFile(exr);
+    const auto halfExr = folder.write("half.exr", wholeExr.substr(0, wholeExr.size() / 2));
+    EXPECT_TRUE(errorOf(halfExr).starts_with("image 'result': DIR/half.exr: ")) << errorOf(halfExr);
+    image.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(errorOf(writeExr(folder, "nan.exr", image)),
+              "image 'result': holds nan at pixel (3, 2)");
+}
+
+TEST(Pictures, RefusesATruthOfAnotherKind) {
+    const TemporaryFolder folder;
+    const Picture exr = readPicture(writeExr(folder, "t.exr", ImageF(16, 16, 3, 0.5F)), "t");
+    const Picture png = readPicture(writePng(folder, "p.png", 16, 51), "p");
+    const Picture wide = readPicture(writePng(folder, "w.png", 32, 51), "w");
+    test::MetricRecorder recorder;
+    EXPECT_EQ(errorText([&] { recordErrors(png, exr, "result", recorder); }),
+              "image 'result': one of it and its truth is an EXR file, which is linear, the other "
+              "a PNG file, which is not");
+    EXPECT_EQ(errorText([&] { recordErrors(png, wide, "result", recorder); }),
+              "image 'result' and its truth: the images differ in shape: 32x16 with 3 channels and "
+              "16x16 with 3 channels");
+}
+
+}  // namespace
+}  // namespace gfxrepro::external

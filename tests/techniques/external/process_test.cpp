@@ -1,0 +1,88 @@
+#include "techniques/external/process.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "runner/core/files.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::external {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+ProcessEnd runShell(const TemporaryFolder& folder, const std::string& script,
+                    std::vector<std::pair<std::string, std::string>> environment = {}) {
+    return runProcess({{"/bin/sh", "-c", script},
+                       std::move(environment),
+                       folder.path(),
+                       folder.path() / "metrics.jsonl"});
+}
+
+TEST(Process, SaysHowItEnded) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(whyEnded(runShell(folder, "true").waitStatus), "");
+    EXPECT_EQ(whyEnded(runShell(folder, "exit 3").waitStatus), "exit code 3");
+    EXPECT_EQ(whyEnded(runShell(folder, "kill -SEGV $$").waitStatus), "SIGSEGV");
+}
+
+TEST(Process, RunsInItsFolderAndPrints) {
+    const TemporaryFolder folder;
+    const ProcessEnd end = runShell(folder, "pwd; echo $WORD >&2; cat", {{"WORD", "of mine"}});
+    EXPECT_EQ(end.output, folder.path().string() + "\nof mine\n");
+}
+
+TEST(Process, ItsMetricsComeThroughDescriptorAndFile) {
+    const TemporaryFolder folder;
+    runShell(folder,
+             "eval \"echo one >&$GFXREPRO_METRICS_FD\"; echo two >>\"$GFXREPRO_METRICS_FILE\"");
+    EXPECT_EQ(readFile(folder.path() / "metrics.jsonl"), "one\ntwo\n");
+    runShell(folder, "true");  // each run begins anew
+    EXPECT_EQ(readFile(folder.path() / "metrics.jsonl"), "");
+}
+
+TEST(Process, TakesItsTimeAndMemory) {
+    const TemporaryFolder folder;
+    const ProcessEnd idle = runShell(folder, "sleep 0.3");
+    EXPECT_LT(idle.processTimeMs, 200.0);
+    // Of a child of the child, too: 64 MiB in a variable of a shell.
+    const ProcessEnd busy =
+        runShell(folder, "sh -c 'x=$(head -c 67108864 /dev/zero | tr \"\\\\0\" x); echo ${#x}'");
+    EXPECT_EQ(busy.output, "67108864\n");
+    EXPECT_GT(busy.processTimeMs, idle.processTimeMs);
+    EXPECT_GE(busy.peakBytes, 64LL << 20);
+    EXPECT_LT(idle.peakBytes, 64LL << 20);
+}
+
+TEST(Process, WhatItLeavesBehindEnds) {
+    const TemporaryFolder folder;
+    const auto begin = std::chrono::steady_clock::now();
+    // Neither waits for the pipe, nor is in the group of a shell any more.
+    runShell(folder, "setsid sleep 100 & echo $! >pid; exit 0");
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+    pid_t pid = 0;
+    std::ifstream(folder.path() / "pid") >> pid;
+    ASSERT_GT(pid, 0);
+    EXPECT_EQ(::kill(pid, 0), -1) << pid;
+}
+
+TEST(Process, IsEndedWhenItPrintsWithoutEnd) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(errorText([&] { runShell(folder, "yes"); }), "ended, as it prints more than 16 MiB");
+}
+
+TEST(Process, ThatCannotBeStarted) {
+    const TemporaryFolder folder;
+    const ProcessEnd end =
+        runProcess({{"/no/such/program"}, {}, folder.path(), folder.path() / "m"});
+    EXPECT_EQ(whyEnded(end.waitStatus), "exit code 127");
+    EXPECT_EQ(end.output, "cannot start: No such file or directory");
+}
+
+}  // namespace
+}  // namespace gfxrepro::external

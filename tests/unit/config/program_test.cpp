@@ -1,0 +1,188 @@
+#include "runner/config/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/support.h"
+
+namespace gfxrepro::config {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+
+Program programOf(const std::string& yaml) {
+    return readProgram(parseYaml(yaml, "c.yaml"));
+}
+
+std::string errorOf(const std::string& yaml) {
+    return errorText([&] { programOf(yaml); });
+}
+
+TEST(Program, FillsPlaceholders) {
+    const Placeholders values = {{"n", "4"}, {"out", "/o"}};
+    EXPECT_EQ(filled("-n{n} {out}/x.png", values), "-n4 /o/x.png");
+    EXPECT_EQ(filled("{{n}} {{{n}}}", values), "{n} {4}");
+    EXPECT_EQ(filled("{unknown} {open", values), "{unknown} {open");
+    EXPECT_EQ(filled("a } b", values), "a } b");
+    EXPECT_EQ(filled("", values), "");
+}
+
+TEST(Program, CommandIsALineOrAList) {
+    EXPECT_THAT(programOf("command: tracer  -o {out}/x.png").command,
+                ElementsAre("tracer", "-o", "{out}/x.png"));
+    EXPECT_THAT(programOf("command: [tracer, \"a b\"]").command, ElementsAre("tracer", "a b"));
+    EXPECT_EQ(errorOf("params: {}"), "c.yaml:1:1: program: 'command' is missing");
+    EXPECT_EQ(errorOf("command: []"),
+              "c.yaml:1:10: program: command is []; allowed: a program and its arguments");
+    EXPECT_EQ(errorOf("command: [tracer, {out}]"),
+              "c.yaml:1:19: program: command is {out: null}; allowed: text; one that begins with a "
+              "brace needs quotes");
+}
+
+TEST(Program, RefusesWhatStandsForNothing) {
+    EXPECT_EQ(errorOf("command: t {widt}"),
+              "c.yaml:1:10: program: command: '{widt}' stands for nothing; did you mean 'width'?; "
+              "braces as such are {{ and }}");
+    EXPECT_EQ(errorOf("command: t\nparams: {n: 1}"),
+              "c.yaml:2:10: program: parameter 'n': no argument and no variable has '{n}'");
+    EXPECT_EQ(errorOf("command: t {seed}\nparams: {seed: 1}"),
+              "c.yaml:2:10: program: parameter 'seed': every program has that placeholder; give it "
+              "another name");
+    EXPECT_EQ(errorOf("command: t\nimages: {result: \"{q}.png\"}"),
+              "c.yaml:2:18: program: image 'result': file: '{q}' stands for nothing; allowed: "
+              "here, out, scene, width, height, seed, frame, frames; braces as such are {{ and }}");
+}
+
+TEST(Program, TypesAreThoseOfTheDefaults) {
+    const Program program = programOf(
+        "command: t {a} {b} {c} {d} {e} {f}\n"
+        "params:\n"
+        "  a: 4\n"
+        "  b: {default: 4, type: number, min: 0, max: 8, unit: m, doc: a length}\n"
+        "  c: true\n"
+        "  d: some text\n"
+        "  e: {default: x, choices: [x, y]}\n"
+        "  f: 0.5\n");
+    Params params(parseYaml("{b: 2.5, e: y}", "p"), "technique 't'");
+    program.declare(params);
+    params.finish();
+    EXPECT_EQ(params.resolved().toFlowText(),
+              "{a: 4, b: 2.5, c: true, d: some text, e: y, f: 0.5}");
+    EXPECT_EQ(params.declared()[0].type, "integer");
+    EXPECT_EQ(params.declared()[1].range, "0 … 8");
+    EXPECT_EQ(params.declared()[1].unit, "m");
+    EXPECT_EQ(params.declared()[4].doc, "x | y");
+    const Placeholders values = program.valuesOf(params.resolved());
+    EXPECT_EQ(filled("{a} {b} {c} {d} {e} {f}", values), "4 2.5 true some text y 0.5");
+}
+
+TEST(Program, RefusesValuesThatAParameterDoesNotTake) {
+    const Program choice =
+        programOf("command: t {m}\nparams: {m: {default: x, choices: [x, y], doc: how}}");
+    Params wrong(parseYaml("{m: z}", "p"), "technique 't'");
+    EXPECT_EQ(errorText([&] { choice.declare(wrong); }), "p:1:5: m is 'z'; allowed: x | y");
+    EXPECT_EQ(wrong.declared()[0].doc, "how (x | y)");
+    const Program program =
+        programOf("command: t {n}\nparams: {n: {default: 4, min: 1, max: 64, unit: sample}}");
+    Params params(parseYaml("{n: 128}", "p"), "technique 't'");
+    EXPECT_EQ(errorText([&] { program.declare(params); }),
+              "p:1:5: technique 't': n is 128; allowed: 1 … 64 sample");
+    EXPECT_EQ(
+        errorOf("command: t {n}\nparams: {n: {default: 4, min: 8}}"),
+        "c.yaml:2:23: program: parameter 'n': default is 4; allowed: one of the values it may "
+        "have");
+    EXPECT_EQ(
+        errorOf("command: t {n}\nparams: {n: {default: z, choices: [x, y]}}"),
+        "c.yaml:2:23: program: parameter 'n': default is z; allowed: one of the values it may "
+        "have");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: text, min: 1}}"),
+              "c.yaml:2:29: program: parameter 'n': 'min' is of numbers alone");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {unit: m}}"),
+              "c.yaml:2:13: program: parameter 'n' needs 'default', a number, a boolean or text");
+    EXPECT_EQ(errorOf("command: t {N}\nparams: {N: 1}"),
+              "c.yaml:2:10: program: parameter 'N'; allowed: small letters, digits and _, a letter "
+              "first");
+}
+
+TEST(Program, DeclaresWhatItSays) {
+    const Program program = programOf(
+        "command: t\n"
+        "metrics:\n"
+        "  rays: ray\n"
+        "  bytes: {unit: byte, better: lower, doc: of it, optional: true}\n"
+        "  facets: {unit: facet, pattern: 'Facets: +([0-9]+)'}\n"
+        "passes: {trace: the rays}\n"
+        "images:\n"
+        "  depth: depth.exr\n"
+        "  result: {file: result.exr, truth: \"{here}/truth.exr\"}\n");
+    EXPECT_EQ(program.outputs.find("rays")->unit, "ray");
+    EXPECT_EQ(program.outputs.find("bytes")->better, Better::Lower);
+    EXPECT_THAT(program.optionalMetrics, ElementsAre("bytes"));
+    EXPECT_EQ(program.patterns.at(0).metric, "facets");
+    EXPECT_TRUE(program.outputs.hasPass("trace"));
+    EXPECT_TRUE(program.outputs.hasPass("result"));
+    EXPECT_FALSE(program.outputs.hasPass("depth"));
+    EXPECT_EQ(program.pictures.at(1).truthFile, "{here}/truth.exr");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {a: {doc: x}}"),
+              "c.yaml:2:11: program: metric 'a' needs 'unit'; \"1\" for none");
+    EXPECT_EQ(
+        errorOf("command: t\nmetrics: {a: {unit: m, pattern: x}}"),
+        "c.yaml:2:33: program: metric 'a': pattern is x; allowed: one with the number in ( )");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, better: more}}"),
+              "c.yaml:2:32: program: metric 'a': better is more; allowed: lower, higher");
+}
+
+TEST(Program, ATruthMayBeMadeByOtherParameters) {
+    const std::string head = "command: t {n}\nparams: {n: {default: 4, max: 64}}\n";
+    const Program program =
+        programOf(head + "images: {result: {file: r.exr, truth: {n: 64, frame: 9}}}");
+    EXPECT_EQ(program.pictures.at(0).truthParams.toFlowText(), "{n: 64, frame: 9}");
+    EXPECT_EQ(errorOf(head + "images: {result: {file: r.exr, truth: {n: 65}}}"),
+              "c.yaml:3:43: program: image 'result': truth: n is 65; allowed: at most 64");
+    EXPECT_EQ(errorOf(head + "images: {result: {file: r.exr, truth: {m: 6}}}"),
+              "c.yaml:3:40: program: image 'result': truth: unknown key 'm'; did you mean 'n'?");
+}
+
+TEST(Program, ItsKeyIsOfItsFiles) {
+    const TemporaryFolder folder;
+    const auto script = folder.write("run.sh", "#!/bin/sh\n");
+    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    folder.write("scene.txt", "one");
+    folder.write("more.txt", "two");
+    const std::string here = folder.path().string();
+    const Program program = programOf(
+        "command: \"{here}/run.sh +I{here}/{scene_name}.txt\"\n"
+        "params: {scene_name: scene}\n"
+        "files: [more.txt]\nhere: " +
+        here);
+    const auto filesNow = [&](const std::string& scene) {
+        return filesOf(program, {{"here", here}, {"scene_name", scene}});
+    };
+    std::vector<std::string> names;
+    for (const ProgramFile& file : filesNow("scene")) names.push_back(file.name);
+    EXPECT_THAT(names, ElementsAre(here + "/run.sh", "scene.txt", "more.txt"));
+    FileDigests digests;
+    const std::string key = programKey(filesNow("scene"), digests);
+    EXPECT_EQ(key.size(), 64U);
+    EXPECT_EQ(programKey(filesNow("scene"), digests), key);
+    EXPECT_NE(programKey(filesNow("none"), digests), key);
+    folder.write("scene.txt", "other");
+    EXPECT_NE(programKey(filesNow("scene"), digests), key);
+}
+
+TEST(Program, OneThatIsNotHereHasNoKey) {
+    const Program absent = programOf("command: no-such-program-anywhere");
+    FileDigests digests;
+    EXPECT_EQ(programKey(filesOf(absent, {}), digests), "");
+    EXPECT_EQ(absentOf(filesOf(absent, {}))->name, "no-such-program-anywhere");
+    const Program starter = programOf("command: sh\nstarts: [no-such-program-anywhere]");
+    EXPECT_EQ(absentOf(filesOf(starter, {}))->name, "no-such-program-anywhere");
+    const Program other = programOf("command: sh\nfiles: [no-such-file]\nhere: /usr");
+    EXPECT_EQ(errorText([&] { filesOf(other, {}); }),
+              "program: files: there is no file /usr/no-such-file");
+}
+
+}  // namespace
+}  // namespace gfxrepro::config
