@@ -91,6 +91,7 @@ TEST(Configs, OfADocumentMeasureEveryTechnique) {
     };
     std::set<std::string> known = techniquesOf("smoke");
     EXPECT_EQ(known.erase("template"), 1U);
+    EXPECT_EQ(known.erase("external"), 1U);  // programs of others
     std::set<std::string> measured;
     for (const char* document : {"xie2017", "zhang2012", "zju2005"}) {
         measured.merge(techniquesOf(document));
@@ -283,6 +284,19 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
          "",
          {{"title", "t"}, {"technique", "x"}, {"layout", "{columns: {aa: m}}"}}},
         {"profiles", head + "profiles:\n", "  ", {}},
+        {"program", head + "program:\n", "  ", {{"command", "t"}}},
+        {"program_param",
+         head + "program:\n  command: t {n}\n  params:\n    n:\n",
+         "      ",
+         {{"default", "1"}}},
+        {"program_metric",
+         head + "program:\n  command: t\n  metrics:\n    n:\n",
+         "      ",
+         {{"unit", "m"}}},
+        {"program_image",
+         head + "program:\n  command: t\n  images:\n    n:\n",
+         "      ",
+         {{"file", "n.png"}}},
         {"output", head + "output:\n", "  ", {}},
         {"measure", head + "measure:\n", "  ", {}},
         {"picture_tolerance", head + "picture_tolerance:\n", "  ", {}},
