@@ -18,9 +18,9 @@ namespace gfxrepro::batch {
 struct Expectation {
     enum class Kind { Fails, Flakes, Skips };
     Kind kind = Kind::Fails;
-    std::string table;                                     // "zju2005/2.1"
-    config::Node::Map at;  // axis or parameter = value or values
-    std::optional<report::Status> status;                  // of a failure; none: any
+    std::string table;                     // "zju2005/2.1"
+    config::Node::Map at;                  // axis or parameter = value or values
+    std::optional<report::Status> status;  // of a failure; none: any
     std::string reason;
     std::string until;  // "2027-01-31": the last day on which it counts
     SourceLocation location;

@@ -19,8 +19,8 @@ using config::Assumption;
 using config::Node;
 
 constexpr std::size_t kMostShown = 12;
-/// What techniques call the camera or path of the scene that a case is seen along; of some it is a
-/// choice among their own.
+/// What techniques call the camera or path of the scene that a case is seen along; some have views
+/// of their own beside.
 constexpr const char* kView = "view";
 
 std::vector<config::ParamInfo> declaredBy(const config::Experiment& experiment,
@@ -314,7 +314,7 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
                    const scene::Catalog& catalog,
                    std::span<const technique::TechniqueInfo> techniques) {
     constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000;
-    if (experiment.technique.empty()) return;  // only printed
+    if (!config::isMeasuredHere(experiment)) return;
     const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
     for (const Assumption& assumption : experiment.assumptions) {
         if (!assumption.isBound || assumption.range.isNull()) continue;
@@ -329,7 +329,9 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
                             technique::findTechnique(techniques, experiment.technique, {}));
             requireMeasuredWithin(assumption, cases);
             const config::ParamInfo* info = findInfo(declared, assumption.name);
-            if (assumption.name == kView && info && info->type == "text") {
+            // A technique whose default is a view by name has views of its own.
+            if (assumption.name == kView && info && info->type == "text" &&
+                (info->defaultValue.empty() || info->defaultValue == "\"\"")) {
                 requireViews(assumption, cases, catalog);
             }
         }

@@ -53,17 +53,10 @@ class SignalWatch {
     int fd_;
 };
 
-CaseResult crashOf(const std::string& message) {
+CaseResult notRun(report::Status status, const std::string& why) {
     CaseResult result;
-    result.status = report::Status::Crash;
-    result.message = message;
-    return result;
-}
-
-CaseResult skippedResult(const Expectation& skip) {
-    CaseResult result;
-    result.status = report::Status::Missing;
-    result.message = "skipped until " + skip.until + ": " + skip.reason;
+    result.status = status;
+    result.message = why;
     return result;
 }
 
@@ -166,13 +159,15 @@ class Scheduler {
     void dispatch() {
         while (hasNext()) {
             if (const Expectation* skip = expectations_.skipOf(*waiting_.front().item)) {
-                finish(waiting_.front(), skippedResult(*skip), "");
+                const std::string why = "skipped until " + skip->until + ": " + skip->reason;
+                finish(waiting_.front(), notRun(report::Status::Missing, why), "");
                 waiting_.pop_front();
                 continue;
             }
             const auto givenUp = options_.givenUp.find(waiting_.front().item->id);
             if (givenUp != options_.givenUp.end()) {
-                finish(waiting_.front(), crashOf(givenUp->second), "", "given_up");
+                finish(waiting_.front(), notRun(report::Status::Crash, givenUp->second), "",
+                       "given_up");
                 waiting_.pop_front();
                 continue;
             }

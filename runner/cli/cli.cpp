@@ -58,8 +58,8 @@ void addProfile(CLI::App* app, std::string& profile) {
 }
 
 void addDevice(CLI::App* app, std::string& device) {
-    app->add_option("--device", device, "where; N and UUID are of doctor")
-        ->option_text("auto|gpu|software|N|UUID");
+    app->add_option("--device", device, "auto, gpu, software; N or UUID as doctor has them")
+        ->option_text("DEVICE");
 }
 
 CLI::Option* addRunDirectory(CLI::App* app, std::string& dir) {
@@ -239,8 +239,8 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
 }
 
 void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& command) {
-    CLI::App* compareApp = app.add_subcommand(
-        "compare", "times, values and pictures of two runs, or of two builds by turns");
+    CLI::App* compareApp =
+        app.add_subcommand("compare", "times, values and pictures of two runs or two builds");
     compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… with --binaries")
         ->required()
         ->option_text("RUN");

@@ -11,6 +11,7 @@
 #include "runner/batch/expectations.h"
 #include "runner/batch/scheduler.h"
 #include "runner/cli/console.h"
+#include "runner/config/imported.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 
@@ -179,14 +180,13 @@ std::string deviceClassFor(const Selection& selection) {
 std::string deviceFor(const Context& context, const std::string& asked,
                       const std::vector<config::Experiment>& experiments) {
     const auto isOpened = [&](const config::Experiment& experiment) {
-        return !experiment.technique.empty() &&
+        return config::isMeasuredHere(experiment) &&
                technique::needsDevice(
                    technique::findTechnique(context.techniques, experiment.technique,
                                             experiment.document.find("technique")->location()),
                    config::programOf(experiment));
     };
-    const bool measures = std::ranges::any_of(
-        experiments, [](const auto& experiment) { return !experiment.technique.empty(); });
+    const bool measures = std::ranges::any_of(experiments, config::isMeasuredHere);
     return asked == "auto" && measures && std::ranges::none_of(experiments, isOpened) ? "none"
                                                                                       : asked;
 }

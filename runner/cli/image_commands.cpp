@@ -104,7 +104,7 @@ void requireNoInput(const std::string& out, std::span<const std::string> inputs)
 
 void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command) {
     CLI::App* image =
-        app.add_subcommand("image", "diff, convert, crop, contact-sheet, info: EXR and PNG files");
+        app.add_subcommand("image", "diff, convert, crop, contact-sheet, info of EXR and PNG");
     image->require_subcommand(1);
     addDiff(*image, options.diff, command);
     addConvert(*image, options.convert, command);

@@ -90,7 +90,8 @@ batch::Outcome measureNext(Study& study, const Selection& selection) {
     const bool isAnswer = end.exitCode == kExitOk || end.exitCode == kExitUsage;
     if (!isAnswer) study.isIncomplete = true;
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
-        const std::string said(trimmed(end.output));
+        std::string_view said = trimmed(end.output);
+        said.remove_prefix(said.rfind('\n') + 1);  // before it a run names its device
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
     const batch::StoredRun run = batch::readRun(dir);

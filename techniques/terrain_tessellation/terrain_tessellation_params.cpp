@@ -41,14 +41,6 @@ constexpr config::Choice<Spacing> kSpacings[] = {
     {Spacing::FractionalOdd, "fractional_odd", ""},
     {Spacing::Equal, "integer", "factors rounded up"},
 };
-/// Every terrain has the first two as cameras.
-constexpr config::Choice<std::string_view> kViews[] = {
-    {"overview", "overview", "the whole map from high above its southern border"},
-    {"flight", "flight", "from the map's southern half, a quarter of its relief above the ground"},
-    {"valley", "valley", "a low flight towards the highest summit"},
-    {"steep", "steep", "down at the ground that the valley is seen from, a few patches wide"},
-    {"round_flight", "round_flight", "a low round flight about the map's centre, as a path"}};
-
 constexpr config::Choice<HeightFormat> kHeightFormats[] = {
     {HeightFormat::Float32, "float32", "exact"},
     {HeightFormat::Unorm16, "unorm16", "half the memory, 65,536 steps"},
@@ -123,8 +115,9 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
                           "into view, in the place of those longest out of it",
                           "MiB", 0.001, 65536.0}) *
         (1 << 20));
-    view = std::string(params.getEnum("view", std::string_view("valley"), kViews,
-                                      {"what the terrain is seen from"}));
+    view = params.getText(
+        "view", "valley",
+        {"a camera or path of the scene, or overview, valley, steep or round_flight"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});
     measuresErrors = params.getBool("errors", false, {"compares with the full resolution"});
     checksSeams = params.getBool("seams", false,

@@ -43,7 +43,7 @@ claims:
   U: {{says: what was thrown is small, origin: document, bound_from: text, bound: throw, below: 2}}
   G: {{says: on a GPU it is faster, bound: ok, below: 1, device: gpu}}
 assumptions:
-  view: {{value: front, range: [front, back], why: the paper does not say}}
+  view: {{value: front, range: front or back, why: the paper does not say}}
 """
 DOCUMENTS = """
 demo2026:

@@ -35,7 +35,7 @@ TEST(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
     const fs::path configs = GFXREPRO_CONFIGS;
     const std::string readme = readFile(configs.parent_path() / "README.md");
     const std::size_t section = readme.find("## Measure your own renderer");
-    const std::size_t begin = readme.find("```yaml\n", section) + 8;
+    const std::size_t begin = readme.find("```yaml mine.yaml\n", section) + 18;
     ASSERT_LT(section, begin);
     const TemporaryFolder folder;
     const std::string config =

@@ -312,7 +312,7 @@ TEST_F(ExternalProgram, ShardsOfItMergeIntoTheRun) {
         ASSERT_EQ(gfxrepro({"run", config, "--shard", shard, "--out", shards.back()}).exitCode, 0);
     }
     const std::string merged = (folder.path() / "merged").string();
-    ASSERT_EQ(gfxrepro({"merge", merged, shards[0], shards[1]}).exitCode, 0);
+    ASSERT_EQ(gfxrepro({"merge", shards[0], shards[1], "--out", merged}).exitCode, 0);
     for (const std::string& one : {dir, merged}) EXPECT_EQ(gfxrepro({"table", one}).exitCode, 0);
     EXPECT_EQ(readFile(merged + "/tables/sweep-mine.csv"),
               readFile(dir + "/tables/sweep-mine.csv"));

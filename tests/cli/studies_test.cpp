@@ -172,7 +172,7 @@ TEST(Sensitivity, ReportsShowWhatIsKept) {
     };
     EXPECT_THAT(claims({}), HasSubstr("one sample,,number (of 1 tried)\n"));
     EXPECT_THAT(readFile(run + "/report.html"),
-                HasSubstr("<td class=\"soft\">number (of 1 tried)</td>"));
+                HasSubstr("<span class=\"soft\">rests on </span>number (of 1 tried)</p>"));
     // Of another case they say nothing.
     EXPECT_THAT(claims({"--set", "number=4"}), HasSubstr("one sample,,not tried\n"));
 }
