@@ -91,7 +91,8 @@ batch::Outcome measureNext(Study& study, const Selection& selection) {
     if (!isAnswer) study.isIncomplete = true;
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
         std::string_view said = trimmed(end.output);
-        said.remove_prefix(said.rfind('\n') + 1);  // before it a run names its device
+        const std::size_t error = said.find("gfxrepro: ");  // after the device that the run names
+        if (error != std::string_view::npos) said.remove_prefix(error);
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
     const batch::StoredRun run = batch::readRun(dir);
