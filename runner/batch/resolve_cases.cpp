@@ -127,7 +127,10 @@ void offerPictures(const technique::TechniqueInfo& info, Case& item) {
 void requireDistinct(const config::Experiment& experiment, const std::vector<Case>& cases) {
     std::set<std::string> known;
     for (const Case& item : cases) {
-        if (known.insert(sha256(item.toJson().dump())).second) continue;
+        // All else of a case follows from these.
+        const std::string key = item.axes.toJson().dump() + item.scene.toJson().dump() +
+                                std::to_string(item.sceneSample.value_or(-1));
+        if (known.insert(sha256(key)).second) continue;
         throw Error(experiment.file.string() + ": the sweep gives the case '" + item.title() +
                     "' twice");
     }
