@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
-#include <thread>
 
 #include "runner/batch/manifest.h"
 #include "runner/batch/protocol.h"
@@ -18,6 +17,7 @@
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
+#include "runner/core/processors.h"
 #include "runner/core/text.h"
 #include "runner/gl/device.h"
 #include "runner/gl/gpu_nodes.h"
@@ -149,7 +149,7 @@ MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
     facts.hasGnuplot = isOnPath("gnuplot");
     facts.cpuGovernor = firstLineOf("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
     facts.load = parseDouble(split(firstLineOf("/proc/loadavg"), ' ').front()).value_or(0.0);
-    facts.coreCount = static_cast<int>(std::thread::hardware_concurrency());
+    facts.coreCount = usableProcessors();
     facts.stolenFraction = stolenFraction();
     return facts;
 }

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <filesystem>
 #include <set>
-#include <thread>
 
 #include "runner/batch/budget.h"
 #include "runner/batch/import_run.h"
@@ -23,6 +22,7 @@
 #include "runner/cli/progress.h"
 #include "runner/cli/results.h"
 #include "runner/core/files.h"
+#include "runner/core/processors.h"
 
 namespace gfxrepro::cli {
 
@@ -32,8 +32,8 @@ namespace {
 
 int jobsOf(const RunOptions& options) {
     if (options.jobs > 0) return options.jobs;
-    const unsigned cores = std::thread::hardware_concurrency();
-    return cores <= 2 ? static_cast<int>(std::max(cores, 1u)) : static_cast<int>(cores / 2);
+    const int processors = usableProcessors();
+    return processors <= 2 ? processors : processors / 2;
 }
 
 /// What a run goes by: its plan, its folder, and what is left to do.

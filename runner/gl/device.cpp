@@ -11,10 +11,10 @@
 #include <new>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "runner/core/error.h"
+#include "runner/core/processors.h"
 #include "runner/core/text.h"
 #include "runner/gl/egl_context.h"
 #include "runner/gl/gl.h"
@@ -222,7 +222,7 @@ namespace {
 /// take a fifth longer so than each on its own thread. What the environment says wins.
 void shareCores(int processes) {
     if (processes <= 1) return;
-    const int threads = static_cast<int>(std::thread::hardware_concurrency()) / processes;
+    const int threads = usableProcessors() / processes;
     ::setenv("LP_NUM_THREADS", std::to_string(threads > 1 ? threads : 0).c_str(), 0);
 }
 
