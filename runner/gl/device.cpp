@@ -47,16 +47,23 @@ std::string mesaVersionIn(const std::string& version) {
     return version.substr(begin, version.find(' ', begin) - begin);
 }
 
+/// The smallest step between stamps that the device takes in a row. Steps between answers of
+/// glGetInteger64v(GL_TIMESTAMP) would be how long the question takes: a microsecond and more on a
+/// GPU.
 double measureTimerResolutionNs() {
-    constexpr int kReadings = 256;
-    GLint64 smallestNs = std::numeric_limits<GLint64>::max();
-    GLint64 lastNs = getInteger64(GL_TIMESTAMP);
-    for (int i = 0; i < kReadings; ++i) {
-        const GLint64 nowNs = getInteger64(GL_TIMESTAMP);
+    std::array<GLuint, 256> stamps = {};
+    glCreateQueries(GL_TIMESTAMP, static_cast<GLsizei>(stamps.size()), stamps.data());
+    for (const GLuint stamp : stamps) glQueryCounter(stamp, GL_TIMESTAMP);
+    GLuint64 smallestNs = std::numeric_limits<GLuint64>::max();
+    GLuint64 lastNs = std::numeric_limits<GLuint64>::max();
+    for (const GLuint stamp : stamps) {
+        GLuint64 nowNs = 0;
+        glGetQueryObjectui64v(stamp, GL_QUERY_RESULT, &nowNs);
         if (nowNs > lastNs) smallestNs = std::min(smallestNs, nowNs - lastNs);
         lastNs = nowNs;
     }
-    const bool hasTicked = smallestNs != std::numeric_limits<GLint64>::max();
+    glDeleteQueries(static_cast<GLsizei>(stamps.size()), stamps.data());
+    const bool hasTicked = smallestNs != std::numeric_limits<GLuint64>::max();
     return hasTicked ? static_cast<double>(smallestNs) : 0.0;
 }
 
