@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <vector>
 
 #include "runner/batch/equal_work.h"
+#include "runner/batch/pacing.h"
 #include "runner/batch/process_memory.h"
 #include "runner/batch/recorder.h"
 #include "runner/batch/run_directory.h"
+#include "runner/gl/barrier.h"
 
 namespace gfxrepro::batch {
 
@@ -150,52 +153,119 @@ class WorkGuard {
     std::vector<RepeatWork> repeats_;
 };
 
-/// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is recorded.
-void renderAndRecord(const Case& item, technique::Technique& technique, gl::Profiler& profiler,
-                     const MeasureContext& context, RunRecorder& recorder, CaseResult& result) {
-    const int frames = item.measure.frames;
-    const bool isSoftware = context.device.info().isSoftware;
-    WorkGuard guard(context.device, item.measure.lane == config::Measure::Lane::Timing);
-    for (int frame = 0; frame < frames; ++frame) {
-        technique::FrameContext frameContext{frame, frames, profiler};
-        const std::size_t firstSample = result.samples.size();
-        guard.beginFrame();
-        {
-            const PhaseScope phase(context, "render", result.cost.renderS);
-            for (int i = 0; frame == 0 && i < item.measure.warmup; ++i) {
-                technique.render(frameContext);
-                context.device.finish("warming up");
-                profiler.collect();
+/// The frames of one case, drawn and timed.
+class FrameLoop {
+  public:
+    FrameLoop(const Case& item, bool drawsOnDevice, technique::Technique& technique,
+              gl::Profiler& profiler, const MeasureContext& context)
+        : measure_(item.measure),
+          technique_(technique),
+          profiler_(profiler),
+          context_(context),
+          isSoftware_(context.device.info().isSoftware),
+          pacing_(Pacing::of(item.measure, drawsOnDevice && !isSoftware_)),
+          guard_(context.device, item.measure.lane == config::Measure::Lane::Timing) {}
+
+    /// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is
+    /// recorded.
+    void run(RunRecorder& recorder, CaseResult& result) {
+        for (int frame = 0; frame < measure_.frames; ++frame) {
+            technique::FrameContext frameContext{frame, measure_.frames, profiler_};
+            const std::size_t firstSample = result.samples.size();
+            guard_.beginFrame();
+            {
+                const PhaseScope phase(context_, "render", result.cost.renderS);
+                if (frame == 0) warmUp(frameContext);
+                repeat(frameContext, recorder);
             }
-            for (int repeat = 0; repeat < item.measure.repeats; ++repeat) {
-                recorder.setIteration(frame, repeat);
-                guard.beginRepeat();
-                const double processBeginMs = gl::processTimeMs();
-                const Clock::time_point begin = Clock::now();
-                technique.render(frameContext);
-                context.device.finish("rendering");
-                const double wallTimeMs = millisecondsSince(begin);
-                const double processTimeMs = gl::processTimeMs() - processBeginMs;
-                recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
-                recorder.metric("frame_rate", 1000.0 / wallTimeMs, "1/s", "");
-                if (const auto elsewhere = technique.usageElsewhere()) {
-                    recorder.metric("process_time_ms", elsewhere->processTimeMs, "ms", "");
-                } else if (isSoftware) {
-                    recorder.metric("process_time_ms", processTimeMs, "ms", "");
-                }
-                recordPasses(profiler, isSoftware, recorder);
-                guard.endRepeat(technique, recorder);
-            }
+            guard_.endFrame(frame, firstSample, result);
+            const PhaseScope phase(context_, "record", result.cost.recordS);
+            recorder.setIteration(frame, 0);
+            technique_.record(recorder);
+            recorder.checkTruths();
+            context_.device.finish("recording");
+            profiler_.collect();
         }
-        guard.endFrame(frame, firstSample, result);
-        const PhaseScope phase(context, "record", result.cost.recordS);
-        recorder.setIteration(frame, 0);
-        technique.record(recorder);
-        recorder.checkTruths();
-        context.device.finish("recording");
-        profiler.collect();
     }
-}
+
+  private:
+    /// The time of a frame whose passes nobody asks for.
+    double drawUnmeasuredMs(technique::FrameContext& frame) {
+        const Clock::time_point begin = Clock::now();
+        technique_.render(frame);
+        context_.device.finish("warming up");
+        profiler_.collect();
+        return millisecondsSince(begin);
+    }
+    void warmUp(technique::FrameContext& frame) {
+        for (int i = 0; i < measure_.warmup; ++i) drawUnmeasuredMs(frame);
+        const Clock::time_point begin = Clock::now();
+        const auto spentS = [&] { return 1e-3 * millisecondsSince(begin); };
+        std::vector<double> timesMs;
+        while (spentS() < pacing_.warmUpS ||
+               (spentS() < pacing_.warmUpAtMostS && !Pacing::areSettled(timesMs))) {
+            timesMs.push_back(drawUnmeasuredMs(frame));
+        }
+    }
+    void keepBusy(technique::FrameContext& frame) {
+        const Clock::time_point begin = Clock::now();
+        while (1e-3 * millisecondsSince(begin) < pacing_.busyS) drawUnmeasuredMs(frame);
+    }
+    void repeat(technique::FrameContext& frame, RunRecorder& recorder) {
+        double spentS = 0.0;
+        for (int i = 0;
+             i < measure_.repeats || (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
+             ++i) {
+            recorder.setIteration(frame.frame, i);
+            if (pacing_.inFlight(lastMs_) > 1) keepBusy(frame);
+            lastMs_ = measureFrame(frame, recorder);
+            spentS += 1e-3 * lastMs_;
+        }
+    }
+    /// Its wall time, in ms.
+    double measureFrame(technique::FrameContext& frame, RunRecorder& recorder) {
+        guard_.beginRepeat();
+        const double processBeginMs = gl::processTimeMs();
+        const Clock::time_point begin = Clock::now();
+        technique_.render(frame);
+        context_.device.finish("rendering");
+        const double wallTimeMs = millisecondsSince(begin);
+        const double processTimeMs = gl::processTimeMs() - processBeginMs;
+        recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
+        if (const auto elsewhere = technique_.usageElsewhere()) {
+            recorder.metric("process_time_ms", elsewhere->processTimeMs, "ms", "");
+        } else if (isSoftware_) {
+            recorder.metric("process_time_ms", processTimeMs, "ms", "");
+        }
+        recordPasses(profiler_, isSoftware_, recorder);
+        guard_.endRepeat(technique_, recorder);
+        recorder.metric("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs), "1/s", "");
+        return wallTimeMs;
+    }
+    /// The time of a frame of several that follow one another without a wait for each.
+    double timeInFlightMs(technique::FrameContext& frame, double wallTimeMs) {
+        const int count = pacing_.inFlight(wallTimeMs);
+        if (count == 1) return wallTimeMs;
+        const Clock::time_point begin = Clock::now();
+        for (int i = 0; i < count; ++i) {
+            technique_.render(frame);
+            gl::orderAllMemory();
+        }
+        context_.device.finish("rendering frames in flight");
+        const double timeMs = millisecondsSince(begin) / count;
+        profiler_.collect();
+        return timeMs;
+    }
+
+    const config::Measure& measure_;
+    technique::Technique& technique_;
+    gl::Profiler& profiler_;
+    const MeasureContext& context_;
+    bool isSoftware_;
+    Pacing pacing_;
+    WorkGuard guard_;
+    double lastMs_ = 0.0;  // wall time of the last measured frame
+};
 
 }  // namespace
 
@@ -244,7 +314,8 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
         recordPasses(profiler, context.device.info().isSoftware, recorder);
     }
-    renderAndRecord(item, *technique, profiler, context, recorder, result);
+    FrameLoop(item, technique::needsDevice(info, item.program), *technique, profiler, context)
+        .run(recorder, result);
     recorder.setIteration(report::kSetup, report::kSetup);
     result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
     if (const auto elsewhere = technique->usageElsewhere()) {

@@ -103,6 +103,24 @@ TEST_F(DeviceChoice, WithoutAGpuOnlyWhoAsksForOneIsRefused) {
     EXPECT_THAT(run.err, HasSubstr(" is no GPU\n"));
 }
 
+TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
+    config = writeMockConfig(folder,
+                             "params: {pause_ms: 20}\n"
+                             "measure: {lane: timing, warmup: 0, repeats: 2, frames: 1}\n");
+    const ProcessResult run = onPretended("gpu");
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const auto rows = [&](const char* metric) {
+        return rowsOf(folder.path() / ("run-" + std::to_string(count)), metric).size();
+    };
+    EXPECT_GT(rows("wall_time_ms"), 10U);  // a second of 20 ms each
+    EXPECT_LT(rows("wall_time_ms"), 100U);
+    EXPECT_EQ(rows("frame_rate"), rows("wall_time_ms"));
+    EXPECT_EQ(rows("number"), 1U);
+    ASSERT_EQ(onPretended("software").exitCode, 0);
+    EXPECT_EQ(rows("wall_time_ms"), 2U);
+}
+
 TEST_F(DeviceChoice, PlansForAGpuNeedNone) {
     const ProcessResult plan = mockGfxrepro({"plan", config, "--device", "gpu"});
     EXPECT_EQ(plan.exitCode, 0) << plan.err;
