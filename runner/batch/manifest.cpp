@@ -188,6 +188,9 @@ report::ReportContext reportContext(const Json& manifest) {
     context.profile = manifest.at("profile").get<std::string>();
     context.commit = manifest.at("commit").get<std::string>();
     context.command = manifest.at("invocations").at(0).at("command").get<std::string>();
+    if (const auto info = manifest.at("gl"); info.contains("balance")) {
+        context.fragmentShare = balanceFromJson(info["balance"]).fragmentShare();
+    }
     return context;
 }
 

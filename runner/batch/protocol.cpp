@@ -21,6 +21,11 @@ constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
                                   {"/uuid", JsonKind::Text},
                                   {"/is_software", JsonKind::Boolean},
                                   {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kBalance[] = {{"/fragment_gflops", JsonKind::Number},
+                                   {"/compute_gflops", JsonKind::Number},
+                                   {"/fill_gpixels_per_s", JsonKind::Number},
+                                   {"/triangles_m_per_s", JsonKind::Number},
+                                   {"/copy_gbytes_per_s", JsonKind::Number}};
 constexpr JsonMember kResult[] = {{"/status", JsonKind::Text},
                                   {"/message", JsonKind::Text},
                                   {"/void", JsonKind::Text},
@@ -54,16 +59,37 @@ double numberFrom(const Json& json) {
 
 }  // namespace
 
+Json toJson(const gl::DeviceBalance& balance) {
+    return {{"fragment_gflops", balance.fragmentGflops},
+            {"compute_gflops", balance.computeGflops},
+            {"fill_gpixels_per_s", balance.fillGpixelsPerS},
+            {"triangles_m_per_s", balance.trianglesMPerS},
+            {"copy_gbytes_per_s", balance.copyGbytesPerS}};
+}
+
+gl::DeviceBalance balanceFromJson(const Json& json) {
+    config::requireMembers(json, kBalance, kAnswer);
+    gl::DeviceBalance balance;
+    json.at("fragment_gflops").get_to(balance.fragmentGflops);
+    json.at("compute_gflops").get_to(balance.computeGflops);
+    json.at("fill_gpixels_per_s").get_to(balance.fillGpixelsPerS);
+    json.at("triangles_m_per_s").get_to(balance.trianglesMPerS);
+    json.at("copy_gbytes_per_s").get_to(balance.copyGbytesPerS);
+    return balance;
+}
+
 Json toJson(const gl::DeviceInfo& info) {
-    return {{"index", info.index},
-            {"platform", info.platform},
-            {"vendor", info.vendor},
-            {"renderer", info.renderer},
-            {"version", info.version},
-            {"mesa_version", info.mesaVersion},
-            {"uuid", info.uuid},
-            {"is_software", info.isSoftware},
-            {"timer_resolution_ns", info.timerResolutionNs}};
+    Json json = {{"index", info.index},
+                 {"platform", info.platform},
+                 {"vendor", info.vendor},
+                 {"renderer", info.renderer},
+                 {"version", info.version},
+                 {"mesa_version", info.mesaVersion},
+                 {"uuid", info.uuid},
+                 {"is_software", info.isSoftware},
+                 {"timer_resolution_ns", info.timerResolutionNs}};
+    if (info.balance) json["balance"] = toJson(*info.balance);
+    return json;
 }
 
 gl::DeviceInfo deviceInfoFromJson(const Json& json) {
@@ -78,6 +104,7 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("uuid").get_to(info.uuid);
     json.at("is_software").get_to(info.isSoftware);
     json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
+    if (json.contains("balance")) info.balance = balanceFromJson(json["balance"]);
     return info;
 }
 

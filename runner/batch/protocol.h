@@ -76,6 +76,7 @@ struct CaseResult {
 
 Json toJson(const gl::DeviceInfo& info);
 gl::DeviceInfo deviceInfoFromJson(const Json& json);
+gl::DeviceBalance balanceFromJson(const Json& json);
 Json toJson(const Cost& cost);
 Cost costFromJson(const Json& json);
 Json toJson(const CaseResult& result);

@@ -61,8 +61,10 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, config::
                                        const std::filesystem::path& runDir);
 
 /// Starts a worker for a moment to ask what the device is; a driver that crashes does not take the
-/// runner with it. Throws NoDeviceError.
-gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases);
+/// runner with it. On hardware with its balance where that is asked for: a second or two. Throws
+/// NoDeviceError.
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
+                           bool isBalanceMeasured = false);
 
 /// Runs `units` and the further rounds that `rounds` asks for, appending records, images and log
 /// lines as each ends. Of units that are twins the first is run and recorded for each; one that is

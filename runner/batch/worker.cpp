@@ -13,6 +13,7 @@
 #include "runner/batch/process_memory.h"
 #include "runner/batch/protocol.h"
 #include "runner/core/files.h"
+#include "runner/gl/balance.h"
 
 namespace gfxrepro::batch {
 
@@ -79,7 +80,11 @@ void serve(gl::Device& device, const WorkerOptions& options,
                            [](std::string_view phase, bool isBegin) {
                                send({{isBegin ? "begin" : "end", phase}});
                            }};
-    send({{"ready", toJson(device.info())}});
+    gl::DeviceInfo info = device.info();
+    if (options.isBalanceMeasured && !device.isNone() && !info.isSoftware) {
+        info.balance = gl::measureBalance(shaders);
+    }
+    send({{"ready", toJson(info)}});
     std::string line;
     while (std::getline(std::cin, line)) {
         const config::Node request = config::parseJson(line, "what the runner sent");

@@ -51,7 +51,7 @@ std::string deviceClassOf(const gl::DeviceInfo& device) {
 
 /// Says on what a run measures, and keeps its workers to that: "auto" could find another later.
 gl::DeviceInfo settleDevice(batch::SchedulerOptions& scheduler, batch::PhaseClock& phases) {
-    const gl::DeviceInfo device = batch::probeDevice(scheduler, phases);
+    const gl::DeviceInfo device = batch::probeDevice(scheduler, phases, true);
     if (device.platform == "none") return device;
     scheduler.device = std::to_string(device.index);
     tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer, deviceClassOf(device),

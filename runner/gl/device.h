@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,17 @@ namespace gfxrepro::gl {
 namespace egl {
 struct Candidate;
 }
+
+/// How fast it does each kind of work, beside any method (measureBalance).
+struct DeviceBalance {
+    double fragmentGflops = 0.0;  // multiply-adds count twice
+    double computeGflops = 0.0;   // of the same arithmetic
+    double fillGpixelsPerS = 0.0;
+    double trianglesMPerS = 0.0;  // of half a pixel, without attributes
+    double copyGbytesPerS = 0.0;  // read and written
+    /// About 1 on graphics cards. Far less where a chip for computing draws with a small part.
+    double fragmentShare() const { return fragmentGflops / computeGflops; }
+};
 
 /// What a device says of itself; goes into the manifest.
 struct DeviceInfo {
@@ -21,7 +33,8 @@ struct DeviceInfo {
     std::string version;             // GL_VERSION
     std::string mesaVersion;         // "22.3.6"; empty elsewhere
     bool isSoftware = false;         // the processor's cores draw: llvmpipe and its like
-    double timerResolutionNs = 0.0;  // smallest step seen between two GL_TIMESTAMP readings
+    double timerResolutionNs = 0.0;  // smallest step between GL_TIMESTAMP stamps in a row
+    std::optional<DeviceBalance> balance;  // of hardware, once a run has asked for it
 };
 
 /// What a device can do, read once.

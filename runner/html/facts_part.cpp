@@ -34,6 +34,21 @@ std::string processorText(const nlohmann::ordered_json& manifest) {
     return cores.empty() || cores == "0" ? cpu : fmt::format("{}, {} cores", cpu, cores);
 }
 
+/// "fragment shaders 0.97 times as fast as compute shaders (1.2e+04, 1.24e+04 Gflop/s); …"; nothing
+/// of a device that was not asked, as none is that is software.
+std::string balanceText(const nlohmann::ordered_json& manifest) {
+    const nlohmann::ordered_json::json_pointer place("/gl/balance");
+    if (!manifest.is_object() || !manifest.contains(place)) return "";
+    const nlohmann::ordered_json& balance = manifest[place];
+    const auto number = [&](const char* key) { return balance.value(key, 0.0); };
+    return fmt::format(
+        "fragment shaders {:.2g} times as fast as compute shaders ({:.3g}, {:.3g} Gflop/s); "
+        "{:.3g} Gpixel/s filled, {:.3g} M small triangles/s, {:.3g} GB/s copied",
+        number("fragment_gflops") / number("compute_gflops"), number("fragment_gflops"),
+        number("compute_gflops"), number("fill_gpixels_per_s"), number("triangles_m_per_s"),
+        number("copy_gbytes_per_s"));
+}
+
 /// "llvmpipe (LLVM 15.0.6, 256 bits) on Intel Xeon, 2 cores · quick profile · 2026-11-25".
 std::string machineText(const ReportRun& run) {
     std::string text = run.context.device;
@@ -129,6 +144,7 @@ std::string factsHtml(const Model& model) {
          }},
         {"OpenGL",
          [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "gl.version")); }},
+        {"Balance", [](const ReportRun& run) { return escapeXml(balanceText(run.manifest)); }},
         {"Processor", [](const ReportRun& run) { return escapeXml(processorText(run.manifest)); }},
         {"Profile", [](const ReportRun& run) { return escapeXml(run.context.profile); }},
         {"Commit", [](const ReportRun& run) { return escapeXml(run.context.commit); }},

@@ -150,6 +150,19 @@ ClaimResult unjudged(const ClaimSpec& claim, const Table& table, const ReportCon
     return result;
 }
 
+/// What to know of a claim about a GPU's units where these are not those of a graphics card; empty
+/// elsewhere.
+std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
+    constexpr double kLeast = 0.5;
+    const bool isArchitectural = claim.timeKind == ClaimSpec::TimeKind::Architectural;
+    if (!isArchitectural || context.fragmentShare.value_or(1.0) >= kLeast) return "";
+    return fmt::format(
+        "this device does the same arithmetic {:.1f} times as fast in compute shaders as in "
+        "fragment shaders, a graphics card about as fast: what it says of drawing against "
+        "computing is of this device",
+        1.0 / *context.fragmentShare);
+}
+
 ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportContext& context) {
     ClaimResult result = unjudged(claim, table, context);
     if (result.verdict == Verdict::NotApplicable) return result;
@@ -177,7 +190,9 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
     result.measured = joined(measured, "; ");
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
-    if (!clock.empty()) result.reason += (result.reason.empty() ? "" : "; ") + clock;
+    for (const std::string& note : {clock, balanceNote(claim, context)}) {
+        if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
+    }
     return result;
 }
 

@@ -39,6 +39,7 @@ struct ReportContext {
     std::string profile;      // "quick" | "full" | "paper"
     std::string commit;       // of the program
     std::string command;      // of the whole run, for people
+    std::optional<double> fragmentShare = {};  // of hardware: gl::DeviceBalance::fragmentShare()
     KeptSensitivity tried = {};
     KeptCalibrations calibrations = {};
 };

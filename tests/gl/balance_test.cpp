@@ -1,0 +1,63 @@
+#include "runner/gl/balance.h"
+
+#include <cmath>
+
+#include "runner/core/files.h"
+#include "runner/gl/gl.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+class Balance : public GlTest {
+  protected:
+    gl::ShaderLibrary shaders{dataFolder("shaders")};
+};
+
+TEST_F(Balance, FragmentsAndInvocationsDoTheSameArithmetic) {
+    constexpr glm::ivec2 kSize{16, 16};
+    const gl::Program fragments(shaders,
+                                {"gl/balance_whole.vert.glsl", "gl/balance_arithmetic.frag.glsl"});
+    const gl::Program compute(shaders, {"gl/balance_arithmetic.comp.glsl"});
+    const gl::Texture drawn = gl::Texture::make2D(GL_RGBA32F, kSize);
+    const gl::Texture computed = gl::Texture::make2D(GL_RGBA32F, kSize);
+    const gl::VertexArray noAttributes;
+    glBindVertexArray(noAttributes.id());
+    const gl::Texture* const colours[] = {&drawn};
+    const gl::Framebuffer framebuffer(colours);
+    framebuffer.bind();
+    fragments.use();
+    fragments.set("rounds", 1000);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    compute.use();
+    compute.set("rounds", 1000);
+    computed.bindImage(0, GL_WRITE_ONLY);
+    glDispatchCompute(2, 2, 1);
+
+    const image::ImageF one = drawn.readImage(4), other = computed.readImage(4);
+    float largest = 0.0F;
+    for (std::size_t i = 0; i < one.values().size(); ++i) {
+        EXPECT_NEAR(one.values()[i], other.values()[i], 1e-5F) << i;
+        largest = std::max(largest, std::abs(one.values()[i]));
+    }
+    EXPECT_GT(largest, 1e-3F);  // it has not faded,
+    EXPECT_LT(largest, 1.0F);   // nor grown
+}
+
+TEST_F(Balance, EveryKindOfWorkHasARate) {
+    const gl::DeviceBalance balance = gl::measureBalance(shaders);
+    for (const double rate :
+         {balance.fragmentGflops, balance.computeGflops, balance.fillGpixelsPerS,
+          balance.trianglesMPerS, balance.copyGbytesPerS}) {
+        EXPECT_TRUE(std::isfinite(rate));
+        EXPECT_GT(rate, 1e-3);
+        EXPECT_LT(rate, 1e6);
+    }
+    if (device.info().isSoftware) {  // the cores do both
+        EXPECT_GT(balance.fragmentShare(), 0.05);
+        EXPECT_LT(balance.fragmentShare(), 20.0);
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
