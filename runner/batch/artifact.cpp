@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "runner/batch/import_run.h"
 #include "runner/batch/made_from.h"
+#include "runner/batch/manifest.h"
 #include "runner/batch/predictions.h"
 #include "runner/batch/run_files.h"
 #include "runner/batch/submission.h"
@@ -82,6 +84,21 @@ std::string assetsText(const Json& manifest, const scene::Catalog& catalog) {
     return text;
 }
 
+/// Empty where none was measured.
+std::string programsText(const Json& manifest) {
+    const std::set<ProgramUse> programs = programsOf(manifest);
+    if (programs.empty()) return "";
+    std::string text =
+        "\n# Programs\nWhat was measured from outside, with the files that it reads. They are not "
+        "in this folder: who measures again puts them where the config looks for them.\n\n"
+        "| file | version | SHA-256 |\n| --- | --- | --- |\n";
+    for (const ProgramUse& use : programs) {
+        text += fmt::format("| {} | {} | {} |\n", report::escapeMarkdown(use.file),
+                            report::escapeMarkdown(use.version), use.sha256);
+    }
+    return text;
+}
+
 /// configs/<folder>/<file> of an experiment.
 fs::path configPlace(const config::Experiment& experiment) {
     return fs::path("configs") / experiment.file.parent_path().filename() /
@@ -148,7 +165,8 @@ std::string readmeText(const fs::path& artifact, const StoredRun& run) {
         "# Measured by gfxrepro {}\nProfile {}, on {}.\n\n"
         "`report.html` shows all; `tables/` and `claims.csv` are what it shows, made from the "
         "cases of `plan.json`, where their parameters are, and `records.csv`. `environment.txt` "
-        "says with what and on what it was measured, `ASSETS.md` which models and their terms, "
+        "says with what and on what it was measured, `ASSETS.md` which models and their terms "
+        "and which programs, "
         "`SHA256SUMS` that nothing changed since. `scripts/` measures each table again: "
         "`scripts/NAME.sh`, with the program on the path or named by "
         "`GFXREPRO`, of the same commit for the same bytes.\n\n| table | script | minutes | MiB of "
@@ -196,7 +214,8 @@ void writeArtifact(const fs::path& runDir, const StoredRun& run, const scene::Ca
     copyMeasured(runDir, target);
     writeResults(target, run, {});
     writeFileAtomic(target / "manifest.json", run.manifest.dump(2) + '\n');  // with its notes
-    writeFileAtomic(target / "ASSETS.md", assetsText(run.manifest, catalog));
+    writeFileAtomic(target / "ASSETS.md",
+                    assetsText(run.manifest, catalog) + programsText(run.manifest));
     writeScripts(run.plan, target);
     writeFileAtomic(target / "README.md", readmeText(target, run));
     writeFileAtomic(target / "SHA256SUMS", checksums(target));

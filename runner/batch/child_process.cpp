@@ -12,8 +12,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <thread>
 
+#include "runner/batch/process_memory.h"
 #include "runner/core/error.h"
 
 namespace gfxrepro::batch {
@@ -141,8 +143,28 @@ std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {
     return waitStatus_;
 }
 
+/// What it started may have left its group (setsid), and is found below the child alone, which is
+/// stopped, lest it starts more or reaps what was found.
+void ChildProcess::killWhatItStarted() const {
+    constexpr int kMostGenerations = 64;
+    ::kill(pid_, SIGSTOP);
+    std::set<pid_t> known = {pid_};
+    for (int i = 0; i < kMostGenerations; ++i) {
+        bool isAnyNew = false;
+        for (const pid_t pid : processTree(pid_)) {
+            if (!known.insert(pid).second) continue;
+            ::kill(pid, SIGKILL);
+            isAnyNew = true;
+        }
+        if (!isAnyNew) return;
+    }
+}
+
 std::optional<int> ChildProcess::kill() {
-    if (!isReaped_) ::kill(-pid_, SIGKILL);
+    if (!isReaped_) {
+        killWhatItStarted();
+        ::kill(-pid_, SIGKILL);
+    }
     return wait(kKillPatience);
 }
 

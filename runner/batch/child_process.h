@@ -41,12 +41,14 @@ class ChildProcess {
 
     /// Waits for the end, at most `patience`. The status of waitpid; nothing while it runs.
     std::optional<int> wait(std::chrono::milliseconds patience);
-    /// SIGKILL to the process group, then wait() for kKillPatience. Nothing for a process that does
-    /// not die (one that waits for a driver or a file system): it is left behind.
+    /// SIGKILL to all below the process and to its group, then wait() for kKillPatience. Nothing
+    /// for a process that does not die (one that waits for a driver or a file system): it is left
+    /// behind.
     std::optional<int> kill();
     static constexpr std::chrono::seconds kKillPatience{5};
 
   private:
+    void killWhatItStarted() const;
     void killWhatIsLeft() const;
 
     pid_t pid_ = -1;

@@ -89,6 +89,13 @@ std::optional<int> sampleOf(const ImportedCase& given) {
                                          report::kSceneSample, text, report::kMostSceneSample));
 }
 
+/// Cases have an output beside their parameters; a parameter of that name would be lost.
+void requireKnownOutput(const std::string& name, const ImportedCase& given) {
+    if (name != "output" && !name.starts_with("output.")) return;
+    throw Error(given.where, fmt::format("column '{}'; allowed of that: {}, {}", name, kOutputWidth,
+                                         kOutputHeight));
+}
+
 /// The name of the parameter in that column; empty where it holds something else of the case.
 std::string paramOf(const std::string& column) {
     if (column.starts_with(kParamPrefix)) return column.substr(kParamPrefix.size());
@@ -108,6 +115,7 @@ Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     for (const auto& [column, text] : given.cells) {
         const std::string name = paramOf(column);
         if (name.empty()) continue;
+        requireKnownOutput(name, given);
         const Node value = valueOf(text, given.where);
         if (name.starts_with(config::kSceneAxisPrefix)) {
             params.set(name, value);

@@ -32,13 +32,15 @@ void addChildren(pid_t pid, std::vector<pid_t>& all) {
 
 }  // namespace
 
-long long residentBytesOfTree(pid_t pid) {
+std::vector<pid_t> processTree(pid_t pid) {
     std::vector<pid_t> all = {pid};
+    for (std::size_t i = 0; i < all.size(); ++i) addChildren(all[i], all);
+    return all;
+}
+
+long long residentBytesOfTree(pid_t pid) {
     long long bytes = 0;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        bytes += residentBytes(all[i]);
-        addChildren(all[i], all);
-    }
+    for (const pid_t one : processTree(pid)) bytes += residentBytes(one);
     return bytes;
 }
 

@@ -1,14 +1,19 @@
-// Memory of a process, as Linux's /proc tells it.
+// Memory of a process, and what it started, as Linux's /proc tells it.
 #pragma once
 
 #include <sys/types.h>
 
+#include <vector>
+
 namespace gfxrepro::batch {
+
+/// The process, all that it started, and what these started in turn.
+std::vector<pid_t> processTree(pid_t pid);
 
 /// Resident bytes of any process; 0 when it is gone.
 long long residentBytes(pid_t pid);
 
-/// The same of the process with all that it started and these started in turn.
+/// The same of its tree.
 long long residentBytesOfTree(pid_t pid);
 
 /// Highest resident size of this process since the last reset.

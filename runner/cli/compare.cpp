@@ -10,6 +10,7 @@
 
 #include "runner/batch/child_process.h"
 #include "runner/batch/made_from.h"
+#include "runner/batch/manifest.h"
 #include "runner/batch/run.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
@@ -46,7 +47,8 @@ struct Measured {
     regression::PictureMap pictures;
     std::map<std::string, config::PictureTolerance> tolerances;  // by table that has one
     std::string buildId;
-    std::string madeFrom;  // its line of made-from.txt
+    std::string madeFrom;                              // its line of made-from.txt
+    std::map<std::string, std::string> programs = {};  // hash and version by file
 };
 
 /// Of flaky cases, too.
@@ -81,6 +83,10 @@ Measured readMeasured(const fs::path& runDir) {
                       {},
                       run.plan.buildId,
                       batch::madeFromLine(runDir, run.manifest)};
+    for (const batch::ProgramUse& use : batch::programsOf(run.manifest)) {
+        measured.programs[use.file] =
+            use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
+    }
     for (const config::Experiment& experiment : run.plan.experiments) {
         if (!experiment.pictureTolerance) continue;
         measured.tolerances[experiment.id] = *experiment.pictureTolerance;
@@ -205,6 +211,11 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
         older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
+    for (const auto& [file, now] : newer.programs) {
+        const auto then = older.programs.find(file);
+        if (then == older.programs.end() || then->second == now) continue;
+        notes.push_back(fmt::format("{} is another: {} before, {} after", file, then->second, now));
+    }
     if (older.pictures.empty() && !newer.pictures.empty()) {
         notes.emplace_back("the older run has no pictures: none are compared");
     } else {
@@ -235,15 +246,17 @@ void annotate(const regression::Comparison& comparison,
 
 void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) say("warning: {}\n", note);
-    for (const Difference& difference : comparison.differences) {
+    const std::vector<std::string> titles = regression::titlesOf(comparison.differences);
+    for (std::size_t i = 0; i < titles.size(); ++i) {
+        const Difference& difference = comparison.differences[i];
         const bool isOfNone = difference.isOfNone();
         if (!difference.isAlarm() && !isOfNone) continue;
         if (difference.verdict == regression::Verdict::Lost || isOfNone || difference.isPicture()) {
-            say("{}: {}: {}\n", difference.key.title(), regression::verdictName(difference.verdict),
+            say("{}: {}: {}\n", titles[i], regression::verdictName(difference.verdict),
                 difference.reason);
             continue;
         }
-        say("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", difference.key.title(),
+        say("{}: {} × {:.3f} [{:.3f}, {:.3f}]\n", titles[i],
             regression::verdictName(difference.verdict), difference.ratio, difference.interval.low,
             difference.interval.high);
     }

@@ -5,9 +5,11 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
+#include "runner/config/program.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::cli {
@@ -166,22 +168,44 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
     return found == known.end() ? Words{} : found->second();
 }
 
-/// The techniques of the tables that are typed already; all where there are none.
-std::vector<technique::TechniqueInfo> techniquesOf(const Words& tables, const Context& context) {
-    std::set<std::string> names;
+/// What pairs may name.
+struct PairNames {
+    std::vector<config::ParamInfo> params;
+    std::vector<config::MetricInfo> metrics;
+
+    void add(std::span<const config::ParamInfo> more, const config::Outputs& outputs) {
+        params.insert(params.end(), more.begin(), more.end());
+        metrics.insert(metrics.end(), outputs.metrics.begin(), outputs.metrics.end());
+    }
+};
+
+/// Of the techniques and programs of the tables that are typed already; of all techniques where
+/// there are none.
+PairNames pairNamesOf(const Words& tables, const Context& context) {
+    PairNames found;
+    std::set<std::string> techniques;
     try {
         batch::Request request;
         if (!tables.empty()) request.configs = findPaperConfigs(tables);
         for (const config::Experiment& experiment : loadExperiments(request, "full")) {
-            names.insert(experiment.technique);
+            techniques.insert(experiment.technique);
+            const config::Node& node = config::programOf(experiment);
+            if (node.isNull()) continue;
+            const config::Program program = config::readProgram(node);
+            for (const config::ProgramParam& param : program.params) {
+                config::ParamInfo& info = found.params.emplace_back();
+                info.name = param.name;
+                info.choices = param.choices;
+            }
+            found.add({}, program.outputs);
         }
     } catch (const Error&) {  // half a name, or a config with a mistake: the command will say it
     }
-    std::vector<technique::TechniqueInfo> infos;
     for (const technique::TechniqueInfo& info : context.techniques) {
-        if (names.empty() || names.contains(std::string(info.name))) infos.push_back(info);
+        if (!techniques.empty() && !techniques.contains(std::string(info.name))) continue;
+        found.add(paramsOf(info), technique::outputsOf(info));
     }
-    return infos;
+    return found;
 }
 
 /// The keys before the sign, and after it what is known of their values: a parameter's choices, or
@@ -192,17 +216,15 @@ Words pairs(const Typed& typed, const Context& context, const std::string& prefi
     const std::string key = typed.key.empty() ? prefix.substr(0, sign) : typed.key;
     const bool isValue = !typed.key.empty() || sign != std::string::npos;
     const std::string before = typed.key.empty() && isValue ? key + "=" : "";
+    const PairNames names = pairNamesOf(typed.arguments, context);
     Words words;
-    for (const technique::TechniqueInfo& info : techniquesOf(typed.arguments, context)) {
-        for (const config::ParamInfo& param : paramsOf(info)) {
-            if (!isValue) words.push_back(param.name + "=");
-            if (!isValue || key != param.name) continue;
-            for (const std::string& choice : param.choices) words.push_back(before + choice);
-        }
-        if (!isValue || key != kMetricKey) continue;
-        for (const config::MetricInfo& metric : technique::outputsOf(info).metrics) {
-            words.push_back(before + metric.name);
-        }
+    for (const config::ParamInfo& param : names.params) {
+        if (!isValue) words.push_back(param.name + "=");
+        if (!isValue || key != param.name) continue;
+        for (const std::string& choice : param.choices) words.push_back(before + choice);
+    }
+    for (const config::MetricInfo& metric : names.metrics) {
+        if (isValue && key == kMetricKey) words.push_back(before + metric.name);
     }
     if (!isValue) words.push_back(std::string(kMetricKey) + "=");
     return words;

@@ -108,7 +108,8 @@ void describeTechnique(const technique::TechniqueInfo& info) {
     printOutputs(info.outputs());
 }
 
-void describeProgram(const config::Experiment& experiment) {
+void describeProgram(const config::Experiment& experiment,
+                     const technique::TechniqueInfo& technique) {
     const config::Program program = config::readProgram(config::programOf(experiment));
     config::Params params(config::Node::map({}), "program");
     program.declare(params);
@@ -123,6 +124,16 @@ void describeProgram(const config::Experiment& experiment) {
     printParams(params.declared());
     fmt::print("\nmetrics\n");
     printMetrics(program.outputs.metrics);
+    std::vector<std::string> errors;  // of a picture against its truth
+    for (const config::MetricInfo& metric : technique.outputs().metrics)
+        errors.push_back(metric.name);
+    if (!program.pictures.empty()) fmt::print("\nimages\n");
+    for (const config::ProgramPicture& picture : program.pictures) {
+        fmt::print(
+            "{}",
+            entryLines("  " + picture.name,
+                       picture.file + (picture.hasTruth() ? ": " + joined(errors) : ""), kColumn));
+    }
     if (program.outputs.passes.empty()) return;
     fmt::print("\npasses\n");
     for (const config::PassInfo& info : program.outputs.passes) {
@@ -162,7 +173,7 @@ void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog
     }
 }
 
-void describeExperiment(const config::Experiment& experiment) {
+void describeExperiment(const Context& context, const config::Experiment& experiment) {
     say("{} ({}): {}\n", experiment.id, experiment.label(), experiment.title);
     say("file       {}\n", experiment.file.string());
     const bool isPrinted = experiment.technique.empty();
@@ -188,7 +199,9 @@ void describeExperiment(const config::Experiment& experiment) {
         say("assumed    {}{}{}: {}\n", assumption.name, isFreeText ? " = " : "",
             isFreeText ? assumption.value.toFlowText() : "", assumption.why);
     }
-    if (!config::programOf(experiment).isNull()) describeProgram(experiment);
+    if (config::programOf(experiment).isNull()) return;
+    describeProgram(experiment,
+                    technique::findTechnique(context.techniques, experiment.technique, {}));
 }
 
 config::Json jsonOf(const ParamInfos& params) {
@@ -352,7 +365,7 @@ int describe(const Context& context, const DescribeOptions& options) {
     for (const config::Experiment& experiment : loadExperiments(request, "full")) {
         if (experiment.id == name || isYamlFile(name)) {
             if (options.asJson) return sayJson(jsonOf(experiment));
-            describeExperiment(experiment);
+            describeExperiment(context, experiment);
             return kExitOk;
         }
         known.push_back(experiment.id);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <regex>
+#include <utility>
 
 #include "runner/config/checks.h"
 #include "runner/config/schema.h"
@@ -146,6 +147,11 @@ ProgramParam paramOf(const Node& params, const std::string& name) {
         throw Error(params.keyLocation(name),
                     what + ": every program has that placeholder; give it another name");
     }
+    static const Names kOfCases = {"output", "scene_sample", "stands_for"};
+    if (std::ranges::find(kOfCases, name) != kOfCases.end()) {
+        throw Error(params.keyLocation(name),
+                    what + ": plans and tables have that of every case; give it another name");
+    }
     // A value alone is its default.
     const Node map = given.isMap() ? given : Node::map({{"default", given}}, given.location());
     requireKeys(map, what, keysOf("program_param"));
@@ -174,7 +180,12 @@ ProgramParam paramOf(const Node& params, const std::string& name) {
         for (const Node& choice : choices->items()) param.choices.push_back(choice.text());
     }
     const auto value = fallback->tryDouble();
-    const bool isWhole = param.type != Type::Integer || fallback->tryInteger();
+    const auto whole = fallback->tryInteger();
+    if (param.type == Type::Integer && whole && !std::in_range<int>(*whole)) {
+        throwNotAllowed(*fallback, what + ": default",
+                        "a whole number of 32 bits, or 'type: number' beside it");
+    }
+    const bool isWhole = param.type != Type::Integer || whole;
     const bool isLegal =
         isNumber ? value && isWhole && *value >= param.min && *value <= param.max
         : param.type == Type::Boolean ? fallback->tryBool().has_value()
@@ -325,14 +336,6 @@ void Program::declare(Params& values) const {
                 break;
         }
     }
-}
-
-Placeholders Program::valuesOf(const Node& resolved) const {
-    Placeholders values = {{placeholder::kHere, here}};
-    for (const ProgramParam& param : params) {
-        if (const Node* value = resolved.find(param.name)) values[param.name] = value->text();
-    }
-    return values;
 }
 
 const Node& programOf(const Experiment& experiment) {

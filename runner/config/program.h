@@ -104,9 +104,9 @@ struct ProgramFile {
 /// By its path, relative to `here`, or by its name in the folders of PATH, as a shell looks. Empty:
 /// there is none.
 std::filesystem::path findExecutable(const std::string& name, const std::filesystem::path& here);
-/// The program itself and those that it starts, looked for as a shell does; then what arguments
-/// name from {here} on, where it is a file, and `files`. Throws Error for one of `files` that is
-/// not there.
+/// The program itself and those that it starts, looked for as a shell does; then what arguments,
+/// variables and truths name from {here} on, where it is a file, and `files`. Throws Error for one
+/// of `files` that is not there.
 std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& values);
 
 /// Digests of files, remembered by size and time.

@@ -29,6 +29,14 @@ fs::path findExecutable(const std::string& name, const fs::path& here) {
     return {};
 }
 
+Placeholders Program::valuesOf(const Node& resolved) const {
+    Placeholders values = {{placeholder::kHere, here}};
+    for (const ProgramParam& param : params) {
+        if (const Node* value = resolved.find(param.name)) values[param.name] = value->text();
+    }
+    return values;
+}
+
 void setProgramFolder(Node& document) {
     Node* program = document.find("program");
     const Node* command = program && program->isMap() ? program->find("command") : nullptr;
@@ -69,6 +77,7 @@ std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& val
     };
     for (const std::string& argument : program.command) addNamed(argument);
     for (const auto& [variable, text] : program.environment) addNamed(text);
+    for (const ProgramPicture& picture : program.pictures) addNamed(picture.truthFile);
     for (const std::string& file : program.files) {
         const fs::path path = (here / file).lexically_normal();
         if (!fs::is_regular_file(path)) {

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <utility>
 
+#include "runner/core/text.h"
 #include "runner/report/markup.h"
 
 namespace gfxrepro::regression {
@@ -50,8 +52,8 @@ std::string evidenceLinks(const Difference& difference) {
     return fmt::format(" ({})", links);
 }
 
-std::string markdownRow(const Difference& difference) {
-    const std::string title = report::escapeMarkdown(difference.key.title());
+std::string markdownRow(const Difference& difference, const std::string& name) {
+    const std::string title = report::escapeMarkdown(name);
     const std::string verdict =
         report::escapeMarkdown(verdictText(difference)) + evidenceLinks(difference);
     if (difference.isPicture() || difference.isOfNone()) {
@@ -74,6 +76,30 @@ std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) 
     return names;
 }
 
+/// The parameters of each key that are not the same in all, "a=1 b=2".
+std::vector<std::string> differingParams(const std::vector<const SeriesKey*>& keys) {
+    using Json = nlohmann::ordered_json;
+    std::vector<Json> params;
+    std::map<std::string, std::set<std::string>> values;
+    for (const SeriesKey* key : keys) {
+        Json own = Json::parse(key->params, nullptr, false);
+        if (!own.is_object()) own = Json::object();
+        for (const auto& [name, value] : own.items()) values[name].insert(value.dump());
+        params.push_back(std::move(own));
+    }
+    std::vector<std::string> texts;
+    for (const Json& own : params) {
+        std::vector<std::string> parts;
+        for (const auto& [name, value] : own.items()) {
+            if (values[name].size() < 2) continue;
+            const bool isText = value.is_string();
+            parts.push_back(name + "=" + (isText ? value.get<std::string>() : value.dump()));
+        }
+        texts.push_back(joined(parts, " "));
+    }
+    return texts;
+}
+
 template <class Results>
 std::vector<std::string> uniqueNamesOf(const Results& results) {
     std::vector<const SeriesKey*> keys;
@@ -93,6 +119,23 @@ std::string summaryLine(const std::vector<Difference>& differences) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));
     }
     return text.empty() ? "nothing to compare" : text;
+}
+
+std::vector<std::string> titlesOf(const std::vector<Difference>& differences) {
+    std::map<std::string, std::vector<std::size_t>> places;
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        places[differences[i].key.title()].push_back(i);
+    }
+    std::vector<std::string> titles(differences.size());
+    for (const auto& [title, own] : places) {
+        std::vector<const SeriesKey*> keys;
+        for (const std::size_t i : own) keys.push_back(&differences[i].key);
+        const std::vector<std::string> params = differingParams(keys);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            titles[own[i]] = params[i].empty() ? title : title + ", " + params[i];
+        }
+    }
+    return titles;
 }
 
 std::string stepLine(const SeriesStep& found) {
@@ -117,9 +160,10 @@ std::string markdown(const Comparison& comparison) {
     }
     text += "| what | before | after | time after / before | floor | verdict |\n";
     text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
-    for (const Difference& difference : differences) {
-        if (difference.verdict == Verdict::Same) continue;
-        text += markdownRow(difference);
+    const std::vector<std::string> titles = titlesOf(differences);
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        if (differences[i].verdict == Verdict::Same) continue;
+        text += markdownRow(differences[i], titles[i]);
     }
     return text;
 }

@@ -33,8 +33,9 @@ struct FrameIndex {
 };
 
 /// A file of SQLite with a table a frame, whose values have the types INTEGER (booleans, too), REAL
-/// and TEXT, or are NULL (not-a-number, too); written in one transaction, in place of what was
-/// there, as a whole or not at all. Throws Error.
+/// and TEXT, or are NULL (not-a-number, too); of columns that differ by the case of letters alone
+/// the later ones get a number: N, n_2. Written in one transaction, in place of what was there, as
+/// a whole or not at all. Throws Error.
 void writeSqlite(const std::filesystem::path& file, std::span<const Frame> frames,
                  std::span<const FrameIndex> indices = {});
 

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <cctype>
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"
@@ -100,9 +102,25 @@ class Insertion {
     std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-void writeFrame(Database& database, const Frame& frame) {
+/// The columns as they are, but for those that differ from an earlier one by the case of letters
+/// alone, which SQLite takes as the same: they get a number.
+std::vector<std::string> columnNames(const Frame& frame) {
+    std::set<std::string> known;
+    const auto isNew = [&](std::string name) {
+        for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return known.insert(std::move(name)).second;
+    };
     std::vector<std::string> names;
-    for (const std::string& column : frame.columns) names.push_back(quoted(column));
+    for (const std::string& column : frame.columns) {
+        std::string name = column;
+        for (int number = 2; !isNew(name); ++number) name = fmt::format("{}_{}", column, number);
+        names.push_back((quoted)(name));
+    }
+    return names;
+}
+
+void writeFrame(Database& database, const Frame& frame) {
+    const std::vector<std::string> names = columnNames(frame);
     database.execute(fmt::format("CREATE TABLE {} ({})", quoted(frame.name), joined(names)));
     const std::vector<std::string> places(names.size(), "?");
     Insertion insertion(

@@ -27,10 +27,20 @@ namespace placeholder = config::placeholder;
 
 constexpr std::size_t kLoggedBytes = 4096;  // of what a program prints
 
+/// The last that says something, without colours and other control characters.
 std::string lastLine(std::string_view output) {
-    const std::string_view text = trimmed(output);
-    const std::size_t at = text.find_last_of("\r\n");
-    return std::string(at == text.npos ? text : text.substr(at + 1));
+    output.remove_prefix(output.size() - std::min(output.size(), kLoggedBytes));
+    std::string plain;
+    for (std::size_t i = 0; i < output.size(); ++i) {
+        const auto c = static_cast<unsigned char>(output[i]);
+        if (output.substr(i).starts_with("\x1b[")) {
+            i = std::min(output.find_first_not_of("0123456789;:?", i + 2), output.size());
+        } else if ((c >= 0x20 && c != 0x7f) || c == '\n' || c == '\r') {
+            plain += output[i];
+        }
+    }
+    const std::string_view text = trimmed(plain);
+    return std::string(text.substr(text.find_last_of("\r\n") + 1));  // npos + 1 is 0
 }
 
 /// A folder that goes with the object.

@@ -66,6 +66,9 @@ GivenMetric metricOf(std::string_view text, int number, int frame) {
 }  // namespace
 
 std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame) {
+    if (!std::filesystem::is_regular_file(file)) {
+        throw Error("the file of its metrics is gone, or is no file any more");
+    }
     if (std::filesystem::file_size(file) > kMostBytes) {
         throw Error(fmt::format("its metrics have more than {} MiB", kMostBytes >> 20));
     }

@@ -194,11 +194,24 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
         refusal({"import", time, "--metric", "time=s", "--out", dir("a")}),
         "gfxrepro: DIR/e.csv:2: 'time' has the unit 's'; a time has a name that ends in _ms and "
         "the unit ms, by which claims know it, and nothing else has\n");
+    const std::string output = folder_.write("f.csv", "output,metric,value\na,mse,5\nb,mse,6\n");
+    EXPECT_EQ(
+        refusal({"import", output, "--out", dir("a")}),
+        "gfxrepro: DIR/f.csv:2: column 'output'; allowed of that: output.width, output.height\n");
     const std::string size = folder_.write("d.csv", "output.width,metric,value\nwide,mse,5\n");
     EXPECT_EQ(
         refusal({"import", size, "--out", dir("a")}),
         "gfxrepro: DIR/d.csv:2: column 'output.width': 'wide'; allowed: a whole number from 1 "
         "to 16384\n");
+}
+
+TEST_F(Data, ColumnsThatDifferByCaseAloneAreExported) {
+    const std::string csv =
+        folder_.write("a.csv", "scene,Scene,N,n,metric,value\ns,1,2,3,mse,5\ns,2,2,4,mse,6\n");
+    ASSERT_EQ(mockGfxrepro({"import", csv, "--out", dir("a")}).exitCode, 0);
+    const ProcessResult tidy = mockGfxrepro({"export", dir("a"), "--tidy", "--out", dir("t")});
+    EXPECT_EQ(tidy.exitCode, 0) << tidy.err;
+    EXPECT_THAT(readFile(dir("t") + "/cases.csv"), HasSubstr(",n,output.width,"));
 }
 
 TEST_F(Data, ExportGoesOverNothing) {

@@ -32,7 +32,7 @@ cp "$here/picture.png" "$3/result.png"
 case $1 in
     ok) say number "$2" 1 ;;
     crash) kill -SEGV $$ ;;
-    fails) echo "no such scene" >&2; exit 3 ;;
+    fails) printf '\033[1;31mno such scene\033[0m\n\033[K' >&2; exit 3 ;;
     hangs) sleep 100 ;;
     silent) ;;
     not_a_number) say number NaN 1 ;;
@@ -125,7 +125,8 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     EXPECT_EQ(lines[12],
               "wrong_unit: error (metric 'number' is recorded in 'm', but declared in '1')");
     // What it printed is in the log.
-    EXPECT_THAT(readFile(dir + "/log.jsonl"), HasSubstr("drawing fails\\nno such scene"));
+    EXPECT_THAT(readFile(dir + "/log.jsonl"),
+                HasSubstr("drawing fails\\n\\u001b[1;31mno such scene"));
     EXPECT_FALSE(fs::exists(dir + "/scratch"));
 }
 
@@ -184,6 +185,10 @@ TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
     EXPECT_EQ(programs[1]["file"], "picture.png");
     EXPECT_EQ(gfxrepro({"report", dir}).exitCode, 0);
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("Renderer 1.2"));
+    const std::string artifact = (folder.path() / "artifact").string();
+    ASSERT_EQ(gfxrepro({"export", dir, "--out", artifact}).exitCode, 0);
+    EXPECT_THAT(readFile(artifact + "/ASSETS.md"),
+                HasSubstr("| Renderer 1.2 | " + programs[0]["sha256"].get<std::string>() + " |\n"));
 }
 
 TEST_F(ExternalProgram, AChangedOneIsNotResumed) {
@@ -301,6 +306,23 @@ TEST_F(ExternalProgram, IsTimedInRoundsAndComparedWithItself) {
     EXPECT_THAT(compared.out, HasSubstr("comparison.md"));
 }
 
+TEST_F(ExternalProgram, AComparisonSaysThatTheProgramIsAnotherAndWhichCasesChanged) {
+    const std::string config = write("sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
+    ASSERT_EQ(run(config).exitCode, 0);
+    folder.write("renderer.sh",
+                 "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": 3, \"unit\": \"1\"}' >&3\n");
+    const std::string again = (folder.path() / "again").string();
+    ASSERT_EQ(gfxrepro({"run", config, "--out", again}).exitCode, 0);
+    const ProcessResult compared =
+        gfxrepro({"compare", dir, again, "--out", folder.path() / "compared"});
+    EXPECT_EQ(compared.exitCode, 1) << compared.err;
+    EXPECT_THAT(compared.out + compared.err, HasSubstr("renderer.sh is another: "));
+    EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, number=1: changed"));
+    EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, number=2: changed"));
+    EXPECT_THAT(readFile(folder.path() / "compared" / "comparison.md"),
+                HasSubstr("number, number=2 | 2 | 3"));
+}
+
 TEST_F(ExternalProgram, ShardsOfItMergeIntoTheRun) {
     const std::string config = write(
         "sweep: {number: [1, 2, 3, 4]}\nmeasure: {lane: quality}\n"
@@ -350,6 +372,8 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
     EXPECT_EQ(described.exitCode, 0) << described.err;
     EXPECT_THAT(described.out, HasSubstr("given back [1; 0 … 100]"));
     EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {number} {out}"));
+    EXPECT_THAT(gfxrepro({"describe", write(kPicture)}).out,
+                HasSubstr("result.png: mse, rmse, rel_mse, psnr_db, ssim, flip\n"));
     EXPECT_THAT(gfxrepro({"describe", "external"}).out, HasSubstr("rel_mse"));
     const std::string other = folder.write(
         "other.yaml", "sweep_of: o\ntitle: T\ntechnique: mock\nprogram: {command: sh}\n");

@@ -165,6 +165,21 @@ TEST(Completion, OffersParametersTheirChoicesAndMetrics) {
                 ElementsAre("--profile"));
 }
 
+TEST(Completion, OffersWhatAProgramDeclares) {
+    const TemporaryFolder folder;
+    const std::string config =
+        folder.write("mine.yaml",
+                     "sweep_of: mine\ntitle: T\ntechnique: external\n"
+                     "program:\n  command: tracer {samples} {sampler}\n"
+                     "  params: {samples: 4, sampler: {default: sobol, choices: [sobol, halton]}}\n"
+                     "  metrics: {rays: ray}\n");
+    EXPECT_THAT(completed({"run", config, "--sweep", "sam"}), ElementsAre("sampler=", "samples="));
+    EXPECT_THAT(completed({"run", config, "--set", "sampler=h"}), ElementsAre("sampler=halton"));
+    EXPECT_THAT(completed({"run", config, "--set", "layout.cell.metric=r"}),
+                IsSupersetOf({"layout.cell.metric=rays", "layout.cell.metric=rmse"}));
+    EXPECT_THAT(completed({"run", config, "--set", "voxel_b"}), IsEmpty());
+}
+
 TEST(Completion, OffersFilesByWhatTheyAre) {
     const TemporaryFolder folder;
     folder.write("a.yaml", "");

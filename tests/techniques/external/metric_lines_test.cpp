@@ -55,6 +55,15 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
               "line 1 of its metrics is no JSON object: {\"metric\": \"rays\", \"val");
 }
 
+TEST(MetricLines, TheirFileMustBeOne) {
+    const TemporaryFolder folder;
+    const std::string said = "the file of its metrics is gone, or is no file any more";
+    EXPECT_EQ(errorText([&] { metricsIn(folder.path() / "none", 0); }), said);
+    EXPECT_EQ(errorText([&] { metricsIn(folder.path(), 0); }), said);
+    std::filesystem::create_symlink("/dev/zero", folder.path() / "endless");
+    EXPECT_EQ(errorText([&] { metricsIn(folder.path() / "endless", 0); }), said);
+}
+
 TEST(MetricLines, APatternTakesItsLastMatch) {
     const config::ProgramPattern pattern{"rays", "^Rays: +([0-9.eE+-]+)"};
     EXPECT_EQ(numberIn("Rays:  12\rRays:  64 (all)\nno Rays: 3\n", pattern), 64.0);

@@ -1,6 +1,7 @@
 #include "runner/batch/child_process.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,6 +30,23 @@ TEST(ChildProcess, OneThatCannotBeKilledIsLeftBehind) {
     const std::optional<int> status = child.wait(5s);
     ASSERT_TRUE(status);
     EXPECT_TRUE(WIFSIGNALED(*status));
+}
+
+TEST(ChildProcess, WhatLeftItsGroupIsKilledToo) {
+    ChildProcess child({"/bin/sh", "-c", "setsid sleep 1000 & echo $!; sleep 1000"});
+    std::string said;
+    for (int i = 0; i < 5000 && !said.ends_with('\n'); ++i) {
+        readAvailable(child.outputFd(), said);
+        std::this_thread::sleep_for(1ms);
+    }
+    const pid_t other = std::stoi(said);
+    for (int i = 0; i < 5000 && ::getsid(other) != other; ++i) std::this_thread::sleep_for(1ms);
+    ASSERT_EQ(::getsid(other), other);
+    EXPECT_TRUE(child.kill());
+    for (int i = 0; i < 5000 && ::kill(other, 0) == 0; ++i) std::this_thread::sleep_for(1ms);
+    const bool isLeft = ::kill(other, 0) == 0;
+    if (isLeft) ::kill(other, SIGKILL);
+    EXPECT_FALSE(isLeft);
 }
 
 TEST(ChildProcess, AProgramIsNotWaitedForBeyondItsLimit) {

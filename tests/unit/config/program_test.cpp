@@ -50,6 +50,9 @@ TEST(Program, RefusesWhatStandsForNothing) {
     EXPECT_EQ(errorOf("command: t {seed}\nparams: {seed: 1}"),
               "c.yaml:2:10: program: parameter 'seed': every program has that placeholder; give it "
               "another name");
+    EXPECT_EQ(errorOf("command: t {output}\nparams: {output: a}"),
+              "c.yaml:2:10: program: parameter 'output': plans and tables have that of every case; "
+              "give it another name");
     EXPECT_EQ(errorOf("command: t\nimages: {result: \"{q}.png\"}"),
               "c.yaml:2:18: program: image 'result': file: '{q}' stands for nothing; allowed: "
               "here, out, scene, width, height, seed, frame, frames; braces as such are {{ and }}");
@@ -97,6 +100,13 @@ TEST(Program, RefusesValuesThatAParameterDoesNotTake) {
         errorOf("command: t {n}\nparams: {n: {default: z, choices: [x, y]}}"),
         "c.yaml:2:23: program: parameter 'n': default is z; allowed: one of the values it may "
         "have");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 3000000000}"),
+              "c.yaml:2:13: program: parameter 'n': default is 3000000000; allowed: a whole number "
+              "of 32 bits, or 'type: number' beside it");
+    EXPECT_EQ(programOf("command: t {n}\nparams: {n: {default: 3000000000, type: number}}")
+                  .params.at(0)
+                  .type,
+              ProgramParam::Type::Number);
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: text, min: 1}}"),
               "c.yaml:2:29: program: parameter 'n': 'min' is of numbers alone");
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {unit: m}}"),
@@ -151,10 +161,12 @@ TEST(Program, ItsKeyIsOfItsFiles) {
     std::filesystem::permissions(script, std::filesystem::perms::owner_all);
     folder.write("scene.txt", "one");
     folder.write("more.txt", "two");
+    folder.write("truth.png", "three");
     const std::string here = folder.path().string();
     const Program program = programOf(
         "command: \"{here}/run.sh +I{here}/{scene_name}.txt\"\n"
         "params: {scene_name: scene}\n"
+        "images: {result: {file: r.png, truth: \"{here}/truth.png\"}}\n"
         "files: [more.txt]\nhere: " +
         here);
     const auto filesNow = [&](const std::string& scene) {
@@ -162,12 +174,16 @@ TEST(Program, ItsKeyIsOfItsFiles) {
     };
     std::vector<std::string> names;
     for (const ProgramFile& file : filesNow("scene")) names.push_back(file.name);
-    EXPECT_THAT(names, ElementsAre(here + "/run.sh", "scene.txt", "more.txt"));
+    EXPECT_THAT(names, ElementsAre(here + "/run.sh", "scene.txt", "truth.png", "more.txt"));
     FileDigests digests;
     const std::string key = programKey(filesNow("scene"), digests);
     EXPECT_EQ(key.size(), 64U);
     EXPECT_EQ(programKey(filesNow("scene"), digests), key);
     EXPECT_NE(programKey(filesNow("none"), digests), key);
+    folder.write("truth.png", "another");
+    EXPECT_NE(programKey(filesNow("scene"), digests), key);
+    folder.write("truth.png", "three");
+    EXPECT_EQ(programKey(filesNow("scene"), digests), key);
     folder.write("scene.txt", "other");
     EXPECT_NE(programKey(filesNow("scene"), digests), key);
 }

@@ -81,6 +81,18 @@ TEST(Frame, IsWrittenIntoSqliteWithItsTypes) {
               "my frame_whole\n");
 }
 
+TEST(Frame, ColumnsThatDifferByCaseAloneGetANumber) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "a.sqlite";
+    const Frame frame{"b", {"scene", "N", "Scene", "n", "n_2"}, 1, [](std::size_t) {
+                          return std::vector<FrameValue>{1LL, 2LL, 3LL, 4LL, 5LL};
+                      }};
+    writeSqlite(file, std::span(&frame, 1));
+    EXPECT_EQ(queried(file, "SELECT name FROM pragma_table_info('b')"),
+              "scene\nN\nScene_2\nn_2\nn_2_2\n");
+    EXPECT_EQ(queried(file, "SELECT scene_2, n, n_2 FROM b"), "3|2|4\n");
+}
+
 TEST(Frame, TakesThePlaceOfAnOlderFileAsAWhole) {
     const TemporaryFolder folder;
     const auto file = folder.path() / "a.sqlite";
@@ -89,9 +101,10 @@ TEST(Frame, TakesThePlaceOfAnOlderFileAsAWhole) {
         "b", {"x"}, 1, [](std::size_t) -> std::vector<FrameValue> { throw Error("half way"); }};
     EXPECT_EQ(errorText([&] { writeSqlite(file, std::span(&broken, 1)); }), "half way");
     EXPECT_EQ(queried(file, "SELECT count(*) FROM \"my frame\""), "3\n");
-    const Frame twice{"b", {"x", "X"}, 0, {}};
-    EXPECT_EQ(errorText([&] { writeSqlite(file, std::span(&twice, 1)); }, folder.path()),
-              "cannot write DIR/a.sqlite.tmp: duplicate column name: X");
+    Frame wide{"b", {}, 0, {}};
+    for (int i = 0; i < 3000; ++i) wide.columns.push_back("x" + std::to_string(i));
+    EXPECT_EQ(errorText([&] { writeSqlite(file, std::span(&wide, 1)); }, folder.path()),
+              "cannot write DIR/a.sqlite.tmp: too many columns on b");
     const Frame other{"b", {"x"}, 1, [](std::size_t) { return std::vector<FrameValue>{1LL}; }};
     writeSqlite(file, std::span(&other, 1));
     EXPECT_EQ(queried(file, "SELECT name FROM sqlite_master"), "b\n");
