@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "runner/core/text.h"
@@ -93,12 +94,23 @@ std::optional<std::vector<std::string>> valuesOf(const Case& item,
 }  // namespace
 
 void keepOnly(Plan& plan, const std::vector<std::string>& only) {
+    std::vector<std::string> keys;
+    std::map<std::string, std::vector<config::Override>> byKey;
     for (const std::string& written : only) {
-        const config::Override wanted = config::parseOverride(written);
+        config::Override wanted = config::parseOverride(written);
+        const bool isThere =
+            std::ranges::any_of(plan.cases, [&](const Case& item) { return has(item, wanted); });
+        if (!isThere) failWithout(wanted, written, plan.cases);
+        if (!byKey.contains(wanted.key)) keys.push_back(wanted.key);
+        byKey[wanted.key].push_back(std::move(wanted));
+    }
+    for (const std::string& key : keys) {
         std::vector<Case> kept;
-        std::ranges::copy_if(plan.cases, std::back_inserter(kept),
-                             [&](const Case& item) { return has(item, wanted); });
-        if (kept.empty()) failWithout(wanted, written, plan.cases);
+        std::ranges::copy_if(plan.cases, std::back_inserter(kept), [&](const Case& item) {
+            return std::ranges::any_of(byKey[key],
+                                       [&](const auto& wanted) { return has(item, wanted); });
+        });
+        if (kept.empty()) throw UsageError("--only: no case has all of " + joined(only));
         plan.cases = std::move(kept);
     }
 }

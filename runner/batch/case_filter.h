@@ -10,10 +10,11 @@
 
 namespace gfxrepro::batch {
 
-/// Leaves the cases that have all of `only`, each "key=value" as written on the command line. A key
-/// is a sweep's axis, a parameter, `scene`, `output.width`, `output.height`, or `case` with the
-/// beginning of an id. The plan's hash stays that of the whole plan. Throws UsageError when no case
-/// has the key, or the value, with those that there are.
+/// Leaves the cases that have all of `only`, each "key=value" as written on the command line; of a
+/// key that is written several times, any. A key is a sweep's axis, a parameter, `scene`,
+/// `output.width`, `output.height`, or `case` with the beginning of an id. The plan's hash stays
+/// that of the whole plan. Throws UsageError when no case has the key, or the value, with those
+/// that there are.
 void keepOnly(Plan& plan, const std::vector<std::string>& only);
 
 /// What leaves one case of a plan alone. The plan must outlive it.

@@ -16,6 +16,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// In factors of two of one number: 1.5 times as much.
+constexpr double kFarthestTold = 0.6;
+
+/// Behind the source of a prediction in a file that tells people nothing.
+constexpr std::string_view kFarMark = ", far";
+
 constexpr std::string_view kFileHeader = "title,time_s,memory_bytes,source";
 
 double iterationsOf(const config::Measure& measure) {
@@ -88,7 +94,8 @@ std::map<std::string, Prediction> readPredictions(const fs::path& file) {
         const auto timeS = fields.size() == 4 ? parseDouble(fields[1]) : std::nullopt;
         const auto bytes = fields.size() == 4 ? parseInteger(fields[2]) : std::nullopt;
         if (!timeS || !bytes) throw Error(reader.location(), "is no line of predictions");
-        predictions[fields[0]] = {*timeS, *bytes, Prediction::Source::File, ""};
+        predictions[fields[0]] = {*timeS, *bytes, Prediction::Source::File, "",
+                                  !fields[3].ends_with(kFarMark)};
     }
     return predictions;
 }
@@ -165,7 +172,7 @@ std::optional<Prediction> Predictor::predict(const Case& item) const {
     if (const auto found = file_.find(item.title()); found != file_.end()) return found->second;
     const auto as = [&](std::size_t index, Prediction::Source source) {
         const PastCase& past = past_[index];
-        return Prediction{scaledTimeS(past, item.measure), past.cost.peakBytes, source, ""};
+        return Prediction{scaledTimeS(past, item.measure), past.cost.peakBytes, source, "", true};
     };
     if (const auto found = byId_.find(item.id); found != byId_.end()) {
         return as(found->second, Prediction::Source::SameCase);
@@ -225,7 +232,7 @@ std::optional<Prediction> Predictor::nearest(const Case& item) const {
     }
     if (!found) return std::nullopt;
     return Prediction{scaledTimeS(*found, item.measure), found->cost.peakBytes,
-                      Prediction::Source::Nearest, found->item.title()};
+                      Prediction::Source::Nearest, found->item.title(), least <= kFarthestTold};
 }
 
 std::optional<Prediction> Predictor::median(const Case& item) const {
@@ -240,7 +247,7 @@ std::optional<Prediction> Predictor::median(const Case& item) const {
     const int which = timesS[1].empty() ? 0 : 1;
     const std::string count = std::to_string(timesS[which].size());
     return Prediction{medianOf(timesS[which]), static_cast<long long>(medianOf(bytes[which])),
-                      Prediction::Source::Median, "of " + count + " cases"};
+                      Prediction::Source::Median, "of " + count + " cases", false};
 }
 
 void writePredictions(const fs::path& path, const Plan& plan, const Predictor& predictor) {
@@ -250,7 +257,9 @@ void writePredictions(const fs::path& path, const Plan& plan, const Predictor& p
         if (!known) continue;
         report::CsvRow row(text);
         row.text(item.title()).number(known->timeS).integer(known->memoryBytes);
-        row.text(sourceName(known->source)).end();
+        row.text(std::string(sourceName(known->source)) +
+                 std::string(known->isTold ? "" : kFarMark))
+            .end();
     }
     writeFileAtomic(path, text);
 }

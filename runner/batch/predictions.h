@@ -25,6 +25,9 @@ struct Prediction {
     long long memoryBytes = 0;
     Source source = Source::SameCase;
     std::string detail;  // of Nearest: the other case's title; of Median: "of 12 cases"
+    /// Whether it is good for more than to balance shards by: another method's time, or that of a
+    /// value more than 1.5 times as large (a volume of 3.4 times), tells people nothing.
+    bool isTold = true;
 };
 /// "same case", "same case, other run", "nearest", "median", "file".
 std::string_view sourceName(Prediction::Source source);
@@ -72,8 +75,8 @@ class Predictor {
     std::map<std::string, Prediction> file_;  // by title
 };
 
-/// A line a case: title, time of one process, memory, source. Every shard of a plan is cut by
-/// the same predictions; a file keeps them.
+/// A line a case: title, time of one process, memory, source, "…, far" where it tells people
+/// nothing. Every shard of a plan is cut by the same predictions; a file keeps them.
 void writePredictions(const std::filesystem::path& path, const Plan& plan,
                       const Predictor& predictor);
 

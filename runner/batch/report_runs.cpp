@@ -68,21 +68,62 @@ std::string configName(const fs::path& file) {
     return isPaper ? (folder.filename() / file.stem()).string() : file.string();
 }
 
-std::string commandOf(const Case& item, const Plan& plan, CaseNames& names) {
+/// "gfxrepro COMMAND CONFIG" with what else the run was asked for, but for `--only`.
+std::string commandFor(const char* command, const std::string& experimentId, const Plan& plan) {
     std::string config;
     for (const config::Experiment& experiment : plan.experiments) {
-        if (experiment.id == item.experiment) config = configName(experiment.file);
+        if (experiment.id == experimentId) config = configName(experiment.file);
     }
-    std::string command =
-        "gfxrepro run " + shellQuoted(config) + " --profile " + shellQuoted(plan.profile);
-    const auto add = [&](const char* option, const std::string& value) {
-        command += fmt::format(" {} {}", option, shellQuoted(value));
-    };
-    if (plan.request.device != "auto") add("--device", plan.request.device);
-    for (const std::string& set : plan.request.sets) add("--set", set);
-    for (const std::string& sweep : plan.request.sweeps) add("--sweep", sweep);
-    for (const std::string& only : names.onlyOf(item)) add("--only", only);
+    std::string text = fmt::format("gfxrepro {} {} --profile {}", command, shellQuoted(config),
+                                   shellQuoted(plan.profile));
+    if (plan.request.device != "auto") text += " --device " + shellQuoted(plan.request.device);
+    for (const std::string& set : plan.request.sets) text += " --set " + shellQuoted(set);
+    for (const std::string& sweep : plan.request.sweeps) text += " --sweep " + shellQuoted(sweep);
+    return text;
+}
+
+std::string commandOf(const Case& item, const Plan& plan, CaseNames& names) {
+    std::string command = commandFor("run", item.experiment, plan);
+    for (const std::string& only : names.onlyOf(item)) command += " --only " + shellQuoted(only);
     return command;
+}
+
+/// The command that measures a table again, as this run did.
+std::string commandOf(const config::Experiment& experiment, const Plan& plan) {
+    std::string command = commandFor("reproduce", experiment.id, plan);
+    for (const std::string& only : plan.request.only) command += " --only " + shellQuoted(only);
+    return command;
+}
+
+/// The shipped config of a table, figure, section or sweep; none for one of another's.
+std::optional<fs::path> shippedConfig(const std::string& experiment) {
+    const fs::path id = experiment;
+    const bool isSweep = id.parent_path() == "sweep";
+    const fs::path folder = dataFolder("configs") / (isSweep ? "sweeps" : id.parent_path());
+    for (const char* kind : {"", "table-", "section-"}) {
+        const fs::path file = folder / (kind + id.filename().string() + ".yaml");
+        if (fs::is_regular_file(file)) return file;
+    }
+    return std::nullopt;
+}
+
+/// Kept verdicts of before say nothing in words: those of the shipped configs' claims of that name.
+void addWords(std::vector<report::ClaimResult>& claims) {
+    std::map<std::string, std::map<std::string, std::string>> words;  // by experiment, by claim
+    for (report::ClaimResult& claim : claims) {
+        if (!claim.text.empty()) continue;
+        const auto [known, isNew] = words.try_emplace(claim.table);
+        const auto file = isNew ? shippedConfig(claim.table) : std::nullopt;
+        if (file) {
+            for (const config::ClaimSpec& spec :
+                 config::loadExperiment(*file, {}, dataFolder("configs")).claims) {
+                known->second[spec.id] = spec.text;
+            }
+        }
+        if (const auto found = known->second.find(claim.id); found != known->second.end()) {
+            claim.text = found->second;
+        }
+    }
 }
 
 }  // namespace
@@ -99,7 +140,11 @@ html::ReportRun reportRun(const fs::path& runDir, const StoredRun& run) {
                            plannedCases(run.plan.cases),
                            run.records,
                            {},
+                           {},
                            {}};
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        result.commands[experiment.id] = commandOf(experiment, run.plan);
+    }
     auto logs = caseLogs(runDir);
     CaseNames names(run.plan);
     const bool isImported = run.manifest.contains("imported");
@@ -124,6 +169,7 @@ html::ReportRun reportRun(const fs::path& folder) {
     result.manifest = readManifest(folder / "manifest.json");
     result.context = reportContext(result.manifest);
     result.keptClaims = report::readClaims(folder / "claims.csv");
+    addWords(result.keptClaims);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "runner/batch/case_variation.h"
@@ -156,6 +157,26 @@ void requireModestTitle(const config::Experiment& experiment, const Case& item) 
                                    what, longest, size, kMostBytes));
 }
 
+/// What a technique needs beside a swept parameter, with how a sweep says so.
+[[noreturn]] void throwWithWhen(const Error& error, const config::CaseSpec& spec) {
+    const std::string text = error.what();
+    std::smatch found;
+    static const std::regex kNeeds(R"('(\w+)' needs '(\w+): (\w+)'$)");
+    const auto isSwept = [&](const std::string& name) {
+        for (const auto& [axis, value] : spec.axes) {
+            if (axis == name) return true;
+        }
+        return false;
+    };
+    if (!std::regex_search(text, found, kNeeds) || !isSwept(found[1])) throw;
+    const std::string place = toString(error.where()) + ": ";
+    throw Error(
+        error.where(),
+        fmt::format("{}; or `when: {{{}: {{{}: {}}}}}` in `sweep`, for the cases that have it",
+                    text.substr(text.starts_with(place) ? place.size() : 0), found[1].str(),
+                    found[2].str(), found[3].str()));
+}
+
 }  // namespace
 
 void requireCaseCount(std::size_t count, const config::Experiment& experiment) {
@@ -184,11 +205,15 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         Case item;
         takeInstead(spec, experiment.paramsInstead, item);
         item.program = config::programOf(experiment);
-        if (experiment.hasDefaultLayout()) offerPictures(info, item);
         config::Params params(item.given, "technique '" + std::string(info.name) + "'");
-        if (!item.offered.isNull()) params.offer(item.offered);
-        const technique::SceneNeed need =
-            technique::makeTechnique(info, item.program, params)->sceneNeed();
+        technique::SceneNeed need{};
+        try {
+            if (experiment.hasDefaultLayout()) offerPictures(info, item);
+            if (!item.offered.isNull()) params.offer(item.offered);
+            need = technique::makeTechnique(info, item.program, params)->sceneNeed();
+        } catch (const Error& error) {
+            throwWithWhen(error, spec);
+        }
         params.finish();
         item.experiment = experiment.id;
         item.technique = experiment.technique;

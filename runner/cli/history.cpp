@@ -17,6 +17,19 @@ namespace {
 
 constexpr std::size_t kRunsLookedAt = 5;
 
+/// The rounds of a table's times: those beyond the least asked for only within the budget.
+struct TimedRounds {
+    const config::Measure* measure = nullptr;
+    double roundS = 0.0;
+
+    double totalS() const {
+        const int certain = measure->certainRounds();
+        const double affordable = std::floor(measure->timeBudgetS / std::max(roundS, 1e-9));
+        const double rounds = std::clamp<double>(affordable, certain, measure->processes);
+        return roundS * rounds;
+    }
+};
+
 /// The newest runs that can be read.
 History newestHistory(const std::string& deviceClass) {
     std::vector<batch::PastCase> past;
@@ -59,24 +72,29 @@ std::string memoryText(double bytes) {
 std::string forecastText(const batch::Plan& plan, const History& history, int jobs) {
     double timeS = 0.0;
     long long memoryBytes = 0;
-    std::map<std::string_view, int> counts;
+    std::map<std::string_view, TimedRounds> timed;  // by experiment
+    bool isAnyKnown = false;
     const std::vector<std::size_t> firsts = batch::firstTwins(plan.cases);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
         const batch::Case& item = plan.cases[i];
         if (!plan.measures(item) || firsts[i] != i) continue;
         const std::optional<batch::Prediction> known = history.predictor.predict(item);
-        if (!known) return "";
-        const bool isAlone = item.measure.lane == config::Measure::Lane::Timing;
-        timeS += known->timeS * item.measure.processes / (isAlone ? 1 : jobs);
+        if (!known || !known->isTold) return "";
+        isAnyKnown = true;
         memoryBytes = std::max(memoryBytes, known->memoryBytes);
-        ++counts[batch::sourceName(known->source)];
+        if (item.measure.lane == config::Measure::Lane::Timing) {
+            TimedRounds& rounds = timed[item.experiment];
+            rounds.measure = &item.measure;
+            rounds.roundS += known->timeS;
+        } else {
+            timeS += known->timeS * item.measure.processes / jobs;
+        }
     }
-    if (counts.empty()) return "";
-    std::vector<std::string> kinds;
-    for (const auto& [name, count] : counts) kinds.push_back(fmt::format("{} by {}", count, name));
-    return fmt::format("about {}, at most {} a case, as {} tell{} ({})", durationText(timeS),
+    if (!isAnyKnown) return "";
+    for (const auto& [experiment, rounds] : timed) timeS += rounds.totalS();
+    return fmt::format("expect about {} and at most {} a case, as {} tell{}", durationText(timeS),
                        memoryText(static_cast<double>(memoryBytes)), joined(history.sources),
-                       history.sources.size() == 1 ? "s" : "", joined(kinds));
+                       history.sources.size() == 1 ? "s" : "");
 }
 
 }  // namespace gfxrepro::cli

@@ -23,9 +23,9 @@ std::string durationText(double timeS);
 /// "1.2 GiB", "310 MiB".
 std::string memoryText(double bytes);
 
-/// "about 12 min, at most 310 MiB a case, as runs/a tells (10 by same case, 2 by nearest)" for the
-/// cases of the plan (of its shard; twins are measured once), with `jobs` quality cases at once;
-/// empty when nothing is known.
+/// "expect about 12 min and at most 310 MiB a case, as runs/a tells" for the cases of the plan (of
+/// its shard; twins are measured once), with `jobs` quality cases at once; rounds that a budget may
+/// end count as far as it lasts. Empty where of any case no earlier run tells its time.
 std::string forecastText(const batch::Plan& plan, const History& history, int jobs);
 
 }  // namespace gfxrepro::cli

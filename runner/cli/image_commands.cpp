@@ -28,8 +28,8 @@ CLI::Option* addChoice(CLI::App* app, const char* name, std::string& value, cons
 
 void addDiff(CLI::App& image, ImageDiffOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("diff", "errors of an image, and their map");
-    addFile(app, "reference", o.reference, "EXR (linear) or PNG (sRGB as stored)");
-    addFile(app, "test", o.test, "of the same kind");
+    addFile(app, "reference", o.reference, "the reference: EXR (linear) or PNG (sRGB)");
+    addFile(app, "test", o.test, "the image that is compared with it, of the same kind");
     app->add_option("--metric", o.metrics, "one or more, by commas (default: all that apply)")
         ->delimiter(',')
         ->allow_extra_args(false)

@@ -22,9 +22,8 @@ std::vector<std::string> predictionTexts(const batch::Case& item, const batch::C
                                          const batch::Predictor& predictor) {
     if (&item != &first) return {"-", "-", "as " + first.id};
     const std::optional<batch::Prediction> known = predictor.predict(item);
-    if (!known) return {"-", "-", "-"};
+    if (!known || !known->isTold) return {"-", "-", "-"};
     std::string source(batch::sourceName(known->source));
-    if (known->source == batch::Prediction::Source::Median) source += ' ' + known->detail;
     return {durationText(known->timeS * item.measure.processes),
             memoryText(static_cast<double>(known->memoryBytes)), source};
 }

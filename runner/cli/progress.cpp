@@ -74,7 +74,7 @@ void Progress::unitEnded(const batch::Unit& unit, report::Status status,
 }
 
 std::string Progress::etaText() const {
-    if (ended_ == 0 && unitTimesS_.empty()) return "--:--";
+    if (ended_ == 0) return "--:--";
     const double elapsedS = std::chrono::duration<double>(Clock::now() - start_).count();
     const auto leftS =
         static_cast<long long>(batch::remainingS(totalS_, doneS_, elapsedS, jobs_) + 0.5);

@@ -58,14 +58,21 @@ int completenessCode(const batch::StoredRun& run) {
     return kExitIncomplete;
 }
 
+/// What the claim says; its name where that is not known.
+const std::string& wordsOf(const report::ClaimResult& claim) {
+    return claim.text.empty() ? claim.id : claim.text;
+}
+
 /// Names the claims that fail, and gives their number.
 std::size_t sayFailing(const std::vector<report::ClaimResult>& claims) {
     std::size_t failing = 0;
     for (const report::ClaimResult& claim : claims) {
         if (claim.verdict != report::Verdict::Fails || ++failing > kSaidFailing) continue;
-        say("  {} {} fails: {}; measured {}, required {}\n", claim.table, claim.id, claim.text,
-            claim.measured, claim.required);
-        if (const std::string why = report::whyText(claim); !why.empty()) say("    {}\n", why);
+        say("  {} fails: {} ({}); measured {}, required {}\n", claim.table, wordsOf(claim),
+            claim.id, claim.measured, claim.required);
+        if (const std::string why = report::whyText(claim); !why.empty()) {
+            say("    why: {}\n", why);
+        }
     }
     if (failing > kSaidFailing) {
         say("  and {} more that fail, in the report\n", failing - kSaidFailing);
@@ -89,8 +96,8 @@ void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
     say("claims: {}\n", report::originSummaryLine(claims));
     for (const report::ClaimResult& claim : claims) {
         if (!claim.isNews()) continue;
-        say("  news: {} {} {}, known: {}\n", claim.table, claim.id,
-            report::verdictName(claim.verdict), report::verdictName(claim.known));
+        say("  news: {} {}: {} ({}); known: {}\n", claim.table, report::verdictName(claim.verdict),
+            wordsOf(claim), claim.id, report::verdictName(claim.known));
     }
     static const std::pair<report::Verdict, const char*> kMeanings[] = {
         {report::Verdict::Ambiguous, "too few rounds or too much noise to tell: more rounds may"},
@@ -109,8 +116,9 @@ int sayClaims(const std::vector<report::ClaimResult>& claims) {
     for (const report::ClaimResult& claim : claims) {
         const std::string why =
             claim.verdict == report::Verdict::Holds ? claim.reason : report::whyText(claim);
-        say("{} {}: {}{}{}\n", claim.table, claim.id, report::verdictName(claim.verdict),
-            claim.isNews() ? " (news)" : "", why.empty() ? "" : fmt::format("; {}", why));
+        say("{} {}{}: {} ({}){}\n", claim.table, report::verdictName(claim.verdict),
+            claim.isNews() ? " (news)" : "", wordsOf(claim), claim.id,
+            why.empty() ? "" : fmt::format("; {}", why));
     }
     say("{}\n", report::originSummaryLine(claims));
     annotate(claims);

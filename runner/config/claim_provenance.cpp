@@ -46,6 +46,9 @@ ClaimSpec::Known readKnown(const Node& node, const std::string& what) {
     known.device = nameIn(node, "device", what, kDeviceClasses);
     known.profile = nameIn(node, "profile", what, kProfiles);
     known.reason = lineOf(*node.find("reason"), what + ": reason");
+    if (const Node* shown = node.find("shown_by")) {
+        known.shownBy = lineOf(*shown, what + ": shown_by");
+    }
     return known;
 }
 

@@ -145,7 +145,8 @@ struct ClaimSpec {
         std::string verdict;                 // "fails", "ambiguous", …
         std::optional<std::string> device;   // "software" | "gpu"; none: on any
         std::optional<std::string> profile;  // none: in any
-        std::string reason;
+        std::string reason;                  // in a sentence or two, for a reader of the document
+        std::string shownBy = {};            // the numbers and runs that prove it; perhaps empty
     };
     std::string id;
     std::string text;  // `says:` the claim in the paper's sense, one line

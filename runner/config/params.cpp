@@ -251,6 +251,21 @@ void Params::refuseGiven(std::initializer_list<std::string_view> names,
     }
 }
 
+namespace {
+
+/// "; those of 'light' are light_ratio, …" for `light_size`: names that begin with the same word.
+std::string kinHint(const std::string& name, const std::vector<std::string>& names) {
+    const std::string word = name.substr(0, name.find('_'));
+    std::vector<std::string> kin;
+    for (const std::string& other : names) {
+        if (other.starts_with(word + '_')) kin.push_back(other);
+    }
+    if (kin.empty() || word.size() == name.size()) return "";
+    return fmt::format("; of '{}' there are {}", word, joined(kin));
+}
+
+}  // namespace
+
 void Params::finish() const {
     std::vector<std::string> names;
     for (const ParamInfo& info : declared_) names.push_back(info.name);
@@ -258,7 +273,9 @@ void Params::finish() const {
         for (const auto& [key, value] : map->entries()) {
             if (std::find(names.begin(), names.end(), key) != names.end()) continue;
             const std::string near = suggestion(key, names);
+            const std::string kin = kinHint(key, names);
             const std::string hint = !near.empty()   ? near
+                                     : !kin.empty()  ? kin
                                      : names.empty() ? "; it has none"
                                                      : "; allowed: " + joined(names);
             throw Error(map->keyLocation(key), owner_ + ": unknown parameter '" + key + "'" + hint);

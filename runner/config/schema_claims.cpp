@@ -70,7 +70,9 @@ SchemaSection because() {
         "",
         {{"verdict", "fails | ambiguous | unmeasured", "required", "what it comes to",
           choice(kKnownVerdicts)},
-         {"reason", "line", "required", "the cause, with the experiment that shows it", text()},
+         {"reason", "line", "required",
+          "the cause, in a sentence or two that a reader of the document understands", text()},
+         {"shown_by", "line", "none", "the numbers and experiments that prove it", text()},
          {"device", "software | gpu", "any", "on this class of devices", choice(kDeviceClasses)},
          {"profile", "quick | full | paper", "any", "in this profile", choice(kProfiles)}},
         false};

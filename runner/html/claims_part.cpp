@@ -80,7 +80,7 @@ std::string detailHtml(const ClaimResult& claim, const std::string& letter, Clai
         html += paragraph("measured ", claim.measured) +
                 paragraph("required ", requiredText(claim)) +
                 paragraph(claim.verdict == Verdict::Holds ? "noted: " : "why: ", whyText(claim)) +
-                paragraph("rests on ", claim.restsOn);
+                paragraph("shown by ", claim.shownBy) + paragraph("rests on ", claim.restsOn);
     } else if (claim.verdict != Verdict::Holds && claim.verdict != Verdict::NotApplicable) {
         html += paragraph("why: ", whyText(claim));
     }

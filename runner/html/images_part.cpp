@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "runner/html/labels.h"
 #include "runner/html/parts.h"
 #include "runner/html/picture_grid.h"
 #include "runner/report/markup.h"
@@ -97,7 +98,7 @@ class Pictures {
         if (!grid.others.empty()) {
             html += "<div class=\"gallery\">\n";
             for (const std::size_t i : grid.others) {
-                html += figureHtml(i, fmt::format("{} · {}", shots_[i].name,
+                html += figureHtml(i, fmt::format("{} · {}", shownName(shots_[i].name),
                                                   withoutTable(shots_[i].caseTitle, page_.id)));
             }
             html += "</div>\n";
@@ -154,7 +155,7 @@ class Pictures {
                 "{}\" width=\"{}\" height=\"{}\" loading=\"lazy\"></button><figcaption>error: FLIP "
                 "{:.4f} to {}</figcaption>\n",
                 escapeXml(idOf(i)), shot.flip, escapeXml(shot.name), escapeXml(shot.truth),
-                shot.width, shot.height, shot.flipMean, escapeXml(shot.truth));
+                shot.width, shot.height, shot.flipMean, escapeXml(shownName(shot.truth)));
         }
         return html + "</figure>\n";
     }
@@ -166,8 +167,8 @@ class Pictures {
             return shots_[other].name == shots_[i].name;
         };
         const bool isOne = std::ranges::count_if(cell, isNamedAlike) == 1;
-        std::string says =
-            column.empty() ? shots_[i].name : fmt::format("{}: {}", column, shots_[i].name);
+        const std::string name = shownName(shots_[i].name);
+        std::string says = column.empty() ? name : fmt::format("{}: {}", column, name);
         if (!isOne) says += " · " + withoutTable(shots_[i].caseTitle, page_.id);
         return says;
     }
@@ -175,7 +176,7 @@ class Pictures {
     /// One row: as many beside each other as the window has place for.
     std::string flowHtml(const PictureGrid& grid, const PictureLine& line) const {
         std::string html = "<div class=\"gallery\">\n";
-        for (const std::size_t i : line.truth) html += figureHtml(i, shots_[i].name);
+        for (const std::size_t i : line.truth) html += figureHtml(i, shownName(shots_[i].name));
         for (std::size_t c = 0; c < line.cells.size(); ++c) {
             for (const std::size_t i : line.cells[c]) {
                 html += figureHtml(i, saysOf(i, line.cells[c], grid.columns[c]));

@@ -77,7 +77,7 @@ struct Model {
 
     bool isComparison() const { return runs.size() > 1; }
     /// One table, on whose page the report opens.
-    bool isOneTable() const { return !isComparison() && pages.size() == 1; }
+    bool isOneTable() const { return pages.size() == 1; }
     std::vector<DocumentPages> byDocument() const;
     /// "A", "B", … "Z", "AA", …
     static std::string letter(std::size_t run);

@@ -217,9 +217,10 @@ std::string newsHtml(const Model& model) {
             for (const ClaimResult& claim : page.parts[run].claims) {
                 if (!claim.isNews()) continue;
                 items += fmt::format(
-                    "<li>{}<a href=\"#{}\">{}</a> <strong>{}</strong> {}, known: {}</li>\n",
+                    "<li>{}<a href=\"#{}\">{}</a> <strong>{}</strong>: {} ({}); known: {}</li>\n",
                     model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(page.slug),
-                    escapeXml(page.label), escapeXml(claim.id), verdictName(claim.verdict),
+                    escapeXml(page.label), verdictName(claim.verdict),
+                    escapeXml(claim.text.empty() ? claim.id : claim.text), escapeXml(claim.id),
                     verdictName(claim.known));
             }
         }
@@ -274,7 +275,7 @@ std::string overviewHtml(const Model& model) {
         fmt::format("<section class=\"page\" id=\"overview\">\n<h1 tabindex=\"-1\">{}</h1>\n",
                     title) +
         machineHtml(model) + printedHtml(model);
-    if (!model.isOneTable()) {
+    if (!model.isOneTable() || model.isComparison()) {
         for (const DocumentPages& document : model.byDocument()) {
             html += documentHtml(document, model);
         }

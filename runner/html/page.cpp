@@ -98,10 +98,9 @@ std::string againHtml(const RunPart& part, const ReportRun& run) {
     if (isImported(run)) {
         return fmt::format("<h3>Import it again</h3>\n<pre>{}</pre>\n", escapeXml(context.command));
     }
-    const bool isOwn = part.experiment->kind == config::Experiment::Kind::Sweep;
-    return fmt::format("<h3>Run it again</h3>\n<pre>gfxrepro reproduce {} --profile {}</pre>\n",
-                       escapeXml(isOwn ? part.experiment->file.string() : part.table.id),
-                       escapeXml(context.profile));
+    const auto command = run.commands.find(part.table.id);
+    if (command == run.commands.end()) return "";
+    return fmt::format("<h3>Run it again</h3>\n<pre>{}</pre>\n", escapeXml(command->second));
 }
 
 }  // namespace

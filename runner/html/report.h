@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -35,6 +36,7 @@ struct ReportRun {
     std::vector<ReportCase> cases;
     /// Verdicts as they were kept, of a run of which only these are at hand; else they are judged.
     std::vector<report::ClaimResult> keptClaims;
+    std::map<std::string, std::string> commands = {};  // that measure a table again, by its id
 };
 
 struct ReportOptions {

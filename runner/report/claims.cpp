@@ -128,6 +128,7 @@ void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult
         if (known.profile.value_or(context.profile) != context.profile) continue;
         result.known = verdictFromName(known.verdict);
         result.because = known.reason;
+        result.shownBy = known.shownBy;
         return;
     }
 }
@@ -265,12 +266,12 @@ int severity(Verdict verdict) {
 }
 
 std::string whyText(const ClaimResult& claim) {
-    const std::string cause =
-        claim.because.empty() ? ""
-        : claim.verdict == claim.known
-            ? claim.because
-            : fmt::format("Where it is {}: {}", verdictName(claim.known), claim.because);
-    return claim.reason + (claim.reason.empty() || cause.empty() ? "" : ". ") + cause;
+    if (claim.because.empty()) return claim.reason;
+    if (claim.verdict != claim.known) {
+        return fmt::format("{}{}Where it is {}: {}", claim.reason, claim.reason.empty() ? "" : ". ",
+                           verdictName(claim.known), claim.because);
+    }
+    return claim.because + (claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason));
 }
 
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment, const Table& table,

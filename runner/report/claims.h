@@ -60,6 +60,7 @@ struct ClaimResult {
     std::optional<config::ClaimSpec::TimeKind> timeKind;
     Verdict known = Verdict::Holds;  // what it comes to as far as the config knows
     std::string because;             // why, where it does not hold
+    std::string shownBy = {};        // and what proves it
 
     /// A statement of the document itself: what counts.
     bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
@@ -80,8 +81,8 @@ struct ClaimResult {
     std::string restsOn = {};
 };
 
-/// Why it does not hold, for people: what the judging noted, then the known cause; of another
-/// verdict than the known one with that verdict. Empty where neither is known.
+/// Why it does not hold, for people: the known cause, then what the judging noted; where the cause
+/// is of another verdict, behind that and with its name. Empty where neither is known.
 std::string whyText(const ClaimResult& claim);
 
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
 
 #include "runner/core/text.h"
@@ -337,6 +338,17 @@ class FigureMaker {
     Figure figure_;
 };
 
+/// "bird nest" for "outdoor/bird_nest", where the panels are told apart by that, too.
+void leaveFoldersAway(std::vector<FigurePanel>& panels) {
+    static const std::regex kFolder(R"((^|, )[A-Za-z][\w.-]*/([\w.-]+)(?=$|, ))");
+    std::vector<std::string> titles;
+    for (const FigurePanel& panel : panels) {
+        titles.push_back(words(std::regex_replace(panel.title, kFolder, "$1$2")));
+    }
+    if (std::set(titles.begin(), titles.end()).size() != panels.size()) return;
+    for (std::size_t i = 0; i < panels.size(); ++i) panels[i].title = titles[i];
+}
+
 }  // namespace
 
 bool FigurePanel::hasPoints() const {
@@ -359,7 +371,9 @@ std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table) {
 }
 
 Figure makeFigure(const config::PlotSpec& plot, const Table& table) {
-    return FigureMaker(plot, table).make();
+    Figure figure = FigureMaker(plot, table).make();
+    leaveFoldersAway(figure.panels);
+    return figure;
 }
 
 std::string quantityLabel(const std::string& name, const std::string& unit) {

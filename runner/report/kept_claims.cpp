@@ -47,6 +47,7 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
         for (std::size_t i = 0; i < fields.size(); ++i) row[header[i]] = fields[i];
         ClaimResult& claim = claims.emplace_back();
         claim.id = row["claim"];
+        claim.text = row["says"];
         claim.table = row["table"];
         claim.verdict = verdictAt(reader.location(), row["verdict"]);
         claim.measured = row["measured"];

@@ -34,9 +34,9 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
                                         const ReportContext& context);
 
 /// The columns of claims.csv.
-inline constexpr std::array<std::string_view, 15> kClaimsColumns = {
-    "claim", "table",    "device",   "profile", "origin", "bound_from", "kind",    "verdict",
-    "known", "measured", "required", "margin",  "reason", "because",    "rests_on"};
+inline constexpr std::array<std::string_view, 16> kClaimsColumns = {
+    "claim",   "says",  "table",    "device",   "profile", "origin", "bound_from", "kind",
+    "verdict", "known", "measured", "required", "margin",  "reason", "because",    "rests_on"};
 
 /// How a case ended, for junit.xml.
 struct CaseResult {
@@ -59,8 +59,8 @@ std::string junitXml(const std::vector<CaseResult>& cases, const std::vector<Cla
 /// The verdict of that name. Throws Error at `where` for a name that is none.
 Verdict verdictAt(const SourceLocation& where, const std::string& name);
 
-/// claims.csv as writeClaims() wrote it, in older forms too (then nothing is known of a claim's
-/// origin); what a claim says is not kept there. Throws Error with file and line.
+/// claims.csv as writeClaims() wrote it, in older forms too: then nothing is known of a claim's
+/// origin, or of what it says. Throws Error with file and line.
 std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::report

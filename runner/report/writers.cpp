@@ -190,7 +190,8 @@ std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportConte
             result.boundFrom ? config::boundSourceName(*result.boundFrom) : "";
         const std::string_view kind = result.timeKind ? config::timeKindName(*result.timeKind) : "";
         CsvRow row(text);
-        row.text(result.id).text(result.table).text(context.device).text(context.profile);
+        row.text(result.id).text(result.text).text(result.table);
+        row.text(context.device).text(context.profile);
         row.text(config::originName(result.origin)).text(bound).text(kind);
         row.text(verdictName(result.verdict)).text(verdictName(result.known));
         row.text(result.measured).text(result.required).text(result.margin).text(result.reason);

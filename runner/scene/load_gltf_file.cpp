@@ -143,6 +143,14 @@ void checkExtensions(const tinygltf::Model& model, const std::string& name) {
                             joined(missing), fmt::join(kSupportedExtensions, ", ")));
 }
 
+/// A JSON object, perhaps behind a byte order mark.
+bool beginsAsJson(std::string_view content) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
+    const std::size_t begin = content.find_first_not_of(" \t\r\n");
+    return begin != content.npos && content[begin] == '{';
+}
+
 bool parse(std::string_view content, bool isBinary, Folder& folder, tinygltf::Model& model,
            std::string& message) {
     tinygltf::TinyGLTF parser;
@@ -173,6 +181,12 @@ File readFile(const std::filesystem::path& path) {
     File file;
     file.name = path.string();
     const bool isBinary = content.starts_with("glTF");
+    if (!isBinary && !beginsAsJson(content)) {
+        throw Error(
+            fmt::format("{}: {}; a .gltf file is a JSON object, a .glb file begins with "
+                        "'glTF'",
+                        file.name, content.empty() ? "is empty" : "is no glTF"));
+    }
     checkNesting(jsonText(content, isBinary), file.name);
 
     Folder folder{path.parent_path(), ""};

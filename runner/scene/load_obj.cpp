@@ -225,7 +225,11 @@ class MaterialTable {
     MaterialTable(const std::filesystem::path& folder, const std::vector<std::string>& files)
         : folder_(folder) {
         for (const std::string& file : files) {
-            if (const auto path = existing(file)) defined_.merge(loadMtl(*path));
+            if (const auto path = existing(file)) {
+                defined_.merge(loadMtl(*path));
+            } else {
+                absent_.push_back(file);
+            }
         }
     }
 
@@ -237,6 +241,16 @@ class MaterialTable {
             material.baseColorTexture = texture(scene, found->second.colourFile);
         }
         scene.materials.push_back(std::move(material));
+    }
+
+    /// Of files that are not there: what looks grey for it.
+    std::vector<std::string> warnings() const {
+        std::vector<std::string> texts;
+        for (const std::string& file : absent_) {
+            texts.push_back(fmt::format(
+                "material file '{}' is not beside the model: its materials are grey", file));
+        }
+        return texts;
     }
 
   private:
@@ -260,6 +274,7 @@ class MaterialTable {
 
     std::filesystem::path folder_;
     std::map<std::string, MtlMaterial> defined_;
+    std::vector<std::string> absent_;
     std::map<std::string, int> textureOf_;
 };
 
@@ -280,6 +295,7 @@ Scene loadObj(const std::filesystem::path& path) {
         return scene;
     }
     MaterialTable materials(path.parent_path(), content.materialFiles);
+    scene.warnings = materials.warnings();
     const bool asIs = content.groups.size() == 1 && !content.hasTriples;
     for (Group& group : content.groups) {
         Mesh mesh = asIs ? meshOfPositions(content) : meshOfTriples(content, group.corners);

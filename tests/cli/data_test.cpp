@@ -50,7 +50,7 @@ class Data : public testing::Test {
         const std::string text = readFile(dir(name) + "/claims.csv");
         report::CsvReader reader(text, "claims.csv");
         std::vector<std::string> fields, lines;
-        while (reader.next(fields)) lines.push_back(fields[0] + " " + fields[7]);
+        while (reader.next(fields)) lines.push_back(fields[0] + " " + fields[8]);
         return lines;
     }
 

@@ -32,7 +32,7 @@ TEST_F(OlderRun, HasTheTableAndTheClaimThatItHad) {
               "2,,2,2,2,,ok,yes,Measured at the printed parameters\n");
     const ProcessResult claims = mockGfxrepro({"claims", dir});
     EXPECT_EQ(claims.exitCode, 0) << claims.err;
-    EXPECT_THAT(claims.out, HasSubstr("demo2026/1 grows: holds; one sample\n"));
+    EXPECT_THAT(claims.out, HasSubstr("demo2026/1 holds: the number grows (grows); one sample\n"));
     EXPECT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
 }
 

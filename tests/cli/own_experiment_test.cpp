@@ -1,10 +1,14 @@
 // An experiment of who writes five lines: what they give, and what check says of them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "runner/core/files.h"
+#include "runner/image/png_io.h"
+#include "runner/report/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -48,6 +52,69 @@ TEST(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
         EXPECT_THAT(page, HasSubstr("Times over brightness (lower is better)"));
     }
 }
+
+/// An experiment of five lines: the technique, its scene, and what is swept.
+struct FiveLines {
+    const char* technique;
+    const char* scene;
+    const char* swept;  // the parameter
+    const char* values;
+    std::vector<std::string> smaller = {};  // --set, so that a test can wait for it
+};
+
+class OwnExperimentOf : public testing::TestWithParam<FiveLines> {};
+
+/// What a stranger gets of each technique, the map of a mountain of their own among them.
+TEST_P(OwnExperimentOf, FiveLinesGivesTimesPicturesAndACurve) {
+    const FiveLines& lines = GetParam();
+    const TemporaryFolder folder;
+    image::Image16 heights(65, 65, 1);
+    for (int y = 0; y < 65; ++y) {
+        for (int x = 0; x < 65; ++x) {
+            const int rim = std::min({x, y, 64 - x, 64 - y});
+            heights.at(x, y) = static_cast<std::uint16_t>(400 * rim);
+        }
+    }
+    image::writePng(folder.path() / "mountain.png", heights);
+    const std::string config = folder.write(
+        "mine.yaml",
+        fmt::format("sweep_of: mine\ntitle: Mine\ntechnique: {}\nscene: {}\nsweep: {{{}: {}}}\n",
+                    lines.technique, lines.scene, lines.swept, lines.values));
+    const fs::path dir = folder.path() / "run";
+    std::vector<std::string> command = {"reproduce", config, "--device", "software", "--out", dir};
+    std::vector<std::string> sets = {"output.width=48", "output.height=32",
+                                     "measure.time_budget_s=1"};
+    sets.insert(sets.end(), lines.smaller.begin(), lines.smaller.end());
+    for (const std::string& set : sets) command.insert(command.end(), {"--set", set});
+    const ProcessResult run = gfxrepro(command);
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_GE(processesOf(rowsOf(dir, "wall_time_ms")).size(), 1u);
+    const std::string table = readFile(dir / "tables" / "sweep-mine.csv");
+    EXPECT_TRUE(table.starts_with(std::string(lines.swept) + ",")) << table.substr(0, 80);
+    EXPECT_THAT(table, Not(HasSubstr("ambiguous")));
+    std::set<std::string> pictured;
+    for (const report::ImageEntry& image : report::readImages(dir)) pictured.insert(image.caseId);
+    EXPECT_EQ(pictured.size(), 2u) << "a picture of every row";
+    const std::string page = readFile(dir / "report.html");
+    EXPECT_THAT(page, HasSubstr("<h1 tabindex=\"-1\">Mine</h1>"));
+    if (runProgram({"/bin/sh", "-c", "command -v gnuplot"}).exitCode == 0) {
+        EXPECT_THAT(page, HasSubstr("<figure class=\"curve\"><svg"));
+        EXPECT_THAT(page, HasSubstr("Times over " + std::string(lines.swept)));
+    }
+}
+
+const FiveLines kFiveLines[] = {
+    {"voxelization", "shapes/torus", "resolution", "[32, 64]"},
+    {"depth_sampling", "shapes/torus", "view_spread", "[0.1, 0.5]"},
+    {"point_splatting", "shapes/torus", "target_radius_px", "[0.6, 2]", {"points=20000"}},
+    {"shadow_mapping", "shapes/torus", "shadow_map_size", "[64, 256]"},
+    {"soft_shadows", "shapes/torus", "light_ratio", "[0.25, 1]", {"light_grid=2"}},
+    {"clustered_reflections", "indoor/bathroom", "bin_gain", "[1, 4]", {"supersampling=1"}},
+    {"reflection_reuse", "indoor/bathroom", "max_steps", "[1, 4]"},
+    {"terrain_tessellation", "mountain.png", "delta_s", "[2, 8]", {"cache=false"}},
+};
+INSTANTIATE_TEST_SUITE_P(Each, OwnExperimentOf, testing::ValuesIn(kFiveLines),
+                         [](const auto& each) { return std::string(each.param.technique); });
 
 TEST(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
     const TemporaryFolder folder;
@@ -123,6 +190,38 @@ TEST(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
                                        "sweep: {resolution: [32, 64]}\n"),
               "gfxrepro: DIR/mine.yaml:5:22: 'resolution' is swept, too, in DIR/mine.yaml:6:9; "
               "allowed: in 'params' or in 'sweep'\n");
+}
+
+TEST(OwnExperiment, ThePageRunsAgainWhatTheRunWasAskedFor) {
+    const TemporaryFolder folder;
+    const std::string config = folder.write(
+        "mine.yaml", "sweep_of: mine\ntitle: T\ntechnique: template\nmeasure: {lane: quality}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(
+        gfxrepro({"reproduce", config, "--device", "software", "--quiet", "--out", dir, "--set",
+                  "measure.repeats=2", "--sweep", "brightness=0.25,1", "--only", "brightness=1"})
+            .exitCode,
+        0);
+    EXPECT_THAT(readFile(dir + "/report.html"),
+                HasSubstr("<pre>gfxrepro reproduce " + config +
+                          " --profile full --device software --set measure.repeats=2 --sweep "
+                          "brightness=0.25,1 --only brightness=1</pre>"));
+}
+
+TEST(OwnExperiment, CheckSaysHowToNameAParameter) {
+    const TemporaryFolder folder;
+    EXPECT_THAT(
+        checked(folder,
+                "technique: soft_shadows\nscene: shapes/torus\n"
+                "sweep: {light_size: [1, 2]}\n"),
+        HasSubstr(
+            "unknown parameter 'light_size'; of 'light' there are light_ratio, "
+            "light_height, light_azimuth_deg, light_elevation_deg, light_grid, light_views\n"));
+    EXPECT_EQ(checked(folder,
+                      "technique: clustered_reflections\nscene: shapes/linked_tori\nsweep: "
+                      "{method: [clustered, environment_map], bin_exponent: [0.25]}\n"),
+              "gfxrepro: DIR/mine.yaml:5:62: 'bin_exponent' needs 'method: clustered'; or `when: "
+              "{bin_exponent: {method: clustered}}` in `sweep`, for the cases that have it\n");
 }
 
 TEST(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {

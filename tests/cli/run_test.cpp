@@ -339,7 +339,7 @@ TEST(Reproduce, ExitCodesFollowClaimsAndCases) {
     const TemporaryFolder fails;
     const ProcessResult failing = reproduceDemo(fails, "6", "[ok]");
     EXPECT_EQ(failing.exitCode, 1) << failing.err;
-    EXPECT_NE(failing.out.find("demo2026/1 D1 fails: the number is large; measured 5"),
+    EXPECT_NE(failing.out.find("demo2026/1 fails: the number is large (D1); measured 5"),
               std::string::npos)
         << failing.out;
     const TemporaryFolder incomplete;

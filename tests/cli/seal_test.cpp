@@ -118,8 +118,9 @@ TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
     EXPECT_EQ(result.exitCode, 1) << result.err;
     EXPECT_THAT(
         result.out,
-        HasSubstr("sweep/mock small: fails (news); judged after the run, by a config that it did "
-                  "not know; one sample\n"));
+        HasSubstr(
+            "sweep/mock fails (news): the number is small (small); judged after the run, by a "
+            "config that it did not know; one sample\n"));
     EXPECT_THAT(result.out,
                 HasSubstr("judged after the run: " + dir + "/judged-afterwards/claims.csv\n"));
     EXPECT_EQ(readFile(dir + "/claims.csv"), before);

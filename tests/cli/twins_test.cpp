@@ -228,12 +228,12 @@ TEST(Twins, OnlyLeavesThemAloneAndAPlanPredictsThemOnce) {
         mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});
     ASSERT_EQ(plan.exitCode, 0) << plan.err;
     EXPECT_THAT(plan.out, HasSubstr("6 cases (2 measured as another's twin), 4 iterations,"));
-    EXPECT_THAT(plan.out, HasSubstr("tells (3 by nearest, 1 by same case)\n"));
+    EXPECT_THAT(plan.out, HasSubstr("no earlier run tells the time")) << "1 is far from 3";
     // Alone the second table is measured, and its time is known.
     const ProcessResult second =
         mockGfxrepro({"plan", configs[1], "--device", "software", "--from", dir});
     EXPECT_THAT(second.out, HasSubstr("3 cases, 3 iterations,"));
-    EXPECT_THAT(second.out, HasSubstr("tells (2 by nearest, 1 by same case)\n"));
+    EXPECT_THAT(second.out, HasSubstr(" tells\n"));
 }
 
 }  // namespace

@@ -43,11 +43,16 @@ TEST(CaseFilter, KeepsWhatHasAllValues) {
     EXPECT_EQ(left({"view=[0, 1]"}), (Ids{"aa11"}));
     EXPECT_EQ(left({"resolution=64", "scene=models/duck", "output.height=16"}).size(), 3U);
     EXPECT_EQ(left({"case=aa"}), (Ids{"aa11", "aa22"}));
+    EXPECT_EQ(left({"case=aa1", "case=bb"}), (Ids{"aa11", "bb33"})) << "of one key any";
 }
 
 TEST(CaseFilter, SaysWhatThereIs) {
     EXPECT_EQ(test::errorText([] { left({"step=3"}); }),
               "--only step=3: no case has that value; there are 1, 2");
+    EXPECT_EQ(test::errorText([] {
+                  left({"step=1", "packed=true"});
+              }),
+              "--only: no case has all of step=1, packed=true");
     EXPECT_EQ(test::errorText([] { left({"stp=3"}); }),
               "--only stp=3: no case has 'stp'; did you mean 'step'? (axes here: packed, step, "
               "view)");

@@ -370,7 +370,7 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
         "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
         "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
         "  C: {says: s, bound: aa, more_than: 0, origin: derived, bound_from: print, kind: "
-        "architectural, because: [{verdict: fails, profile: quick, reason: r}]}\n");
+        "architectural, because: [{verdict: fails, profile: quick, reason: r, shown_by: s}]}\n");
     const ClaimSpec& claim = table.claims.at(0);
     EXPECT_EQ(claim.origin, ClaimSpec::Origin::Derived);
     EXPECT_EQ(claim.boundFrom, ClaimSpec::BoundSource::Print);
@@ -379,6 +379,7 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     EXPECT_TRUE(claim.isLowExcluded);
     ASSERT_EQ(claim.because.size(), 1u);
     EXPECT_EQ(claim.because[0].profile, "quick");
+    EXPECT_EQ(claim.because[0].shownBy, "s");
     EXPECT_EQ(claim.because[0].device, std::nullopt);
 }
 

@@ -67,7 +67,8 @@ ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
             report::planOf(experiment(), records(drawMs)),
             records(drawMs),
             {{id, "zju2005/9.9", "zju2005/9.9 scene=models/duck", "gfxrepro run 'a<b'", {"ok"}}},
-            {}};
+            {},
+            {{"zju2005/9.9", "gfxrepro reproduce zju2005/9.9 --profile quick"}}};
 }
 
 /// A grey picture, `differing` in one pixel.
@@ -398,15 +399,16 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
         }
     }
     run.experiments[0].claims[1].because = {
-        {"fails", std::nullopt, std::nullopt, "the time is of another machine"}};
+        {"fails", std::nullopt, std::nullopt, "the time is of another machine", "two machines"}};
     std::filesystem::create_directories(folder.path() / "images");
     image::writePng(folder.path() / "images/a.png", grey(100));
     report::ImageWriter(folder.path())
-        .append({{"case", "zju2005/9.9", 0, "surface", "images/a.png", "", "t"}});
+        .append({{"case", "zju2005/9.9", 0, "surface_0", "images/a.png", "", "t"}});
     const config::Document document{
         "zju2005", "Thesis on <models>", {{"Later", {"9.9"}}, {"Earlier", {"figure-1"}}}};
     writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false});
     const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("<figcaption>surface 0 · t</figcaption>"));
     std::size_t at = 0;
     for (const char* part : {
              "llvmpipe on Xeon &lt;script&gt; · quick profile · commit abc123 · 2 experiments",
@@ -423,8 +425,9 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
              "<h3>Later</h3>",
              "<span class=\"says\">no</span> <span class=\"soft code\"><a "
              "href=\"#zju2005-9.9\">B</a>, document</span>\n<p><span class=\"soft\">why: </span>",
-             "the time is of another machine</p>",
+             "the time is of another machine (",
              "<h3>Earlier</h3>",
+             "<p><span class=\"soft\">shown by </span>two machines</p>",
          }) {
         const std::size_t next = html.find(part, at);
         ASSERT_NE(next, html.npos) << part;
@@ -454,6 +457,9 @@ TEST(Report, RunsStandSideBySide) {
     }
     EXPECT_THAT(html, Not(HasSubstr("×0.75</span>"))) << "12 of 16, at other parameters";
     EXPECT_THAT(html, HasSubstr("<b>A</b> quick, llvmpipe"));
+    EXPECT_LT(html.find("<section class=\"page\" id=\"zju2005-9.9\">"),
+              html.find("<section class=\"page\" id=\"overview\">"))
+        << "runs of one table open on its numbers";
 }
 
 TEST(Report, KeptVerdictsStandBesideARun) {

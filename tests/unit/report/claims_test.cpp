@@ -184,15 +184,19 @@ TEST(Claims, StrictBoundsExcludeTheBound) {
 
 TEST(Claims, KnownVerdictsAndNews) {
     const auto records = powers([](double n) { return n; });
-    const std::string fails = "because: {verdict: fails, profile: quick, reason: the scene}";
+    const std::string fails =
+        "because: {verdict: fails, profile: quick, reason: the scene, shown_by: two others}";
     ClaimResult result = judgePowers("bound: a, below: 1, " + fails, records);
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.known, Verdict::Fails);
     EXPECT_EQ(result.because, "the scene");
+    EXPECT_EQ(result.shownBy, "two others");
     EXPECT_FALSE(result.isNews());
+    EXPECT_EQ(whyText(result), "the scene (worst at n=8; one sample)") << "the cause comes first";
     result = judgePowers("bound: a, below: 8, " + fails, records);
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_TRUE(result.isNews());
+    EXPECT_EQ(whyText(result), "worst at n=8; one sample. Where it is fails: the scene");
     result = judgePowers("bound: a, below: 1, because: {verdict: fails, device: gpu, reason: r}",
                          records);
     EXPECT_EQ(result.known, Verdict::Holds);

@@ -64,6 +64,24 @@ TEST(Figure, OrdersPointsAndLeavesGaps) {
     EXPECT_THAT(figure.notes, ElementsAre("left out: 5 of 8 values (1 crash, 4 missing)"));
 }
 
+TEST(Figure, PanelsAreNamedWithoutFoldersThatAllCanDoWithout) {
+    const auto titles = [](const std::string& first, const std::string& second) {
+        RecordMaker maker;
+        for (const std::string& scene : {first, second}) {
+            maker.beginCase(scene, "{\"size\":1}").add("gpu_time_ms", {1.0});
+        }
+        const config::Experiment experiment = experimentFrom(
+            "sweep: {scene: [" + first + ", " + second +
+            "], size: [1]}\nlayout: {rows: [scene, size], columns: {draw_ms: {metric: "
+            "gpu_time_ms}}, cell: \"{median:.1f}\"}\nplots: [{x: size, y: draw_ms, panels: "
+            "scene}]\n");
+        const Figure figure = figureOf(experiment, maker.records());
+        return figure.panels.at(0).title + "; " + figure.panels.at(1).title;
+    };
+    EXPECT_EQ(titles("outdoor/bird_nest", "outdoor/grass"), "bird nest; grass");
+    EXPECT_EQ(titles("outdoor/room", "indoor/room"), "outdoor/room; indoor/room");
+}
+
 TEST(Figure, OneSampleHasNoInterval) {
     const Figure figure =
         figureOf(sized("[{x: size, y: load_ms, panels: scene, at: {scene: a}}]"), sizedRecords());

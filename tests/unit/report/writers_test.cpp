@@ -139,16 +139,18 @@ TEST(Writers, ClaimFiles) {
     writeClaims(run.folder.path(), cases, results, kContext);
     EXPECT_EQ(
         run.read("claims.csv"),
-        "claim,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
+        "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
         "margin,reason,because,rests_on\n"
-        "A,zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,\"8 [8, 8]\",draw_ms ≤ 10,2,by the clock: "
+        "A,\"a < b & \"\"c\"\"\",zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,\"8 [8, "
+        "8]\",draw_ms ≤ 10,2,by the clock: "
         "no CPU time was "
         "recorded of these,,"
         "none of the 5 tried\n"
-        "B,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, 8]\",draw_ms "
+        "B,no,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, "
+        "8]\",draw_ms "
         "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
         "holds then\n"
-        "C,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
+        "C,maybe,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
         "scene=models/lost: crash (signal <11>),,\n");
     const auto kept = readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
@@ -157,6 +159,7 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(kept[1].timeKind, config::ClaimSpec::TimeKind::Algorithmic);
     EXPECT_EQ(kept[1].known, Verdict::Fails);
     EXPECT_EQ(kept[1].because, "slow, measured");
+    EXPECT_EQ(kept[1].text, "no");
     EXPECT_EQ(kept[1].restsOn, "not tried: holds then");
     EXPECT_EQ(
         run.read("junit.xml"),

@@ -92,6 +92,9 @@ TEST_F(LoadObj, LivesWithoutItsMaterialFile) {
                              "usemtl wood\nf 1 2 3\n");
     EXPECT_EQ(scene.materials.at(0).name, "wood");
     EXPECT_EQ(scene.materials.at(0).baseColor, Material{}.baseColor);
+    ASSERT_EQ(scene.warnings.size(), 3U);
+    EXPECT_EQ(scene.warnings[0],
+              "material file 'gone.mtl' is not beside the model: its materials are grey");
 }
 
 TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {

@@ -1,0 +1,148 @@
+// What the kept results say of each claim, held against what its config knows of it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "runner/config/experiment.h"
+#include "runner/report/report.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Known = config::ClaimSpec::Known;
+
+const fs::path kSource = GFXREPRO_SOURCE_DIR;
+
+/// A verdict of a kept run.
+struct Kept {
+    report::Verdict verdict;
+    std::string deviceClass, profile;
+    std::string file;  // with the claim: what a message names
+};
+
+/// By table and claim. Those of before claims had an origin are of other configs.
+std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
+    const fs::path& root) {
+    std::map<std::pair<std::string, std::string>, std::vector<Kept>> kept;
+    for (const auto& entry : fs::recursive_directory_iterator(root)) {
+        if (entry.path().filename() != "claims.csv") continue;
+        std::ifstream first(entry.path());
+        std::string head;
+        std::getline(first, head);
+        if (head.find(",origin,") == head.npos) continue;
+        std::ifstream file(entry.path().parent_path() / "manifest.json");
+        const auto manifest = nlohmann::json::parse(file);
+        for (const report::ClaimResult& claim : report::readClaims(entry.path())) {
+            kept[{claim.table, claim.id}].push_back(
+                {claim.verdict, manifest.at("device_class"), manifest.at("profile"),
+                 fs::relative(entry.path(), root).string() + ": " + claim.table + " " + claim.id});
+        }
+    }
+    return kept;
+}
+
+bool isOf(const Known& known, const Kept& kept) {
+    return known.device.value_or(kept.deviceClass) == kept.deviceClass &&
+           known.profile.value_or(kept.profile) == kept.profile;
+}
+
+/// What a config and the kept results say differently: a claim that fails somewhere without a
+/// reason, and a reason of a claim that holds in every run that it is of.
+std::vector<std::string> complaints(const config::Experiment& experiment,
+                                    const decltype(keptVerdicts(""))& all) {
+    std::vector<std::string> texts;
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        const auto found = all.find({experiment.id, claim.id});
+        if (found == all.end()) continue;
+        for (const Kept& kept : found->second) {
+            const bool isKnown =
+                std::ranges::any_of(claim.because, [&](const Known& k) { return isOf(k, kept); });
+            if (kept.verdict == report::Verdict::Fails && !isKnown) {
+                texts.push_back(kept.file + " fails, and its config has no reason for it");
+            }
+        }
+        for (const Known& known : claim.because) {
+            if (known.verdict != "fails") continue;  // ambiguous is no verdict that turns
+            std::size_t holding = 0, others = 0;
+            for (const Kept& kept : found->second) {
+                if (isOf(known, kept)) {
+                    ++(kept.verdict == report::Verdict::Holds ? holding : others);
+                }
+            }
+            if (holding > 0 && others == 0) {
+                texts.push_back(
+                    experiment.id + " " + claim.id +
+                    " holds in every kept run, and has a stale reason: " + known.reason);
+            }
+        }
+    }
+    return texts;
+}
+
+/// One or two sentences, of a length that is read at a glance.
+bool isPlain(const std::string& reason) {
+    constexpr std::size_t kMostBytes = 320;
+    static const std::regex kEnd(R"([.!?](?=\s+["“(A-Z0-9]|$))");
+    const auto ends = std::distance(std::sregex_iterator(reason.begin(), reason.end(), kEnd),
+                                    std::sregex_iterator());
+    const bool isOpen = !reason.empty() && reason.back() != '.';
+    return ends + (isOpen ? 1 : 0) <= 2 && reason.size() <= kMostBytes;
+}
+
+template <class Visit>
+void visitConfigs(const Visit& visit) {
+    for (const auto& entry : fs::recursive_directory_iterator(kSource / "configs")) {
+        const std::string name = entry.path().stem().string();
+        const bool isSweep = entry.path().parent_path().filename() == "sweeps";
+        const bool isOfDocument = name.starts_with("table-") || name.starts_with("figure-") ||
+                                  name.starts_with("section-");
+        if (entry.path().extension() != ".yaml" || !(isSweep || isOfDocument)) continue;
+        visit(config::loadExperiment(entry.path(), {}, kSource / "configs"));
+    }
+}
+
+TEST(KeptVerdicts, EveryFailingClaimHasAReasonAndNoHoldingOneAStaleOne) {
+    const auto all = keptVerdicts(kSource / "results" / "reference");
+    ASSERT_GT(all.size(), 100u);
+    visitConfigs([&](const config::Experiment& experiment) {
+        EXPECT_THAT(complaints(experiment, all), testing::IsEmpty());
+    });
+}
+
+TEST(KeptVerdicts, ReasonsAreOneOrTwoSentences) {
+    visitConfigs([](const config::Experiment& experiment) {
+        for (const config::ClaimSpec& claim : experiment.claims) {
+            for (const Known& known : claim.because) {
+                EXPECT_TRUE(isPlain(known.reason))
+                    << experiment.id << ' ' << claim.id << ": " << known.reason
+                    << "\nallowed: two sentences of 320 bytes; what proves it stands in shown_by";
+            }
+        }
+    });
+}
+
+TEST(KeptVerdicts, WhatDiffersIsFound) {
+    config::Experiment experiment;
+    experiment.id = "p/1";
+    config::ClaimSpec claim;
+    claim.id = "A";
+    experiment.claims = {claim};
+    const Kept fails{report::Verdict::Fails, "software", "quick", "f"};
+    const Kept holds{report::Verdict::Holds, "software", "quick", "h"};
+    EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
+    experiment.claims[0].because = {{"fails", "software", std::nullopt, "r", ""}};
+    EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {fails, holds}}}), testing::IsEmpty());
+    EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {holds}}}).size(), 1u);
+    experiment.claims[0].because[0].device = "gpu";
+    EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
+    EXPECT_TRUE(isPlain("Ten. 2.5 % of them, at 0.3 m"));
+    EXPECT_FALSE(isPlain("One. Two. Three."));
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
