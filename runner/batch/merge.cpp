@@ -101,6 +101,7 @@ Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& comm
     manifest["merged"] = Json::array();
     beginInvocation(manifest, commandLine);
     Json rounds = Json::object();  // each table's are of one shard
+    Json states = Json::object();  // likewise
     for (const ShardRun& shard : shards) {
         const Json& from = shard.run.manifest;
         for (const std::string& note : notesOf(from)) {
@@ -109,6 +110,7 @@ Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& comm
         manifest["scenes"].update(from.at("scenes"));
         addPrograms(manifest, programsOf(from));
         if (from.contains("rounds")) rounds.update(from.at("rounds"));
+        if (from.contains("machine_states")) states.update(from.at("machine_states"));
         manifest["merged"].push_back(
             {{"folder", shard.path.string()},
              {"shard", shard.run.plan.shard ? shard.run.plan.shard->name() : "1/1"},
@@ -116,6 +118,7 @@ Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& comm
              {"invocations", from.at("invocations")}});
     }
     manifest["rounds"] = rounds;
+    manifest["machine_states"] = states;
     return manifest;
 }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "runner/batch/machine_state.h"
 #include "runner/batch/made_from.h"
 #include "runner/batch/merge.h"
 #include "runner/batch/report_runs.h"
@@ -257,8 +258,12 @@ std::vector<report::CaseResult> caseResults(const StoredRun& run) {
 report::ReportContext reportContext(const StoredRun& run) {
     report::ReportContext context = reportContext(run.manifest);
     context.tried = keptSensitivity(run.plan);
-    context.calibrations =
+    context.tableNotes =
         report::keptCalibrations(dataFolder("configs").parent_path() / "results/calibration");
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        const std::string note = machineStateNote(run.manifest, experiment.id);
+        if (!note.empty()) context.tableNotes[experiment.id].push_back(note);
+    }
     return context;
 }
 
@@ -268,7 +273,7 @@ Conclusion writeResults(const fs::path& runDir, const StoredRun& run, const Resu
     const report::ReportContext context = reportContext(run);
     std::vector<report::Table> tables =
         report::buildTables(run.plan.experiments, plannedCases(run.plan.cases), run.records);
-    report::addCalibrations(context.calibrations, tables);
+    report::addNotes(context.tableNotes, tables);
     const std::vector<std::string> notes = notesOf(run.manifest);
     for (report::Table& table : tables) {
         table.notes.insert(table.notes.begin(), notes.begin(), notes.end());

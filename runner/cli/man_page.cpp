@@ -104,6 +104,9 @@ and
 .IR shaders ,
 instead of the one beside the program.
 .TP
+.B GFXREPRO_MACHINE_ROOT
+A folder in the place of / from which the load, the throttling and the heat of the machine are read.
+.TP
 .B GFXREPRO_START_LIMIT_S
 Seconds that a driver has to open a device; 60 when unset.
 .TP

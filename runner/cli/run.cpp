@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "runner/batch/budget.h"
 #include "runner/batch/import_run.h"
+#include "runner/batch/machine_state.h"
 #include "runner/batch/not_survived.h"
 #include "runner/batch/run_files.h"
 #include "runner/batch/shards.h"
@@ -47,6 +50,12 @@ struct Prepared {
 
 std::string deviceClassOf(const gl::DeviceInfo& device) {
     return device.isSoftware ? "software" : "gpu";
+}
+
+/// Where the state of the machine is read: another folder for tests.
+fs::path machineRoot() {
+    const char* root = std::getenv("GFXREPRO_MACHINE_ROOT");
+    return root && *root != '\0' ? root : "/";
 }
 
 /// Says on what a run measures, and keeps its workers to that: "auto" could find another later.
@@ -268,11 +277,13 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
     if (options.failuresAtMost > 0) putFailedLast(run.log, units);
     batch::Rounds rounds = batch::roundsOf(run.plan, run.directory, run.log);
+    std::map<std::string, batch::MachineState> states = batch::machineStatesIn(run.log);
     run.log.clear();
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
+    batch::MachineWatch watch(progress, run.directory, std::move(states), machineRoot());
     const batch::RunOutcome outcome =
-        batch::runUnits(units, rounds, run.directory, run.scheduler, phases, progress);
+        batch::runUnits(units, rounds, run.directory, run.scheduler, phases, watch);
     progress.clear();
     run.directory.log({{"event", outcome.isInterrupted ? "interrupted" : "end"},
                        {"finished", outcome.finished},
@@ -281,6 +292,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     batch::addScenes(run.manifest, outcome.scenes);
     batch::addPrograms(run.manifest, outcome.programs);
     run.manifest["rounds"] = rounds.endings();
+    run.manifest["machine_states"] = watch.states();
     saveManifest(context, run, phases);
     const std::string path = run.directory.path().string();
     if (outcome.isInterrupted) {
@@ -296,6 +308,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
     const batch::Completeness counts = batch::completeness(stored);
     for (const std::string& line : counts.complaints) tell("{}\n", line);
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
+    if (const std::string line = watch.warning(); !line.empty()) tell("warning: {}\n", line);
     say("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
         countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
         countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),

@@ -87,7 +87,7 @@ void addRun(std::size_t index, const GalleryPlace& place, std::chrono::milliseco
     const ReportRun& run = model.runs[index];
     std::vector<report::Table> tables =
         report::buildTables(run.experiments, run.planned, run.records);
-    report::addCalibrations(run.context.calibrations, tables);
+    report::addNotes(run.context.tableNotes, tables);
     const fs::path& made = place.madeDir;
     const std::vector<report::PlotFile> plots =
         report::writePlots(made, tables, run.experiments, patience);

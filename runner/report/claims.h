@@ -29,8 +29,9 @@ struct TriedClaim {
 };
 /// By table and claim.
 using KeptSensitivity = std::map<std::pair<std::string, std::string>, TriedClaim>;
-/// Sentences about the calibrations that read a table's printed cells, by table.
-using KeptCalibrations = std::map<std::string, std::vector<std::string>>;
+/// Sentences below a table that its records do not tell: of calibrations that read its printed
+/// cells, of the machine while it was timed. By table.
+using TableNotes = std::map<std::string, std::vector<std::string>>;
 
 /// Where the run took place, as far as claims ask, and what is known of them.
 struct ReportContext {
@@ -41,7 +42,7 @@ struct ReportContext {
     std::string command;      // of the whole run, for people
     std::optional<double> fragmentShare = {};  // of hardware: gl::DeviceBalance::fragmentShare()
     KeptSensitivity tried = {};
-    KeptCalibrations calibrations = {};
+    TableNotes tableNotes = {};
 };
 
 struct ClaimResult {

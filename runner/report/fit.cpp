@@ -116,7 +116,7 @@ double numberOf(const FitLine& line, const std::string& name, const SourceLocati
 }
 
 /// Adds what one calibration says of the tables that it read.
-void addCalibration(const fs::path& file, KeptCalibrations& kept) {
+void addCalibration(const fs::path& file, TableNotes& kept) {
     const std::string text = readFile(file);
     CsvReader reader(text, file.string());
     std::vector<std::string> header, row, fitted;
@@ -156,8 +156,8 @@ void addCalibration(const fs::path& file, KeptCalibrations& kept) {
 
 }  // namespace
 
-KeptCalibrations keptCalibrations(const fs::path& folder) {
-    KeptCalibrations kept;
+TableNotes keptCalibrations(const fs::path& folder) {
+    TableNotes kept;
     if (!fs::is_directory(folder)) return kept;
     std::set<fs::path> files;
     for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
@@ -167,10 +167,10 @@ KeptCalibrations keptCalibrations(const fs::path& folder) {
     return kept;
 }
 
-void addCalibrations(const KeptCalibrations& kept, std::vector<Table>& tables) {
+void addNotes(const TableNotes& about, std::vector<Table>& tables) {
     for (Table& table : tables) {
-        const auto notes = kept.find(table.id);
-        if (notes == kept.end()) continue;
+        const auto notes = about.find(table.id);
+        if (notes == about.end()) continue;
         table.notes.insert(table.notes.end(), notes->second.begin(), notes->second.end());
     }
 }

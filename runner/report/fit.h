@@ -38,9 +38,9 @@ std::string fitCsv(const Fit& fit, const Table& table);
 /// What kept calibrations (`folder`/<scene>.csv, as `fitCsv` writes them) say on the page of each
 /// table whose printed cells they read: what was fitted, and printed beside measured. Empty where
 /// there is no folder. Throws Error for a file of another kind.
-KeptCalibrations keptCalibrations(const std::filesystem::path& folder);
-/// Puts them among the notes of the tables that they are about.
-void addCalibrations(const KeptCalibrations& kept, std::vector<Table>& tables);
+TableNotes keptCalibrations(const std::filesystem::path& folder);
+/// Puts notes below the tables that they are about.
+void addNotes(const TableNotes& about, std::vector<Table>& tables);
 
 /// tables/<slug>.fit.csv of each experiment with a fit; `tables` lies beside `experiments`.
 void writeFits(const std::filesystem::path& runDir,

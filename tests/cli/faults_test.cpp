@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "runner/core/files.h"
 #include "tests/cli/cli_support.h"
 
@@ -128,6 +130,43 @@ TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
     ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
     EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, report::kSetup);
     EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].repeat, report::kSetup);
+}
+
+/// In the place of / a machine of which nothing but a heat is told.
+TEST(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
+    const TemporaryFolder folder;
+    const std::string zone = "machine/sys/class/thermal/thermal_zone0/";
+    folder.write(zone + "temp", "97000\n");
+    const std::string machine = folder.path() / "machine";
+    const std::string config =
+        writeMockConfig(folder, "measure: {lane: timing, repeats: 2}\nsweep: {number: [1, 2]}\n");
+    const std::string dir = folder.path() / "run";
+    const auto run = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {GFXREPRO_MOCK_PROGRAM, "reproduce"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runProgram(arguments, {"GFXREPRO_MACHINE_ROOT=" + machine});
+    };
+    const ProcessResult hot = run({config, "--device", "software", "--out", dir});
+    EXPECT_EQ(hot.exitCode, 0) << hot.err;
+    const std::string warning =
+        "warning: the machine was not quiet: while sweep/mock was timed it was hot, 97 °C of 95 °C "
+        "at which it is slowed\n";
+    ASSERT_NE(hot.err.find(warning), std::string::npos) << hot.err;
+    EXPECT_EQ(hot.err.find(warning), hot.err.rfind(warning)) << "once";
+    const auto manifest = nlohmann::json::parse(readFile(dir + "/manifest.json"));
+    EXPECT_EQ(manifest["machine_states"]["sweep/mock"]["hottest_c"], 97.0);
+    const std::string note = "The machine was not quiet while this was timed: it was hot, 97 °C";
+    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find(note), std::string::npos);
+    EXPECT_NE(readFile(dir + "/report.html").find(note), std::string::npos);
+    // A run that goes on keeps what it saw.
+    folder.write(zone + "temp", "40000\n");
+    run({"--resume", dir});
+    const auto again = nlohmann::json::parse(readFile(dir + "/manifest.json"));
+    EXPECT_EQ(again["machine_states"], manifest["machine_states"]);
+    // Nothing is told of a machine that tells nothing, nor said of one that is cool.
+    const ProcessResult cool =
+        run({config, "--device", "software", "--out", folder.path() / "cool"});
+    EXPECT_EQ(cool.err.find("not quiet"), std::string::npos) << cool.err;
 }
 
 TEST(Faults, SideBySideAndInFreshProcesses) {

@@ -76,7 +76,7 @@ TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
     std::vector<Table> tables(2);
     tables[0].id = "p/1";
     tables[1].id = "p/3";
-    addCalibrations(keptCalibrations(folder.path()), tables);
+    addNotes(keptCalibrations(folder.path()), tables);
     EXPECT_THAT(tables[0].notes,
                 ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
                             "compare no methods; of this table a 70 → 73.00 (root mean square of "
