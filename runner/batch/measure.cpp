@@ -60,36 +60,12 @@ void recordPasses(gl::Profiler& profiler, bool isSoftware, RunRecorder& recorder
     }
 }
 
-std::string kindName(scene::Origin::Kind kind) {
-    switch (kind) {
-        case scene::Origin::Kind::Real:
-            return "real";
-        case scene::Origin::Kind::StandIn:
-            return "stand-in";
-        case scene::Origin::Kind::Generated:
-            break;
-    }
-    return "generated";
-}
-
-/// 0 real, 1 stand-in, 2 generated, as scene_source in records.csv.
-int kindNumber(scene::Origin::Kind kind) {
-    switch (kind) {
-        case scene::Origin::Kind::Real:
-            return 0;
-        case scene::Origin::Kind::StandIn:
-            return 1;
-        case scene::Origin::Kind::Generated:
-            break;
-    }
-    return 2;
-}
-
 void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
     const scene::Scene& scene = entry.scene;
     recorder.metric("scene_triangles", static_cast<double>(scene.triangleCount()), "triangle", "");
     recorder.metric("scene_vertices", static_cast<double>(scene.vertexCount()), "vertex", "");
-    recorder.metric("scene_source", kindNumber(scene.origin.kind), "enum", "");
+    // 0 real, 1 stand-in, 2 generated: the kinds in their order.
+    recorder.metric("scene_source", static_cast<int>(scene.origin.kind), "enum", "");
     recorder.metric("load_time_ms", entry.loadTimeMs, "ms", "");
 }
 
@@ -328,8 +304,8 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     for (const SceneCache::Entry& entry : context.scenes.entries()) {
         if (!entry.isOfThisCase) continue;
         const scene::Origin& origin = entry.scene.origin;
-        result.scenes.push_back(
-            {entry.reference, kindName(origin.kind), origin.description, origin.sha256});
+        result.scenes.push_back({entry.reference, std::string(scene::kindName(origin.kind)),
+                                 origin.description, origin.sha256});
     }
     return result;
 }

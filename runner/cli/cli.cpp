@@ -245,7 +245,7 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
         ->required()
         ->option_text("RUN");
     compareApp->add_flag("--binaries", options.areBinaries,
-                         "OLD and NEW are programs; they measure the configs by turns");
+                         "OLD and NEW are programs; they measure the configs alternately");
     compareApp
         ->add_option("--rounds", options.rounds,
                      "of each program, up to five times while undecided (default 20)")

@@ -1,4 +1,4 @@
-// Two runs, or two builds measured by turns: which is faster.
+// Two runs, or two builds measured alternately: which is faster.
 #include <fmt/core.h>
 #include <fmt/format.h>
 
@@ -123,7 +123,7 @@ void runProgram(const std::vector<std::string>& arguments) {
     throw Error(problem);
 }
 
-/// Rounds of both programs by turns, in fresh processes: OLD NEW, NEW OLD, OLD NEW, …
+/// Alternating rounds of both programs, in fresh processes: OLD NEW, NEW OLD, OLD NEW, …
 class Turns {
   public:
     Turns(const CompareOptions& options, fs::path folder)

@@ -146,23 +146,11 @@ void describeGenerator(const scene::GeneratorInfo& info) {
     printParams(scene::declaredParams(info, {}));
 }
 
-std::string_view kindName(scene::Origin::Kind kind) {
-    switch (kind) {
-        case scene::Origin::Kind::Real:
-            return "real";
-        case scene::Origin::Kind::StandIn:
-            return "stand-in";
-        case scene::Origin::Kind::Generated:
-            break;
-    }
-    return "generated";
-}
-
 void describeScene(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
     say("scene {}: {}\n", entry.name, entry.doc);
     if (!entry.canonical.empty()) say("real one  {}\n", entry.canonical);
     for (const scene::SceneSource& source : entry.sources) {
-        const std::string_view kind = kindName(source.kind);
+        const std::string_view kind = scene::kindName(source.kind);
         if (source.file.empty()) {
             say("source    {}: generator {}, seed {}\n", kind, source.generator->name, source.seed);
             continue;
@@ -251,7 +239,7 @@ config::Json jsonOf(const scene::GeneratorInfo& info) {
 config::Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
     config::Json sources = config::Json::array();
     for (const scene::SceneSource& source : entry.sources) {
-        config::Json json = {{"kind", kindName(source.kind)}};
+        config::Json json = {{"kind", scene::kindName(source.kind)}};
         if (source.file.empty()) {
             json["generator"] = source.generator->name;
             json["seed"] = source.seed;

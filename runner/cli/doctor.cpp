@@ -76,9 +76,7 @@ std::string sceneState(const scene::Catalog& catalog, const std::string& name) {
     for (const scene::SceneSource& source : entry.sources) {
         const bool isThere =
             source.file.empty() || fs::exists(catalog.assetsFolder() / source.file);
-        if (!isThere) continue;
-        if (source.kind == scene::Origin::Kind::Real) return "real";
-        return source.kind == scene::Origin::Kind::StandIn ? "stand-in" : "generated";
+        if (isThere) return std::string(scene::kindName(source.kind));
     }
     return "missing";
 }

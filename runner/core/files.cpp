@@ -137,7 +137,7 @@ fs::path dataFolder(std::string_view name) {
         if (fs::is_directory(candidate)) return candidate;
         tried += "\n  " + candidate.string();
     }
-    throw Error("the folder '" + std::string(name) + "' was not found; looked at:" + tried);
+    throw Error("the folder '" + std::string(name) + "' was not found; searched:" + tried);
 }
 
 fs::path assetsFolder(const std::string& given) {

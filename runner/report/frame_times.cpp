@@ -229,7 +229,7 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
                 ? fmt::format(" (asked for: {})", percentText(measure.relativeError))
                 : "";
         notes.push_back(fmt::format(
-            "Times of {} rounds by turns, ended by {}; the {}time of a frame is known to ±{} or "
+            "Times of {} alternating rounds, ended by {}; the {}time of a frame is known to ±{} or "
             "better{}.",
             rounds, endOfRounds(measure, times),
             times.judgedClock() == Clock::Process ? "CPU " : "", percentText(*error), target));

@@ -246,6 +246,18 @@ bool SceneSource::isSeeded() const {
     return heightMap && heightMap->detailM > 0.0F;
 }
 
+std::string_view kindName(Origin::Kind kind) {
+    switch (kind) {
+        case Origin::Kind::Real:
+            return "real";
+        case Origin::Kind::StandIn:
+            return "stand-in";
+        case Origin::Kind::Generated:
+            break;
+    }
+    return "generated";
+}
+
 void takeParams(const std::string& name, const Node& params, SceneSource& source) {
     if (source.heightMap && config::isSceneFile(name)) {
         takeUnits(name, params, source);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runner/config/node.h"
@@ -25,6 +26,9 @@ struct HeightMapSource {
     /// be empty. It becomes the scene's first material.
     std::string colourMap = {};
 };
+
+/// "real", "stand-in", "generated".
+std::string_view kindName(Origin::Kind kind);
 
 /// One way to get a scene: a file of the assets folder, possibly refined to a triangle count, or a
 /// generator.

@@ -172,11 +172,6 @@ std::string_view nameOf(Type type) {
     return kTypes[static_cast<std::size_t>(type)].name;
 }
 
-bool Element::hasLists() const {
-    return std::any_of(properties.begin(), properties.end(),
-                       [](const Property& property) { return property.isList(); });
-}
-
 std::size_t Element::minimumRowBytes(bool isAscii) const {
     if (isAscii) return 2 * properties.size();  // a digit and a separator each
     std::size_t bytes = 0;

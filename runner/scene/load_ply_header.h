@@ -31,7 +31,6 @@ struct Element {
     std::vector<Property> properties;
     int line = 0;  // where it is declared
 
-    bool hasLists() const;
     /// What a row takes at least: lists are empty.
     std::size_t minimumRowBytes(bool isAscii) const;
 };

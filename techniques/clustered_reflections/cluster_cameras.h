@@ -88,9 +88,4 @@ class ClusterCameras {
     gl::Buffer chunks_, arguments_, partials_, frames_, cameras_;
 };
 
-/// The camera of samples by the same formulas in double precision: what the device must give.
-ClusterCamera cameraOnHost(const reflections::HostGBuffer& gbuffer,
-                           const std::vector<glm::ivec2>& samples, bool isPlanar,
-                           const CameraSettings& settings);
-
 }  // namespace gfxrepro::clustered_reflections

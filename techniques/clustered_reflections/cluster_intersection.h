@@ -2,10 +2,16 @@
 #pragma once
 
 #include "techniques/clustered_reflections/cluster_images.h"
-#include "techniques/clustered_reflections/depth_image_marcher.h"
 #include "techniques/reflections/environment_map.h"
 
 namespace gfxrepro::clustered_reflections {
+
+/// How a ray goes through a depth image (march.glsl).
+enum class March {
+    Linear,        // Algorithm 7: a texel a step along the longer axis
+    Hierarchical,  // the same samples, but those in tiles that are nearer than all that the tile
+                   // holds are stepped over, by a pyramid of nearest depths: the same hits
+};
 
 /// Cameras and places must be bound to kCamerasBinding and kPlacesBinding.
 class ClusterIntersection {

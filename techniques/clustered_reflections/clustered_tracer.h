@@ -6,8 +6,8 @@
 
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/clustered_reflections/cluster_images.h"
+#include "techniques/clustered_reflections/cluster_intersection.h"
 #include "techniques/clustered_reflections/clustering.h"
-#include "techniques/clustered_reflections/depth_image_marcher.h"
 #include "techniques/reflections/environment_map.h"
 
 namespace gfxrepro::clustered_reflections {

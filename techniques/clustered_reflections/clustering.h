@@ -79,15 +79,4 @@ std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& s
 /// By reflector id: the number of the object that it is a part of.
 std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& scene);
 
-/// The same on the host, to the bit: what the device must give (NormalBins). Reads
-/// HostGBuffer::normalOctahedral and surface.
-struct HostClusters {
-    int clusterCount = 0, visibleReflectors = 0;
-    std::vector<std::uint16_t> clusterOfSample;  // 1 + cluster; 0: not reflective
-    std::vector<int> reflectorOfCluster;
-};
-HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
-                           const reflections::ReflectiveScene& scene, const BinSettings& bins,
-                           const std::vector<std::uint8_t>* wanted = nullptr);
-
 }  // namespace gfxrepro::clustered_reflections

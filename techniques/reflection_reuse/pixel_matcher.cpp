@@ -70,10 +70,6 @@ double MatchingCounts::meanSteps() const {
     return reflectiveSamples > 0 ? static_cast<double>(steps) / reflectiveSamples : 0.0;
 }
 
-double MatchingCounts::invalidShare() const {
-    return reflectiveSamples > 0 ? static_cast<double>(invalidSamples) / reflectiveSamples : 0.0;
-}
-
 PixelMatcher::PixelMatcher(const gl::ShaderLibrary& shaders, const MatchingSettings& settings)
     : settings_(settings),
       program_(shaders, {"reflection_reuse/pixel_matching.comp.glsl"}, matchingDefines(settings)),

@@ -47,7 +47,6 @@ struct MatchingCounts {
     std::uint32_t steps = 0;
 
     double meanSteps() const;
-    double invalidShare() const;
 };
 
 /// When is a match valid? A search moves between neighbours of one reflector that no silhouette

@@ -54,7 +54,6 @@ struct ReuseRenderer::Impl {
     gl::SampleQuery recomputed;
     kit::WholeImage wholeImage;
     bool hasFrame = false;
-    bool isKeyForgotten = false;
     bool isKeyFrame = false;  // the last frame
     bool hasOffsets = false;  // of the frame before, for the same key frame
     bool hadOffsets = false;  // before the last render()
@@ -90,7 +89,7 @@ struct ReuseRenderer::Impl {
     // [xie2017] Sec. 5.4.4: by what the frame before had to recompute.
     bool isKeyFrameNext() const {
         if (isUndone) return isKeyFrame;
-        if (!hasFrame || isKeyForgotten) return true;
+        if (!hasFrame) return true;
         if (isKeyFrame) return false;
         const double share = double{settings.keyFrameThreshold};
         return recomputedSamples() > share * reprojection.reflectiveSamples();
@@ -195,7 +194,6 @@ void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
         impl_->renderReused(profiler, recomputeTimes);
     }
     impl_->hasFrame = true;
-    impl_->isKeyForgotten = false;
     impl_->isUndone = false;
 }
 
@@ -249,10 +247,6 @@ std::size_t ReuseRenderer::sizeBytes() const {
            impl_->offsets[1].sizeBytes() + (impl_->shifted ? impl_->shifted->sizeBytes() : 0) +
            impl_->wanted.sizeBytes() + impl_->reprojection.sizeBytes() +
            impl_->movedObjects.sizeBytes();
-}
-
-void ReuseRenderer::forgetKeyFrame() {
-    impl_->isKeyForgotten = true;
 }
 
 }  // namespace gfxrepro::reflection_reuse

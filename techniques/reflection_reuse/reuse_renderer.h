@@ -67,7 +67,6 @@ class ReuseRenderer {
     const ShiftedImage* shifted() const;
     const ReflectionDepthImage& keyFrame() const;
     std::size_t sizeBytes() const;
-    void forgetKeyFrame();
 
   private:
     struct Impl;

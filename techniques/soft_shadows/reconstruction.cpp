@@ -101,10 +101,6 @@ void Reconstructor::resizeScratch(glm::ivec2 imageSizePx) {
     runs_ = gl::Buffer((runs + 1) * sizeof(glm::uvec4));
 }
 
-std::size_t Reconstructor::scratchBytes() const {
-    return flags_.sizeBytes() + places_.sizeBytes() + runs_.sizeBytes();
-}
-
 void Reconstructor::setGeometry(const gl::Program& program, const kit::View& view) const {
     const glm::mat4 rays = worldFromPixels(view);  // of depth 1
     program.setIfActive("imageSizePx", view.sizePx);

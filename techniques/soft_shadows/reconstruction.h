@@ -75,9 +75,6 @@ class Reconstructor {
     ReconstructedMesh reconstruct(const kit::DepthImage& image, const kit::DepthImage* offsetImage,
                                   const gl::Buffer& triangleNormals);
 
-    /// What is kept beside the meshes, of the size of the last image.
-    std::size_t scratchBytes() const;
-
   private:
     void resizeScratch(glm::ivec2 imageSizePx);
     void setGeometry(const gl::Program& program, const kit::View& view) const;

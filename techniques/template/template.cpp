@@ -1,5 +1,6 @@
 #include "techniques/template/template.h"
 
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -7,6 +8,8 @@
 #include "runner/gl/objects.h"
 #include "runner/gl/program.h"
 #include "runner/gpu_scene/gpu_mesh.h"
+#include "runner/raycast/ray_tracer.h"
+#include "techniques/kit/image_layers.h"
 #include "techniques/kit/requirements.h"
 #include "techniques/kit/view.h"
 #include "techniques/kit/whole_image.h"
@@ -30,7 +33,8 @@ class TemplateTechnique : public technique::Technique {
     explicit TemplateTechnique(config::Params& params)
         : method_(params.getEnum("method", Method::Gradient, kMethods, {"what is drawn"})),
           brightness_(static_cast<float>(
-              params.getDouble("brightness", 1.0, {"value of a white pixel", "1", 0.0, 1.0}))) {
+              params.getDouble("brightness", 1.0, {"value of a white pixel", "1", 0.0, 1.0}))),
+          hasErrors_(params.getBool("errors", false, {"compares with the truth, on the CPU"})) {
         params.finish();
     }
 
@@ -52,10 +56,11 @@ class TemplateTechnique : public technique::Technique {
             wholeImage_.emplace();
             return;
         }
-        const scene::Scene& scene = kit::requireScene(context, "template");
+        const scene::Scene& scene = kit::requireTriangles(context, "template");
         const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
         view_ = kit::viewOf(scene::framingCamera(scene.bounds(), aspect), size_);
         mesh_.emplace(scene::flattened(scene));
+        if (hasErrors_) rays_.emplace(scene);
         program_ = gl::Program(context.shaders,
                                {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
                                gpu_scene::attributeDefines());
@@ -84,13 +89,50 @@ class TemplateTechnique : public technique::Technique {
         const image::ImageF image = colour_.readImage(1);
         const auto values = image.values();
         const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-        recorder.metric("mean_brightness", sum / static_cast<double>(values.size()), "1");
-        recorder.image("result", image);
+        const auto pixels = static_cast<double>(values.size());
+        recorder.metric("mean_brightness", sum / pixels, "1");
+        const bool hasView = method_ == Method::Silhouette;
+        recorder.image("result", image, hasView ? kit::seenFrom(view_) : technique::ImageOptions{});
+        if (!hasErrors_) return;
+        const image::ImageF truth = this->truth();
+        int wrong = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            wrong += std::abs(values[i] - truth.values()[i]) > kTolerance;
+        }
+        recorder.share("wrong_pct", wrong, pixels, "pixel");
+        // The report lays a truth over the picture that it names.
+        technique::ImageOptions options =
+            hasView ? kit::seenFrom(view_) : technique::ImageOptions{};
+        options.truthOf = "result";
+        recorder.image("truth", truth, options);
     }
 
   private:
+    /// What the picture should be: the ramp's formula at pixel centres, or the pixels whose ray
+    /// through their centre meets the scene. Rows from the top, as images have them.
+    image::ImageF truth() const {
+        image::ImageF truth(size_.x, size_.y, 1);
+        for (int y = 0; y < size_.y; ++y) {
+            for (int x = 0; x < size_.x; ++x) {
+                const glm::vec2 centrePx(static_cast<float>(x) + 0.5F,
+                                         static_cast<float>(size_.y - y) - 0.5F);
+                const float share =
+                    method_ == Method::Gradient
+                        ? centrePx.x / static_cast<float>(size_.x)
+                        : static_cast<float>(rays_->isOccluded(
+                              view_.eyeWorld, kit::rayThrough(view_, centrePx), 0.0F, view_.farM));
+                truth.at(x, y) = brightness_ * share;
+            }
+        }
+        return truth;
+    }
+
+    // Half a level of 8 bits: the device may round the ramp otherwise than the CPU.
+    static constexpr float kTolerance = 0.5F / 255.0F;
+
     Method method_;
     float brightness_;
+    bool hasErrors_;
 
     glm::ivec2 size_{0};
     kit::View view_;
@@ -98,6 +140,7 @@ class TemplateTechnique : public technique::Technique {
     gl::Framebuffer framebuffer_;
     gl::Program program_;
     std::optional<gpu_scene::GpuMesh> mesh_;
+    std::optional<raycast::RayTracer> rays_;
     std::optional<kit::WholeImage> wholeImage_;
 };
 
@@ -107,13 +150,15 @@ std::unique_ptr<technique::Technique> create(config::Params& params) {
 
 // All that is recorded and timed, in the order in which tables show it; the runner refuses others.
 config::Outputs outputs() {
-    return {{{"mean_brightness", "1", "of all pixels", config::Better::Neither}},
-            {{"draw", "the whole picture"}}};
+    return {
+        {{"mean_brightness", "1", "of all pixels", config::Better::Neither},
+         {"wrong_pct", "%", "of all pixels, that are not as in the truth", config::Better::Lower}},
+        {{"draw", "the whole picture"}}};
 }
 
 }  // namespace
 
 const technique::TechniqueInfo kTemplate{
-    "template", "the skeleton for new techniques: a ramp or a silhouette", create, outputs};
+    "template", "a technique in miniature: a ramp or a silhouette", create, outputs};
 
 }  // namespace gfxrepro::template_

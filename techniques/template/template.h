@@ -1,4 +1,4 @@
-// The skeleton that scripts/new_technique copies, and the smallest thing that the runner can run.
+// A technique in miniature: two methods, a truth on the CPU, a metric of each.
 #pragma once
 
 #include "runner/technique/technique.h"

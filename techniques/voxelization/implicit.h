@@ -20,7 +20,6 @@ class ImplicitSource final : public GridSource {
     void record(technique::Recorder&) override {}
 
     const Expression& formula() const { return formula_; }
-    bool isNegativeInside() const { return isNegativeInside_; }
 
   private:
     GridSettings settings_;

@@ -58,8 +58,6 @@ class WorksheetLayout {
     int voxelBits() const { return voxelBits_; }            // b
     int voxelsPerTexel() const { return 32 / voxelBits_; }  // C
     int slabCount() const { return resolution_ / voxelsPerTexel(); }
-    int patchesX() const { return patchesX_; }  // a sheet
-    int patchesY() const { return patchesY_; }  // a sheet
     int patchesPerSheet() const { return patchesX_ * patchesY_; }
     int layers() const { return slabCount() / patchesPerSheet(); }
     glm::ivec2 sheetSizePx() const { return {patchesX_ * resolution_, patchesY_ * resolution_}; }

@@ -64,6 +64,9 @@ for action in ("actions/checkout@v4", "other/action@" + "0123456789" * 4 + "  # 
         sys.exit(f"check_style found something in {action}:\n{output}")
 expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")
 expect("check_style", {"runner/core/a.cpp": "\n" * 401}, "runner/core/a.cpp: 401 lines, at most 400")
+expect("check_style", {"runner/core/CMakeLists.txt": "a(b\n    SOURCES b.cpp a.cpp\n    PUBLIC c)\n"},
+       "runner/core/CMakeLists.txt: a.cpp stands behind b.cpp: sort the sources")
+expect("check_style", {"techniques/a/README.md": "\n" * 71}, "techniques/a/README.md: 71 lines, at most 70")
 # The data of a scene may be long, that of others not.
 DATA = "// Longer than other files: the data of one scene.\n" + "int a;\n" * 400
 expect("check_style", {"scenes/a.cpp": "\n" * 401}, "scenes/a.cpp: 401 lines, at most 400")

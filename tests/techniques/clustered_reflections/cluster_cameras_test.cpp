@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/techniques/clustered_reflections/cluster_fixture.h"
+#include "tests/techniques/clustered_reflections/clusters_on_host.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {

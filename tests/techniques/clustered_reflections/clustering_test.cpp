@@ -6,6 +6,7 @@
 
 #include "techniques/clustered_reflections/bin_tables.h"
 #include "tests/techniques/clustered_reflections/cluster_fixture.h"
+#include "tests/techniques/clustered_reflections/clusters_on_host.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {

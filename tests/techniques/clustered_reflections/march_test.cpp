@@ -3,8 +3,9 @@
 
 #include "runner/core/files.h"
 #include "runner/core/random.h"
-#include "techniques/clustered_reflections/depth_image_marcher.h"
+#include "techniques/clustered_reflections/cluster_intersection.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/techniques/clustered_reflections/march_on_host.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {

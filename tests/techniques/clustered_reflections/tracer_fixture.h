@@ -1,17 +1,12 @@
 // A device, and whole traces of small scenes read back.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <optional>
 
-#include "runner/core/files.h"
-#include "runner/gl/device.h"
 #include "runner/image/srgb.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/reflections/gbuffer.h"
-#include "tests/support/test_device.h"
+#include "tests/gl/suite_device.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/reflections/gl_calls.h"
 
@@ -46,20 +41,8 @@ struct Traced {
     }
 };
 
-class TracerTest : public testing::Test {
+class TracerTest : public test::SuiteDeviceTest {
   protected:
-    static void SetUpTestSuite() {
-        device_.emplace(
-            gl::Device::open({.name = test::testDevice(), .debug = gl::DebugOutput::Fatal}));
-    }
-    static void TearDownTestSuite() { device_.reset(); }
-    void TearDown() override { device_->finish("a test"); }
-
-    static const gl::ShaderLibrary& shaders() {
-        static const gl::ShaderLibrary library(dataFolder("shaders"));
-        return library;
-    }
-
     static ClusteredSettings settingsFor(const reflections::ReflectiveScene& scene) {
         ClusteredSettings settings;
         settings.camera.diagonalM = scene.diagonalM();
@@ -131,9 +114,6 @@ class TracerTest : public testing::Test {
         }
         return -10.0 * std::log10(sum / count);
     }
-
-  private:
-    static inline std::optional<gl::Device> device_;
 };
 
 }  // namespace gfxrepro::clustered_reflections

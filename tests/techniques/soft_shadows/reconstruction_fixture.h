@@ -1,15 +1,9 @@
 // A device, depth images of small scenes and their reconstruction.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <optional>
-
-#include "runner/core/files.h"
-#include "runner/gl/device.h"
 #include "techniques/kit/depth_image_renderer.h"
 #include "techniques/soft_shadows/reconstruction.h"
-#include "tests/support/test_device.h"
+#include "tests/gl/suite_device.h"
 #include "tests/techniques/soft_shadows/reference_mesh.h"
 
 namespace gfxrepro::soft_shadows {
@@ -29,21 +23,8 @@ struct HostMesh {
     std::vector<glm::uvec3> triangles;
 };
 
-class ReconstructionTest : public testing::Test {
+class ReconstructionTest : public test::SuiteDeviceTest {
   protected:
-    static void SetUpTestSuite() {
-        device_.emplace(
-            gl::Device::open({.name = test::testDevice(), .debug = gl::DebugOutput::Fatal}));
-    }
-    static void TearDownTestSuite() { device_.reset(); }
-    void TearDown() override { device_->finish("a test"); }
-
-    static gl::Device& device() { return *device_; }
-    static const gl::ShaderLibrary& shaders() {
-        static const gl::ShaderLibrary library(dataFolder("shaders"));
-        return library;
-    }
-
     static HostMesh reconstruct(const ImagePair& images, std::span<const glm::vec3> normals,
                                 const ReconstructionSettings& settings) {
         using kit::DepthFormat;
@@ -65,9 +46,6 @@ class ReconstructionTest : public testing::Test {
         host.mesh = std::move(mesh);
         return host;
     }
-
-  private:
-    static inline std::optional<gl::Device> device_;
 };
 
 /// An image without samples.

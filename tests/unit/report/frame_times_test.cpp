@@ -140,12 +140,13 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
     EXPECT_EQ(first({10, 11}, measureOf(2)),
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
               "about a time is decided.");
-    EXPECT_EQ(first({9, 10, 10, 10, 10, 11}, measureOf(6)),
-              "Times of 6 rounds by turns, ended by processes; the CPU time of a frame is known to "
-              "±10 % or better.");
+    EXPECT_EQ(
+        first({9, 10, 10, 10, 10, 11}, measureOf(6)),
+        "Times of 6 alternating rounds, ended by processes; the CPU time of a frame is known to "
+        "±10 % or better.");
     EXPECT_EQ(
         first({9, 9, 9, 10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11}, measureOf(6, 0.2)),
-        "Times of 14 rounds by turns, ended by relative_error; the CPU time of a frame is known "
+        "Times of 14 alternating rounds, ended by relative_error; the CPU time of a frame is known "
         "to ±10 % or better (asked for: 20 %).");
     config::Measure most = measureOf(6, 0.05);
     EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, most), HasSubstr("ended by time_budget_s"));

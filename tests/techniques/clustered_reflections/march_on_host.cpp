@@ -1,4 +1,4 @@
-#include "techniques/clustered_reflections/depth_image_marcher.h"
+#include "tests/techniques/clustered_reflections/march_on_host.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
-// [xie2017] Algorithm 7 (printed as 8 in the text): a ray against a depth image.
+// [xie2017] Algorithm 7 (printed as 8 in the text) on the host: a ray against a depth image, as
+// march.glsl has it.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +8,6 @@
 #include <vector>
 
 namespace gfxrepro::clustered_reflections {
-
-enum class March {
-    Linear,        // Algorithm 7: a texel a step along the longer axis
-    Hierarchical,  // the same samples, but those in tiles that are nearer than all that the tile
-                   // holds are stepped over, by a pyramid of nearest depths: the same hits
-};
 
 /// A depth image on the host: what the reference march reads. Rows from the bottom; depth is the
 /// distance along the camera's axis in metres, 0 where nothing is.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runner/core/error.h"
-#include "techniques/clustered_reflections/cluster_cameras.h"
+#include "tests/techniques/clustered_reflections/clusters_on_host.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {

@@ -1,0 +1,75 @@
+"""scripts/new_technique writes a technique that is in style, registered, and compiles.
+
+Usage: new_technique_test.py SOURCE BUILD. Works in a copy; compiles as BUILD did the template.
+"""
+
+import json
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SOURCE, BUILD = (pathlib.Path(argument) for argument in sys.argv[1:])
+NAME = "zonal_aa"  # sorts behind all others, and is short where the template's name is long
+
+
+def run(*command, **options):
+    return subprocess.run(command, capture_output=True, text=True, **options)
+
+
+def expect(is_true, message):
+    if not is_true:
+        sys.exit(message)
+
+
+def compiles(root, name, template):
+    """The file compiles by the command that the template's took, its headers looked for in the copy first."""
+    commands = json.loads((BUILD / "compile_commands.json").read_text())
+    entry = next(one for one in commands if one["file"] == str(SOURCE / template))
+    words = shlex.split(entry["command"])
+    words[words.index("-o"):words.index("-o") + 2] = ["-fsyntax-only"]
+    at = next(i for i, word in enumerate(words) if word.startswith("-I"))
+    words = words[:at] + [f"-I{root}"] + [str(root / name) if word == entry["file"] else word for word in words[at:]]
+    result = run(*words, cwd=entry["directory"])
+    expect(result.returncode == 0, f"{name} does not compile:\n{result.stderr}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    root = pathlib.Path(folder).resolve()
+    for part in ("scripts", "techniques", "tests/techniques", "configs/smoke", "configs/nightly", "runner/gl"):
+        shutil.copytree(SOURCE / part, root / part)
+    for part in (".clang-format", "techniques/README.md"):
+        shutil.copy(SOURCE / part, root / part)
+    for part in ("configs", "runner", "tests"):
+        shutil.copy(SOURCE / part / "README.md", root / part / "README.md")
+    script = root / "scripts/new_technique"
+
+    for name, reason in {
+            "ContactShadows": "is not snake_case, such as contact_shadows",
+            "a__b": "is not snake_case, such as contact_shadows",
+            "voxelization": "is taken: techniques/voxelization is there already",
+            "class": "is a word of C++",
+            "gl": "is taken: runner/gl/device.h has a namespace of that name"}.items():
+        refused = run(script, name, "--write-only")
+        expect(refused.returncode == 1 and refused.stderr == f"new_technique: '{name}' {reason}\n",
+               f"{name}: {refused.stderr}")
+
+    written = run(script, NAME, "--write-only")
+    expect(written.returncode == 0, written.stderr)
+    files = [path for part in ("techniques", "tests/techniques") for path in (root / part / NAME).rglob("*.*")]
+    files += [root / f"configs/{kind}/{NAME}.yaml" for kind in ("smoke", "nightly")]
+    expect(len(files) == 11, f"{len(files)} files: {files}")
+    for path in files:
+        expect("template" not in path.read_text().lower(), f"{path} speaks of the template")
+    for path, line in {"techniques/CMakeLists.txt": f"        technique_{NAME}\n",
+                       "tests/techniques/CMakeLists.txt": f"add_subdirectory({NAME})\n",
+                       "techniques/registry.cpp": "        zonal_aa::kZonalAa,\n"}.items():
+        expect((root / path).read_text().count(line) == 1, f"{path} lacks {line}")
+    for check in ("check_layers", "check_style"):
+        checked = run(root / "scripts" / check, root)
+        expect(checked.returncode == 0, checked.stdout)
+    compiles(root, f"techniques/{NAME}/{NAME}.cpp", "techniques/template/template.cpp")
+    compiles(root, f"tests/techniques/{NAME}/{NAME}_test.cpp", "tests/techniques/template/template_test.cpp")
+print("a new technique is in style and compiles")
