@@ -10,6 +10,7 @@
 #include "runner/batch/process_memory.h"
 #include "runner/batch/recorder.h"
 #include "runner/batch/run_directory.h"
+#include "runner/report/frame_times.h"
 
 namespace gfxrepro::batch {
 
@@ -167,7 +168,8 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
                 context.device.finish("warming up");
                 profiler.collect();
             }
-            for (int repeat = 0; repeat < item.measure.repeats; ++repeat) {
+            std::vector<double> timesMs;
+            for (int repeat = 0; report::isRepeated(item.measure, timesMs); ++repeat) {
                 recorder.setIteration(frame, repeat);
                 guard.beginRepeat();
                 const double processBeginMs = gl::processTimeMs();
@@ -176,6 +178,7 @@ void renderAndRecord(const Case& item, technique::Technique& technique, gl::Prof
                 context.device.finish("rendering");
                 const double wallTimeMs = millisecondsSince(begin);
                 const double processTimeMs = gl::processTimeMs() - processBeginMs;
+                timesMs.push_back(wallTimeMs);
                 recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
                 recorder.metric("frame_rate", 1000.0 / wallTimeMs, "1/s", "");
                 if (const auto elsewhere = technique.usageElsewhere()) {
