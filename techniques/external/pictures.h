@@ -16,8 +16,8 @@ struct Picture {
     bool isPng = false;
 };
 
-/// Throws Error, beginning with `what`, where the file is not there, cannot be read to its end, has
-/// a value that is not finite or, if that is not 0, another size.
+/// A link is followed. Throws Error, beginning with `what`, where the file is not there, cannot be
+/// read to its end, has a value that is not finite or, if that is not 0, another size.
 Picture readPicture(const std::filesystem::path& file, const std::string& what,
                     glm::ivec2 sizePx = {0, 0});
 

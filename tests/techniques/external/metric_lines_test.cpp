@@ -1,6 +1,7 @@
 #include "techniques/external/metric_lines.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/support.h"
 
@@ -53,6 +54,20 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
               "unit");
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"val"),
               "line 1 of its metrics is no JSON object: {\"metric\": \"rays\", \"val");
+}
+
+TEST(MetricLines, RefusesAFileThatIsGoneOrNoPlainOne) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "metrics.jsonl";
+    const auto error = [&] { return errorText([&] { metricsIn(file, 0); }); };
+    EXPECT_EQ(error(), "its file of metrics, metrics.jsonl, is gone; it is there to be added to");
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    const std::string notPlain =
+        "its file of metrics, metrics.jsonl, is no plain file any more; it is there to be added to";
+    EXPECT_EQ(error(), notPlain);
+    std::filesystem::remove(file);
+    std::filesystem::create_symlink(folder.write("other", ""), file);
+    EXPECT_EQ(error(), notPlain);
 }
 
 TEST(MetricLines, APatternTakesItsLastMatch) {

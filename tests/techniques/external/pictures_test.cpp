@@ -81,6 +81,12 @@ TEST(Pictures, RefusesHalfAndWrongOnes) {
               "image 'result': holds nan at pixel (3, 2)");
 }
 
+TEST(Pictures, MayBeLinks) {
+    const TemporaryFolder folder;
+    std::filesystem::create_symlink(writePng(folder, "p.png", 16, 51), folder.path() / "link.png");
+    EXPECT_EQ(readPicture(folder.path() / "link.png", "image 'result'").stored.width(), 16);
+}
+
 TEST(Pictures, RefusesATruthOfAnotherKind) {
     const TemporaryFolder folder;
     const Picture exr = readPicture(writeExr(folder, "t.exr", ImageF(16, 16, 3, 0.5F)), "t");
