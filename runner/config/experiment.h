@@ -135,7 +135,17 @@ inline constexpr const char* kColumnAxis = "column";
 
 /// `claims:` — typed, not code. Operands are arithmetic expressions over column names ("a + b").
 struct ClaimSpec {
-    enum class Type { Order, Ratio, Trend, Independent, Bound, Exact, Tolerance, Crossover };
+    enum class Type {
+        Order,
+        Ratio,
+        Trend,
+        Independent,
+        Bound,
+        Exact,
+        Tolerance,
+        Crossover,
+        SameMean
+    };
     enum class Device { Any, Gpu };
     /// Whose claim it is: a statement of the document; read off its printed numbers; an aim of
     /// ours; true by construction (a self-test); or of an input that was fitted to it.
@@ -161,6 +171,7 @@ struct ClaimSpec {
     std::optional<std::string> over;  // trend, crossover: a row axis or column; independent: `of`
     std::optional<double> low,
         high;  // what is required of the ratio, exponent, spread (as a fraction), …
+               // same_mean: low is the rate of false alarms
     bool isLowExcluded = false;            // more_than
     bool isHighExcluded = false;           // less_than
     bool isStrict = false;                 // trend: strictly monotonic
