@@ -13,6 +13,7 @@
 #include "runner/batch/recorder.h"
 #include "runner/batch/run_directory.h"
 #include "runner/gl/barrier.h"
+#include "runner/report/frame_times.h"
 
 namespace gfxrepro::batch {
 
@@ -189,12 +190,14 @@ class FrameLoop {
     }
     void repeat(technique::FrameContext& frame, RunRecorder& recorder) {
         double spentS = 0.0;
-        for (int i = 0;
-             i < measure_.repeats || (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
+        std::vector<double> timesMs;
+        for (int i = 0; report::isRepeated(measure_, timesMs) ||
+                        (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
              ++i) {
             recorder.setIteration(frame.frame, i);
             if (pacing_.inFlight(lastMs_) > 1) keepBusy(frame);
             lastMs_ = measureFrame(frame, recorder);
+            timesMs.push_back(lastMs_);
             spentS += 1e-3 * lastMs_;
         }
     }

@@ -31,6 +31,7 @@ Json toJson(const config::Measure& measure) {
                  {"frames", measure.frames},
                  {"time_limit_s", measure.timeLimitS},
                  {"memory_limit_bytes", measure.memoryLimitBytes}};
+    if (measure.repeatsAtMost > 0) json["repeats_at_most"] = measure.repeatsAtMost;
     if (measure.processesAtLeast > 0) json["processes_at_least"] = measure.processesAtLeast;
     return json;
 }
@@ -109,6 +110,9 @@ config::Measure measureFrom(const config::Node& node) {
     measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
     if (const config::Node* rounds = node.find("processes_at_least")) {
         measure.processesAtLeast = intFrom(*rounds, "processes_at_least");
+    }
+    if (const config::Node* repeats = node.find("repeats_at_most")) {
+        measure.repeatsAtMost = intFrom(*repeats, "repeats_at_most");
     }
     return measure;
 }

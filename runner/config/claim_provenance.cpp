@@ -84,7 +84,7 @@ void requireApart(const std::vector<ClaimSpec::Known>& known, const Node::Sequen
 }  // namespace
 
 bool ClaimSpec::hasBound() const {
-    return (low || high) && type != Type::Order;
+    return (low || high) && type != Type::Order && type != Type::SameMean;
 }
 
 std::string_view originName(Origin origin) {

@@ -21,7 +21,7 @@ struct Kind {
     std::string_view key;
     Type type;
 };
-constexpr std::array<Kind, 8> kKinds = {{
+constexpr std::array<Kind, 9> kKinds = {{
     {"order", Type::Order},
     {"ratio", Type::Ratio},
     {"trend", Type::Trend},
@@ -30,6 +30,7 @@ constexpr std::array<Kind, 8> kKinds = {{
     {"exact", Type::Exact},
     {"tolerance", Type::Tolerance},
     {"crossover", Type::Crossover},
+    {"same_mean", Type::SameMean},
 }};
 
 std::string kindNames() {
@@ -222,6 +223,9 @@ class ClaimReader {
                 require("between");
                 readPair("between");
                 break;
+            case Type::SameMean:
+                readFalseAlarms();
+                break;
         }
     }
 
@@ -307,20 +311,34 @@ class ClaimReader {
     }
 
     /// "25%" or 0.25.
-    void readWithin() {
-        const Node& within = require("within");
-        const std::string text = within.isScalar() ? within.text() : "";
-        std::optional<double> fraction = within.tryDouble();
+    static std::optional<double> fractionOf(const Node& node) {
+        const std::string text = node.isScalar() ? node.text() : "";
+        std::optional<double> fraction = node.tryDouble();
         if (text.ends_with('%')) {
             fraction = parseDouble(trimmed(std::string_view(text).substr(0, text.size() - 1)));
             if (fraction) *fraction /= 100.0;
         } else if (fraction && *fraction > 1.0) {
             fraction.reset();  // 25 for 25% is a likely slip
         }
-        if (!fraction || *fraction < 0.0) {
+        return fraction;
+    }
+
+    void readWithin() {
+        const Node& within = require("within");
+        claim_.high = fractionOf(within);
+        if (!claim_.high || *claim_.high < 0.0) {
             throwNotAllowed(within, what_ + ": within", "a percentage as 25%, or a fraction 0 … 1");
         }
-        claim_.high = fraction;
+    }
+
+    void readFalseAlarms() {
+        constexpr double kMost = 0.1;  // more would call a coin a test
+        const Node& rate = require("false_alarms");
+        claim_.low = fractionOf(rate);
+        if (!claim_.low || *claim_.low <= 0.0 || *claim_.low > kMost) {
+            throwNotAllowed(rate, what_ + ": false_alarms",
+                            "a percentage as 1%, or a fraction, above 0 and to 10%");
+        }
     }
 
     void readEquals() {

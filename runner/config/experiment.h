@@ -42,8 +42,12 @@ inline constexpr int kFewestRounds = 6;
 struct Measure {
     enum class Lane { Quality, Timing };
     Lane lane = Lane::Quality;
-    int warmup = 0;     // iterations before the first measured one
-    int repeats = 1;    // measured iterations in one process
+    int warmup = 0;   // iterations before the first measured one
+    int repeats = 1;  // measured iterations in one process; the fewest, where more may follow:
+    /// Timing lane with `relativeError`: iterations of a frame go on in each process until half of
+    /// the 95 % interval of their median ÷ it is no more than that, or there are so many. 0: they
+    /// do not.
+    int repeatsAtMost = 0;
     int processes = 1;  // rounds, in each of which a case is run in a process of its own if more
                         // than 1; the fewest, where more may follow:
     /// Timing lane, from metrics::kFewestForInterval processes on: rounds go on until half of each
@@ -61,6 +65,8 @@ struct Measure {
 
     /// Whether rounds may follow the first `processes`.
     bool mayContinue() const;
+    /// Whether iterations may follow the first `repeats`.
+    bool mayRepeat() const;
     /// Rounds that are measured whatever they take.
     int certainRounds() const;
 };
@@ -129,7 +135,17 @@ inline constexpr const char* kColumnAxis = "column";
 
 /// `claims:` — typed, not code. Operands are arithmetic expressions over column names ("a + b").
 struct ClaimSpec {
-    enum class Type { Order, Ratio, Trend, Independent, Bound, Exact, Tolerance, Crossover };
+    enum class Type {
+        Order,
+        Ratio,
+        Trend,
+        Independent,
+        Bound,
+        Exact,
+        Tolerance,
+        Crossover,
+        SameMean
+    };
     enum class Device { Any, Gpu };
     /// Whose claim it is: a statement of the document; read off its printed numbers; an aim of
     /// ours; true by construction (a self-test); or of an input that was fitted to it.
@@ -156,6 +172,7 @@ struct ClaimSpec {
     std::optional<std::string> over;  // trend, crossover: a row axis or column; independent: `of`
     std::optional<double> low,
         high;  // what is required of the ratio, exponent, spread (as a fraction), …
+               // same_mean: low is the rate of false alarms
     bool isLowExcluded = false;            // more_than
     bool isHighExcluded = false;           // less_than
     bool isStrict = false;                 // trend: strictly monotonic

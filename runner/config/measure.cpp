@@ -13,6 +13,10 @@ bool Measure::mayContinue() const {
            processes < processesAtMost;
 }
 
+bool Measure::mayRepeat() const {
+    return relativeError > 0.0 && lane == Lane::Timing && repeats < repeatsAtMost;
+}
+
 int Measure::certainRounds() const {
     const bool isBounded = lane == Lane::Timing && processesAtLeast > 0;
     return isBounded ? std::min(processesAtLeast, processes) : processes;
@@ -46,6 +50,11 @@ Measure readMeasure(Params& params, bool isOwn) {
                                    {"iterations before the first measured one", "", 0, kMax});
     measure.repeats = params.getInt("repeats", measure.repeats,
                                     {"measured iterations in one process", "", 1, kMax});
+    measure.repeatsAtMost = params.getInt(
+        "repeats_at_most", measure.repeatsAtMost,
+        {"repeats of a frame go on in each process until half of the 95 % interval of their median "
+         "÷ it is no more than relative_error, or there are so many; timing lane; 0: they do not",
+         "", 0, kMax});
     measure.processes =
         params.getInt("processes", measure.processes,
                       {"rounds: in each every case is run, in a process of its own", "", 1, kMax});

@@ -241,22 +241,44 @@ void readPasses(const Node& passes, Program& program) {
     }
 }
 
+/// Several pictures of a truth are other seeds: `frame` says which.
+void readTruthFrames(const Node& truth, const std::string& what, const Program& program,
+                     ProgramPicture& picture) {
+    constexpr long long kMost = 1000;
+    const Node& frames = *truth.find(placeholder::kFrames);
+    const std::optional<long long> count = frames.tryInteger();
+    if (!count || *count < 2 || *count > kMost) {
+        throwNotAllowed(frames, what + ": frames", "2 … 1000 pictures, each of another seed");
+    }
+    const Node* first = truth.find(placeholder::kFrame);
+    if (!first || !first->tryInteger() || !program.uses(placeholder::kFrame)) {
+        throw Error(frames.location(),
+                    what +
+                        ": 'frames' are other seeds from 'frame' on: give that, a whole number, "
+                        "and {frame} to the program");
+    }
+    picture.truthFrames = static_cast<int>(*count);
+}
+
 void readTruth(const Node& truth, const std::string& what, const Names& known, Program& program,
                ProgramPicture& picture) {
     if (!truth.isMap()) {
         picture.truthFile = templateOf(truth, what, known);
         return;
     }
-    Names allowed = {placeholder::kSeed, placeholder::kFrame};
+    Names allowed = {placeholder::kSeed, placeholder::kFrame, placeholder::kFrames};
     for (const ProgramParam& param : program.params) allowed.push_back(param.name);
     requireKeys(truth, what, allowed);
     Node given = truth;  // read as a case's
-    given.erase(placeholder::kSeed);
-    given.erase(placeholder::kFrame);
+    for (const char* name : {placeholder::kSeed, placeholder::kFrame, placeholder::kFrames}) {
+        given.erase(name);
+    }
     Params values(given, what);
     program.declare(values);
     values.finish();
     picture.truthParams = truth;
+    picture.truthParams.erase(placeholder::kFrames);
+    if (truth.find(placeholder::kFrames)) readTruthFrames(truth, what, program, picture);
 }
 
 void readPictures(const Node& pictures, const Names& known, Program& program) {
@@ -299,43 +321,6 @@ bool Program::uses(std::string_view name) const {
     const auto has = [&](const std::string& text) { return hasPlaceholder(text, name); };
     return std::ranges::any_of(command, has) ||
            std::ranges::any_of(environment, [&](const auto& one) { return has(one.second); });
-}
-
-namespace {
-
-/// One of a list that is known only now.
-void readChoice(const ProgramParam& param, Params& values) {
-    const std::string allowed = joined(param.choices, " | ");
-    const std::string doc = param.doc.empty() ? allowed : param.doc + " (" + allowed + ")";
-    const std::string value = values.getText(param.name, param.fallback.text(), {doc, param.unit});
-    if (std::ranges::find(param.choices, value) != param.choices.end()) return;
-    throw Error(values.locationOf(param.name),
-                fmt::format("{} is '{}'; allowed: {}", param.name, value, allowed));
-}
-
-}  // namespace
-
-void Program::declare(Params& values) const {
-    for (const ProgramParam& param : params) {
-        const ParamSpec spec{param.doc, param.unit, param.min, param.max};
-        switch (param.type) {
-            case Type::Integer:
-                values.getInt(param.name, static_cast<int>(param.fallback.asInteger()), spec);
-                break;
-            case Type::Number:
-                values.getDouble(param.name, param.fallback.asDouble(), spec);
-                break;
-            case Type::Boolean:
-                values.getBool(param.name, param.fallback.asBool(), spec);
-                break;
-            case Type::Text:
-                values.getText(param.name, param.fallback.text(), spec);
-                break;
-            case Type::Choice:
-                readChoice(param, values);
-                break;
-        }
-    }
 }
 
 const Node& programOf(const Experiment& experiment) {

@@ -54,6 +54,9 @@ struct ProgramPicture {
     /// the case's, with which the program makes it. Empty and null where that is not known.
     std::string truthFile;
     Node truthParams;
+    /// So many pictures of the truth, of `frame` and those that follow it: each another seed. From
+    /// 2 on the case's own frames, other seeds too, are tested for the same expectation.
+    int truthFrames = 1;
 
     bool hasTruth() const { return !truthFile.empty() || !truthParams.isNull(); }
 };

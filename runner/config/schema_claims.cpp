@@ -124,6 +124,13 @@ std::vector<SchemaSection> claimSections() {
         kind({"crossover", "[a, b]", "", "the two change places", tupleOf(text(), 2)},
              {over("over", "along which"),
               {"between", "[low, high]", "required", "where", pairOfNumbers()}}),
+        kind(
+            {"same_mean", "a", "",
+             "noisy pictures have the expectation of their truth; a column of the metric "
+             "same_mean_p",
+             text()},
+            {{"false_alarms", "1% | fraction", "required",
+              "how often it may fail where it holds, over all rows together; to 10%", fraction()}}),
     };
 }
 

@@ -178,7 +178,9 @@ SchemaSection programImage() {
         {{"file", "file", "required", "in {out}", text()},
          {"truth", "file | {parameter: value}", "none",
           "a file, or parameters (and seed, frame) laid over the case's, with which the program "
-          "makes it: once for all cases that agree on the others",
+          "makes it: once for all cases that agree on the others. With frames (2 or more) it is "
+          "made of so many seeds, from frame on, and same_mean_p says whether the case's frames "
+          "have its expectation",
           anyOf({text(), mapOf(anything())})}}};
 }
 

@@ -1,5 +1,7 @@
 #include "runner/report/claim_parts.h"
 
+#include <fmt/format.h>
+
 #include "runner/core/text.h"
 
 namespace gfxrepro::report {
@@ -100,6 +102,14 @@ ClaimPart crossoverPart(const config::ClaimSpec& claim) {
     return part;
 }
 
+ClaimPart sameMeanPart(const config::ClaimSpec& claim) {
+    ClaimPart part{{0}, familyWiseP, {}, "p of all rows"};
+    part.requirement.low = *claim.low;
+    part.requirement.text = fmt::format("the same expectation ({}: p of all rows ≥ {:.4g})",
+                                        claim.operands[0], *claim.low);
+    return part;
+}
+
 std::vector<ClaimPart> partsByType(const config::ClaimSpec& claim) {
     switch (claim.type) {
         case Type::Order:
@@ -121,6 +131,8 @@ std::vector<ClaimPart> partsByType(const config::ClaimSpec& claim) {
             return {tolerancePart(claim)};
         case Type::Crossover:
             return {crossoverPart(claim)};
+        case Type::SameMean:
+            return {sameMeanPart(claim)};
     }
     return {};
 }

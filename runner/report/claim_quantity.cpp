@@ -185,6 +185,11 @@ double largestDeviation(const GroupPoint& group) {
     return largest;
 }
 
+double familyWiseP(const GroupPoint& group) {
+    const std::vector<double>& p = group.operands[0];
+    return std::min(1.0, static_cast<double>(p.size()) * *std::ranges::min_element(p));
+}
+
 Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement) {
     std::vector<Sampled*> all;
     for (auto& operand : group.operands)

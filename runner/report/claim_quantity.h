@@ -60,6 +60,9 @@ double largestDifference(const GroupPoint& group);
 /// tolerance: the largest |measured − expected| / |expected|.
 double largestDeviation(const GroupPoint& group);
 
+/// same_mean: the smallest p of the rows × their number (Bonferroni), 1 at most.
+double familyWiseP(const GroupPoint& group);
+
 /// The rows in ascending x.
 std::vector<std::size_t> rowsByX(const GroupPoint& group);
 bool arePositive(const std::vector<double>& values);

@@ -77,7 +77,8 @@ std::vector<bool> ClaimReader::axesAlongX() {
 }
 
 std::vector<Rows> ClaimReader::groups() {
-    const bool isOneGroup = claim_.type == ClaimSpec::Type::Independent && !claim_.over;
+    const bool isOneGroup = (claim_.type == ClaimSpec::Type::Independent && !claim_.over) ||
+                            claim_.type == ClaimSpec::Type::SameMean;
     std::vector<bool> along = axesAlongX();
     if (isOneGroup) along.assign(along.size(), true);
     std::vector<Rows> groups;
@@ -127,6 +128,16 @@ bool ClaimReader::readsShare() const {
         const bool isScaled = cell.metric.empty() && cell.unit.empty();
         return isScaled || cell.metric.ends_with("_pct");
     });
+}
+
+bool ClaimReader::readsOnly(const std::string& metric) const {
+    const auto isColumn = [&](const Operand& operand) {
+        const std::string& text = operand.text();
+        return operand.columns().size() == 1 &&
+               (text == table_.columns[operand.columns()[0]].label || text.starts_with('\''));
+    };
+    return std::ranges::all_of(operands_, isColumn) &&
+           !readsSome([&](const Cell& cell) { return cell.isPlanned && cell.metric != metric; });
 }
 
 bool ClaimReader::readsCalibrated() const {

@@ -52,6 +52,10 @@ class ClaimReader {
     /// Whether some cell that it may read is, perhaps scaled, a recorded percentage, which has an
     /// interval where it is a share of a count.
     bool readsShare() const;
+    /// Whether its operands are columns alone, no arithmetic, and show that metric as recorded.
+    bool readsOnly(const std::string& metric) const;
+    /// How many rows it reads.
+    std::size_t rowCount() const { return rows().size(); }
     /// Whether all cells that it may read are marked as calibrated.
     bool readsCalibrated() const;
     /// Whether what it asks could come out otherwise on a machine on which every time is twice as

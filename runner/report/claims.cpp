@@ -11,6 +11,7 @@
 #include "runner/core/text.h"
 #include "runner/report/claim_parts.h"
 #include "runner/report/claim_reader.h"
+#include "runner/report/claim_same_mean.h"
 
 namespace gfxrepro::report {
 
@@ -168,6 +169,10 @@ ClaimResult evaluate(const ClaimSpec& claim, const Table& table, const ReportCon
     ClaimResult result = unjudged(claim, table, context);
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
+    if (claim.type == ClaimSpec::Type::SameMean && !reader.readsOnly(kSameMeanMetric)) {
+        result.reason = fmt::format("reads another metric than {}", kSameMeanMetric);
+        return result;
+    }
     const std::vector<ClaimPart> parts = partsOf(claim);
     const bool isAbsolute = claim.timeKind == ClaimSpec::TimeKind::Absolute;
     if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
@@ -345,6 +350,10 @@ void requireProvenance(const config::Experiment& experiment, const Table& table)
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
         ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
+        if (claim.type == ClaimSpec::Type::SameMean) {
+            const std::string why = whyNotTestable(experiment, claim, reader);
+            if (!why.empty()) complain(why);
+        }
         for (const ClaimSpec::Known& known : claim.because) {
             if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
             if (reader.readsShare() || seedsAtMost(experiment, known.profile) > 1) continue;

@@ -13,6 +13,7 @@
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
+#include "runner/metrics/mean_test.h"
 #include "runner/scene/load.h"
 #include "techniques/external/metric_lines.h"
 #include "techniques/external/pictures.h"
@@ -94,6 +95,7 @@ class External : public technique::Technique {
         values_[placeholder::kFrame] = std::to_string(context.frame);
         values_[placeholder::kFrames] = std::to_string(context.frameCount);
         frame_ = context.frame;
+        frameCount_ = context.frameCount;
         end_ = run(values_, "out");
         peakBytes_ = std::max(peakBytes_, end_.peakBytes);
     }
@@ -191,6 +193,22 @@ class External : public technique::Technique {
         options.truthOf = picture.name;
         recorder.image(picture.name + "_truth", truth.linear, options);
         recordErrors(own, truth, picture.name, recorder);
+        if (picture.truthFrames > 1) addSample(picture, own, what, recorder);
+    }
+
+    /// Each frame is another seed; behind the last one they are held against the truth's.
+    void addSample(const config::ProgramPicture& picture, const Picture& own,
+                   const std::string& what, technique::Recorder& recorder) {
+        Samples& samples = samples_[picture.name];
+        samples.push_back(metrics::tileMeans(own.linear));
+        if (frame_ + 1 < frameCount_ || samples.size() < 2) return;
+        const glm::ivec2 size{own.linear.width(), own.linear.height()};
+        Samples truths;
+        for (int i = 0; i < picture.truthFrames; ++i) {
+            const Picture truth = truthOf(picture, what + ": truth", size, i);
+            truths.push_back(metrics::tileMeans(truth.linear));
+        }
+        recordSameMean(samples, truths, picture.name, recorder);
     }
 
     fs::path placeOf(const std::string& file, config::Placeholders values,
@@ -200,13 +218,18 @@ class External : public technique::Technique {
         return out / config::filled(file, values);
     }
 
-    Picture truthOf(const config::ProgramPicture& picture, const std::string& what,
-                    glm::ivec2 size) const {
+    /// `offset`: of its frames.
+    Picture truthOf(const config::ProgramPicture& picture, const std::string& what, glm::ivec2 size,
+                    int offset = 0) const {
         if (picture.truthParams.isNull()) {
             return readPicture(placeOf(picture.truthFile, values_, "out"), what, size);
         }
         config::Placeholders values = values_;
         for (const auto& [name, value] : picture.truthParams.entries()) values[name] = value.text();
+        if (picture.truthFrames > 1) {
+            const long long first = picture.truthParams.find(placeholder::kFrame)->asInteger();
+            values[placeholder::kFrame] = std::to_string(first + offset);
+        }
         const fs::path kept = scratch_ / ("truth-" + truthKey(values, picture.name) +
                                           fs::path(picture.file).extension().string());
         if (!fs::exists(kept)) {
@@ -243,6 +266,8 @@ class External : public technique::Technique {
     std::optional<Folder> folder_;
     glm::ivec2 size_{0};
     int frame_ = 0;
+    int frameCount_ = 1;
+    std::map<std::string, Samples> samples_;  // by picture, a frame each
     ProcessEnd end_;
     long long peakBytes_ = 0;
 };

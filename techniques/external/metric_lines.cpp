@@ -66,8 +66,12 @@ GivenMetric metricOf(std::string_view text, int number, int frame) {
 }  // namespace
 
 std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame) {
-    if (!std::filesystem::is_regular_file(file)) {
-        throw Error("the file of its metrics is gone, or is no file any more");
+    std::error_code isAbsent;
+    if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, isAbsent))) {
+        throw Error(fmt::format("its file of metrics, {}, {}", file.filename().string(),
+                                std::filesystem::exists(file, isAbsent)
+                                    ? "is no plain file any more; it is there to be added to"
+                                    : "is gone; it is there to be added to"));
     }
     if (std::filesystem::file_size(file) > kMostBytes) {
         throw Error(fmt::format("its metrics have more than {} MiB", kMostBytes >> 20));

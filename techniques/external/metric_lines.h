@@ -19,7 +19,8 @@ struct GivenMetric {
 };
 
 /// The lines of JSON, {"metric": …, "value": …, "unit": …} with "pass" and "frame" where there are
-/// such; a frame must be `frame`. Throws Error with the number of a line that is none.
+/// such; a frame must be `frame`. Throws Error with the number of a line that is none, and for a
+/// file that is gone or no plain one (a pipe, a link).
 std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame);
 
 /// The number that the pattern finds last in what the program printed, line by line. Throws Error

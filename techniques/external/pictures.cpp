@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runner/image/image_file.h"
 #include "runner/metrics/hdr_flip.h"
 #include "runner/metrics/image_error.h"
+#include "runner/metrics/mean_test.h"
 
 namespace gfxrepro::external {
 
@@ -69,7 +71,15 @@ config::Outputs errorOutputs() {
              {"rel_mse", "1", "mean of squared errors ÷ (squared truth + 0.01)", Better::Lower},
              {"psnr_db", "dB", "10 · log10(1 ÷ mse)", Better::Higher},
              {"ssim", "1", "structural similarity of luminance", Better::Higher},
-             {"flip", "1", "mean FLIP; HDR-FLIP of EXR files with values beyond 1", Better::Lower}},
+             {"flip", "1", "mean FLIP; HDR-FLIP of EXR files with values beyond 1", Better::Lower},
+             {"same_mean_p", "1",
+              "chance that frames and truths of one expectation differ as these do: a claim "
+              "same_mean judges it",
+              Better::Neither},
+             {"bias_seen", "1",
+              "of a tile, as a share of the mean value: what same_mean_p shows more often than not "
+              "at 1 % of false alarms",
+              Better::Lower}},
             {}};
 }
 
@@ -102,6 +112,43 @@ void recordErrors(const Picture& picture, const Picture& truth, const std::strin
     recorder.metric("flip",
                     isHdr ? metrics::hdrFlip(seenTruth, seen) : metrics::flip(seenTruth, seen), "1",
                     name);
+}
+
+namespace {
+
+void requireRandom(const Samples& samples, const std::string& what) {
+    const bool isRandom = std::ranges::any_of(
+        samples, [&](const std::vector<double>& sample) { return sample != samples.front(); });
+    if (isRandom) return;
+    throw Error(
+        fmt::format("{}: all {} frames are the same picture: nothing is random, or {{frame}} "
+                    "is not the seed",
+                    what, samples.size()));
+}
+
+}  // namespace
+
+void recordSameMean(const Samples& pictures, const Samples& truths, const std::string& name,
+                    technique::Recorder& recorder) {
+    const std::string what = fmt::format("image '{}'", name);
+    requireRandom(pictures, what);
+    requireRandom(truths, what + ": truth");
+    for (const std::vector<double>& picture : pictures) {
+        if (std::ranges::find(truths, picture) == truths.end()) continue;
+        throw Error(what +
+                    ": one of its frames is a picture of the truth: the two need seeds of "
+                    "their own");
+    }
+    const metrics::MeanTest test = metrics::testMeans(pictures, truths);
+    if (test.isUnlike) {
+        throw Error(
+            fmt::format("{}: its noise is {:.2g} times that of the truth, which cannot be tested; "
+                        "allowed: {:g} "
+                        "times, by as many samples a pixel, or as many more frames",
+                        what, test.noiseRatio, metrics::kMostNoiseRatio));
+    }
+    recorder.metric("same_mean_p", test.p, "1", name);
+    if (std::isfinite(test.seen)) recorder.metric("bias_seen", test.seen, "1", name);
 }
 
 }  // namespace gfxrepro::external

@@ -169,6 +169,19 @@ TEST(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     EXPECT_EQ(cool.err.find("not quiet"), std::string::npos) << cool.err;
 }
 
+TEST(Faults, RepeatsGoOnUntilATimeIsKnown) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "measure: {lane: timing, repeats: 2, repeats_at_most: 9, relative_error: 1e-9}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 9U);
+    const std::string note = "Frames were repeated 9 … 9 times in a process: 0 of 1 ended by ";
+    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find(note), std::string::npos);
+}
+
 TEST(Faults, SideBySideAndInFreshProcesses) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(

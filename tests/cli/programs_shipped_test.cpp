@@ -30,6 +30,12 @@ TEST(ShippedPrograms, ErrorOfPovRayFallsAsTheRootOfItsSamples) {
     expectClaimsHold("povray-samples.yaml", folder.path() / "run");
 }
 
+TEST(ShippedPrograms, PovRaysExpectationIsTheSameWithoutEdgesAlone) {
+    if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
+    const TemporaryFolder folder;
+    expectClaimsHold("povray-expectation.yaml", folder.path() / "run");
+}
+
 TEST(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
     const fs::path configs = GFXREPRO_CONFIGS;

@@ -2,7 +2,7 @@
 than one driver.
 
 WHAT  software  runs them on the software device into FOLDER/software, and keeps every GL program that they link (LIBRARY:
-                keep_programs)
+                keep_programs and test_gl)
       zink      runs them on zink, Mesa's OpenGL through Vulkan, on lavapipe: no quality may differ from software's by more
                 than a picture's last bits
       gpu       runs them on the software device that calls itself a GPU (LIBRARY: pretended_gpu): no quality
@@ -122,6 +122,8 @@ if WHAT == "software":
     measure("software", "software", keeping)
     preview = [PROGRAM, "scene", "shapes/torus", "--device", "software", "--render", FOLDER / "preview.png"]
     subprocess.run(preview, env=os.environ | keeping, check=True)
+    # What hardware alone is asked: its balance.
+    subprocess.run([LIBRARY[1], "--gtest_filter=Balance.*"], env=os.environ | keeping, check=True)
 elif WHAT == "zink":
     vulkan = list(LAVAPIPE.glob("lvp_icd*.json")) or skip("Mesa's lavapipe is not here (scripts/setup --tests installs it)")
     mesa = int(read("software", "manifest")["gl"]["mesa_version"].split(".")[0])

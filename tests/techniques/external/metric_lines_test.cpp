@@ -1,6 +1,7 @@
 #include "techniques/external/metric_lines.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/support.h"
 
@@ -55,13 +56,18 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
               "line 1 of its metrics is no JSON object: {\"metric\": \"rays\", \"val");
 }
 
-TEST(MetricLines, TheirFileMustBeOne) {
+TEST(MetricLines, RefusesAFileThatIsGoneOrNoPlainOne) {
     const TemporaryFolder folder;
-    const std::string said = "the file of its metrics is gone, or is no file any more";
-    EXPECT_EQ(errorText([&] { metricsIn(folder.path() / "none", 0); }), said);
-    EXPECT_EQ(errorText([&] { metricsIn(folder.path(), 0); }), said);
-    std::filesystem::create_symlink("/dev/zero", folder.path() / "endless");
-    EXPECT_EQ(errorText([&] { metricsIn(folder.path() / "endless", 0); }), said);
+    const auto file = folder.path() / "metrics.jsonl";
+    const auto error = [&] { return errorText([&] { metricsIn(file, 0); }); };
+    EXPECT_EQ(error(), "its file of metrics, metrics.jsonl, is gone; it is there to be added to");
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    const std::string notPlain =
+        "its file of metrics, metrics.jsonl, is no plain file any more; it is there to be added to";
+    EXPECT_EQ(error(), notPlain);
+    std::filesystem::remove(file);
+    std::filesystem::create_symlink(folder.write("other", ""), file);
+    EXPECT_EQ(error(), notPlain);
 }
 
 TEST(MetricLines, APatternTakesItsLastMatch) {

@@ -81,6 +81,39 @@ TEST(Pictures, RefusesHalfAndWrongOnes) {
               "image 'result': holds nan at pixel (3, 2)");
 }
 
+TEST(Pictures, MayBeLinks) {
+    const TemporaryFolder folder;
+    std::filesystem::create_symlink(writePng(folder, "p.png", 16, 51), folder.path() / "link.png");
+    EXPECT_EQ(readPicture(folder.path() / "link.png", "image 'result'").stored.width(), 16);
+}
+
+TEST(Pictures, OfSeveralSeedsAreTestedForOneExpectation) {
+    const Samples a = {{1.0, 2.0}, {1.1, 2.1}, {0.9, 1.9}, {1.0, 2.1}};
+    const Samples b = {{1.05, 2.05}, {0.95, 2.0}, {1.0, 1.95}, {1.02, 2.02}};
+    const Samples far = {{1.05, 9.05}, {0.95, 9.0}, {1.0, 8.95}, {1.02, 9.02}};
+    const auto pOf = [&](const Samples& truths) {
+        test::MetricRecorder recorder;
+        recordSameMean(a, truths, "result", recorder);
+        return recorder.metrics.at("same_mean_p/result");
+    };
+    EXPECT_GT(pOf(b), 0.3);
+    EXPECT_EQ(pOf(far), 2.0 / 70.0);
+    const auto errorOf = [](const Samples& pictures, const Samples& truths) {
+        test::MetricRecorder recorder;
+        return errorText([&] { recordSameMean(pictures, truths, "result", recorder); });
+    };
+    const Samples fixed(3, {1.0, 2.0});
+    EXPECT_EQ(errorOf(fixed, b),
+              "image 'result': all 3 frames are the same picture: nothing is random, or {frame} is "
+              "not the seed");
+    EXPECT_EQ(errorOf(a, fixed),
+              "image 'result': truth: all 3 frames are the same picture: nothing is random, or "
+              "{frame} is not the seed");
+    EXPECT_EQ(errorOf(a, {b[0], a[2]}),
+              "image 'result': one of its frames is a picture of the truth: the two need seeds of "
+              "their own");
+}
+
 TEST(Pictures, RefusesATruthOfAnotherKind) {
     const TemporaryFolder folder;
     const Picture exr = readPicture(writeExr(folder, "t.exr", ImageF(16, 16, 3, 0.5F)), "t");

@@ -58,11 +58,15 @@ TEST(Merge, KeepsFurtherRounds) {
         }
     }
     shards[1].run.manifest["rounds"] = {{"t/1", {{"rounds", 8}}}};
+    shards[0].run.manifest["machine_states"] = {{"t/2", {{"hottest_c", 40.0}}}};
+    shards[1].run.manifest["machine_states"] = {{"t/1", {{"hottest_c", 50.0}}}};
     const batch::StoredRun merged = mergeRuns(shards, "merge");
     EXPECT_EQ(merged.records.size(), 4U + 16U);
     EXPECT_EQ(merged.records.back().process, 7);
     EXPECT_EQ(merged.records.back().caseId, plan.cases[4].id) << "odd rounds go backwards";
     EXPECT_EQ(merged.manifest["rounds"]["t/1"]["rounds"], 8);
+    EXPECT_EQ(merged.manifest["machine_states"]["t/1"]["hottest_c"], 50.0);
+    EXPECT_EQ(merged.manifest["machine_states"]["t/2"]["hottest_c"], 40.0);
     EXPECT_EQ(batch::completeness(merged).units, 20);
     EXPECT_EQ(batch::completeness(merged).missing, 0);
     shards[1].run.records.pop_back();  // round 7 was interrupted

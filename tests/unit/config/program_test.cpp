@@ -155,6 +155,25 @@ TEST(Program, ATruthMayBeMadeByOtherParameters) {
               "c.yaml:3:40: program: image 'result': truth: unknown key 'm'; did you mean 'n'?");
 }
 
+TEST(Program, ATruthMayBeOfSeveralSeeds) {
+    const std::string head = "command: t {frame}\nimages: {result: {file: r.exr, truth: ";
+    const Program program = programOf(head + "{frame: 9, frames: 6}}}");
+    EXPECT_EQ(program.pictures.at(0).truthFrames, 6);
+    EXPECT_EQ(program.pictures.at(0).truthParams.toFlowText(), "{frame: 9}");
+    EXPECT_EQ(programOf(head + "{frame: 9}}}").pictures.at(0).truthFrames, 1);
+    for (const char* frames : {"1", "1001", "2.5", "many"}) {
+        EXPECT_EQ(errorOf(head + "{frame: 9, frames: " + frames + "}}}"),
+                  std::string("c.yaml:2:58: program: image 'result': truth: frames is ") + frames +
+                      "; allowed: 2 … 1000 pictures, each of another seed");
+    }
+    const std::string alike =
+        "program: image 'result': truth: 'frames' are other seeds from 'frame' on: give that, a "
+        "whole number, and {frame} to the program";
+    EXPECT_EQ(errorOf(head + "{frames: 6}}}"), "c.yaml:2:48: " + alike);
+    EXPECT_EQ(errorOf("command: t\nimages: {result: {file: r.exr, truth: {frame: 9, frames: 6}}}"),
+              "c.yaml:2:58: " + alike);
+}
+
 TEST(Program, ItsKeyIsOfItsFiles) {
     const TemporaryFolder folder;
     const auto script = folder.write("run.sh", "#!/bin/sh\n");

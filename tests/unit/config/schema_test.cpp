@@ -342,6 +342,10 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
          claim,
          "    ",
          {{"says", "s"}, {"crossover", "[aa, bb]"}, {"over", "scene"}, {"between", "[1, 2]"}}},
+        {"claim.same_mean",
+         claim,
+         "    ",
+         {{"says", "s"}, {"same_mean", "aa"}, {"false_alarms", "1%"}}},
     };
     // Any value will do here; those who own scenes and assumptions judge it.
     const std::set<std::string> anything = {"content.scene", "sweep.scene", "assumption.value",

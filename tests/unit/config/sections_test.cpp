@@ -226,7 +226,7 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s}"),
               head +
                   "3: claim 'C' has no type; allowed: order, ratio, trend, independent, bound, "
-                  "exact, tolerance, crossover");
+                  "exact, tolerance, crossover, same_mean");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
               head + "32: claim 'C' is of two types, 'order' and 'bound'");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
@@ -289,6 +289,13 @@ TEST_F(ExperimentTest, BadClaimsOverAxes) {
               head + "3: claim 'C' needs printed values");
     EXPECT_EQ(claimError("{says: s, crossover: [aa], over: scene, between: [1, 2]}"),
               head + "27: claim 'C': crossover is [aa]; allowed: [a, b]");
+    EXPECT_EQ(claimError("{says: s, same_mean: aa, false_alarms: 1%}"), "no error");
+    EXPECT_EQ(claimError("{says: s, same_mean: aa}"), head + "3: claim 'C' needs 'false_alarms'");
+    for (const char* rate : {"0", "11%", "1", "-1%", "few"}) {
+        EXPECT_EQ(claimError(std::string("{says: s, same_mean: aa, false_alarms: ") + rate + "}"),
+                  head + "45: claim 'C': false_alarms is " + rate +
+                      "; allowed: a percentage as 1%, or a fraction, above 0 and to 10%");
+    }
 }
 
 TEST_F(ExperimentTest, BadClaimScopes) {

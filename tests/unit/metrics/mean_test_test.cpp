@@ -1,0 +1,230 @@
+// How often pictures of one expectation are said to differ, and a bias is found: by simulation.
+#include "runner/metrics/mean_test.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "runner/core/random.h"
+
+namespace gfxrepro::metrics {
+namespace {
+
+using image::ImageF;
+using testing::ElementsAre;
+
+constexpr int kWidthPx = 32, kHeightPx = 24;
+constexpr std::size_t kSeeds = 6;
+
+/// One sample of a pixel whose expectation is 1.
+using Noise = std::function<double(Random&)>;
+
+double uniform(Random& random) {
+    return (static_cast<double>(random.next()) + 0.5) * 0x1p-32;
+}
+
+double normal(Random& random) {
+    return std::sqrt(-2.0 * std::log(uniform(random))) *
+           std::cos(2.0 * std::numbers::pi * uniform(random));
+}
+
+double gaussian(Random& random) {
+    return 1.0 + 0.5 * normal(random);
+}
+
+/// A light that is seen or not.
+double coin(Random& random) {
+    return random.index(4) == 0 ? 4.0 : 0.0;
+}
+
+double exponential(Random& random) {
+    return -std::log(uniform(random));
+}
+
+/// A path tracer's: now and then a path of a hundred times the usual light.
+double fireflies(Random& random) {
+    return random.index(1000) == 0 ? 0.5 + 500.0 : 0.5;
+}
+
+/// Of infinite variance: P(> x) = x^−1.5, less where its mean of 3 is above 1.
+double heavyTail(Random& random) {
+    return std::pow(uniform(random), -1.0 / 1.5) / 3.0;
+}
+
+/// A picture of so many samples a pixel; in it a square of 8 × 8 pixels is `bias` too bright.
+ImageF picture(const Noise& noise, int samples, Random& random, double bias = 0.0) {
+    ImageF image(kWidthPx, kHeightPx, 1);
+    for (int y = 0; y < kHeightPx; ++y) {
+        for (int x = 0; x < kWidthPx; ++x) {
+            double sum = 0.0;
+            for (int i = 0; i < samples; ++i) sum += noise(random);
+            const bool isBiased = x < kMeanTilePx && y < kMeanTilePx;
+            image.at(x, y) = static_cast<float>(sum / samples * (isBiased ? 1.0 + bias : 1.0));
+        }
+    }
+    return image;
+}
+
+std::vector<std::vector<double>> pictures(std::size_t count, const Noise& noise, int samples,
+                                          Random& random, double bias = 0.0) {
+    std::vector<std::vector<double>> all;
+    for (std::size_t i = 0; i < count; ++i) {
+        all.push_back(tileMeans(picture(noise, samples, random, bias)));
+    }
+    return all;
+}
+
+struct Count {
+    int alarms = 0;  // p was at most the level
+    int unlike = 0;  // the noise of the two sides was found to be unlike, and p left alone
+};
+
+/// Of so many comparisons; printed for people.
+Count countOf(const char* name, int trials, double level, const Noise& noise, int samplesA,
+              int samplesB, double bias = 0.0, std::size_t seedsA = kSeeds) {
+    Count count;
+    for (int trial = 0; trial < trials; ++trial) {
+        Random random(static_cast<std::uint64_t>(trial) + 1);
+        const auto a = pictures(seedsA, noise, samplesA, random, bias);
+        const auto b = pictures(kSeeds, noise, samplesB, random);
+        const MeanTest test = testMeans(a, b);
+        count.unlike += test.isUnlike ? 1 : 0;
+        count.alarms += !test.isUnlike && test.p <= level ? 1 : 0;
+    }
+    std::printf(
+        "  %s, %zu × %d against %zu × %d samples, bias %.3g %%: %.2f %% alarms at %g %%, "
+        "%.2f %% unlike\n",
+        name, seedsA, samplesA, kSeeds, samplesB, 100.0 * bias, 100.0 * count.alarms / trials,
+        100.0 * level, 100.0 * count.unlike / trials);
+    return count;
+}
+
+/// The most alarms of a test that gives them in the share `level`, but for one try in 10,000.
+int mostAlarms(int trials, double level) {
+    const double mean = trials * level;
+    return static_cast<int>(std::ceil(mean + 3.72 * std::sqrt(mean * (1.0 - level))));
+}
+
+struct Shape {
+    const char* name;
+    Noise noise;
+    bool hasHeavyTail;
+};
+const std::vector<Shape>& shapes() {
+    static const std::vector<Shape> kShapes = {{"gaussian", gaussian, false},
+                                               {"coin", coin, false},
+                                               {"exponential", exponential, false},
+                                               {"fireflies", fireflies, true},
+                                               {"infinite variance", heavyTail, true}};
+    return kShapes;
+}
+
+constexpr double kLevel = 0.05;
+
+TEST(MeanTest, GivesNoMoreFalseAlarmsThanDeclaredWhateverTheNoise) {
+    constexpr int kTrials = 400;
+    for (const auto& [name, noise, hasHeavyTail] : shapes()) {
+        const Count count = countOf(name, kTrials, kLevel, noise, 2, 2);
+        EXPECT_LE(count.alarms, mostAlarms(kTrials, kLevel)) << name;
+        EXPECT_LE(count.unlike, mostAlarms(kTrials, 0.01)) << name;
+    }
+}
+
+/// Four times the pictures of a quarter of the samples have the same noise.
+TEST(MeanTest, HoldsManyOfFewSamplesAgainstFewOfMany) {
+    constexpr int kTrials = 200;
+    for (const auto& [name, noise, hasHeavyTail] : shapes()) {
+        const Count count = countOf(name, kTrials, kLevel, noise, 1, 4, 0.0, 4 * kSeeds);
+        EXPECT_LE(count.alarms, mostAlarms(kTrials, kLevel)) << name;
+        EXPECT_LE(count.unlike, mostAlarms(kTrials, 0.01)) << name;
+    }
+}
+
+/// Unlike noise does no harm without heavy tails, and much of it is found to be unlike.
+TEST(MeanTest, KnowsUnlikeNoise) {
+    constexpr int kTrials = 200;
+    for (const auto& [name, noise, hasHeavyTail] : shapes()) {
+        if (hasHeavyTail) continue;
+        EXPECT_LE(countOf(name, kTrials, kLevel, noise, 2, 4).alarms, mostAlarms(kTrials, kLevel))
+            << name;
+        EXPECT_LE(countOf(name, kTrials, kLevel, noise, 1, 4).alarms, mostAlarms(kTrials, kLevel))
+            << name;
+        EXPECT_GE(countOf(name, kTrials, kLevel, noise, 1, 16).unlike, 0.9 * kTrials) << name;
+    }
+    countOf("fireflies", kTrials, kLevel, fireflies, 2, 3);
+    countOf("fireflies", kTrials, kLevel, fireflies, 2, 4);
+    countOf("fireflies", kTrials, kLevel, fireflies, 1, 16);
+    countOf("infinite variance", kTrials, kLevel, heavyTail, 2, 3);
+    countOf("infinite variance", kTrials, kLevel, heavyTail, 2, 4);
+}
+
+/// Gaussian noise of 50 % at 4 samples: a tile's mean is known to 50 % ÷ √(4 · 64) = 3.1 %, a
+/// difference of two sides' means to 1.8 %.
+TEST(MeanTest, FindsABiasOfATile) {
+    constexpr int kTrials = 100;
+    EXPECT_GE(countOf("gaussian", kTrials, 0.01, gaussian, 4, 4, 0.25).alarms, 95);
+    EXPECT_LE(countOf("gaussian", kTrials, 0.01, gaussian, 4, 4, 0.02).alarms, 30);
+    EXPECT_GE(countOf("exponential", kTrials, 0.01, exponential, 4, 4, 0.5).alarms, 95);
+}
+
+TEST(MeanTest, SaysWhichBiasItSees) {
+    constexpr int kTrials = 100;
+    Random random(7);
+    const double seen =
+        testMeans(pictures(kSeeds, gaussian, 4, random), pictures(kSeeds, gaussian, 4, random))
+            .seen;
+    EXPECT_GE(countOf("gaussian", kTrials, 0.01, gaussian, 4, 4, seen).alarms, kTrials / 2);
+    EXPECT_LE(countOf("gaussian", kTrials, 0.01, gaussian, 4, 4, 0.4 * seen).alarms, kTrials / 2);
+}
+
+/// Two-sided 5 %, 1 % and 0.1 % of tables of Student's distribution.
+TEST(MeanTest, KnowsStudentsDistribution) {
+    EXPECT_NEAR(studentP(12.706, 1), 0.05, 1e-5);
+    EXPECT_NEAR(studentP(4.303, 2), 0.05, 1e-5);
+    EXPECT_NEAR(studentP(5.841, 3), 0.01, 1e-5);
+    EXPECT_NEAR(studentP(2.228, 10), 0.05, 1e-4);
+    EXPECT_NEAR(studentP(5.041, 9), 0.0007, 1e-4);
+    EXPECT_NEAR(studentP(4.587, 10), 0.001, 1e-5);
+    EXPECT_NEAR(studentP(1.984, 100), 0.05, 1e-4);
+    EXPECT_EQ(studentP(0.0, 7), 1.0);
+    EXPECT_EQ(studentP(std::numeric_limits<double>::infinity(), 7), 0.0);
+}
+
+TEST(MeanTest, ComparesWhatHasNoNoise) {
+    const std::vector<std::vector<double>> zero(4, {0.0, 1.0}), one(4, {0.0, 1.5});
+    EXPECT_EQ(testMeans(zero, zero).p, 1.0);
+    EXPECT_EQ(testMeans(zero, one).p, 2.0 / 70.0);
+    EXPECT_EQ(testMeans(zero, zero).seen, std::numeric_limits<double>::infinity());
+}
+
+TEST(MeanTest, KnowsHowSureItCanBe) {
+    EXPECT_EQ(leastP(2, 2), 2.0 / 6.0);
+    EXPECT_EQ(leastP(6, 6), 2.0 / 924.0);
+    EXPECT_EQ(leastP(4, 8), 2.0 / 70.0);
+    EXPECT_EQ(leastP(30, 30), 1.0 / kMostDeals);
+    // Beyond all deals, some: a difference that is one comes to the least p.
+    std::vector<std::vector<double>> a, b;
+    Random random(3);
+    for (int i = 0; i < 12; ++i) {
+        a.push_back({normal(random)});
+        b.push_back({10.0 + normal(random)});
+    }
+    EXPECT_LT(testMeans(a, b).p, 3.0 / static_cast<double>(kMostDeals));
+}
+
+TEST(MeanTest, TakesTilesOfEverySize) {
+    ImageF image(20, 8, 1, 1.0F);
+    image.at(19, 7) = 33.0F;
+    // 8 × 8, 8 × 8, 4 × 8; 16 × 8, 4 × 8; all.
+    EXPECT_THAT(tileMeans(image), ElementsAre(1.0, 1.0, 2.0, 1.0, 2.0, 1.2));
+    const ImageF colours(4, 4, 3, 0.5F);
+    EXPECT_THAT(tileMeans(colours), ElementsAre(0.5, 0.5, 0.5));
+}
+
+}  // namespace
+}  // namespace gfxrepro::metrics
