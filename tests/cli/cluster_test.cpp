@@ -12,6 +12,7 @@ namespace gfxrepro::test {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -70,7 +71,7 @@ TEST(Plan, PredictsFromEarlierRuns) {
     EXPECT_THAT(after.out, HasSubstr("as " + dir + " tells\n"));
     const ProcessResult far = mockGfxrepro(
         {"plan", config, "--device", "software", "--from", dir, "--sweep", "number=2,8"});
-    EXPECT_THAT(planLine(far.out, 8), HasSubstr("120 s  -      -       -  "));
+    EXPECT_THAT(planLine(far.out, 8), ContainsRegex("120 s +- +- +- "));
     EXPECT_THAT(far.out, HasSubstr("no earlier run tells the time"))
         << "nothing rather than what is four times as much";
     EXPECT_THAT(mockGfxrepro({"plan", config, "--device", "software", "--from", dir, "--set",

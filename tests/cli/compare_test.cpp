@@ -146,7 +146,8 @@ TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
                       out, program("old", 0), program("new", 0, "0.75"), config});
     EXPECT_EQ(result.exitCode, 1) << result.err;
     EXPECT_NE(result.out.find("alarm; measuring again\n"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("sweep/mock mock picture/flat, number=1: changed: FLIP "), std::string::npos)
+    EXPECT_NE(result.out.find("sweep/mock mock picture/flat, number=1: changed: FLIP "),
+              std::string::npos)
         << result.out;
     EXPECT_NE(result.out.find("largest difference 0.25 (0 allowed)"), std::string::npos)
         << result.out;

@@ -373,7 +373,7 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
     EXPECT_THAT(described.out, HasSubstr("given back [1; 0 … 100]"));
     EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {number} {out}"));
     EXPECT_THAT(gfxrepro({"describe", write(kPicture)}).out,
-                HasSubstr("result.png: mse, rmse, rel_mse, psnr_db, ssim, flip\n"));
+                HasSubstr("result.png: mse, rmse, rel_mse, psnr_db, ssim, flip,"));
     EXPECT_THAT(gfxrepro({"describe", "external"}).out, HasSubstr("rel_mse"));
     const std::string other = folder.write(
         "other.yaml", "sweep_of: o\ntitle: T\ntechnique: mock\nprogram: {command: sh}\n");
