@@ -118,24 +118,27 @@ bool ChildProcess::isSuspended() const {
     return name != text.npos && (text[name + 2] == 'T' || text[name + 2] == 't');
 }
 
-/// Where the child has ended, what it started must not outlive it. As long as it is not reaped the
-/// group is surely its own.
-void ChildProcess::killWhatIsLeft() const {
+/// Whether the child has ended, and there is nothing left in its group but itself, to be reaped: as
+/// long as it is not, the group is surely its own, and what it started must not outlive it.
+bool ChildProcess::hasEndedAlone() const {
     siginfo_t ended{};
     const int flags = WEXITED | WNOHANG | WNOWAIT;
-    if (::waitid(P_PID, static_cast<id_t>(pid_), &ended, flags) == 0 && ended.si_pid == pid_) {
-        ::kill(-pid_, SIGKILL);
-    }
+    if (::waitid(P_PID, static_cast<id_t>(pid_), &ended, flags) != 0) return errno != EINTR;
+    if (ended.si_pid != pid_) return false;
+    ::kill(-pid_, SIGKILL);
+    return true;
 }
 
 std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point limit = Clock::now() + patience;
     for (auto pause = std::chrono::microseconds(100); !isReaped_; pause *= 2) {
-        killWhatIsLeft();
-        const pid_t ended = ::waitpid(pid_, &waitStatus_, WNOHANG);
-        isReaped_ = ended == pid_ || (ended < 0 && errno != EINTR);
-        if (isReaped_) break;
+        // Not waitpid first: what ends between a look and it would be reaped with its group alive.
+        if (hasEndedAlone()) {
+            const pid_t ended = ::waitpid(pid_, &waitStatus_, WNOHANG);
+            isReaped_ = ended == pid_ || (ended < 0 && errno != EINTR);
+            if (isReaped_) break;
+        }
         if (Clock::now() >= limit) return std::nullopt;
         pause = std::min(pause, std::chrono::microseconds(20'000));
         std::this_thread::sleep_for(pause);

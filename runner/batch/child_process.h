@@ -49,7 +49,7 @@ class ChildProcess {
 
   private:
     void killWhatItStarted() const;
-    void killWhatIsLeft() const;
+    bool hasEndedAlone() const;
 
     pid_t pid_ = -1;
     int inputFd_ = -1;
