@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "runner/core/text.h"
 
@@ -36,8 +37,9 @@ std::optional<Value> valueOf(const Json& json, const char* key) {
     return found->get<Value>();
 }
 
+/// To a hundredth of a percent: what is less is the remainder of a subtraction.
 std::string percentText(double share) {
-    return fmt::format("{:.3g} %", 100.0 * share);
+    return fmt::format("{:.3g} %", std::round(1e4 * share) / 1e2);
 }
 
 }  // namespace

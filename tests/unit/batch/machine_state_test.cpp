@@ -80,6 +80,17 @@ TEST(MachineState, DoesNotCountOurOwnWorkAsThatOfOthers) {
               "processors, the host 0 %.");
 }
 
+TEST(MachineState, SaysNothingOfARemainder) {
+    Machine machine;
+    const MachineReading before = machine.read();
+    machine.busyS += 3.0;
+    machine.workerS += 2.9999;  // of twenty seconds of two processors
+    machine.idleS += 17.0;
+    EXPECT_EQ(stateOf(before, machine.read()).sentence(),
+              "The machine was quiet while this was timed: other processes took 0 % of 2 "
+              "processors, the host 0 %.");
+}
+
 TEST(MachineState, IsLoadedByTheWorkOfOthers) {
     Machine machine;
     const MachineReading before = machine.read();
