@@ -37,7 +37,7 @@ std::string fileFor(const SourceLocation& where) {
 }
 
 /// With the claim's line in its config as it is now: a plan does not keep it.
-SourceLocation placeOf(const report::ClaimResult& claim) {
+SourceLocation placeOf(const claims::ClaimResult& claim) {
     if (claim.where.line > 0) return claim.where;
     try {
         const config::Node document = config::parseYamlFile(claim.where.file.text());
@@ -87,16 +87,16 @@ void annotate(const std::exception& error) {
     annotateError(own ? own->where() : SourceLocation{}, "", error.what());
 }
 
-void annotate(const std::vector<report::CaseResult>& cases) {
-    for (const report::CaseResult& one : cases) {
-        if (one.outcome != report::CaseResult::Outcome::Failed) continue;
+void annotate(const std::vector<records::CaseResult>& cases) {
+    for (const records::CaseResult& one : cases) {
+        if (one.outcome != records::CaseResult::Outcome::Failed) continue;
         annotateError(one.where, one.title, one.text);
     }
 }
 
-void annotate(const std::vector<report::ClaimResult>& claims) {
-    for (const report::ClaimResult& claim : claims) {
-        if (claim.verdict != report::Verdict::Fails || !areAnnotationsWanted()) continue;
+void annotate(const std::vector<claims::ClaimResult>& claims) {
+    for (const claims::ClaimResult& claim : claims) {
+        if (claim.verdict != claims::Verdict::Fails || !areAnnotationsWanted()) continue;
         write(claim.isNews() ? "error" : "notice", placeOf(claim),
               fmt::format("{} {} fails", claim.table, claim.id),
               fmt::format("{}; measured {}, required {}", claim.text, claim.measured,

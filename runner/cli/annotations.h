@@ -7,8 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "runner/claims/claims.h"
 #include "runner/core/error.h"
-#include "runner/report/report.h"
+#include "runner/records/case_result.h"
 
 namespace gfxrepro::cli {
 
@@ -28,7 +29,7 @@ void annotate(const std::exception& error);
 
 /// Of a run: an error for each case and each claim that failed; of a claim that is known to fail, a
 /// notice.
-void annotate(const std::vector<report::CaseResult>& cases);
-void annotate(const std::vector<report::ClaimResult>& claims);
+void annotate(const std::vector<records::CaseResult>& cases);
+void annotate(const std::vector<claims::ClaimResult>& claims);
 
 }  // namespace gfxrepro::cli

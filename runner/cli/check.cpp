@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "runner/batch/ledger.h"
+#include "runner/claims/claims.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/expectation_lists.h"
@@ -16,9 +16,9 @@
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/report/claims.h"
-#include "runner/report/figure.h"
-#include "runner/report/printed_values.h"
+#include "runner/run/ledger.h"
+#include "runner/tables/figure.h"
+#include "runner/tables/printed_values.h"
 
 namespace gfxrepro::cli {
 
@@ -27,23 +27,23 @@ namespace {
 /// Says which claims and plots the profile or an override leaves without what they read in the file
 /// as it stands: they will be unmeasured, or left out.
 void sayUnread(const Context& context, const scene::Catalog& catalog, const std::string& file,
-               const config::Experiment& experiment, const report::Table& table) {
+               const config::Experiment& experiment, const tables::Table& table) {
     const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
-    const std::vector<batch::Case> cases =
-        batch::resolveParameters(whole, catalog, context.techniques, 1);
-    const report::Table wholeTable = report::buildTable(whole, batch::plannedCases(cases), {});
+    const std::vector<run::Case> cases =
+        run::resolveParameters(whole, catalog, context.techniques, 1);
+    const tables::Table wholeTable = tables::buildTable(whole, run::plannedCases(cases), {});
     for (const config::ClaimSpec& claim : experiment.claims) {
-        const std::string absent = report::whatIsAbsent(claim, table);
+        const std::string absent = claims::whatIsAbsent(claim, table);
         const auto then = std::ranges::find(whole.claims, claim.id, &config::ClaimSpec::id);
         const bool isOurs =
-            then == whole.claims.end() || report::whatIsAbsent(*then, wholeTable).empty();
+            then == whole.claims.end() || claims::whatIsAbsent(*then, wholeTable).empty();
         if (absent.empty() || !isOurs) continue;
         say("{}: claim '{}' will be unmeasured: {}\n", file, claim.id, absent);
     }
     for (std::size_t i = 0; i < experiment.plots.size(); ++i) {
-        const std::string absent = report::whatIsAbsent(experiment.plots[i], table);
+        const std::string absent = tables::whatIsAbsent(experiment.plots[i], table);
         const bool isOurs =
-            i >= whole.plots.size() || report::whatIsAbsent(whole.plots[i], wholeTable).empty();
+            i >= whole.plots.size() || tables::whatIsAbsent(whole.plots[i], wholeTable).empty();
         if (absent.empty() || !isOurs) continue;
         say("{}: plot {} will be left out: {}\n", file, i + 1, absent);
     }
@@ -53,16 +53,16 @@ void sayUnread(const Context& context, const scene::Catalog& catalog, const std:
 void requirePrinted(const Context& context, const scene::Catalog& catalog,
                     const std::string& file) {
     std::optional<config::Experiment> whole;
-    std::vector<report::Table> tables;
+    std::vector<tables::Table> tables;
     for (const char* profile : {"full", "quick", "paper"}) {
         const config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
         if (one.technique.empty() || one.printed.rows.empty()) return;
-        const std::vector<batch::Case> cases =
-            batch::resolveParameters(one, catalog, context.techniques, 1);
-        tables.push_back(report::buildTable(one, batch::plannedCases(cases), {}));
+        const std::vector<run::Case> cases =
+            run::resolveParameters(one, catalog, context.techniques, 1);
+        tables.push_back(tables::buildTable(one, run::plannedCases(cases), {}));
         if (!whole) whole = one;
     }
-    report::requirePrintedValues(*whole, tables);
+    tables::requirePrintedValues(*whole, tables);
 }
 
 /// Throws Error for a sweep that the text names ("sweeps/NAME") and that is not among the configs.
@@ -97,9 +97,9 @@ void requireNamedSweeps(const config::Node& node) {
 }
 
 /// Reads the user's own files, each once: what is wrong in one would be found by the first case.
-void requireReadable(const std::vector<batch::Case>& cases, const scene::Catalog& catalog) {
+void requireReadable(const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
     std::set<std::string> read;
-    for (const batch::Case& item : cases) {
+    for (const run::Case& item : cases) {
         const bool isOwn = !item.scene.isNull() && config::isSceneFile(item.scene.text());
         if (!isOwn || !read.insert(item.scene.text()).second) continue;
         try {
@@ -111,9 +111,9 @@ void requireReadable(const std::vector<batch::Case>& cases, const scene::Catalog
 }
 
 /// Says which programs are not on this machine: other machines may have them.
-void sayAbsent(const std::string& file, const std::vector<batch::Case>& cases) {
+void sayAbsent(const std::string& file, const std::vector<run::Case>& cases) {
     std::set<std::string> absent;
-    for (const batch::Case& item : cases) {
+    for (const run::Case& item : cases) {
         if (item.program.isNull()) continue;
         const config::Program program = config::readProgram(item.program);
         const auto files = config::filesOf(program, program.valuesOf(item.params));
@@ -129,14 +129,14 @@ void sayAbsent(const std::string& file, const std::vector<batch::Case>& cases) {
 
 int check(const Context& context, const Selection& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
-    batch::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
+    run::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
     for (const std::string& file : selection.names) {
         request.configs = {file};
         config::Experiment experiment = loadExperiments(request, selection.profile).front();
-        const std::vector<batch::Case> cases =
-            batch::resolveCases(experiment, catalog, context.techniques, 1);
-        batch::bindAssumptions(experiment, cases, catalog, context.techniques);
-        batch::requireRanges(experiment, cases, catalog, context.techniques);
+        const std::vector<run::Case> cases =
+            run::resolveCases(experiment, catalog, context.techniques, 1);
+        run::bindAssumptions(experiment, cases, catalog, context.techniques);
+        run::requireRanges(experiment, cases, catalog, context.techniques);
         requireReadable(cases, catalog);
         requirePrinted(context, catalog, file);
         for (const char* section : {"claims", "assumptions", "printed"}) {
@@ -145,9 +145,9 @@ int check(const Context& context, const Selection& selection) {
         }
         sayAbsent(file, cases);
         const std::size_t caseCount = cases.size();
-        const report::Table table = report::buildTable(experiment, batch::plannedCases(cases), {});
-        report::requireProvenance(experiment, table);
-        batch::resolvePaperCases(experiment, catalog, context.techniques);
+        const tables::Table table = tables::buildTable(experiment, run::plannedCases(cases), {});
+        claims::requireProvenance(experiment, table);
+        run::resolvePaperCases(experiment, catalog, context.techniques);
         say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
             caseCount == 1 ? "" : "s", experiment.claims.size(),
             experiment.claims.size() == 1 ? "" : "s");

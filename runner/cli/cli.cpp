@@ -8,9 +8,6 @@
 #include <cstring>
 #include <functional>
 
-#include "runner/batch/manifest.h"
-#include "runner/batch/submission.h"
-#include "runner/batch/worker.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
@@ -20,7 +17,11 @@
 #include "runner/cli/image_commands.h"
 #include "runner/cli/man_page.h"
 #include "runner/cli/parse.h"
+#include "runner/cluster/submission.h"
 #include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/run/manifest.h"
+#include "runner/run/worker.h"
 
 namespace gfxrepro::cli {
 
@@ -35,7 +36,7 @@ struct Options {
     SubmitOptions submit;
     SensitivityOptions sensitivity;
     DescribeOptions describe;
-    batch::WorkerOptions worker;
+    run::WorkerOptions worker;
     std::string name;                 // of list; a run directory; a shell
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
@@ -317,7 +318,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
         o.command = [&] {
             o.worker.lane =
                 o.lane == "timing" ? config::Measure::Lane::Timing : config::Measure::Lane::Quality;
-            batch::runWorker(o.worker, context.techniques, context.generators);
+            run::runWorker(o.worker, context.techniques, context.generators);
             return kExitOk;
         };
     });
@@ -350,12 +351,12 @@ int runCommand(int argc, const char* const* argv,
                std::span<const technique::TechniqueInfo> techniques,
                std::span<const scene::GeneratorInfo> generators) {
     Context context{techniques, generators, "gfxrepro", std::chrono::steady_clock::now()};
-    for (int i = 1; i < argc; ++i) context.commandLine += ' ' + batch::shellQuoted(argv[i]);
+    for (int i = 1; i < argc; ++i) context.commandLine += ' ' + shellQuoted(argv[i]);
     Options options;
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
     app.require_subcommand(0, 1);  // what follows a command is no other one: describe scene
     app.set_help_flag("-h,--help", "this text");
-    app.set_version_flag("--version", "gfxrepro " + batch::programCommit());
+    app.set_version_flag("--version", "gfxrepro " + run::programCommit());
     addQueries(app, context, options);
     addRuns(app, context, options);
     addCluster(app, context, options);

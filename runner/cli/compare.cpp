@@ -8,10 +8,6 @@
 #include <map>
 #include <set>
 
-#include "runner/batch/child_process.h"
-#include "runner/batch/made_from.h"
-#include "runner/batch/manifest.h"
-#include "runner/batch/run.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -20,6 +16,10 @@
 #include "runner/regression/history.h"
 #include "runner/regression/pictures.h"
 #include "runner/regression/summary.h"
+#include "runner/results/made_from.h"
+#include "runner/run/child_process.h"
+#include "runner/run/manifest.h"
+#include "runner/run/run.h"
 
 namespace gfxrepro::cli {
 
@@ -52,13 +52,13 @@ struct Measured {
 };
 
 /// Of flaky cases, too.
-regression::CaseTexts unexpectedFailures(const batch::StoredRun& run,
+regression::CaseTexts unexpectedFailures(const run::StoredRun& run,
                                          const regression::CaseParams& params) {
-    const batch::Expectations expectations = batch::expectationsOf(run.plan, run.manifest);
-    std::map<std::string, const batch::Case*> cases;
-    for (const batch::Case& item : run.plan.cases) cases[item.id] = &item;
-    std::vector<report::Record> rows;
-    std::ranges::copy_if(run.records, std::back_inserter(rows), [&](const report::Record& row) {
+    const run::Expectations expectations = run::expectationsOf(run.plan, run.manifest);
+    std::map<std::string, const run::Case*> cases;
+    for (const run::Case& item : run.plan.cases) cases[item.id] = &item;
+    std::vector<records::Record> rows;
+    std::ranges::copy_if(run.records, std::back_inserter(rows), [&](const records::Record& row) {
         const auto item = cases.find(row.caseId);
         return item == cases.end() || !expectations.isExpected(*item->second, row.status);
     });
@@ -66,24 +66,24 @@ regression::CaseTexts unexpectedFailures(const batch::StoredRun& run,
 }
 
 Measured readMeasured(const fs::path& runDir) {
-    const batch::StoredRun run = batch::readRun(runDir);
+    const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
-    for (const batch::Case& item : run.plan.cases) params[item.id] = item.recordedParams().dump();
+    for (const run::Case& item : run.plan.cases) params[item.id] = item.recordedParams().dump();
     Measured measured{regression::seriesOf(run.records, params),
                       regression::failuresOf(run.records, params),
                       regression::voidTimesOf(run.records, params),
                       regression::untimedCases(run.records),
                       unexpectedFailures(run, params),
-                      batch::machineName(run.manifest),
+                      run::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       run.plan.deviceClass == "software",
                       {},
-                      batch::notesOf(run.manifest),
+                      run::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records, params),
                       {},
                       run.plan.buildId,
-                      batch::madeFromLine(runDir, run.manifest)};
-    for (const batch::ProgramUse& use : batch::programsOf(run.manifest)) {
+                      results::madeFromLine(runDir, run.manifest)};
+    for (const run::ProgramUse& use : run::programsOf(run.manifest)) {
         measured.programs[use.file] =
             use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
     }
@@ -115,7 +115,7 @@ std::vector<Difference> comparePictures(const Measured& older, const Measured& n
 /// Runs a program to its end; its output is shown when it fails. Exit code 4 (a case did not
 /// finish) passes: the records tell how.
 void runProgram(const std::vector<std::string>& arguments) {
-    const batch::ProgramEnd end = batch::runToEnd(arguments, kRunLimit);
+    const run::ProgramEnd end = run::runToEnd(arguments, kRunLimit);
     if (end.exitCode == kExitOk || end.exitCode == kExitIncomplete) return;
     const std::string problem =
         fmt::format("{}: exit code {}: {}", arguments.front(), end.exitCode, end.output);
@@ -198,7 +198,7 @@ class Turns {
 std::vector<regression::SeriesStep> keepHistory(const std::string& path, const Measured& measured) {
     regression::SeriesMap night = measured.series, same = measured.series;
     regression::chooseTimes(night, same, measured.isSoftware);
-    regression::appendNight(path, {batch::utcTime(), measured.commit, measured.machine, night});
+    regression::appendNight(path, {run::utcTime(), measured.commit, measured.machine, night});
     return regression::findSteps(regression::readHistory(path, measured.machine));
 }
 
@@ -290,7 +290,7 @@ int compare(const CompareOptions& options) {
                                              : "compare: needs two run directories");
     }
     const fs::path folder =
-        options.out.empty() ? batch::defaultRunPath("compare") : fs::path(options.out);
+        options.out.empty() ? run::defaultRunPath("compare") : fs::path(options.out);
     regression::Comparison comparison;
     Measured newer;
     if (options.areBinaries) {
@@ -301,8 +301,8 @@ int compare(const CompareOptions& options) {
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
-        batch::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
-        batch::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        results::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        results::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {

@@ -185,7 +185,7 @@ PairNames pairNamesOf(const Words& tables, const Context& context) {
     PairNames found;
     std::set<std::string> techniques;
     try {
-        batch::Request request;
+        run::Request request;
         if (!tables.empty()) request.configs = findPaperConfigs(tables);
         for (const config::Experiment& experiment : loadExperiments(request, "full")) {
             techniques.insert(experiment.technique);

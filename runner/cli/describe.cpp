@@ -345,7 +345,7 @@ int describe(const Context& context, const DescribeOptions& options) {
         describeScene(entry->second, catalog);
         return kExitOk;
     }
-    batch::Request request;
+    run::Request request;
     for (const std::filesystem::path& file : paperConfigs()) {
         request.configs.push_back(file.string());
     }

@@ -9,8 +9,6 @@
 #include <numeric>
 #include <sstream>
 
-#include "runner/batch/manifest.h"
-#include "runner/batch/protocol.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -23,6 +21,8 @@
 #include "runner/gl/gpu_nodes.h"
 #include "runner/gl/vendor_libraries.h"
 #include "runner/raycast/embree.h"
+#include "runner/run/manifest.h"
+#include "runner/run/protocol.h"
 
 namespace gfxrepro::cli {
 
@@ -36,7 +36,7 @@ constexpr double kBytesPerGib = 1024.0 * 1024.0 * 1024.0;
 Json devicesJson(const std::vector<gl::DeviceReport>& reports) {
     Json devices = Json::array();
     for (const gl::DeviceReport& report : reports) {
-        Json device = batch::toJson(report.info);
+        Json device = run::toJson(report.info);
         device["problem"] = report.problem;
         const gl::DeviceLimits& limits = report.limits;
         device["limits"] = {{"max_texture_size_px", limits.maxTextureSizePx},
@@ -167,8 +167,8 @@ Json gather(const std::vector<gl::DeviceReport>& reports, const scene::Catalog& 
             const MachineFacts& facts) {
     Json scenes = Json::object();
     for (const auto& [name, entry] : catalog.entries()) scenes[name] = sceneState(catalog, name);
-    return {{"commit", batch::programCommit()},
-            {"build", batch::programBuild()},
+    return {{"commit", run::programCommit()},
+            {"build", run::programBuild()},
             {"devices", devicesJson(reports)},
             {"embree", {{"version", embreeVersion()}, {"cpu_isa", facts.cpuIsa}}},
             {"assets", {{"folder", facts.assetsFolder}, {"exists", facts.hasAssets}}},

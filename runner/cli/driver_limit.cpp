@@ -5,8 +5,8 @@
 #include <csignal>
 #include <string_view>
 
-#include "runner/batch/worker_handle.h"
 #include "runner/cli/commands.h"
+#include "runner/run/worker_handle.h"
 
 namespace gfxrepro::cli {
 
@@ -22,7 +22,7 @@ void giveUp(int) {
 
 DriverLimit::DriverLimit() {
     std::signal(SIGALRM, giveUp);
-    ::alarm(static_cast<unsigned>(batch::WorkerHandle::startLimit().count()));
+    ::alarm(static_cast<unsigned>(run::WorkerHandle::startLimit().count()));
 }
 
 DriverLimit::~DriverLimit() {

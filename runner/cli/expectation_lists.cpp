@@ -5,10 +5,10 @@
 #include <map>
 #include <set>
 
-#include "runner/batch/expectations.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/run/expectations.h"
 
 namespace gfxrepro::cli {
 
@@ -37,23 +37,23 @@ class Folder {
         }
     }
 
-    void require(const batch::Expectation& entry) {
+    void require(const run::Expectation& entry) {
         const auto table = tables_.find(entry.table);
         if (table == tables_.end()) {
             throw Error(entry.location, "table: no config beside the list is '" + entry.table +
                                             "'" + suggestion(entry.table, names_));
         }
-        batch::requireKnown(entry, casesOf(table->second));
+        run::requireKnown(entry, casesOf(table->second));
     }
 
   private:
     struct Table {
         fs::path file;
         std::vector<std::string> profiles;
-        std::vector<batch::Case> cases = {};
+        std::vector<run::Case> cases = {};
     };
 
-    const std::vector<batch::Case>& casesOf(Table& table) {
+    const std::vector<run::Case>& casesOf(Table& table) {
         if (!table.cases.empty()) return table.cases;
         std::vector<std::string> profiles = table.profiles;
         profiles.emplace_back("full");
@@ -62,7 +62,7 @@ class Folder {
             options.profile = profile;
             const config::Experiment experiment =
                 config::loadExperiment(table.file, options, dataFolder("configs"));
-            std::ranges::move(batch::resolveCases(experiment, catalog_, context_.techniques, 1),
+            std::ranges::move(run::resolveCases(experiment, catalog_, context_.techniques, 1),
                               std::back_inserter(table.cases));
         }
         return table.cases;
@@ -86,16 +86,16 @@ std::vector<Error> unknownExpectations(const Context& context,
     }
     std::vector<Error> unknown;
     for (const fs::path& path : folders) {
-        std::vector<batch::Expectation> entries;
+        std::vector<run::Expectation> entries;
         for (const std::string& deviceClass : deviceClasses) {
             const fs::path list = path / ("expect-" + deviceClass + ".yaml");
             if (!fs::exists(list)) continue;
-            std::ranges::move(batch::readExpectations({list, readFile(list)}),
+            std::ranges::move(run::readExpectations({list, readFile(list)}),
                               std::back_inserter(entries));
         }
         if (entries.empty()) continue;
         Folder folder(context, path, assets);
-        for (const batch::Expectation& entry : entries) {
+        for (const run::Expectation& entry : entries) {
             try {
                 folder.require(entry);
             } catch (const Error& error) {

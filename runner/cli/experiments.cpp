@@ -7,13 +7,13 @@
 #include <cstring>
 #include <set>
 
-#include "runner/batch/case_filter.h"
-#include "runner/batch/expectations.h"
-#include "runner/batch/scheduler.h"
 #include "runner/cli/console.h"
 #include "runner/config/imported.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/run/case_filter.h"
+#include "runner/run/expectations.h"
+#include "runner/run/scheduler.h"
 
 namespace gfxrepro::cli {
 
@@ -139,7 +139,7 @@ std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names)
     return found;
 }
 
-std::vector<config::Experiment> loadExperiments(const batch::Request& request,
+std::vector<config::Experiment> loadExperiments(const run::Request& request,
                                                 const std::string& profile) {
     config::ExperimentOptions options;
     options.profile = profile;
@@ -157,8 +157,8 @@ std::vector<config::Experiment> loadExperiments(const batch::Request& request,
     return experiments;
 }
 
-batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {
-    batch::Request request{{}, selection.sets, selection.sweeps, selection.only, selection.device};
+run::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {
+    run::Request request{{}, selection.sets, selection.sweeps, selection.only, selection.device};
     for (const std::string& file : files) {
         request.configs.push_back(fs::absolute(file).lexically_normal());
     }
@@ -168,9 +168,9 @@ batch::Request requestOf(const Selection& selection, const std::vector<std::stri
 std::string deviceClassFor(const Selection& selection) {
     if (selection.device == "software" || selection.device == "gpu") return selection.device;
     try {
-        batch::PhaseClock phases;
+        run::PhaseClock phases;
         const gl::DeviceInfo device =
-            batch::probeDevice({selection.device, assetsFolder(selection.assets), 1, {}}, phases);
+            run::probeDevice({selection.device, assetsFolder(selection.assets), 1, {}}, phases);
         return device.isSoftware ? "software" : "gpu";
     } catch (const NoDeviceError&) {
         return "software";
@@ -191,20 +191,18 @@ std::string deviceFor(const Context& context, const std::string& asked,
                                                                                       : asked;
 }
 
-batch::Plan planFor(const Context& context, const batch::Request& request,
-                    const std::string& profile, const std::string& assets,
-                    const std::string& deviceClass) {
+run::Plan planFor(const Context& context, const run::Request& request, const std::string& profile,
+                  const std::string& assets, const std::string& deviceClass) {
     const std::vector<config::Experiment> experiments = loadExperiments(request, profile);
     const bool needsNone = deviceFor(context, request.device, experiments) == "none";
-    batch::Plan plan =
-        batch::makePlan(experiments, openCatalog(context, assets), context.techniques, profile,
-                        needsNone ? "software" : deviceClass, kSeed);
+    run::Plan plan = run::makePlan(experiments, openCatalog(context, assets), context.techniques,
+                                   profile, needsNone ? "software" : deviceClass, kSeed);
     plan.request = request;
-    batch::keepOnly(plan, request.only);
+    run::keepOnly(plan, request.only);
     return plan;
 }
 
-void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequence) {
+void warnOfChangedConfigs(const run::Plan& plan, const std::string& consequence) {
     std::vector<config::Experiment> now;
     std::string problem;
     try {
@@ -218,16 +216,16 @@ void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequenc
         problem = planned.file.string() + " changed";
     }
     if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
-    for (const std::string& list : batch::changedExpectations(plan)) {
+    for (const std::string& list : run::changedExpectations(plan)) {
         tell("warning: {}; {}\n", list, consequence);
     }
 }
 
-batch::Plan submittedPlan(const Context& context, const std::string& file,
-                          const std::string& assets) {
-    batch::Plan plan = batch::Plan::fromJsonFile(file);
+run::Plan submittedPlan(const Context& context, const std::string& file,
+                        const std::string& assets) {
+    run::Plan plan = run::Plan::fromJsonFile(file);
     const std::string reason =
-        batch::whyNotResumable(plan, plan.deviceClass, openCatalog(context, assets));
+        run::whyNotResumable(plan, plan.deviceClass, openCatalog(context, assets));
     if (!reason.empty()) {
         throw Error(file + ": cannot be measured: " + reason + "; submit again, to another folder");
     }
@@ -235,7 +233,7 @@ batch::Plan submittedPlan(const Context& context, const std::string& file,
     return plan;
 }
 
-std::string runSlug(const batch::Plan& plan) {
+std::string runSlug(const run::Plan& plan) {
     if (plan.experiments.empty()) return "empty";
     if (plan.experiments.size() == 1) return plan.experiments.front().slug();
     const std::string& id = plan.experiments.front().id;

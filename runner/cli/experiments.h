@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/batch/plan.h"
 #include "runner/cli/commands.h"
+#include "runner/run/plan.h"
 #include "runner/scene/catalog.h"
 
 namespace gfxrepro::cli {
@@ -30,11 +30,11 @@ bool isYamlFile(const std::filesystem::path& name);
 /// Throws UsageError for names that are none, with the nearest.
 std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names);
 
-std::vector<config::Experiment> loadExperiments(const batch::Request& request,
+std::vector<config::Experiment> loadExperiments(const run::Request& request,
                                                 const std::string& profile);
 
 /// What a selection asks for; its files as absolute paths.
-batch::Request requestOf(const Selection& selection, const std::vector<std::string>& files);
+run::Request requestOf(const Selection& selection, const std::vector<std::string>& files);
 
 /// "software" | "gpu". A case's identity holds it; a machine without a device plans for software.
 std::string deviceClassFor(const Selection& selection);
@@ -43,21 +43,19 @@ std::string deviceClassFor(const Selection& selection);
 std::string deviceFor(const Context& context, const std::string& asked,
                       const std::vector<config::Experiment>& experiments);
 
-batch::Plan planFor(const Context& context, const batch::Request& request,
-                    const std::string& profile, const std::string& assets,
-                    const std::string& deviceClass);
+run::Plan planFor(const Context& context, const run::Request& request, const std::string& profile,
+                  const std::string& assets, const std::string& deviceClass);
 
 /// What is measured is what was planned; that a config says something else by now is worth a word,
 /// with what comes of it.
-void warnOfChangedConfigs(const batch::Plan& plan, const std::string& consequence);
+void warnOfChangedConfigs(const run::Plan& plan, const std::string& consequence);
 
 /// A plan as it was frozen when it was submitted; warns of changed configs. Throws Error where the
 /// program or a scene is another by now, or the plan itself was changed.
-batch::Plan submittedPlan(const Context& context, const std::string& file,
-                          const std::string& assets);
+run::Plan submittedPlan(const Context& context, const std::string& file, const std::string& assets);
 
 /// "zju2005-2.1" for one experiment, "zju2005" for several of a paper.
-std::string runSlug(const batch::Plan& plan);
+std::string runSlug(const run::Plan& plan);
 
 scene::Catalog openCatalog(const Context& context, const std::string& assets);
 

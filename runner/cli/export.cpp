@@ -1,12 +1,12 @@
 // A run as a folder for others.
 #include <filesystem>
 
-#include "runner/batch/artifact.h"
-#include "runner/batch/tidy.h"
 #include "runner/cli/console.h"
 #include "runner/cli/data_commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
+#include "runner/results/artifact.h"
+#include "runner/results/tidy.h"
 
 namespace gfxrepro::cli {
 
@@ -14,11 +14,11 @@ int exportRun(const Context& context, const ExportOptions& options) {
     const std::string target = options.out.empty()
                                    ? options.runDir + (options.isTidy ? "-tidy" : "-artifact")
                                    : options.out;
-    const batch::StoredRun run = batch::readRun(options.runDir);
+    const run::StoredRun run = run::readRun(options.runDir);
     if (options.isTidy) {
-        batch::writeTidy(options.runDir, run, target);
+        results::writeTidy(options.runDir, run, target);
     } else {
-        batch::writeArtifact(options.runDir, run, openCatalog(context, options.assets), target);
+        results::writeArtifact(options.runDir, run, openCatalog(context, options.assets), target);
     }
     sayNotes(run.manifest);
     say("{}\n", target);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "runner/batch/twins.h"
 #include "runner/core/text.h"
+#include "runner/run/twins.h"
 
 namespace gfxrepro::cli {
 
@@ -32,26 +32,26 @@ struct TimedRounds {
 
 /// The newest runs that can be read.
 History newestHistory(const std::string& deviceClass) {
-    std::vector<batch::PastCase> past;
+    std::vector<cluster::PastCase> past;
     std::vector<std::string> sources;
-    for (const fs::path& run : batch::newestRuns("runs", deviceClass, kRunsLookedAt)) {
+    for (const fs::path& run : cluster::newestRuns("runs", deviceClass, kRunsLookedAt)) {
         // An old run of another version must not stop a new one: what cannot be read tells nothing.
         try {
-            std::vector<batch::PastCase> more = batch::readPastCases(run);
+            std::vector<cluster::PastCase> more = cluster::readPastCases(run);
             if (more.empty()) continue;
             std::ranges::move(more, std::back_inserter(past));
             sources.push_back(run.string());
         } catch (const std::exception&) {
         }
     }
-    return {batch::Predictor(std::move(past)), std::move(sources)};
+    return {cluster::Predictor(std::move(past)), std::move(sources)};
 }
 
 }  // namespace
 
 History openHistory(const std::vector<std::string>& from, const std::string& deviceClass) {
     if (from.empty()) return newestHistory(deviceClass);
-    return {batch::Predictor::from({from.begin(), from.end()}), from};
+    return {cluster::Predictor::from({from.begin(), from.end()}), from};
 }
 
 std::string durationText(double timeS) {
@@ -69,16 +69,16 @@ std::string memoryText(double bytes) {
     return mib < 1000.0 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024.0);
 }
 
-std::string forecastText(const batch::Plan& plan, const History& history, int jobs) {
+std::string forecastText(const run::Plan& plan, const History& history, int jobs) {
     double timeS = 0.0;
     long long memoryBytes = 0;
     std::map<std::string_view, TimedRounds> timed;  // by experiment
     bool isAnyKnown = false;
-    const std::vector<std::size_t> firsts = batch::firstTwins(plan.cases);
+    const std::vector<std::size_t> firsts = run::firstTwins(plan.cases);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-        const batch::Case& item = plan.cases[i];
+        const run::Case& item = plan.cases[i];
         if (!plan.measures(item) || firsts[i] != i) continue;
-        const std::optional<batch::Prediction> known = history.predictor.predict(item);
+        const std::optional<cluster::Prediction> known = history.predictor.predict(item);
         if (!known || !known->isTold) return "";
         isAnyKnown = true;
         memoryBytes = std::max(memoryBytes, known->memoryBytes);

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "runner/batch/predictions.h"
+#include "runner/cluster/predictions.h"
 
 namespace gfxrepro::cli {
 
 /// Predictions and where they come from.
 struct History {
-    batch::Predictor predictor;
+    cluster::Predictor predictor;
     std::vector<std::string> sources;  // run directories, or a file of predictions
 };
 
@@ -26,6 +26,6 @@ std::string memoryText(double bytes);
 /// "expect about 12 min and at most 310 MiB a case, as runs/a tells" for the cases of the plan (of
 /// its shard; twins are measured once), with `jobs` quality cases at once; rounds that a budget may
 /// end count as far as it lasts. Empty where of any case no earlier run tells its time.
-std::string forecastText(const batch::Plan& plan, const History& history, int jobs);
+std::string forecastText(const run::Plan& plan, const History& history, int jobs);
 
 }  // namespace gfxrepro::cli

@@ -1,11 +1,11 @@
 // Numbers that were measured elsewhere become a run.
 #include <filesystem>
 
-#include "runner/batch/import_run.h"
 #include "runner/cli/console.h"
 #include "runner/cli/data_commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
+#include "runner/results/import_run.h"
 
 namespace gfxrepro::cli {
 
@@ -26,7 +26,7 @@ std::pair<std::string, std::string> metricFrom(const std::string& text) {
 }  // namespace
 
 int importRun(const Context& context, const ImportOptions& options) {
-    batch::ImportRequest request;
+    results::ImportRequest request;
     request.files = {options.file, options.cases, {}};
     for (const std::string& metric : options.metrics) {
         request.files.metrics.push_back(metricFrom(metric));
@@ -40,18 +40,18 @@ int importRun(const Context& context, const ImportOptions& options) {
         request.experiments = loadExperiments(
             requestOf(selection, findPaperConfigs(options.configs)), options.profile);
     }
-    const batch::StoredRun run =
-        batch::importRun(request, openCatalog(context, options.assets), context.techniques);
+    const run::StoredRun run =
+        results::importRun(request, openCatalog(context, options.assets), context.techniques);
     const fs::path dir =
-        options.out.empty() ? batch::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
+        options.out.empty() ? run::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
     {
-        const batch::RunDirectory directory = batch::RunDirectory::create(dir);
-        batch::writeImported(directory, run);
+        const run::RunDirectory directory = run::RunDirectory::create(dir);
+        results::writeImported(directory, run);
     }
     say("imported {} numbers of {} case{} into {}\n", run.records.size(), run.plan.cases.size(),
         run.plan.cases.size() == 1 ? "" : "s", dir.string());
     const int verdict = conclude(dir);
-    const batch::Completeness counts = batch::completeness(run);
+    const run::Completeness counts = run::completeness(run);
     if (counts.isComplete()) return verdict;
     say("incomplete: {} not measured, {} failed\n", counts.missing, counts.failed);
     return kExitIncomplete;

@@ -20,7 +20,7 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;  // name and what it is
 
 Rows tables() {
-    batch::Request request;
+    run::Request request;
     for (const fs::path& file : paperConfigs()) request.configs.push_back(file.string());
     Rows rows;
     for (const config::Experiment& experiment : loadExperiments(request, "full")) {

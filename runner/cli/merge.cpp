@@ -1,5 +1,5 @@
 // Shards into one run.
-#include "runner/batch/merge.h"
+#include "runner/cluster/merge.h"
 
 #include <fmt/core.h>
 
@@ -19,12 +19,12 @@ namespace {
 constexpr std::size_t kMostNamed = 20;
 
 /// Those of the folders that hold a run; the others are said.
-std::vector<batch::ShardRun> readShards(const std::vector<std::string>& folders) {
-    std::vector<batch::ShardRun> shards;
+std::vector<cluster::ShardRun> readShards(const std::vector<std::string>& folders) {
+    std::vector<cluster::ShardRun> shards;
     for (const std::string& name : folders) {
         const fs::path folder = name;
         if (fs::exists(folder / "plan.json")) {
-            shards.push_back({folder, batch::readRun(folder)});
+            shards.push_back({folder, run::readRun(folder)});
         } else {
             tell("{}: holds no run\n", folder.string());
         }
@@ -34,20 +34,20 @@ std::vector<batch::ShardRun> readShards(const std::vector<std::string>& folders)
 }
 
 /// A merge may be made again, unless something was measured into it since.
-batch::RunDirectory openTarget(const fs::path& out, const batch::Plan& plan) {
-    if (!fs::exists(out / "plan.json")) return batch::RunDirectory::create(out);
-    const batch::StoredRun before = batch::readRun(out);
-    if (before.plan.hash == plan.hash && batch::isOnlyMerged(before.manifest)) {
-        return batch::RunDirectory::open(out);
+run::RunDirectory openTarget(const fs::path& out, const run::Plan& plan) {
+    if (!fs::exists(out / "plan.json")) return run::RunDirectory::create(out);
+    const run::StoredRun before = run::readRun(out);
+    if (before.plan.hash == plan.hash && run::isOnlyMerged(before.manifest)) {
+        return run::RunDirectory::open(out);
     }
     throw Error(out.string() +
                 ": holds a run that is no merge of these shards; give another "
                 "folder");
 }
 
-void printMissing(const std::vector<batch::ShardRun>& shards,
+void printMissing(const std::vector<cluster::ShardRun>& shards,
                   const std::vector<std::string>& units) {
-    for (const std::string& shard : batch::missingShards(shards)) {
+    for (const std::string& shard : cluster::missingShards(shards)) {
         say("missing: shard {}\n", shard);
     }
     for (std::size_t i = 0; i < std::min(units.size(), kMostNamed); ++i) {
@@ -59,14 +59,14 @@ void printMissing(const std::vector<batch::ShardRun>& shards,
 }  // namespace
 
 int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards) {
-    const std::vector<batch::ShardRun> runs = readShards(shards);
-    const batch::StoredRun merged = batch::mergeRuns(runs, context.commandLine);
+    const std::vector<cluster::ShardRun> runs = readShards(shards);
+    const run::StoredRun merged = cluster::mergeRuns(runs, context.commandLine);
     {
-        const batch::RunDirectory directory = openTarget(out, merged.plan);
-        batch::writeMerged(directory, runs, merged);
+        const run::RunDirectory directory = openTarget(out, merged.plan);
+        cluster::writeMerged(directory, runs, merged);
     }
-    const std::vector<std::string> missing = batch::missingUnits(merged);
-    const batch::Completeness counts = batch::completeness(merged);
+    const std::vector<std::string> missing = cluster::missingUnits(merged);
+    const run::Completeness counts = run::completeness(merged);
     printMissing(runs, missing);
     say("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing{}\n", runs.size(),
         runs.size() == 1 ? "" : "s", out, counts.measured(), counts.units, counts.failed,

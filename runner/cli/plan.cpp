@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
+#include "runner/run/twins.h"
 
 namespace gfxrepro::cli {
 
@@ -18,19 +18,19 @@ long long iterationsOf(const config::Measure& measure) {
 }
 
 /// Time of all processes of a case, its memory, and how they are known. `first` is its first twin.
-std::vector<std::string> predictionTexts(const batch::Case& item, const batch::Case& first,
-                                         const batch::Predictor& predictor) {
+std::vector<std::string> predictionTexts(const run::Case& item, const run::Case& first,
+                                         const cluster::Predictor& predictor) {
     if (&item != &first) return {"-", "-", "as " + first.id};
-    const std::optional<batch::Prediction> known = predictor.predict(item);
+    const std::optional<cluster::Prediction> known = predictor.predict(item);
     if (!known || !known->isTold) return {"-", "-", "-"};
-    std::string source(batch::sourceName(known->source));
+    std::string source(cluster::sourceName(known->source));
     return {durationText(known->timeS * item.measure.processes),
             memoryText(static_cast<double>(known->memoryBytes)), source};
 }
 
 /// A case of the listing.
-std::vector<std::string> rowTexts(const batch::Case& item, const batch::Case& first,
-                                  const batch::Predictor& predictor) {
+std::vector<std::string> rowTexts(const run::Case& item, const run::Case& first,
+                                  const cluster::Predictor& predictor) {
     const config::Measure& measure = item.measure;
     std::vector<std::string> row = {
         item.id, measure.lane == config::Measure::Lane::Timing ? "timing" : "quality",
@@ -48,9 +48,8 @@ std::vector<std::string> rowTexts(const batch::Case& item, const batch::Case& fi
 
 int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
          bool asJson) {
-    const batch::Plan plan =
-        planFor(context, requestOf(selection, findPaperConfigs(selection.names)), selection.profile,
-                selection.assets, deviceClassFor(selection));
+    const run::Plan plan = planFor(context, requestOf(selection, findPaperConfigs(selection.names)),
+                                   selection.profile, selection.assets, deviceClassFor(selection));
     if (asJson) {
         plan.write([](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); });
         return kExitOk;
@@ -58,7 +57,7 @@ int plan(const Context& context, const Selection& selection, const std::vector<s
     const History history = openHistory(from, plan.deviceClass);
     const std::vector<std::string> head = {"case", "lane",   "output",   "runs", "limit",
                                            "time", "memory", "known by", "title"};
-    const std::vector<std::size_t> firsts = batch::firstTwins(plan.cases);
+    const std::vector<std::size_t> firsts = run::firstTwins(plan.cases);
     const auto rowOf = [&](std::size_t i) {
         return rowTexts(plan.cases[i], plan.cases[firsts[i]], history.predictor);
     };

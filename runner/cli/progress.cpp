@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "runner/batch/predictions.h"
 #include "runner/cli/console.h"
+#include "runner/cluster/predictions.h"
 
 namespace gfxrepro::cli {
 
@@ -16,7 +16,7 @@ namespace {
 constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kDrawInterval{100};
 
-std::string titleOf(const batch::Unit& unit) {
+std::string titleOf(const run::Unit& unit) {
     std::string title = unit.item->title();
     const int processes = unit.item->measure.processes;
     if (unit.process >= processes) {
@@ -36,40 +36,40 @@ std::size_t terminalWidth() {
 
 }  // namespace
 
-Progress::Progress(const std::vector<batch::Unit>& units,
-                   const std::map<const batch::Case*, double>& unitTimesS, int jobs, bool isQuiet)
+Progress::Progress(const std::vector<run::Unit>& units,
+                   const std::map<const run::Case*, double>& unitTimesS, int jobs, bool isQuiet)
     : unitCount_(static_cast<int>(units.size())),
       unitTimesS_(unitTimesS),
       jobs_(jobs),
       isQuiet_(isQuiet),
       isTerminal_(::isatty(STDERR_FILENO) == 1) {
-    for (const batch::Unit& unit : units) totalS_ += timeS(unit);
+    for (const run::Unit& unit : units) totalS_ += timeS(unit);
 }
 
-double Progress::timeS(const batch::Unit& unit) const {
+double Progress::timeS(const run::Unit& unit) const {
     const auto found = unitTimesS_.find(unit.item);
     return found == unitTimesS_.end() ? 1.0 : found->second;
 }
 
-void Progress::unitsAdded(const std::vector<batch::Unit>& units) {
+void Progress::unitsAdded(const std::vector<run::Unit>& units) {
     unitCount_ += static_cast<int>(units.size());
-    for (const batch::Unit& unit : units) totalS_ += timeS(unit);
+    for (const run::Unit& unit : units) totalS_ += timeS(unit);
 }
 
-void Progress::unitBegan(const batch::Unit& unit) {
+void Progress::unitBegan(const run::Unit& unit) {
     title_ = titleOf(unit);
     lastDraw_ = {};
     tick();
 }
 
-void Progress::unitEnded(const batch::Unit& unit, report::Status status,
+void Progress::unitEnded(const run::Unit& unit, records::Status status,
                          const std::string& message) {
     ++ended_;
     doneS_ += timeS(unit);
-    const bool isOk = status == report::Status::Ok;
+    const bool isOk = status == records::Status::Ok;
     if (isOk && (isQuiet_ || isTerminal_)) return;
     clear();
-    tell("[{}/{}] {} {}{}\n", ended_, unitCount_, report::statusName(status), titleOf(unit),
+    tell("[{}/{}] {} {}{}\n", ended_, unitCount_, records::statusName(status), titleOf(unit),
          message.empty() ? "" : ": " + message);
 }
 
@@ -77,7 +77,7 @@ std::string Progress::etaText() const {
     if (ended_ == 0) return "--:--";
     const double elapsedS = std::chrono::duration<double>(Clock::now() - start_).count();
     const auto leftS =
-        static_cast<long long>(batch::remainingS(totalS_, doneS_, elapsedS, jobs_) + 0.5);
+        static_cast<long long>(cluster::remainingS(totalS_, doneS_, elapsedS, jobs_) + 0.5);
     return fmt::format("{}:{:02}", leftS / 60, leftS % 60);
 }
 

@@ -4,20 +4,20 @@
 #include <chrono>
 #include <map>
 
-#include "runner/batch/scheduler.h"
+#include "runner/run/scheduler.h"
 
 namespace gfxrepro::cli {
 
 /// Writes to standard error. Quiet: failures only.
-class Progress : public batch::Observer {
+class Progress : public run::Observer {
   public:
     /// `unitTimesS`: predictions by case, for the time left; empty when nothing is known.
-    Progress(const std::vector<batch::Unit>& units,
-             const std::map<const batch::Case*, double>& unitTimesS, int jobs, bool isQuiet);
+    Progress(const std::vector<run::Unit>& units,
+             const std::map<const run::Case*, double>& unitTimesS, int jobs, bool isQuiet);
 
-    void unitsAdded(const std::vector<batch::Unit>& units) override;
-    void unitBegan(const batch::Unit& unit) override;
-    void unitEnded(const batch::Unit& unit, report::Status status,
+    void unitsAdded(const std::vector<run::Unit>& units) override;
+    void unitBegan(const run::Unit& unit) override;
+    void unitEnded(const run::Unit& unit, records::Status status,
                    const std::string& message) override;
     void tick() override;
     /// Takes the bar away.
@@ -25,11 +25,11 @@ class Progress : public batch::Observer {
 
   private:
     using Clock = std::chrono::steady_clock;
-    double timeS(const batch::Unit& unit) const;
+    double timeS(const run::Unit& unit) const;
     std::string etaText() const;
 
     int unitCount_;
-    std::map<const batch::Case*, double> unitTimesS_;
+    std::map<const run::Case*, double> unitTimesS_;
     int jobs_;
     double totalS_ = 0.0;  // predicted; units where there are no predictions
     double doneS_ = 0.0;

@@ -2,14 +2,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <set>
 
-#include "runner/batch/expectations.h"
-#include "runner/batch/made_from.h"
-#include "runner/batch/report_runs.h"
+#include "runner/claims/claims.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -17,7 +16,15 @@
 #include "runner/cli/results.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/report/gnuplot.h"
 #include "runner/report/report.h"
+#include "runner/report/writers.h"
+#include "runner/results/made_from.h"
+#include "runner/results/report_runs.h"
+#include "runner/results/results.h"
+#include "runner/run/expectations.h"
+#include "runner/tables/printed_parameters.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::cli {
 
@@ -29,29 +36,29 @@ namespace {
 constexpr std::size_t kSaidFailing = 20;
 
 /// "2 crash, 1 timeout"; the most frequent first.
-std::string failuresText(const batch::Completeness& counts) {
-    std::vector<std::pair<report::Status, int>> failures(counts.failures.begin(),
-                                                         counts.failures.end());
-    std::ranges::stable_sort(failures, std::greater<>{}, &std::pair<report::Status, int>::second);
+std::string failuresText(const run::Completeness& counts) {
+    std::vector<std::pair<records::Status, int>> failures(counts.failures.begin(),
+                                                          counts.failures.end());
+    std::ranges::stable_sort(failures, std::greater<>{}, &std::pair<records::Status, int>::second);
     std::vector<std::string> texts;
     for (const auto& [status, count] : failures) {
-        texts.push_back(fmt::format("{} {}", count, report::statusName(status)));
+        texts.push_back(fmt::format("{} {}", count, records::statusName(status)));
     }
     return joined(texts);
 }
 
 /// Says what is missing; the exit code of a command that has nothing worse to report.
-int completenessCode(const batch::StoredRun& run) {
-    const batch::Completeness counts = batch::completeness(run);
+int completenessCode(const run::StoredRun& run) {
+    const run::Completeness counts = run::completeness(run);
     for (const std::string& line : counts.complaints) tell("{}\n", line);
-    for (const std::string& list : batch::changedExpectations(run.plan)) {
+    for (const std::string& list : run::changedExpectations(run.plan)) {
         tell("warning: {}; the run is judged by what it said when the run was planned\n", list);
     }
     if (counts.expected > 0) {
         say("{} of {} failed or skipped as expected\n", counts.expected, counts.units);
     }
     if (counts.isComplete()) return kExitOk;
-    if (areAnnotationsWanted()) annotate(batch::caseResults(run));
+    if (areAnnotationsWanted()) annotate(run::caseResults(run));
     say("incomplete: {} not run, {} failed{}{}\n", counts.missing, counts.failed,
         counts.failed > 0 ? fmt::format(" ({})", failuresText(counts)) : "",
         counts.measured() == 0 ? "; no case has a result" : "");
@@ -59,18 +66,18 @@ int completenessCode(const batch::StoredRun& run) {
 }
 
 /// What the claim says; its name where that is not known.
-const std::string& wordsOf(const report::ClaimResult& claim) {
+const std::string& wordsOf(const claims::ClaimResult& claim) {
     return claim.text.empty() ? claim.id : claim.text;
 }
 
 /// Names the claims that fail, and gives their number.
-std::size_t sayFailing(const std::vector<report::ClaimResult>& claims) {
+std::size_t sayFailing(const std::vector<claims::ClaimResult>& claims) {
     std::size_t failing = 0;
-    for (const report::ClaimResult& claim : claims) {
-        if (claim.verdict != report::Verdict::Fails || ++failing > kSaidFailing) continue;
+    for (const claims::ClaimResult& claim : claims) {
+        if (claim.verdict != claims::Verdict::Fails || ++failing > kSaidFailing) continue;
         say("  {} fails: {} ({}); measured {}, required {}\n", claim.table, wordsOf(claim),
             claim.id, claim.measured, claim.required);
-        if (const std::string why = report::whyText(claim); !why.empty()) {
+        if (const std::string why = claims::whyText(claim); !why.empty()) {
             say("    why: {}\n", why);
         }
     }
@@ -81,49 +88,49 @@ std::size_t sayFailing(const std::vector<report::ClaimResult>& claims) {
 }
 
 /// How many claims hold, paper by paper where there are several, and what the other words mean.
-void sayVerdicts(const std::vector<report::ClaimResult>& claims) {
-    std::map<std::string, std::vector<report::ClaimResult>> ofPaper;
-    std::set<report::Verdict> verdicts;
-    for (const report::ClaimResult& claim : claims) {
+void sayVerdicts(const std::vector<claims::ClaimResult>& claims) {
+    std::map<std::string, std::vector<claims::ClaimResult>> ofPaper;
+    std::set<claims::Verdict> verdicts;
+    for (const claims::ClaimResult& claim : claims) {
         ofPaper[claim.table.substr(0, claim.table.find('/'))].push_back(claim);
         verdicts.insert(claim.verdict);
     }
     if (ofPaper.size() > 1) {
         for (const auto& [paper, own] : ofPaper) {
-            say("  {:<12}{}\n", paper, report::originSummaryLine(own));
+            say("  {:<12}{}\n", paper, claims::originSummaryLine(own));
         }
     }
-    say("claims: {}\n", report::originSummaryLine(claims));
-    for (const report::ClaimResult& claim : claims) {
+    say("claims: {}\n", claims::originSummaryLine(claims));
+    for (const claims::ClaimResult& claim : claims) {
         if (!claim.isNews()) continue;
-        say("  news: {} {}: {} ({}); known: {}\n", claim.table, report::verdictName(claim.verdict),
-            wordsOf(claim), claim.id, report::verdictName(claim.known));
+        say("  news: {} {}: {} ({}); known: {}\n", claim.table, claims::verdictName(claim.verdict),
+            wordsOf(claim), claim.id, claims::verdictName(claim.known));
     }
-    static const std::pair<report::Verdict, const char*> kMeanings[] = {
-        {report::Verdict::Ambiguous, "too few rounds or too much noise to tell: more rounds may"},
-        {report::Verdict::Unmeasured, "a case that it needs has no result"},
-        {report::Verdict::NotApplicable, "asks for a GPU, or for another profile"},
+    static const std::pair<claims::Verdict, const char*> kMeanings[] = {
+        {claims::Verdict::Ambiguous, "too few rounds or too much noise to tell: more rounds may"},
+        {claims::Verdict::Unmeasured, "a case that it needs has no result"},
+        {claims::Verdict::NotApplicable, "asks for a GPU, or for another profile"},
     };
     for (const auto& [verdict, meaning] : kMeanings) {
         if (verdicts.contains(verdict)) {
-            say("  {}: {}\n", report::verdictName(verdict), meaning);
+            say("  {}: {}\n", claims::verdictName(verdict), meaning);
         }
     }
 }
 
 /// The verdicts; the exit code when all cases were measured.
-int sayClaims(const std::vector<report::ClaimResult>& claims) {
-    for (const report::ClaimResult& claim : claims) {
+int sayClaims(const std::vector<claims::ClaimResult>& claims) {
+    for (const claims::ClaimResult& claim : claims) {
         const std::string why =
-            claim.verdict == report::Verdict::Holds ? claim.reason : report::whyText(claim);
-        say("{} {}{}: {} ({}){}\n", claim.table, report::verdictName(claim.verdict),
+            claim.verdict == claims::Verdict::Holds ? claim.reason : claims::whyText(claim);
+        say("{} {}{}: {} ({}){}\n", claim.table, claims::verdictName(claim.verdict),
             claim.isNews() ? " (news)" : "", wordsOf(claim), claim.id,
             why.empty() ? "" : fmt::format("; {}", why));
     }
-    say("{}\n", report::originSummaryLine(claims));
+    say("{}\n", claims::originSummaryLine(claims));
     annotate(claims);
     const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
-        return claim.verdict == report::Verdict::Fails;
+        return claim.verdict == claims::Verdict::Fails;
     });
     return anyFails ? kExitClaimFailed : kExitOk;
 }
@@ -132,8 +139,8 @@ int sayClaims(const std::vector<report::ClaimResult>& claims) {
 /// comes of it stands apart, below `out`, and says so.
 int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs,
                     const fs::path& out) {
-    const batch::StoredRun run = batch::readRun(runDir);
-    batch::Request request = run.plan.request;
+    const run::StoredRun run = run::readRun(runDir);
+    run::Request request = run.plan.request;
     request.configs = findPaperConfigs(configs);
     std::vector<config::Experiment> experiments = loadExperiments(request, run.plan.profile);
     for (config::Experiment& experiment : experiments) {
@@ -147,20 +154,20 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
         throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
                                 experiment.id, runDir.string()));
     }
-    std::vector<report::Table> tables =
-        report::buildTables(experiments, batch::plannedCases(run.plan.cases), run.records);
+    std::vector<tables::Table> tables =
+        tables::buildTables(experiments, run::plannedCases(run.plan.cases), run.records);
     const std::string mark = "judged after the run, by a config that it did not know";
-    for (report::Table& table : tables) table.notes.insert(table.notes.begin(), mark);
-    const report::ReportContext context = batch::reportContext(run.manifest);
-    std::vector<report::ClaimResult> claims = report::evaluateClaims(experiments, tables, context);
-    for (report::ClaimResult& claim : claims) {
+    for (tables::Table& table : tables) table.notes.insert(table.notes.begin(), mark);
+    const claims::ReportContext context = results::reportContext(run.manifest);
+    std::vector<claims::ClaimResult> claims = claims::evaluateClaims(experiments, tables, context);
+    for (claims::ClaimResult& claim : claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    batch::takeFolder(out, runDir, run.manifest);
+    results::takeFolder(out, runDir, run.manifest);
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, tables);
-    report::writeClaims(folder, batch::caseResults(run), claims, context);
+    report::writeClaims(folder, run::caseResults(run), claims, context);
     const int verdict = sayClaims(claims);
     sayNotes(run.manifest);
     say("judged after the run: {}\n", (folder / "claims.csv").string());
@@ -169,16 +176,16 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
 }
 
 /// How much of the tables was measured as it is printed.
-void sayPrintedCells(const report::PrintedCells& count) {
-    const std::string line = report::printedCellsLine(count);
+void sayPrintedCells(const tables::PrintedCells& count) {
+    const std::string line = tables::printedCellsLine(count);
     if (!line.empty()) say("{}\n", line);
 }
 
 /// What differs between runs of several machines may differ by them: a note of the first run.
-void noteOtherMachines(std::vector<html::ReportRun>& runs) {
+void noteOtherMachines(std::vector<report::ReportRun>& runs) {
     std::vector<std::string> machines;
-    for (const html::ReportRun& run : runs) {
-        const std::string machine = batch::machineName(run.manifest);
+    for (const report::ReportRun& run : runs) {
+        const std::string machine = run::machineName(run.manifest);
         if (std::ranges::find(machines, machine) == machines.end()) machines.push_back(machine);
     }
     if (machines.size() < 2) return;
@@ -187,8 +194,8 @@ void noteOtherMachines(std::vector<html::ReportRun>& runs) {
 }
 
 /// A report does not go over that of a run that it does not show.
-void requireNoOtherRun(const fs::path& folder, const std::vector<html::ReportRun>& runs) {
-    const bool isShown = std::ranges::any_of(runs, [&](const html::ReportRun& run) {
+void requireNoOtherRun(const fs::path& folder, const std::vector<report::ReportRun>& runs) {
+    const bool isShown = std::ranges::any_of(runs, [&](const report::ReportRun& run) {
         std::error_code isAbsent;
         return fs::equivalent(folder, run.folder, isAbsent);
     });
@@ -213,13 +220,13 @@ void requireReport(const fs::path& file) {
     throw Error(file.string() + ": is there and is not a report; give another file");
 }
 
-void sayNotes(const batch::Json& manifest) {
-    for (const std::string& note : batch::notesOf(manifest)) say("warning: {}\n", note);
+void sayNotes(const run::Json& manifest) {
+    for (const std::string& note : run::notesOf(manifest)) say("warning: {}\n", note);
 }
 
 int conclude(const fs::path& runDir) {
-    const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion = batch::writeResults(runDir, run, {});
+    const run::StoredRun run = run::readRun(runDir);
+    const results::Results conclusion = results::writeResults(runDir, run, {});
     sayNotes(run.manifest);
     const std::size_t failing = sayFailing(conclusion.claims);
     sayVerdicts(conclusion.claims);
@@ -231,8 +238,8 @@ int conclude(const fs::path& runDir) {
 }
 
 int table(const std::string& runDir, const std::string& out) {
-    const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion = batch::writeResults(
+    const run::StoredRun run = run::readRun(runDir);
+    const results::Results conclusion = results::writeResults(
         runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
     const std::string folder = (fs::path(out) / "tables").string();
     for (const config::Experiment& experiment : run.plan.experiments) {
@@ -246,8 +253,8 @@ int table(const std::string& runDir, const std::string& out) {
 int claims(const std::string& runDir, const std::vector<std::string>& configs,
            const std::string& out) {
     if (!configs.empty()) return judgeAfterwards(runDir, configs, out.empty() ? runDir : out);
-    const batch::StoredRun run = batch::readRun(runDir);
-    const batch::Conclusion conclusion = batch::writeResults(
+    const run::StoredRun run = run::readRun(runDir);
+    const results::Results conclusion = results::writeResults(
         runDir, run, {.tables = false, .claims = true, .report = false, .out = out});
     const int verdict = sayClaims(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
@@ -258,40 +265,45 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
 
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
-        const batch::StoredRun run = batch::readRun(runDirs.front());
-        batch::writeResults(runDirs.front(), run,
-                            {.tables = false, .claims = false, .embeds = embeds});
+        const run::StoredRun run = run::readRun(runDirs.front());
+        results::writeResults(runDirs.front(), run,
+                              {.tables = false, .claims = false, .embeds = embeds});
         sayNotes(run.manifest);
         sayReport(runDirs.front());
         return completenessCode(run);
     }
-    std::vector<html::ReportRun> runs;
+    std::vector<report::ReportRun> runs;
     int code = kExitOk;
     for (const std::string& dir : runDirs) {
         if (!fs::exists(fs::path(dir) / "plan.json")) {  // kept results
-            runs.push_back(batch::reportRun(dir));
+            runs.push_back(results::keptRun(dir));
             continue;
         }
-        const batch::StoredRun run = batch::readRun(dir);
-        runs.push_back(batch::reportRun(dir, run));
+        const run::StoredRun run = run::readRun(dir);
+        runs.push_back(results::reportRun(dir, run, results::resultsOf(run)));
         if (completenessCode(run) != kExitOk) code = kExitIncomplete;
     }
     noteOtherMachines(runs);
-    for (const html::ReportRun& run : runs) sayNotes(run.manifest);
+    for (const report::ReportRun& run : runs) sayNotes(run.manifest);
     const fs::path file = out.empty() ? fs::path("report.html") : fs::path(out);
     requireNoOtherRun(fs::absolute(file).parent_path(), runs);
     const fs::path made = file.parent_path() / (file.stem().string() + "-files");
     std::set<std::string> lines;
-    for (const html::ReportRun& run : runs) {
-        lines.insert(batch::madeFromLine(run.folder, run.manifest));
+    for (const report::ReportRun& run : runs) {
+        lines.insert(results::madeFromLine(run.folder, run.manifest));
     }
     const std::string from = joined(std::vector<std::string>(lines.begin(), lines.end()), "");
     if (!out.empty()) {
-        if (!embeds) batch::requireMadeFrom(made, from);
+        if (!embeds) results::requireMadeFrom(made, from);
         requireReport(file);
     }
-    html::writeReport(file, runs, batch::reportOptions(embeds));
-    if (!embeds && fs::exists(made)) batch::noteMadeFrom(made, from);
+    std::chrono::milliseconds patience = report::kGnuplotPatience;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[i].folder, i, file);
+        runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments, patience);
+    }
+    report::writeReport(file, runs, results::reportOptions(embeds));
+    if (!embeds && fs::exists(made)) results::noteMadeFrom(made, from);
     say("report: {}\n", file.string());
     return code;
 }

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 
-#include "runner/batch/manifest.h"
+#include "runner/run/manifest.h"
 
 namespace gfxrepro::cli {
 
 /// Prints what a reader of the run's results must know: a warning a line.
-void sayNotes(const batch::Json& manifest);
+void sayNotes(const run::Json& manifest);
 
 /// Throws Error where the file is there and is not a page of ours.
 void requireReport(const std::filesystem::path& file);

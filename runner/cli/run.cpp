@@ -1,4 +1,4 @@
-#include "runner/batch/run.h"
+#include "runner/run/run.h"
 
 #include <fmt/core.h>
 
@@ -9,13 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "runner/batch/budget.h"
-#include "runner/batch/import_run.h"
-#include "runner/batch/machine_state.h"
-#include "runner/batch/not_survived.h"
-#include "runner/batch/run_files.h"
-#include "runner/batch/shards.h"
-#include "runner/batch/twins.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -24,8 +17,15 @@
 #include "runner/cli/history.h"
 #include "runner/cli/progress.h"
 #include "runner/cli/results.h"
+#include "runner/cluster/shards.h"
 #include "runner/core/files.h"
 #include "runner/core/processors.h"
+#include "runner/results/import_run.h"
+#include "runner/run/machine_state.h"
+#include "runner/run/not_survived.h"
+#include "runner/run/run_files.h"
+#include "runner/run/twins.h"
+#include "runner/studies/budget.h"
 
 namespace gfxrepro::cli {
 
@@ -41,11 +41,11 @@ int jobsOf(const RunOptions& options) {
 
 /// What a run goes by: its plan, its folder, and what is left to do.
 struct Prepared {
-    batch::Plan plan;
-    batch::RunDirectory directory;
-    batch::Json manifest;
-    batch::SchedulerOptions scheduler;
-    std::vector<batch::Json> log{};  // of a run that goes on
+    run::Plan plan;
+    run::RunDirectory directory;
+    run::Json manifest;
+    run::SchedulerOptions scheduler;
+    std::vector<run::Json> log{};  // of a run that goes on
 };
 
 std::string deviceClassOf(const gl::DeviceInfo& device) {
@@ -59,8 +59,8 @@ fs::path machineRoot() {
 }
 
 /// Says on what a run measures, and keeps its workers to that: "auto" could find another later.
-gl::DeviceInfo settleDevice(batch::SchedulerOptions& scheduler, batch::PhaseClock& phases) {
-    const gl::DeviceInfo device = batch::probeDevice(scheduler, phases, true);
+gl::DeviceInfo settleDevice(run::SchedulerOptions& scheduler, run::PhaseClock& phases) {
+    const gl::DeviceInfo device = run::probeDevice(scheduler, phases, true);
     if (device.platform == "none") return device;
     scheduler.device = std::to_string(device.index);
     tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer, deviceClassOf(device),
@@ -70,20 +70,20 @@ gl::DeviceInfo settleDevice(batch::SchedulerOptions& scheduler, batch::PhaseCloc
 
 /// Leaves the tables alone that decide most claims in `budgetS`, as earlier runs predict their
 /// times; says which are left out. Twins count in each of their tables: the other may be left out.
-batch::Request withinBudget(const batch::Plan& plan, const batch::Request& request,
-                            const std::vector<std::string>& from, double budgetS) {
+run::Request withinBudget(const run::Plan& plan, const run::Request& request,
+                          const std::vector<std::string>& from, double budgetS) {
     const History history = openHistory(from, plan.deviceClass);
-    const std::vector<double> timesS = batch::caseTimesS(plan, history.predictor);
-    std::vector<batch::BudgetItem> items(plan.experiments.size());
+    const std::vector<double> timesS = cluster::caseTimesS(plan, history.predictor);
+    std::vector<studies::BudgetItem> items(plan.experiments.size());
     for (std::size_t e = 0; e < items.size(); ++e) {
         items[e].claimCount = plan.experiments[e].claims.size();
         for (std::size_t i = 0; i < plan.cases.size(); ++i) {
             if (plan.cases[i].experiment == plan.experiments[e].id) items[e].timeS += timesS[i];
         }
     }
-    const std::vector<std::size_t> chosen = batch::withinBudget(items, budgetS);
+    const std::vector<std::size_t> chosen = studies::withinBudget(items, budgetS);
     if (chosen.empty()) throw Error("--budget: no table with a claim fits into it");
-    batch::Request result = request;
+    run::Request result = request;
     result.configs.clear();
     for (std::size_t e = 0; e < items.size(); ++e) {
         if (std::ranges::binary_search(chosen, e)) {
@@ -97,47 +97,46 @@ batch::Request withinBudget(const batch::Plan& plan, const batch::Request& reque
 }
 
 /// `submitted`: the plan that was frozen then; else one is made of what is asked for.
-Prepared prepareNew(const Context& context, const RunOptions& options,
-                    const batch::Request& request, std::optional<batch::Plan> submitted,
-                    batch::PhaseClock& phases) {
+Prepared prepareNew(const Context& context, const RunOptions& options, const run::Request& request,
+                    std::optional<run::Plan> submitted, run::PhaseClock& phases) {
     const Selection& selection = options.selection;
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     const std::string choice =
         deviceFor(context, request.device,
                   submitted ? submitted->experiments : loadExperiments(request, selection.profile));
-    batch::SchedulerOptions scheduler{choice,
-                                      fs::absolute(assetsFolder(selection.assets)),
-                                      jobsOf(options),
-                                      {},
-                                      context.commandLine};
+    run::SchedulerOptions scheduler{choice,
+                                    fs::absolute(assetsFolder(selection.assets)),
+                                    jobsOf(options),
+                                    {},
+                                    context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
-    batch::Plan plan = submitted ? std::move(*submitted)
-                                 : planFor(context, request, selection.profile,
-                                           scheduler.assetsFolder, deviceClassOf(device));
+    run::Plan plan = submitted ? std::move(*submitted)
+                               : planFor(context, request, selection.profile,
+                                         scheduler.assetsFolder, deviceClassOf(device));
     if (!submitted) {
         for (const Error& unknown : unknownExpectations(context, plan.request.configs,
                                                         {plan.deviceClass}, selection.assets)) {
             tell("warning: {}\n", unknown.what());
         }
     }
-    if (plan.deviceClass != deviceClassOf(device)) batch::rebind(plan, deviceClassOf(device));
+    if (plan.deviceClass != deviceClassOf(device)) run::rebind(plan, deviceClassOf(device));
     if (!options.budget.empty()) {
-        const batch::Request affordable =
-            withinBudget(plan, request, options.from, batch::parseBudgetS(options.budget));
+        const run::Request affordable =
+            withinBudget(plan, request, options.from, studies::parseBudgetS(options.budget));
         plan = planFor(context, affordable, selection.profile, scheduler.assetsFolder,
                        deviceClassOf(device));
     }
     if (!options.shard.empty()) {
         // By what was named alone: whatever else lies here may differ between the shards.
-        const auto predictor = batch::Predictor::from({options.from.begin(), options.from.end()});
-        batch::takeShard(plan, batch::parseShard(options.shard),
-                         batch::withoutTwins(plan.cases, batch::caseTimesS(plan, predictor)));
+        const auto predictor = cluster::Predictor::from({options.from.begin(), options.from.end()});
+        cluster::takeShard(plan, cluster::parseShard(options.shard),
+                           run::withoutTwins(plan.cases, cluster::caseTimesS(plan, predictor)));
     }
     fs::path path = options.resume.empty() ? options.out : options.resume;
-    if (path.empty()) path = batch::defaultRunPath(runSlug(plan));
-    batch::RunDirectory directory = batch::RunDirectory::create(path);
-    batch::Json manifest = batch::newManifest(plan, device);
-    batch::beginInvocation(manifest, context.commandLine);
+    if (path.empty()) path = run::defaultRunPath(runSlug(plan));
+    run::RunDirectory directory = run::RunDirectory::create(path);
+    run::Json manifest = run::newManifest(plan, device);
+    run::beginInvocation(manifest, context.commandLine);
     // The plan last: a folder with a plan has all that a resumed run needs.
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
     plan.writeFile(directory.planFile());
@@ -145,8 +144,8 @@ Prepared prepareNew(const Context& context, const RunOptions& options,
 }
 
 /// Given configs beside --resume must be those of the run that is there.
-void requireSameRequest(const RunOptions& options, const batch::Request& request,
-                        const batch::Plan& stored) {
+void requireSameRequest(const RunOptions& options, const run::Request& request,
+                        const run::Plan& stored) {
     if (request.configs.empty()) return;
     std::string other;
     if (request.configs != stored.request.configs) other = "configs";
@@ -164,21 +163,21 @@ void requireSameRequest(const RunOptions& options, const batch::Request& request
 
 /// Times of one table stay those of one machine, also where the run goes on on another.
 void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device, Prepared& run) {
-    const std::string machine = batch::machineName(batch::newManifest(run.plan, device));
+    const std::string machine = run::machineName(run::newManifest(run.plan, device));
     const std::vector<std::string> again =
-        batch::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
-    const std::vector<std::string> machines = batch::machinesOf(run.manifest);
-    batch::beginInvocation(run.manifest, commandLine);
-    batch::breakSeal(run.manifest);
+        run::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
+    const std::vector<std::string> machines = run::machinesOf(run.manifest);
+    run::beginInvocation(run.manifest, commandLine);
+    run::breakSeal(run.manifest);
     // One that measures nothing mixes nothing.
-    if (!batch::remainingUnits(run.plan, run.directory).empty()) {
+    if (!run::remainingUnits(run.plan, run.directory).empty()) {
         run.manifest["invocations"].back()["machine"] = machine;
         if (std::ranges::find(machines, machine) == machines.end()) {
             tell("warning: begun on {}, goes on on {}: tables will say so\n", machines.front(),
                  machine);
         }
     }
-    batch::noteMachines(run.manifest);
+    run::noteMachines(run.manifest);
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
         run.log.push_back({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
@@ -189,20 +188,20 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
 }
 
 Prepared prepareResumed(const Context& context, const RunOptions& options,
-                        const batch::Request& request, batch::PhaseClock& phases) {
-    batch::RunDirectory directory = batch::RunDirectory::open(options.resume);
-    batch::StoredRun stored = batch::readRun(options.resume);
-    batch::requireNotImported(stored.manifest, options.resume, "go on with");
+                        const run::Request& request, run::PhaseClock& phases) {
+    run::RunDirectory directory = run::RunDirectory::open(options.resume);
+    run::StoredRun stored = run::readRun(options.resume);
+    results::requireNotImported(stored.manifest, options.resume, "go on with");
     requireSameRequest(options, request, stored.plan);
-    batch::SchedulerOptions scheduler{
+    run::SchedulerOptions scheduler{
         deviceFor(context, stored.plan.request.device, stored.plan.experiments),
         fs::absolute(assetsFolder(options.selection.assets)),
         jobsOf(options),
         {},
         context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
-    const std::string reason = batch::whyNotResumable(
-        stored.plan, deviceClassOf(device), openCatalog(context, options.selection.assets));
+    const std::string reason = run::whyNotResumable(stored.plan, deviceClassOf(device),
+                                                    openCatalog(context, options.selection.assets));
     if (!reason.empty()) {
         throw Error(options.resume + ": cannot be resumed: " + reason +
                     "; start a new run instead");
@@ -212,16 +211,16 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
     // Before anything is written: a log that cannot be read leaves the folder as it is.
-    run.log = batch::readLog(run.directory.path() / "log.jsonl");
-    if (!options.triesAgain) run.scheduler.givenUp = batch::casesNotSurvived(run.plan, run.log);
+    run.log = run::readLog(run.directory.path() / "log.jsonl");
+    if (!options.triesAgain) run.scheduler.givenUp = run::casesNotSurvived(run.plan, run.log);
     settleMachine(context.commandLine, device, run);
     return run;
 }
 
-void saveManifest(const Context& context, Prepared& run, const batch::PhaseClock& phases) {
+void saveManifest(const Context& context, Prepared& run, const run::PhaseClock& phases) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - context.start;
-    batch::endInvocation(run.manifest, phases, wall.count());
-    batch::sealRecords(run.manifest, run.directory.path());
+    run::endInvocation(run.manifest, phases, wall.count());
+    run::sealRecords(run.manifest, run.directory.path());
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
 }
 
@@ -231,12 +230,12 @@ std::string countText(int count, std::string_view what) {
 }
 
 /// Says what is ahead, and gives the predicted time of a unit of each case.
-std::map<const batch::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
+std::map<const run::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
     const History history = openHistory(options.from, run.plan.deviceClass);
-    std::map<const batch::Case*, double> unitTimesS;
-    const std::vector<std::size_t> firsts = batch::firstTwins(run.plan.cases);
+    std::map<const run::Case*, double> unitTimesS;
+    const std::vector<std::size_t> firsts = run::firstTwins(run.plan.cases);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-        const batch::Case& item = run.plan.cases[i];
+        const run::Case& item = run.plan.cases[i];
         const auto known = history.predictor.predict(item);
         if (known) unitTimesS[&item] = firsts[i] == i ? known->timeS : 0.0;
     }
@@ -246,51 +245,51 @@ std::map<const batch::Case*, double> forecast(const RunOptions& options, const P
 }
 
 /// What failed in an earlier invocation goes last: else --max-failures would end each at the same.
-void putFailedLast(const std::vector<batch::Json>& log, std::vector<batch::Unit>& units) {
-    std::set<batch::UnitKey> failed;
-    for (const batch::Json& event : log) {
+void putFailedLast(const std::vector<run::Json>& log, std::vector<run::Unit>& units) {
+    std::set<run::UnitKey> failed;
+    for (const run::Json& event : log) {
         if (event.value("event", "") != "case") continue;
         const std::string status = event.value("status", "");
-        if (status == report::statusName(report::Status::Ok) ||
-            status == report::statusName(report::Status::Flaky)) {
+        if (status == records::statusName(records::Status::Ok) ||
+            status == records::statusName(records::Status::Flaky)) {
             continue;
         }
         failed.emplace(event.value("case", ""), event.value("process", 0));
     }
-    std::ranges::stable_partition(units, [&](const batch::Unit& unit) {
+    std::ranges::stable_partition(units, [&](const run::Unit& unit) {
         return !failed.contains({unit.item->id, unit.process});
     });
 }
 
 /// Runs what is left; with `results`, makes tables, claims and report from it.
-int execute(const Context& context, const RunOptions& options, const batch::Request& request,
-            bool results, std::optional<batch::Plan> submitted = {}) {
+int execute(const Context& context, const RunOptions& options, const run::Request& request,
+            bool results, std::optional<run::Plan> submitted = {}) {
     std::signal(SIGPIPE, SIG_IGN);  // a reader of the progress that is gone ends no run
-    batch::PhaseClock phases;
+    run::PhaseClock phases;
     const bool isNew =
         options.resume.empty() ||
         (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
     Prepared run = isNew ? prepareNew(context, options, request, std::move(submitted), phases)
                          : prepareResumed(context, options, request, phases);
-    run.scheduler.expectations = batch::expectationsOf(run.plan, run.manifest);
+    run.scheduler.expectations = run::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
-    std::vector<batch::Unit> units = batch::remainingUnits(run.plan, run.directory);
+    std::vector<run::Unit> units = run::remainingUnits(run.plan, run.directory);
     if (options.failuresAtMost > 0) putFailedLast(run.log, units);
-    batch::Rounds rounds = batch::roundsOf(run.plan, run.directory, run.log);
-    std::map<std::string, batch::MachineState> states = batch::machineStatesIn(run.log);
+    run::Rounds rounds = run::roundsOf(run.plan, run.directory, run.log);
+    std::map<std::string, run::MachineState> states = run::machineStatesIn(run.log);
     run.log.clear();
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
-    batch::MachineWatch watch(progress, run.directory, std::move(states), machineRoot());
-    const batch::RunOutcome outcome =
-        batch::runUnits(units, rounds, run.directory, run.scheduler, phases, watch);
+    run::MachineWatch watch(progress, run.directory, std::move(states), machineRoot());
+    const run::RunOutcome outcome =
+        run::runUnits(units, rounds, run.directory, run.scheduler, phases, watch);
     progress.clear();
     run.directory.log({{"event", outcome.isInterrupted ? "interrupted" : "end"},
                        {"finished", outcome.finished},
                        {"failed", outcome.failed}});
     run.directory.removeScratch();
-    batch::addScenes(run.manifest, outcome.scenes);
-    batch::addPrograms(run.manifest, outcome.programs);
+    run::addScenes(run.manifest, outcome.scenes);
+    run::addPrograms(run.manifest, outcome.programs);
     run.manifest["rounds"] = rounds.endings();
     run.manifest["machine_states"] = watch.states();
     saveManifest(context, run, phases);
@@ -304,8 +303,8 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         tell("stopped: {}; continue with: gfxrepro {} --resume {}\n", outcome.stopReason,
              results ? "reproduce" : "run", path);
     }
-    const batch::StoredRun stored = batch::readRun(path);
-    const batch::Completeness counts = batch::completeness(stored);
+    const run::StoredRun stored = run::readRun(path);
+    const run::Completeness counts = run::completeness(stored);
     for (const std::string& line : counts.complaints) tell("{}\n", line);
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
     if (const std::string line = watch.warning(); !line.empty()) tell("warning: {}\n", line);
@@ -315,7 +314,7 @@ int execute(const Context& context, const RunOptions& options, const batch::Requ
         countText(outcome.expected, "failed or skipped as expected"),
         run.directory.recordsFile().string());
     const bool isComplete = counts.isComplete() && outcome.stopReason.empty();
-    if (!isComplete && areAnnotationsWanted()) annotate(batch::caseResults(stored));
+    if (!isComplete && areAnnotationsWanted()) annotate(run::caseResults(stored));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;
 
     const int verdict = conclude(path);
@@ -333,8 +332,8 @@ void requireUsable(const RunOptions& options) {
     if (!options.resume.empty() && !options.out.empty()) {
         throw UsageError("--out and --resume exclude each other: both name the folder");
     }
-    if (!options.shard.empty()) batch::parseShard(options.shard);
-    if (!options.budget.empty()) batch::parseBudgetS(options.budget);
+    if (!options.shard.empty()) cluster::parseShard(options.shard);
+    if (!options.budget.empty()) studies::parseBudgetS(options.budget);
 }
 
 /// What the tasks of a submission run.
@@ -344,9 +343,9 @@ int runSubmitted(const Context& context, RunOptions options) {
         !selection.only.empty() || !options.budget.empty()) {
         throw UsageError("run: --plan has configs and options of its own; give none");
     }
-    batch::Plan plan = submittedPlan(context, options.plan, selection.assets);
+    run::Plan plan = submittedPlan(context, options.plan, selection.assets);
     selection.profile = plan.profile;
-    const batch::Request request = plan.request;
+    const run::Request request = plan.request;
     return execute(context, options, request, false, std::move(plan));
 }
 

@@ -1,6 +1,7 @@
 // How tables' claims depend on their assumptions: each table is measured once for each of their
 // values, by turns, so that a budget serves all tables alike.
-#include "runner/batch/sensitivity.h"
+#include "runner/studies/sensitivity.h"
+#include "runner/results/results.h"
 
 #include <fmt/core.h>
 
@@ -10,16 +11,17 @@
 #include <limits>
 #include <optional>
 
-#include "runner/batch/budget.h"
-#include "runner/batch/child_process.h"
-#include "runner/batch/manifest.h"
-#include "runner/batch/run.h"
+#include "runner/claims/claims.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/report/report.h"
+#include "runner/run/child_process.h"
+#include "runner/run/manifest.h"
+#include "runner/run/run.h"
+#include "runner/studies/budget.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::cli {
 
@@ -42,18 +44,18 @@ double secondsSince(Clock::time_point begin) {
 /// A table under study.
 struct Study {
     std::string file;
-    batch::Plan plan;
-    batch::Variations variations;
+    run::Plan plan;
+    studies::Variations variations;
     std::string basis;
     fs::path folder;
-    std::vector<std::string> sets = {};         // of every run
-    std::vector<batch::Outcome> outcomes = {};  // of the first runs
+    std::vector<std::string> sets = {};           // of every run
+    std::vector<studies::Outcome> outcomes = {};  // of the first runs
     double spentS = 0.0;
     bool isIncomplete = false;  // something was not measured that should have been
 
     const config::Experiment& experiment() const { return plan.experiments.front(); }
     std::size_t left() const { return variations.runs.size() - outcomes.size(); }
-    const batch::Variation& next() const { return variations.runs[outcomes.size()]; }
+    const studies::Variation& next() const { return variations.runs[outcomes.size()]; }
 };
 
 /// A name for a folder: what is no letter, digit or point becomes '_'.
@@ -66,8 +68,8 @@ std::string folderName(std::string title) {
 /// Measures in a process of its own; a run that is there already goes on. What goes wrong is the
 /// outcome; cases that failed, or a run that came to no end, leave the study incomplete. A value
 /// that the technique refuses does not.
-batch::Outcome measureNext(Study& study, const Selection& selection) {
-    const batch::Variation& variation = study.next();
+studies::Outcome measureNext(Study& study, const Selection& selection) {
+    const studies::Variation& variation = study.next();
     const fs::path dir = study.folder / folderName(variation.title());
     std::vector<std::string> arguments = {"/proc/self/exe", "run",      study.file,
                                           "--quiet",        "--resume", dir.string()};
@@ -86,7 +88,7 @@ batch::Outcome measureNext(Study& study, const Selection& selection) {
     sets.insert(sets.end(), study.sets.begin(), study.sets.end());
     sets.insert(sets.end(), variation.sets.begin(), variation.sets.end());
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
-    const batch::ProgramEnd end = batch::runToEnd(arguments, kRunLimit);
+    const run::ProgramEnd end = run::runToEnd(arguments, kRunLimit);
     const bool isAnswer = end.exitCode == kExitOk || end.exitCode == kExitUsage;
     if (!isAnswer) study.isIncomplete = true;
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
@@ -95,20 +97,20 @@ batch::Outcome measureNext(Study& study, const Selection& selection) {
         if (error != std::string_view::npos) said.remove_prefix(error);
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
-    const batch::StoredRun run = batch::readRun(dir);
+    const run::StoredRun run = run::readRun(dir);
     return {
         variation,
-        batch::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
+        results::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
 }
 
 void write(const Study& study, const std::string& keep) {
-    const std::string markdown = batch::sensitivityMarkdown(study.experiment(), study.outcomes,
-                                                            study.variations, study.left());
-    const std::string csv = batch::sensitivityCsv(study.outcomes, study.basis);
+    const std::string markdown = studies::sensitivityMarkdown(study.experiment(), study.outcomes,
+                                                              study.variations, study.left());
+    const std::string csv = studies::sensitivityCsv(study.outcomes, study.basis);
     writeFileAtomic(study.folder / "sensitivity.md", markdown);
     writeFileAtomic(study.folder / "sensitivity.csv", csv);
     if (keep.empty()) return;
-    const fs::path kept = batch::keptFolder(keep, study.plan);
+    const fs::path kept = studies::keptFolder(keep, study.plan);
     writeFileAtomic(kept / (study.experiment().slug() + ".md"), markdown);
     writeFileAtomic(kept / (study.experiment().slug() + ".csv"), csv);
 }
@@ -116,9 +118,9 @@ void write(const Study& study, const std::string& keep) {
 /// What `keep` has of the same cases and claims: the runs that are left come after it.
 void takeKept(const std::string& keep, Study& study) {
     const fs::path file =
-        batch::keptFolder(keep, study.plan) / (study.experiment().slug() + ".csv");
+        studies::keptFolder(keep, study.plan) / (study.experiment().slug() + ".csv");
     if (!fs::is_regular_file(file)) return;
-    for (batch::Outcome& kept : batch::readSensitivity(file, study.basis)) {
+    for (studies::Outcome& kept : studies::readSensitivity(file, study.basis)) {
         const auto left =
             study.variations.runs.begin() + static_cast<std::ptrdiff_t>(study.outcomes.size());
         const auto run = std::find_if(left, study.variations.runs.end(), [&](const auto& one) {
@@ -127,7 +129,7 @@ void takeKept(const std::string& keep, Study& study) {
         if (run == study.variations.runs.end() || kept.claims.empty()) continue;
         std::rotate(left, run, run + 1);
         kept.variation = *left;
-        for (report::ClaimResult& claim : kept.claims) {
+        for (claims::ClaimResult& claim : kept.claims) {
             const auto& claims = study.experiment().claims;
             const auto spec = std::ranges::find(claims, claim.id, &config::ClaimSpec::id);
             if (spec != claims.end()) claim.text = spec->text;
@@ -137,18 +139,18 @@ void takeKept(const std::string& keep, Study& study) {
 }
 
 /// The verdicts as configured, where `run` has measured the same.
-void takeBase(const batch::StoredRun& run, Study& study) {
+void takeBase(const run::StoredRun& run, Study& study) {
     for (const config::Experiment& experiment : run.plan.experiments) {
         if (experiment.id != study.experiment().id || !study.outcomes.empty()) continue;
         if (run.plan.deviceClass != study.plan.deviceClass ||
-            batch::basisOf(run.plan, experiment) != study.basis) {
+            studies::basisOf(run.plan, experiment) != study.basis) {
             continue;
         }
-        const std::vector<report::Table> tables =
-            report::buildTables({experiment}, batch::plannedCases(run.plan.cases), run.records);
+        const std::vector<tables::Table> tables =
+            tables::buildTables({experiment}, run::plannedCases(run.plan.cases), run.records);
         study.outcomes.push_back(
-            {study.next(), report::evaluateClaims(experiment, tables.front(),
-                                                  batch::reportContext(run.manifest))});
+            {study.next(), claims::evaluateClaims(experiment, tables.front(),
+                                                  results::reportContext(run.manifest))});
         write(study, "");
     }
 }
@@ -171,14 +173,15 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
         tell("{}: left out, {}\n", experiment.id,
              experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
         if (!experiment.claims.empty() && !options.keep.empty()) {
-            const fs::path kept = batch::keptFolder(options.keep, study.plan);
-            writeFileAtomic(kept / (experiment.slug() + ".md"), batch::untriedMarkdown(experiment));
+            const fs::path kept = studies::keptFolder(options.keep, study.plan);
+            writeFileAtomic(kept / (experiment.slug() + ".md"),
+                            studies::untriedMarkdown(experiment));
         }
         return std::nullopt;
     }
     if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;
-    study.variations = batch::variationsOf(experiment, study.plan.cases, options.points);
-    study.basis = batch::basisOf(study.plan, experiment);
+    study.variations = studies::variationsOf(experiment, study.plan.cases, options.points);
+    study.basis = studies::basisOf(study.plan, experiment);
     study.folder = folder / experiment.slug();
     return study;
 }
@@ -194,11 +197,11 @@ Study* nextOf(std::vector<Study>& studies) {
 
 void print(const Study& study) {
     if (study.outcomes.empty()) return;
-    const batch::Outcome& base = study.outcomes.front();
+    const studies::Outcome& base = study.outcomes.front();
     if (!base.error.empty()) say("{}: {}\n", study.experiment().id, base.error);
     for (std::size_t i = 0; i < base.claims.size(); ++i) {
         say("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
-            batch::dependence(study.outcomes, i), batch::restsOn(study.outcomes, i));
+            studies::dependence(study.outcomes, i), studies::restsOn(study.outcomes, i));
     }
     say("{}\n", (study.folder / "sensitivity.md").string());
 }
@@ -208,9 +211,9 @@ void print(const Study& study) {
 int sensitivity(const Context& context, const SensitivityOptions& options) {
     const Clock::time_point begin = Clock::now();
     const double budgetS = options.budget.empty() ? std::numeric_limits<double>::infinity()
-                                                  : batch::parseBudgetS(options.budget);
+                                                  : studies::parseBudgetS(options.budget);
     const fs::path folder =
-        options.out.empty() ? batch::defaultRunPath("sensitivity") : fs::path(options.out);
+        options.out.empty() ? run::defaultRunPath("sensitivity") : fs::path(options.out);
     const std::string deviceClass = deviceClassFor(options.selection);
     std::vector<Study> studies;
     std::size_t total = 0, made = 0;
@@ -225,13 +228,13 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         made += study.outcomes.size();
     }
     if (!options.from.empty()) {
-        const batch::StoredRun run = batch::readRun(options.from);
+        const run::StoredRun run = run::readRun(options.from);
         for (Study& study : studies) takeBase(run, study);
     }
     while (Study* study = nextOf(studies)) {
         if (secondsSince(begin) >= budgetS) break;
         const Clock::time_point start = Clock::now();
-        const batch::Outcome& outcome =
+        const studies::Outcome& outcome =
             study->outcomes.emplace_back(measureNext(*study, options.selection));
         study->spentS += secondsSince(start);
         write(*study, options.keep);
@@ -246,7 +249,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
     for (const Study& study : studies) print(study);
     if (!options.keep.empty() && fs::is_directory(options.keep)) {
         writeFileAtomic(fs::path(options.keep) / "README.md",
-                        batch::sensitivityIndex(options.keep, context.commandLine));
+                        studies::sensitivityIndex(options.keep, context.commandLine));
     }
     bool isComplete = true;
     for (const Study& study : studies) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "runner/batch/child_process.h"
-#include "runner/batch/submission.h"
+#include "runner/cluster/submission.h"
 #include "runner/core/error.h"
 #include "runner/core/text.h"
+#include "runner/run/child_process.h"
 
 namespace gfxrepro::cli {
 
@@ -22,7 +22,7 @@ constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
 SbatchAnswer sbatch(std::vector<std::string> arguments) {
     constexpr int kNotFound = 127;  // env's
     arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
-    const batch::ProgramEnd end = batch::runToEnd(arguments, kSlurmLimit);
+    const run::ProgramEnd end = run::runToEnd(arguments, kSlurmLimit);
     const std::string text(trimmed(end.output));
     if (end.exitCode != 0) {
         return {"", "",
@@ -46,13 +46,13 @@ std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std
                                         "-t",           "all",     "-j", joined(jobs, ","),
                                         "-o",           "%F_%K %T"};
     if (!cluster.empty()) command.push_back("--clusters=" + cluster);
-    const batch::ProgramEnd end = batch::runToEnd(command, kSlurmLimit);
+    const run::ProgramEnd end = run::runToEnd(command, kSlurmLimit);
     // Its answer to the number of a single job that it has forgotten.
     if (end.output.find("Invalid job id") != std::string::npos) {
         return std::map<std::string, std::string>();
     }
     if (end.exitCode != 0) return std::nullopt;
-    std::map<std::string, std::string> states = batch::parseQueue(end.output);
+    std::map<std::string, std::string> states = cluster::parseQueue(end.output);
     const std::string_view said = trimmed(end.output);
     const bool isHead = said == "CLUSTER: " + cluster;  // of an answer without a task
     const bool isNotice = states.empty() && !said.empty() && !isHead;

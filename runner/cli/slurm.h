@@ -18,7 +18,7 @@ struct SbatchAnswer {
 /// Throws Error where sbatch took something and gave no number.
 SbatchAnswer sbatch(std::vector<std::string> arguments);
 
-/// The states of these jobs' tasks on the cluster ("": the default one), as batch::parseQueue()
+/// The states of these jobs' tasks on the cluster ("": the default one), as cluster::parseQueue()
 /// gives them. None when squeue is not there or does not answer: then nothing is known, least of
 /// all an end. A queue forgets jobs that ended, and answers.
 std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs,

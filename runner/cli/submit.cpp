@@ -1,5 +1,5 @@
 // A plan handed to other machines: as a Slurm array job with a merge behind it, or as commands.
-#include "runner/batch/submission.h"
+#include "runner/cluster/submission.h"
 
 #include <fmt/core.h>
 
@@ -8,24 +8,24 @@
 #include <filesystem>
 #include <numeric>
 
-#include "runner/batch/kept_program.h"
-#include "runner/batch/merge.h"
-#include "runner/batch/shards.h"
-#include "runner/batch/twins.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/cli/slurm.h"
+#include "runner/cluster/kept_program.h"
+#include "runner/cluster/merge.h"
+#include "runner/cluster/shards.h"
 #include "runner/config/json_shape.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/run/twins.h"
 
 namespace gfxrepro::cli {
 
 namespace fs = std::filesystem;
-using batch::Json;
-using batch::Submission;
+using cluster::Submission;
+using run::Json;
 
 namespace {
 
@@ -81,7 +81,7 @@ void writeStored(const fs::path& out, const Stored& stored) {
 }
 
 /// All that was asked for: a submission that is continued must ask for the same.
-std::vector<std::string> askedFor(const SubmitOptions& options, const batch::Request& request) {
+std::vector<std::string> askedFor(const SubmitOptions& options, const run::Request& request) {
     std::vector<std::string> arguments = request.configs;
     const auto add = [&](const char* option, const std::string& value) {
         arguments.insert(arguments.end(), {option, value});
@@ -97,9 +97,9 @@ std::vector<std::string> askedFor(const SubmitOptions& options, const batch::Req
 }
 
 /// As many as were asked for or as the predicted time fills; not more than can be filled.
-int shardCountOf(const SubmitOptions& options, const batch::Plan& plan,
+int shardCountOf(const SubmitOptions& options, const run::Plan& plan,
                  const std::vector<double>& timesS, bool arePredicted) {
-    const auto most = std::max(static_cast<int>(batch::indivisibleGroups(plan.cases).size()), 1);
+    const auto most = std::max(static_cast<int>(cluster::indivisibleGroups(plan.cases).size()), 1);
     if (options.shardCount > 0) return std::min(options.shardCount, most);
     const double totalS = std::accumulate(timesS.begin(), timesS.end(), 0.0);
     const int wanted =
@@ -113,12 +113,12 @@ struct Cut {
     std::vector<std::string> asked;
     std::vector<int> unitCounts;
     std::vector<double> timesS;  // predicted, a shard each
-    batch::Predictor predictor;
-    batch::Plan plan;
+    cluster::Predictor predictor;
+    run::Plan plan;
 };
 
 Cut cutPlan(const Context& context, const SubmitOptions& options) {
-    const batch::Request request =
+    const run::Request request =
         requestOf(options.selection, findPaperConfigs(options.selection.names));
     const fs::path out = fs::absolute(options.out).lexically_normal();
     const std::string& assets = options.selection.assets;
@@ -129,7 +129,7 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     const bool isBegun = before.has_value();
     const bool isFrozen = isBegun && before->asked == cut.asked && fs::exists(frozenPlan(out));
     if (isFrozen) {
-        cut.plan = batch::Plan::fromJsonFile(frozenPlan(out));
+        cut.plan = run::Plan::fromJsonFile(frozenPlan(out));
         warnOfChangedConfigs(cut.plan, "what was submitted is measured");
     } else {
         cut.plan = planFor(context, request, options.selection.profile, assets,
@@ -139,10 +139,10 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
                               : openHistory(options.from, cut.plan.deviceClass);
     const bool arePredicted = !forecastText(cut.plan, history, 1).empty();
     const std::vector<double> timesS =
-        batch::withoutTwins(cut.plan.cases, batch::caseTimesS(cut.plan, history.predictor));
+        run::withoutTwins(cut.plan.cases, cluster::caseTimesS(cut.plan, history.predictor));
     Submission& s = cut.submission;
     s.name = runSlug(cut.plan);
-    s.program = batch::keptProgram(programFolder(out));
+    s.program = cluster::keptProgram(programFolder(out));
     s.runArguments = {"--plan", frozenPlan(out), "--assets", fs::absolute(assetsFolder(assets))};
     if (options.jobs > 0)
         s.runArguments.insert(s.runArguments.end(), {"--jobs", std::to_string(options.jobs)});
@@ -153,8 +153,8 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     s.sbatchFlags.insert(s.sbatchFlags.end(), options.sbatchFlags.begin(),
                          options.sbatchFlags.end());
 
-    const std::vector<int> shardOf = batch::cutShards(cut.plan.cases, timesS, s.shardCount);
-    s.timeLimitMin = batch::timeLimitMin(cut.plan, shardOf, timesS, arePredicted);
+    const std::vector<int> shardOf = cluster::cutShards(cut.plan.cases, timesS, s.shardCount);
+    s.timeLimitMin = cluster::timeLimitMin(cut.plan, shardOf, timesS, arePredicted);
     cut.unitCounts.resize(static_cast<std::size_t>(s.shardCount));
     cut.timesS.resize(cut.unitCounts.size());
     for (std::size_t i = 0; i < cut.plan.cases.size(); ++i) {
@@ -173,11 +173,11 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     return cut;
 }
 
-batch::ShardProgress progressOf(const fs::path& folder, int unitCount) {
-    batch::ShardProgress progress{unitCount, 0, 0};
+cluster::ShardProgress progressOf(const fs::path& folder, int unitCount) {
+    cluster::ShardProgress progress{unitCount, 0, 0};
     if (!fs::exists(folder / "plan.json")) return progress;
-    const batch::StoredRun run = batch::readRun(folder);
-    const batch::Completeness counts = batch::completeness(run);
+    const run::StoredRun run = run::readRun(folder);
+    const run::Completeness counts = run::completeness(run);
     progress.unitCount = counts.units;
     progress.failed = counts.failed;
     progress.finished = progress.unitCount - counts.failed - counts.missing;
@@ -210,22 +210,22 @@ int printStatus(const fs::path& out) {
     const auto count = static_cast<int>(stored->unitCounts.size());
     bool isComplete = true;
     for (int k = 1; k <= count; ++k) {
-        const batch::ShardProgress progress =
+        const cluster::ShardProgress progress =
             progressOf(out / "shards" / std::to_string(k),
                        stored->unitCounts[static_cast<std::size_t>(k - 1)]);
         isComplete = isComplete && progress.isComplete();
-        rows.push_back({batch::Shard{k, count, {}}.name(),
+        rows.push_back({run::Shard{k, count, {}}.name(),
                         fmt::format("{}/{}", progress.finished, progress.unitCount),
                         std::to_string(progress.failed),
-                        batch::stateOf(progress, queue, taskOf(*stored, k))});
+                        cluster::stateOf(progress, queue, taskOf(*stored, k))});
     }
     const bool isMerged = fs::exists(out / "plan.json");
-    batch::ShardProgress merged{isMerged ? 0 : 1, 0, 0};
+    cluster::ShardProgress merged{isMerged ? 0 : 1, 0, 0};
     if (isMerged) merged = progressOf(out, 0);
     rows.push_back({"merge",
                     isMerged ? fmt::format("{}/{}", merged.finished, merged.unitCount) : "",
                     isMerged ? std::to_string(merged.failed) : "",
-                    batch::stateOf(merged, queue, stored->mergeJob)});
+                    cluster::stateOf(merged, queue, stored->mergeJob)});
     fmt::print("{}", alignedColumns(rows));
     return isComplete && isMerged && merged.finished == merged.unitCount ? kExitOk
                                                                          : kExitIncomplete;
@@ -259,7 +259,7 @@ std::vector<std::string> mergeArguments(const Submission& s, const std::string& 
 std::vector<int> incompleteShards(const Cut& cut) {
     std::vector<int> incomplete;
     for (int k = 1; k <= cut.submission.shardCount; ++k) {
-        const batch::ShardProgress progress = progressOf(
+        const cluster::ShardProgress progress = progressOf(
             cut.submission.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)]);
         if (!progress.isComplete()) incomplete.push_back(k);
     }
@@ -279,7 +279,7 @@ void requireNotQueued(const Stored& before, const fs::path& out, const std::vect
     if (tasks.empty()) return;
     const auto queue = askQueue(before);
     for (const auto& [task, name] : tasks) {
-        if (!queue || !batch::isUnderWay(*queue, task)) continue;
+        if (!queue || !cluster::isUnderWay(*queue, task)) continue;
         throw Error(fmt::format("{}: {} is {} already; wait, or scancel {}", out.string(), name,
                                 queue->at(task), task.substr(0, task.find('_'))));
     }
@@ -309,16 +309,16 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before,
     const Submission& s = cut.submission;
     const std::vector<int> pending = incompleteShards(cut);
     if (before) requireNotQueued(*before, s.out, pending, options.isForced);
-    const std::string indices = batch::arrayIndices(pending);
+    const std::string indices = cluster::arrayIndices(pending);
     if (options.isDryRun) {
-        fmt::print("# {}\n{}# {}\n{}", (s.out / "task.sh").string(), batch::taskScript(s),
-                   (s.out / "merge.sh").string(), batch::mergeScript(s));
+        fmt::print("# {}\n{}# {}\n{}", (s.out / "task.sh").string(), cluster::taskScript(s),
+                   (s.out / "merge.sh").string(), cluster::mergeScript(s));
         if (!pending.empty()) fmt::print("sbatch {}\n", joined(arrayArguments(s, indices), " "));
         fmt::print("sbatch {}\n", joined(mergeArguments(s, pending.empty() ? "" : "JOB", ""), " "));
         return kExitOk;
     }
-    writeFileAtomic(s.out / "task.sh", batch::taskScript(s));
-    writeFileAtomic(s.out / "merge.sh", batch::mergeScript(s));
+    writeFileAtomic(s.out / "task.sh", cluster::taskScript(s));
+    writeFileAtomic(s.out / "merge.sh", cluster::mergeScript(s));
     Stored stored{cut.asked, cut.unitCounts, "", "", ""};
     if (!pending.empty()) {
         const SbatchAnswer array =
@@ -348,8 +348,8 @@ int submitToSlurm(const Cut& cut, const std::optional<Stored>& before,
 int writeCommands(const Cut& cut, bool isDryRun) {
     const Submission& s = cut.submission;
     std::string commands;
-    for (int k = 1; k <= s.shardCount; ++k) commands += batch::shardCommand(s, k) + '\n';
-    const std::string merge = batch::mergeCommand(s) + '\n';
+    for (int k = 1; k <= s.shardCount; ++k) commands += cluster::shardCommand(s, k) + '\n';
+    const std::string merge = cluster::mergeCommand(s) + '\n';
     fmt::print("{}{}", commands, merge);
     if (isDryRun) return kExitOk;
     writeFileAtomic(s.out / "commands.txt", commands);
@@ -383,8 +383,8 @@ int submit(const Context& context, const SubmitOptions& options) {
     // What lies in a folder without a submission was never queued: a killed submit left it.
     if (!options.isDryRun) {
         if (!before) fs::remove_all(programFolder(s.out));
-        batch::keepProgram(programFolder(s.out), cut.plan.buildId);
-        if (!before) batch::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
+        cluster::keepProgram(programFolder(s.out), cut.plan.buildId);
+        if (!before) cluster::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
     }
     if (!options.isDryRun && (!before || !fs::exists(frozenPlan(s.out)))) {
         cut.plan.writeFile(frozenPlan(s.out));

@@ -16,49 +16,10 @@ namespace {
 using Names = std::vector<std::string>;
 using Type = ClaimSpec::Type;
 
-/// A kind of claim, and the key that names it; the schema has the keys that say more.
-struct Kind {
-    std::string_view key;
-    Type type;
-};
-constexpr std::array<Kind, 9> kKinds = {{
-    {"order", Type::Order},
-    {"ratio", Type::Ratio},
-    {"trend", Type::Trend},
-    {"independent", Type::Independent},
-    {"bound", Type::Bound},
-    {"exact", Type::Exact},
-    {"tolerance", Type::Tolerance},
-    {"crossover", Type::Crossover},
-    {"same_mean", Type::SameMean},
-}};
-
-std::string kindNames() {
-    Names names;
-    for (const Kind& kind : kKinds) names.emplace_back(kind.key);
-    return joined(names);
-}
-
-const Kind& kindOf(const Node& claim, const std::string& what, const SourceLocation& where) {
-    if (!claim.isMap()) throwNotAllowed(claim, what, "a map");
-    const Kind* found = nullptr;
-    for (const Kind& kind : kKinds) {
-        if (!claim.find(kind.key)) continue;
-        if (found) {
-            throw Error(claim.keyLocation(kind.key), what + " is of two types, '" +
-                                                         std::string(found->key) + "' and '" +
-                                                         std::string(kind.key) + "'");
-        }
-        found = &kind;
-    }
-    if (!found) throw Error(where, what + " has no type; allowed: " + kindNames());
-    return *found;
-}
-
 /// Reads one claim. `what_` begins the messages: "claim 'V1'".
-class ClaimReader {
+class ClaimParser {
   public:
-    ClaimReader(std::string id, const Node& node, const SourceLocation& where,
+    ClaimParser(std::string id, const Node& node, const SourceLocation& where,
                 const TableNames& names, bool hasPrinted)
         : node_(node), names_(names), hasPrinted_(hasPrinted), what_("claim '" + id + "'") {
         claim_.id = std::move(id);
@@ -66,7 +27,7 @@ class ClaimReader {
     }
 
     ClaimSpec read() {
-        const Kind& kind = kindOf(node_, what_, claim_.location);
+        const Kind& kind = kindOf();
         Names allowed = keysOf("claim");
         for (std::string& key : keysOf(fmt::format("claim.{}", kind.key))) {
             allowed.push_back(std::move(key));
@@ -74,14 +35,41 @@ class ClaimReader {
         requireKeys(node_, what_, allowed);
         claim_.type = kind.type;
         readCommon();
-        readOperands(*node_.find(kind.key));
-        readRequired();
+        (this->*kind.readOperands)(*node_.find(kind.key));
+        (this->*kind.readRequired)();
         requireRoom();
         readProvenance(node_, what_, claim_);
         return std::move(claim_);
     }
 
   private:
+    /// A kind of claim, and the key that names it; the schema has the keys that say more.
+    struct Kind {
+        std::string_view key;
+        Type type;
+        void (ClaimParser::*readOperands)(const Node&);
+        void (ClaimParser::*readRequired)();
+    };
+    static const std::array<Kind, 9> kKinds;
+
+    const Kind& kindOf() const {
+        if (!node_.isMap()) throwNotAllowed(node_, what_, "a map");
+        const Kind* found = nullptr;
+        for (const Kind& kind : kKinds) {
+            if (!node_.find(kind.key)) continue;
+            if (found) {
+                throw Error(
+                    node_.keyLocation(kind.key),
+                    fmt::format("{} is of two types, '{}' and '{}'", what_, found->key, kind.key));
+            }
+            found = &kind;
+        }
+        if (found) return *found;
+        Names names;
+        for (const Kind& kind : kKinds) names.emplace_back(kind.key);
+        throw Error(claim_.location, what_ + " has no type; allowed: " + joined(names));
+    }
+
     const Node& require(std::string_view key) const {
         const Node* value = node_.find(key);
         if (!value) throw Error(claim_.location, what_ + " needs '" + std::string(key) + "'");
@@ -134,30 +122,25 @@ class ClaimReader {
         for (const Node& value : known->second) names_.columns.push_back(value.text());
     }
 
-    void readOperands(const Node& node) {
-        switch (claim_.type) {
-            case Type::Order:
-                addOperands(node, split(lineOf(node, what_ + ": order"), '<'));
-                if (claim_.operands.size() < 2)
-                    throwNotAllowed(node, what_ + ": order", "a < b < …");
-                break;
-            case Type::Ratio:
-                addOperands(node, splitRatio(node));
-                break;
-            case Type::Independent:
-            case Type::Crossover: {
-                const Node::Sequence items =
-                    node.isSequence() ? node.items() : Node::Sequence{node};
-                for (const Node& item : items) addOperands(item, {lineOf(item, what_)});
-                if (claim_.type == Type::Crossover && claim_.operands.size() != 2) {
-                    throwNotAllowed(node, what_ + ": crossover", "[a, b]");
-                }
-                if (claim_.operands.empty()) throwNotAllowed(node, what_, "a column, or a list");
-                break;
-            }
-            default:
-                addOperands(node, {lineOf(node, what_)});
+    void readOne(const Node& node) { addOperands(node, {lineOf(node, what_)}); }
+
+    void readOrdered(const Node& node) {
+        addOperands(node, split(lineOf(node, what_ + ": order"), '<'));
+        if (claim_.operands.size() < 2) throwNotAllowed(node, what_ + ": order", "a < b < …");
+    }
+
+    void readSides(const Node& node) { addOperands(node, splitRatio(node)); }
+
+    void readList(const Node& node) {
+        for (const Node& item : node.isSequence() ? node.items() : Node::Sequence{node}) {
+            addOperands(item, {lineOf(item, what_)});
         }
+        if (claim_.operands.empty()) throwNotAllowed(node, what_, "a column, or a list");
+    }
+
+    void readTwo(const Node& node) {
+        readList(node);
+        if (claim_.operands.size() != 2) throwNotAllowed(node, what_ + ": crossover", "[a, b]");
     }
 
     /// The two sides of the one " / " outside of parentheses.
@@ -187,46 +170,41 @@ class ClaimReader {
         }
     }
 
-    void readRequired() {
-        switch (claim_.type) {
-            case Type::Order:
-                break;
-            case Type::Ratio:
-                readLow("at_least");
-                readHigh("at_most");
-                readPair("between");
-                requireSome("at_least, more_than, at_most, less_than or between");
-                break;
-            case Type::Trend:
-                readOver("over");
-                readPair("exponent");
-                readDirection();
-                break;
-            case Type::Independent:
-                readOver("of");
-                readWithin();
-                break;
-            case Type::Bound:
-                readLow("above");
-                readHigh("below");
-                requireSome("above, more_than, below or less_than");
-                break;
-            case Type::Exact:
-                readEquals();
-                break;
-            case Type::Tolerance:
-                requirePrinted();
-                readWithin();
-                break;
-            case Type::Crossover:
-                readOver("over");
-                require("between");
-                readPair("between");
-                break;
-            case Type::SameMean:
-                readFalseAlarms();
-                break;
-        }
+    void readNothing() {}
+
+    void readRatio() {
+        readLow("at_least");
+        readHigh("at_most");
+        readPair("between");
+        requireSome("at_least, more_than, at_most, less_than or between");
+    }
+
+    void readTrend() {
+        readOver("over");
+        readPair("exponent");
+        readDirection();
+    }
+
+    void readIndependence() {
+        readOver("of");
+        readWithin();
+    }
+
+    void readBounds() {
+        readLow("above");
+        readHigh("below");
+        requireSome("above, more_than, below or less_than");
+    }
+
+    void readTolerance() {
+        requirePrinted();
+        readWithin();
+    }
+
+    void readCrossing() {
+        readOver("over");
+        require("between");
+        readPair("between");
     }
 
     /// The bound under one of two keys; true for the second, which excludes the bound itself.
@@ -363,13 +341,26 @@ class ClaimReader {
     ClaimSpec claim_;
 };
 
+using Parser = ClaimParser;
+const std::array<Parser::Kind, 9> Parser::kKinds = {{
+    {"order", Type::Order, &Parser::readOrdered, &Parser::readNothing},
+    {"ratio", Type::Ratio, &Parser::readSides, &Parser::readRatio},
+    {"trend", Type::Trend, &Parser::readOne, &Parser::readTrend},
+    {"independent", Type::Independent, &Parser::readList, &Parser::readIndependence},
+    {"bound", Type::Bound, &Parser::readOne, &Parser::readBounds},
+    {"exact", Type::Exact, &Parser::readOne, &Parser::readEquals},
+    {"tolerance", Type::Tolerance, &Parser::readOne, &Parser::readTolerance},
+    {"crossover", Type::Crossover, &Parser::readTwo, &Parser::readCrossing},
+    {"same_mean", Type::SameMean, &Parser::readOne, &Parser::readFalseAlarms},
+}};
+
 }  // namespace
 
 std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted) {
     if (!node.isMap()) throwNotAllowed(node, "claims", "a map {id: claim}");
     std::vector<ClaimSpec> claims;
     for (const auto& [id, claim] : node.entries()) {
-        claims.push_back(ClaimReader(id, claim, node.keyLocation(id), names, hasPrinted).read());
+        claims.push_back(ClaimParser(id, claim, node.keyLocation(id), names, hasPrinted).read());
     }
     return claims;
 }

@@ -105,4 +105,21 @@ std::optional<long long> parseInteger(std::string_view text) {
     return parseWhole<long long>(text);
 }
 
+std::string shellQuoted(const std::string& argument) {
+    const bool isSafe = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
+        return std::isalnum(c) ||
+               std::string_view("-_./=:,+@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (isSafe) return argument;
+    std::string quoted = "'";
+    for (const char c : argument) {
+        if (c == '\'') {
+            quoted += "'\\''";
+        } else {
+            quoted += c;
+        }
+    }
+    return quoted + "'";
+}
+
 }  // namespace gfxrepro

@@ -28,4 +28,7 @@ std::string_view trimmed(std::string_view text);
 std::optional<double> parseDouble(std::string_view text);
 std::optional<long long> parseInteger(std::string_view text);
 
+/// For /bin/sh: as it is where that is safe, else in single quotes.
+std::string shellQuoted(const std::string& argument);
+
 }  // namespace gfxrepro

@@ -11,8 +11,8 @@
 #include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/metrics/statistics.h"
+#include "runner/records/csv.h"
 #include "runner/regression/rank_tests.h"
-#include "runner/report/csv.h"
 
 namespace gfxrepro::regression {
 
@@ -68,7 +68,7 @@ void appendNight(const std::filesystem::path& path, const Night& night) {
     for (const auto& [key, all] : night.series) {
         const Series values = key.isTime() ? standing(all) : all;
         if (values.empty()) continue;
-        report::CsvRow row(text);
+        records::CsvRow row(text);
         row.text(night.time).text(night.commit).text(night.machine).text(key.table);
         row.text(key.technique).text(key.method).text(key.scene).text(key.params);
         row.text(key.pass).text(key.metric).text(key.unit).number(medianOf(values));
@@ -79,7 +79,7 @@ void appendNight(const std::filesystem::path& path, const Night& night) {
 
 std::vector<HistoryRow> readHistoryRows(const std::filesystem::path& path) {
     const std::string text = readFile(path);
-    report::CsvReader reader(text, path.string());
+    records::CsvReader reader(text, path.string());
     std::vector<std::string> fields;
     std::vector<HistoryRow> rows;
     if (!text.empty() && !text.starts_with(kHeader)) {

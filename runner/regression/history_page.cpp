@@ -8,17 +8,17 @@
 #include <utility>
 
 #include "runner/core/files.h"
-#include "runner/html/parts.h"
+#include "runner/records/frame.h"
 #include "runner/regression/chart.h"
-#include "runner/report/figure.h"
-#include "runner/report/frame.h"
 #include "runner/report/markup.h"
+#include "runner/report/parts.h"
+#include "runner/tables/figure.h"
 
 namespace gfxrepro::regression {
 
+using records::Frame;
+using records::FrameValue;
 using report::escapeXml;
-using report::Frame;
-using report::FrameValue;
 
 namespace {
 
@@ -245,7 +245,7 @@ void writeHistoryPage(const std::filesystem::path& file, const std::string& titl
         "series "
         "of the machine. Other values are marked where they are another than the night before.</p>"
         "\n",
-        escapeXml(title), html::kStyle);
+        escapeXml(title), report::kStyle);
     for (std::size_t i = 0; i < histories.size(); ++i) html += machineHtml(histories[i], i);
     writeFileAtomic(file, html + "</main>\n</body>\n</html>\n");
 }
@@ -278,7 +278,7 @@ void writeHistorySqlite(const std::filesystem::path& file,
     const Frame frames[] = {
         frameOf("history", first, {"value"}, std::move(numbers)),
         frameOf("changes", first, {"commit_before", "ratio", "chance"}, std::move(changes))};
-    report::writeSqlite(file, frames);
+    records::writeSqlite(file, frames);
 }
 
 }  // namespace gfxrepro::regression

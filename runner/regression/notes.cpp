@@ -5,8 +5,8 @@
 #include <map>
 #include <string_view>
 
+#include "runner/records/records.h"
 #include "runner/regression/comparison.h"
-#include "runner/report/records.h"
 
 namespace gfxrepro::regression {
 
@@ -55,7 +55,7 @@ const std::string* textOf(const CaseTexts& texts, const SeriesKey& key) {
 }
 
 Difference failure(const SeriesKey& key, const std::string* before, const std::string& after) {
-    const std::string_view flaky = report::statusName(report::Status::Flaky);
+    const std::string_view flaky = records::statusName(records::Status::Flaky);
     const bool wasMeasured = !before || (before->starts_with(flaky) && !after.starts_with(flaky));
     Difference result{
         .key = key, .verdict = wasMeasured ? Verdict::Lost : Verdict::Failed, .reason = after};

@@ -19,7 +19,7 @@
 #include "runner/metrics/error_map.h"
 #include "runner/metrics/flip.h"
 #include "runner/metrics/hdr_flip.h"
-#include "runner/report/images.h"
+#include "runner/records/images.h"
 
 namespace gfxrepro::regression {
 
@@ -227,17 +227,17 @@ Difference onlyOneSide(const SeriesKey& key, Verdict verdict, const char* reason
 
 }  // namespace
 
-PictureMap picturesOf(const fs::path& runDir, const std::vector<report::Record>& records,
+PictureMap picturesOf(const fs::path& runDir, const std::vector<records::Record>& records,
                       const CaseParams& params) {
     std::map<std::string, SeriesKey> cases;
-    for (const report::Record& record : records) {
+    for (const records::Record& record : records) {
         cases.try_emplace(record.caseId, keyOf(record, params, kPictureMetric));
     }
-    const std::vector<report::ImageEntry> entries = report::readImages(runDir);
+    const std::vector<records::ImageEntry> entries = records::readImages(runDir);
     std::map<std::string, std::set<int>> frames;
-    for (const report::ImageEntry& entry : entries) frames[entry.caseId].insert(entry.frame);
+    for (const records::ImageEntry& entry : entries) frames[entry.caseId].insert(entry.frame);
     PictureMap pictures;
-    for (const report::ImageEntry& entry : entries) {
+    for (const records::ImageEntry& entry : entries) {
         const auto found = cases.find(entry.caseId);
         if (found == cases.end()) continue;
         const auto file = [&](const std::string& name) {

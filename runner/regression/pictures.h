@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/records/records.h"
 #include "runner/regression/comparison.h"
-#include "runner/report/records.h"
 
 namespace gfxrepro::regression {
 
@@ -22,7 +22,7 @@ using PictureMap = std::map<SeriesKey, PictureFiles>;
 
 /// The pictures of a run that are listed and there. Throws Error as readImages().
 PictureMap picturesOf(const std::filesystem::path& runDir,
-                      const std::vector<report::Record>& records, const CaseParams& params);
+                      const std::vector<records::Record>& records, const CaseParams& params);
 
 struct PictureRules {
     /// The tables that say themselves how far pictures may be apart.

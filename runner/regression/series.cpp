@@ -24,7 +24,7 @@ double meanOfMedians(const Frames& frames) {
     double sum = 0.0;
     std::size_t count = 0;
     for (const auto& [frame, repeats] : frames) {
-        if (frame == report::kSetup && frames.size() > 1) continue;
+        if (frame == records::kSetup && frames.size() > 1) continue;
         Series values;
         for (const auto& [repeat, value] : repeats) values.push_back(value);
         if (standing(values).size() < values.size()) return kVoid;
@@ -44,7 +44,7 @@ bool isOfTheMachine(const std::string& metric) {
 }
 
 /// A time, or made from times: no two measurements give the same.
-bool isMadeOfTimes(const report::Record& record) {
+bool isMadeOfTimes(const records::Record& record) {
     static constexpr std::array kUnits = {"s", "ms", "us", "ns"};
     return std::ranges::find(kUnits, record.unit) != kUnits.end() || record.unit.ends_with("/s") ||
            record.metric.find("time") != std::string::npos;
@@ -72,7 +72,7 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
 
 }  // namespace
 
-SeriesKey keyOf(const report::Record& record, const CaseParams& params, std::string metric) {
+SeriesKey keyOf(const records::Record& record, const CaseParams& params, std::string metric) {
     const auto found = params.find(record.caseId);
     return {record.table,
             record.technique,
@@ -105,11 +105,11 @@ Series standing(const Series& values) {
     return result;
 }
 
-SeriesMap seriesOf(const std::vector<report::Record>& records, const CaseParams& params) {
+SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
-    for (const report::Record& record : records) {
-        const bool isVoid = record.status == report::Status::Ambiguous;
-        if (record.status != report::Status::Ok && !isVoid) continue;
+    for (const records::Record& record : records) {
+        const bool isVoid = record.status == records::Status::Ambiguous;
+        if (record.status != records::Status::Ok && !isVoid) continue;
         SeriesKey key = keyOf(record, params, record.metric);
         key.pass = record.pass;
         key.unit = record.unit;
@@ -127,31 +127,31 @@ SeriesMap seriesOf(const std::vector<report::Record>& records, const CaseParams&
     return series;
 }
 
-CaseTexts failuresOf(const std::vector<report::Record>& records, const CaseParams& params) {
+CaseTexts failuresOf(const std::vector<records::Record>& records, const CaseParams& params) {
     CaseTexts failures;
-    for (const report::Record& record : records) {
-        if (record.status == report::Status::Ok || record.status == report::Status::Ambiguous) {
+    for (const records::Record& record : records) {
+        if (record.status == records::Status::Ok || record.status == records::Status::Ambiguous) {
             continue;
         }
-        std::string text(report::statusName(record.status));
+        std::string text(records::statusName(record.status));
         if (!record.message.empty()) text += ": " + record.message;
         failures.insert_or_assign(keyOf(record, params, "status"), text);
     }
     return failures;
 }
 
-CaseTexts voidTimesOf(const std::vector<report::Record>& records, const CaseParams& params) {
+CaseTexts voidTimesOf(const std::vector<records::Record>& records, const CaseParams& params) {
     CaseTexts texts;
-    for (const report::Record& record : records) {
-        if (record.status != report::Status::Ambiguous) continue;
+    for (const records::Record& record : records) {
+        if (record.status != records::Status::Ambiguous) continue;
         texts.try_emplace(keyOf(record, params, "status"), record.message);
     }
     return texts;
 }
 
-std::size_t untimedCases(const std::vector<report::Record>& records) {
+std::size_t untimedCases(const std::vector<records::Record>& records) {
     std::set<std::string> cases;
-    for (const report::Record& record : records) {
+    for (const records::Record& record : records) {
         if (record.lane == "quality") cases.insert(record.table + ' ' + record.caseId);
     }
     return cases.size();

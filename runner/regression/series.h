@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/report/records.h"
+#include "runner/records/records.h"
 
 namespace gfxrepro::regression {
 
@@ -53,19 +53,19 @@ using CaseParams = std::map<std::string, std::string>;
 /// reciprocal, and loading and setting up depend on what the disk has in its cache. Left out, too,
 /// are numbers made from times (of a unit of time or a rate, or "time" in the name) and what is
 /// about the machine (memory of the process, counts that the order of parallel work changes).
-SeriesMap seriesOf(const std::vector<report::Record>& records, const CaseParams& params);
+SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params);
 
 /// Of a case: pass and unit are empty.
-SeriesKey keyOf(const report::Record& record, const CaseParams& params, std::string metric);
+SeriesKey keyOf(const records::Record& record, const CaseParams& params, std::string metric);
 
 /// What is said of cases, by case: the key's metric is "status", its pass and unit are empty.
 using CaseTexts = std::map<SeriesKey, std::string>;
 /// Cases that did not end as they should, be it that their second try did: "crash: SIGSEGV: …".
-CaseTexts failuresOf(const std::vector<report::Record>& records, const CaseParams& params);
+CaseTexts failuresOf(const std::vector<records::Record>& records, const CaseParams& params);
 /// Why times of cases are void: "frame 0: the picture of repeat 0 is blank: …".
-CaseTexts voidTimesOf(const std::vector<report::Record>& records, const CaseParams& params);
+CaseTexts voidTimesOf(const std::vector<records::Record>& records, const CaseParams& params);
 /// How many cases ran side by side in the quality lane, so that their times are not compared.
-std::size_t untimedCases(const std::vector<report::Record>& records);
+std::size_t untimedCases(const std::vector<records::Record>& records);
 
 /// The names of the parameters that keys have, by technique.
 using ParamNames = std::map<std::string, std::set<std::string>>;

@@ -5,13 +5,14 @@
 #include <filesystem>
 #include <string>
 
-#include "runner/report/figure.h"
+#include "runner/tables/figure.h"
 
 namespace gfxrepro::report {
 
 /// A script with its data that writes an SVG to the standard output. `name` begins the ids of the
 /// SVG's elements and `source` says in its head what it was made from.
-std::string gnuplotScript(const Figure& figure, const std::string& name, const std::string& source);
+std::string gnuplotScript(const tables::Figure& figure, const std::string& name,
+                          const std::string& source);
 
 /// Text in single quotes, in which gnuplot sees no markup, macro or command.
 std::string gnuplotQuoted(const std::string& text);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "runner/core/text.h"
-#include "runner/report/csv.h"
+#include "runner/records/csv.h"
 #include "runner/report/gnuplot.h"
 #include "runner/report/gnuplot_axis.h"
 
@@ -44,7 +44,7 @@ constexpr double kLine = 18;  // what gnuplot counts as a character's height, in
 constexpr std::string_view kInterval = "heads size screen 0.004,90 fixed linewidth 1.2";
 
 std::string number(double value) {
-    return std::isfinite(value) ? shortestText(value) : "NaN";
+    return std::isfinite(value) ? records::shortestText(value) : "NaN";
 }
 
 /// For comments: one line.
@@ -60,33 +60,33 @@ std::size_t letters(const std::string& text) {
     }));
 }
 
-using BoundsSet = std::set<Bounds>;
+using BoundsSet = std::set<tables::Bounds>;
 
-BoundsSet boundsOf(const FigureCurve& curve) {
+BoundsSet boundsOf(const tables::FigureCurve& curve) {
     BoundsSet bounds;
-    for (const FigurePoint& point : curve.points) {
-        if (point.bounds != Bounds::None) bounds.insert(point.bounds);
+    for (const tables::FigurePoint& point : curve.points) {
+        if (point.bounds != tables::Bounds::None) bounds.insert(point.bounds);
     }
     return bounds;
 }
 
 /// "95 % interval", "range", or both; where a curve has no bounds, what it would have.
 std::string namesOf(const BoundsSet& bounds) {
-    if (bounds.empty()) return std::string(boundsName(Bounds::Interval));
+    if (bounds.empty()) return std::string(tables::boundsName(tables::Bounds::Interval));
     std::vector<std::string> names;
-    for (const Bounds one : bounds) names.emplace_back(boundsName(one));
+    for (const tables::Bounds one : bounds) names.emplace_back(tables::boundsName(one));
     return joined(names, " or ");
 }
 
 /// Writes the script of one figure.
 class ScriptWriter {
   public:
-    explicit ScriptWriter(const Figure& figure) : figure_(figure) {
-        for (const FigurePanel& panel : figure.panels) {
-            for (const FigureCurve& curve : panel.curves) {
+    explicit ScriptWriter(const tables::Figure& figure) : figure_(figure) {
+        for (const tables::FigurePanel& panel : figure.panels) {
+            for (const tables::FigureCurve& curve : panel.curves) {
                 hasPrinted_ = hasPrinted_ || !curve.printed.empty();
-                for (const FigurePoint& point : curve.points) {
-                    if (point.bounds != Bounds::None) bounds_.insert(point.bounds);
+                for (const tables::FigurePoint& point : curve.points) {
+                    if (point.bounds != tables::Bounds::None) bounds_.insert(point.bounds);
                 }
             }
         }
@@ -97,9 +97,10 @@ class ScriptWriter {
         plotHeight_ = count > 1 ? 150 : 270;
         top_ = kEdge + (entries_.empty() ? 0 : 6) + kLegendLine * static_cast<double>(legendLines_);
         bottom_ = kXLabel + kNoteLine * static_cast<double>(figure.notes.size());
-        hasOneYLabel_ = std::all_of(
-            figure.panels.begin(), figure.panels.end(),
-            [&](const FigurePanel& panel) { return panel.yLabel == figure.panels[0].yLabel; });
+        hasOneYLabel_ = std::all_of(figure.panels.begin(), figure.panels.end(),
+                                    [&](const tables::FigurePanel& panel) {
+                                        return panel.yLabel == figure.panels[0].yLabel;
+                                    });
         height_ = top_ + bottom_ + static_cast<double>(panelRows_) * rowHeight();
     }
 
@@ -127,7 +128,7 @@ class ScriptWriter {
     double rowHeight() const { return titleHeight() + plotHeight_ + kTicLabels; }
     double titleHeight() const {
         return std::all_of(figure_.panels.begin(), figure_.panels.end(),
-                           [](const FigurePanel& panel) { return panel.title.empty(); })
+                           [](const tables::FigurePanel& panel) { return panel.title.empty(); })
                    ? 0.0
                    : kTitle;
     }
@@ -174,21 +175,21 @@ class ScriptWriter {
     }
 
     void writeData(std::size_t panelIndex) {
-        const FigurePanel& panel = figure_.panels[panelIndex];
+        const tables::FigurePanel& panel = figure_.panels[panelIndex];
         for (std::size_t i = 0; i < panel.curves.size(); ++i) {
-            const FigureCurve& curve = panel.curves[i];
+            const tables::FigureCurve& curve = panel.curves[i];
             if (!curve.points.empty()) {
                 text_ += fmt::format("# {}{}{}: x, measured, ends of its {}\n{} << EOD\n",
                                      oneLine(panel.title), panel.title.empty() ? "" : ", ",
                                      oneLine(curve.name), namesOf(boundsOf(curve)),
                                      block(panelIndex, i, false));
-                for (const FigurePoint& point : curve.points) writePoint(point);
+                for (const tables::FigurePoint& point : curve.points) writePoint(point);
                 text_ += "EOD\n";
             }
             if (!curve.printed.empty()) {
                 text_ += fmt::format("# likewise as printed: x, y\n{} << EOD\n",
                                      block(panelIndex, i, true));
-                for (const FigurePoint& point : curve.printed) {
+                for (const tables::FigurePoint& point : curve.printed) {
                     text_ += fmt::format("{} {}\n", number(point.x), number(*point.y));
                 }
                 text_ += "EOD\n";
@@ -197,12 +198,13 @@ class ScriptWriter {
         text_ += "\n";
     }
 
-    void writePoint(const FigurePoint& point) {
+    void writePoint(const tables::FigurePoint& point) {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-        text_ += fmt::format("{} {} {} {}{}\n", number(point.x), number(point.y.value_or(kNone)),
-                             number(point.bounds != Bounds::None ? point.interval.low : kNone),
-                             number(point.bounds != Bounds::None ? point.interval.high : kNone),
-                             point.remark.empty() ? "" : "  # " + oneLine(point.remark));
+        text_ +=
+            fmt::format("{} {} {} {}{}\n", number(point.x), number(point.y.value_or(kNone)),
+                        number(point.bounds != tables::Bounds::None ? point.interval.low : kNone),
+                        number(point.bounds != tables::Bounds::None ? point.interval.high : kNone),
+                        point.remark.empty() ? "" : "  # " + oneLine(point.remark));
     }
 
     /// A plot of its own across the top, so that no panel gives room for it.
@@ -232,13 +234,14 @@ class ScriptWriter {
     }
 
     /// All values of a panel that its axes have to hold.
-    void gather(const FigurePanel& panel, std::vector<double>& x, std::vector<double>& y) const {
-        for (const FigureCurve& curve : panel.curves) {
+    void gather(const tables::FigurePanel& panel, std::vector<double>& x,
+                std::vector<double>& y) const {
+        for (const tables::FigureCurve& curve : panel.curves) {
             for (const auto* points : {&curve.points, &curve.printed}) {
-                for (const FigurePoint& point : *points) {
+                for (const tables::FigurePoint& point : *points) {
                     x.push_back(point.x);
                     if (point.y) y.push_back(*point.y);
-                    if (point.bounds == Bounds::None) continue;
+                    if (point.bounds == tables::Bounds::None) continue;
                     y.push_back(point.interval.high);
                     if (!figure_.isLogY || point.interval.low > 0) y.push_back(point.interval.low);
                 }
@@ -264,7 +267,7 @@ class ScriptWriter {
     }
 
     /// Returns where the y axis begins.
-    double writeAxes(const FigurePanel& panel) {
+    double writeAxes(const tables::FigurePanel& panel) {
         std::vector<double> x, y;
         gather(panel, x, y);
         const AxisRange xRange = rangeOf(x, figure_.isLogX, false);
@@ -295,7 +298,7 @@ class ScriptWriter {
     }
 
     void writePanel(std::size_t index) {
-        const FigurePanel& panel = figure_.panels[index];
+        const tables::FigurePanel& panel = figure_.panels[index];
         text_ += fmt::format("\n# {}\n", panel.title.empty() ? "the axes" : oneLine(panel.title));
         writePlace(index);
         const double yLow = writeAxes(panel);
@@ -312,7 +315,7 @@ class ScriptWriter {
 
     void addParts(std::size_t panel, std::size_t index, double yLow,
                   std::vector<std::string>& parts) const {
-        const FigureCurve& curve = figure_.panels[panel].curves[index];
+        const tables::FigureCurve& curve = figure_.panels[panel].curves[index];
         const CurveStyle& style = styleOf(index);
         const std::string data = block(panel, index, false);
         if (!curve.points.empty()) {
@@ -340,7 +343,7 @@ class ScriptWriter {
         }
     }
 
-    const Figure& figure_;
+    const tables::Figure& figure_;
     std::vector<std::string> entries_;  // of the legend
     std::size_t longest_ = 0;           // name, in letters
     std::size_t legendColumns_ = 1;
@@ -370,7 +373,7 @@ std::string gnuplotQuoted(const std::string& text) {
     return quoted + "'";
 }
 
-std::string gnuplotScript(const Figure& figure, const std::string& name,
+std::string gnuplotScript(const tables::Figure& figure, const std::string& name,
                           const std::string& source) {
     return ScriptWriter(figure).write(name, source);
 }

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <map>
 
+#include "runner/claims/claims.h"
+#include "runner/report/junit.h"
 #include "runner/report/markup.h"
-#include "runner/report/report.h"
 
 namespace gfxrepro::report {
 
@@ -14,14 +15,14 @@ namespace {
 struct Test {
     std::string table;
     std::string name;
-    CaseResult::Outcome outcome = CaseResult::Outcome::Measured;
+    records::CaseResult::Outcome outcome = records::CaseResult::Outcome::Measured;
     std::string message;
 };
 
-std::vector<Test> testsOf(const std::vector<CaseResult>& cases) {
+std::vector<Test> testsOf(const std::vector<records::CaseResult>& cases) {
     std::map<std::string, int> known;
     std::vector<Test> tests;
-    for (const CaseResult& one : cases) {
+    for (const records::CaseResult& one : cases) {
         // Those of several seeds of a scene have one title; others differ by what XML cannot write.
         const int count = ++known[escapeXml(one.title)];
         tests.push_back({one.table, one.title + (count > 1 ? fmt::format(" ({})", count) : ""),
@@ -30,15 +31,17 @@ std::vector<Test> testsOf(const std::vector<CaseResult>& cases) {
     return tests;
 }
 
-std::vector<Test> testsOf(const std::vector<ClaimResult>& claims) {
+std::vector<Test> testsOf(const std::vector<claims::ClaimResult>& claims) {
     std::vector<Test> tests;
-    for (const ClaimResult& claim : claims) {
+    for (const claims::ClaimResult& claim : claims) {
         Test test{claim.table, fmt::format("{} claim {}", claim.table, claim.id),
-                  CaseResult::Outcome::Skipped, ""};
-        if (claim.verdict == Verdict::Holds) test.outcome = CaseResult::Outcome::Measured;
-        if (claim.verdict == Verdict::Fails) test.outcome = CaseResult::Outcome::Failed;
+                  records::CaseResult::Outcome::Skipped, ""};
+        if (claim.verdict == claims::Verdict::Holds)
+            test.outcome = records::CaseResult::Outcome::Measured;
+        if (claim.verdict == claims::Verdict::Fails)
+            test.outcome = records::CaseResult::Outcome::Failed;
         test.message =
-            fmt::format("{}: measured {}, required {}{}", verdictName(claim.verdict),
+            fmt::format("{}: measured {}, required {}{}", claims::verdictName(claim.verdict),
                         claim.measured.empty() ? "nothing" : claim.measured, claim.required,
                         claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason)) +
             (claim.because.empty() ? "" : fmt::format("; known: {}", claim.because));
@@ -48,30 +51,31 @@ std::vector<Test> testsOf(const std::vector<ClaimResult>& claims) {
 }
 
 std::string suite(const char* name, const std::vector<Test>& tests) {
-    const auto count = [&](CaseResult::Outcome outcome) {
+    const auto count = [&](records::CaseResult::Outcome outcome) {
         return std::ranges::count(tests, outcome, &Test::outcome);
     };
     std::string text = fmt::format(
         "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n", name, tests.size(),
-        count(CaseResult::Outcome::Failed), count(CaseResult::Outcome::Skipped));
+        count(records::CaseResult::Outcome::Failed), count(records::CaseResult::Outcome::Skipped));
     for (const Test& test : tests) {
         text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escapeXml(test.table),
                             escapeXml(test.name));
-        if (test.outcome == CaseResult::Outcome::Measured) {
+        if (test.outcome == records::CaseResult::Outcome::Measured) {
             text += "/>\n";
             continue;
         }
-        text += fmt::format("><{} message=\"{}\"/></testcase>\n",
-                            test.outcome == CaseResult::Outcome::Failed ? "failure" : "skipped",
-                            escapeXml(test.message));
+        text += fmt::format(
+            "><{} message=\"{}\"/></testcase>\n",
+            test.outcome == records::CaseResult::Outcome::Failed ? "failure" : "skipped",
+            escapeXml(test.message));
     }
     return text + "</testsuite>\n";
 }
 
 }  // namespace
 
-std::string junitXml(const std::vector<CaseResult>& cases,
-                     const std::vector<ClaimResult>& results) {
+std::string junitXml(const std::vector<records::CaseResult>& cases,
+                     const std::vector<claims::ClaimResult>& results) {
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" +
            suite("cases", testsOf(cases)) + suite("claims", testsOf(results)) + "</testsuites>\n";
 }

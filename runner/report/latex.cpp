@@ -6,7 +6,7 @@
 
 #include "runner/core/text.h"
 #include "runner/report/markup.h"
-#include "runner/report/printed_parameters.h"
+#include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
 
@@ -44,14 +44,14 @@ std::string cite(const std::string& key) {
 
 class LatexWriter {
   public:
-    explicit LatexWriter(const Table& table) : table_(table) {
+    explicit LatexWriter(const tables::Table& table) : table_(table) {
         std::set<std::string> rows, columns;
-        for (const TableRow& row : table.rows) {
+        for (const tables::TableRow& row : table.rows) {
             std::vector<std::string> parts;
             for (const std::string& label : row.labels) parts.push_back(latexKeyPart(label));
             rowKeys_.push_back(unique(joined(parts, "/"), rows));
         }
-        for (const TableColumn& column : table.columns) {
+        for (const tables::TableColumn& column : table.columns) {
             columnKeys_.push_back(unique(latexKeyPart(column.label), columns));
         }
     }
@@ -69,7 +69,8 @@ class LatexWriter {
         text_ += "\\bottomrule\n\\end{tabular}\n";
         writeParameters();
         if (table_.hasCalibrated()) {
-            text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kMark, kCalibratedLegend);
+            text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kMark,
+                                 tables::kCalibratedLegend);
         }
         return std::move(text_);
     }
@@ -112,7 +113,7 @@ class LatexWriter {
         text_ += fmt::format("\\gfxreproset{{{}}}{{{}}}\n", key, escapeLatex(value));
     }
 
-    void writeNumbers(const Cell& cell, const std::string& key) {
+    void writeNumbers(const tables::Cell& cell, const std::string& key) {
         if (cell.printed) set(key + "/printed", *cell.printed);
         if (!cell.isPlanned) return;
         set(key, cell.measured);
@@ -120,10 +121,10 @@ class LatexWriter {
         if (!cell.low.empty()) {
             set(key + "/low", cell.low);
             set(key + "/high", cell.high);
-            set(key + "/bounds", std::string(boundsName(cell.bounds())));
+            set(key + "/bounds", std::string(tables::boundsName(cell.bounds())));
         }
         if (cell.values.size() < 2) return;
-        for (const Measured& measured : cell.values) {
+        for (const tables::Measured& measured : cell.values) {
             set(fmt::format("{}/{}", key, measured.statistic), measured.text);
             if (measured.low.empty()) continue;
             set(fmt::format("{}/{}/low", key, measured.statistic), measured.low);
@@ -141,7 +142,7 @@ class LatexWriter {
         for (const std::string& axis : table_.rowAxes) head.push_back(escapeLatex(axis));
         if (table_.hasSources()) head.emplace_back("source");
         subhead.resize(head.size());
-        for (const TableColumn& column : table_.columns) {
+        for (const tables::TableColumn& column : table_.columns) {
             const std::string label = escapeLatex(column.label);
             head.push_back(
                 table_.isOnlyPrinted ? label : fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", label));
@@ -153,26 +154,26 @@ class LatexWriter {
     }
 
     void writeRow(std::size_t index) {
-        const TableRow& row = table_.rows[index];
+        const tables::TableRow& row = table_.rows[index];
         std::vector<std::string> cells;
         // Braces: after \\ a bracket or star would be its argument.
         for (const std::string& label : row.labels) {
             cells.push_back(fmt::format("{{{}}}", escapeLatex(label)));
         }
-        if (table_.hasSources()) cells.emplace_back(sceneSourceName(row.source));
+        if (table_.hasSources()) cells.emplace_back(tables::sceneSourceName(row.source));
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
-            const Cell& cell = row.cells[i];
+            const tables::Cell& cell = row.cells[i];
             cells.push_back(cell.printed ? cite(key(index, i) + "/printed") : "");
             if (!table_.isOnlyPrinted) cells.push_back(measuredCell(cell, key(index, i)));
         }
         text_ += joined(cells, " & ") + " \\\\\n";
     }
 
-    static std::string measuredCell(const Cell& cell, const std::string& key) {
+    static std::string measuredCell(const tables::Cell& cell, const std::string& key) {
         if (!cell.isPlanned) return "";
         const std::string number = cite(key) + (cell.isCalibrated ? kMark : "");
         if (!cell.hasShownBounds()) return number;
-        return fmt::format(fmt::runtime(cell.bounds() == Bounds::Interval
+        return fmt::format(fmt::runtime(cell.bounds() == tables::Bounds::Interval
                                             ? "{} {{\\scriptsize[{}, {}]}}"
                                             : "{} {{\\scriptsize({} \\ldots\\ {})}}"),
                            number, cite(key + "/low"), cite(key + "/high"));
@@ -184,8 +185,8 @@ class LatexWriter {
         text_ += fmt::format("\\par{{\\footnotesize {}\\par}}\n", cite(table_.id));
     }
 
-    const Table& table_;
-    const std::string parameters_ = parametersLine(table_);
+    const tables::Table& table_;
+    const std::string parameters_ = tables::parametersLine(table_);
     std::vector<std::string> rowKeys_;     // beside the rows
     std::vector<std::string> columnKeys_;  // beside the columns
     std::string text_;
@@ -205,7 +206,7 @@ std::string latexKeyPart(const std::string& label) {
     return part.empty() ? "none" : part;
 }
 
-std::string tableLatex(const Table& table) {
+std::string tableLatex(const tables::Table& table) {
     return LatexWriter(table).write();
 }
 

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "runner/report/table.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 
 /// tables/<slug>.tex. Its head says how the numbers are cited.
-std::string tableLatex(const Table& table);
+std::string tableLatex(const tables::Table& table);
 
 /// Part of a macro's key: letters, digits and . + - _ stay, anything else becomes "-". They hold
 /// nothing that LaTeX would expand.

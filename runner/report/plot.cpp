@@ -5,9 +5,9 @@
 #include <cctype>
 
 #include "runner/core/files.h"
-#include "runner/report/default_layout.h"
-#include "runner/report/figure.h"
 #include "runner/report/gnuplot.h"
+#include "runner/tables/default_layout.h"
+#include "runner/tables/figure.h"
 
 namespace gfxrepro::report {
 
@@ -34,14 +34,15 @@ Drawn runPatiently(const fs::path& script, std::chrono::milliseconds& patience) 
     return drawn;
 }
 
-PlotFile writePlot(const fs::path& runDir, const Table& table, const config::PlotSpec& plot,
+PlotFile writePlot(const fs::path& runDir, const tables::Table& table, const config::PlotSpec& plot,
                    const std::string& stem, std::chrono::milliseconds& patience) {
     PlotFile file;
     file.table = table.id;
     file.title = plot.title.empty() ? table.title : plot.title;
     const std::string svg = fmt::format("plots/{}.svg", stem);
-    const std::string absent = whatIsAbsent(plot, table);
-    const Figure figure = absent.empty() ? makeFigure(plot, table) : Figure();
+    const std::string absent = tables::whatIsAbsent(plot, table);
+    const tables::Figure figure =
+        absent.empty() ? tables::makeFigure(plot, table) : tables::Figure();
     file.notes = figure.notes;
     if (figure.panels.empty()) {
         file.problem =
@@ -65,14 +66,15 @@ PlotFile writePlot(const fs::path& runDir, const Table& table, const config::Plo
 
 }  // namespace
 
-std::vector<PlotFile> writePlots(const fs::path& runDir, const std::vector<Table>& tables,
+std::vector<PlotFile> writePlots(const fs::path& runDir, const std::vector<tables::Table>& tables,
                                  const std::vector<config::Experiment>& experiments,
                                  std::chrono::milliseconds& patience) {
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<PlotFile> files;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        const std::vector<config::PlotSpec> plots =
-            experiments[i].hasDefaultLayout() ? defaultPlots(tables[i]) : experiments[i].plots;
+        const std::vector<config::PlotSpec> plots = experiments[i].hasDefaultLayout()
+                                                        ? tables::defaultPlots(tables[i])
+                                                        : experiments[i].plots;
         for (std::size_t n = 0; n < plots.size(); ++n) {
             const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
             files.push_back(

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
-#include "runner/report/table.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 
@@ -27,7 +27,7 @@ struct PlotFile {
 /// away has its problem alone. What gnuplot takes beyond kGnuplotLimit a plot is taken off
 /// `patience`. Throws Error for files.
 std::vector<PlotFile> writePlots(const std::filesystem::path& runDir,
-                                 const std::vector<Table>& tables,
+                                 const std::vector<tables::Table>& tables,
                                  const std::vector<config::Experiment>& experiments,
                                  std::chrono::milliseconds& patience);
 

@@ -1,66 +1,82 @@
-// From the records of a run to what people read. Each function writes files of the run directory
-// (atomically) and may be called again at any time; none needs a GPU.
+// report.html: what a person looks at after a run, or to lay several runs side by side.
 #pragma once
 
-#include <array>
+#include <chrono>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "runner/claims/claims.h"
+#include "runner/config/documents.h"
 #include "runner/config/experiment.h"
-#include "runner/report/claims.h"
-#include "runner/report/records.h"
-#include "runner/report/table.h"
+#include "runner/records/records.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 
-/// The tables of a run, beside `experiments`; `planned` are the cases of its plan.
-std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
-                               std::span<const PlannedCase> planned,
-                               const std::vector<Record>& records);
-
-/// tables/<slug>.csv (every column printed, measured, low, high, what these bounds are, status;
-/// at full precision), .md
-/// (printed beside measured) and .tex (booktabs, a macro a number) for each. All say at which
-/// parameters was measured and which differ from the printed ones: the CSV of each row (column
-/// `parameters`) and of each cell (`…_at_printed`: yes or no).
-void writeTables(const std::filesystem::path& runDir, const std::vector<Table>& tables);
-
-/// The claims of all experiments, in order; `tables` lies beside `experiments`. Throws Error as the
-/// single-experiment form.
-std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
-                                        const std::vector<Table>& tables,
-                                        const ReportContext& context);
-
-/// The columns of claims.csv.
-inline constexpr std::array<std::string_view, 16> kClaimsColumns = {
-    "claim",   "says",  "table",    "device",   "profile", "origin", "bound_from", "kind",
-    "verdict", "known", "measured", "required", "margin",  "reason", "because",    "rests_on"};
-
-/// How a case ended, for junit.xml.
-struct CaseResult {
-    enum class Outcome { Measured, Skipped, Failed };
-    std::string table;  // "zju2005/2.1"
-    std::string title;  // "zju2005/2.1 scene=models/duck"
-    Outcome outcome = Outcome::Measured;
-    std::string text = {};   // of the others: "crash: SIGSEGV", "not run"
-    SourceLocation where{};  // its config
+/// A case of a run's plan: how it is run again, and what its log says.
+struct ReportCase {
+    std::string id;
+    std::string table;    // "zju2005/2.1"
+    std::string title;    // "zju2005/2.1 scene=models/duck"
+    std::string command;  // for a shell
+    std::vector<std::string> log;
 };
 
-/// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
-/// its own. A case or claim that failed is a failure; a case that was left out and a claim that
-/// could not be judged are skipped.
-void writeClaims(const std::filesystem::path& runDir, const std::vector<CaseResult>& cases,
-                 const std::vector<ClaimResult>& results, const ReportContext& context);
-/// The text of junit.xml.
-std::string junitXml(const std::vector<CaseResult>& cases, const std::vector<ClaimResult>& results);
+/// A figure of a table, as a page has it.
+struct Curve {
+    std::string table;  // "zju2005/2.1"
+    std::string title;
+    std::string svg;                    // its text; empty when it could not be drawn
+    std::string problem;                // why not
+    std::filesystem::path script = {};  // for gnuplot; empty where it is not kept
+};
 
-/// The verdict of that name. Throws Error at `where` for a name that is none.
-Verdict verdictAt(const SourceLocation& where, const std::string& name);
+/// A finished run: all that its pages show. Of the manifest are shown, where there: commit, build,
+/// cpu, cores, memory_bytes, gl.renderer, gl.version, profile, started, scenes.
+struct ReportRun {
+    std::filesystem::path folder;
+    claims::ReportContext context;
+    nlohmann::ordered_json manifest;
+    std::vector<config::Experiment> experiments;
+    std::vector<tables::Table> tables;  // beside `experiments`
+    /// Of these tables; or as they were kept, of a run of which only its verdicts are at hand.
+    std::vector<claims::ClaimResult> claims;
+    std::vector<Curve> curves;
+    std::vector<records::Record> records;
+    std::vector<ReportCase> cases;
+    std::map<std::string, std::string> commands = {};  // that measure a table again, by its id
+};
 
-/// claims.csv as writeClaims() wrote it, in older forms too: then nothing is known of a claim's
-/// origin, or of what it says. Throws Error with file and line.
-std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
+struct ReportOptions {
+    std::vector<config::Document> documents = {};  // titles and chapters, for the first screen
+    bool embeds = false;                           // every picture inside of the file
+};
+
+/// One file that asks no network and no other file but images: what reproduced and what did not,
+/// then a page a table; of one table its page first. Images lie inside up to 20 MB; beyond, the
+/// page shows thumbnails, and links
+/// both, relative to `file`. With `embeds` they always lie inside, beyond 20 MB at 512 pixels at
+/// most, and nothing else is written. What else is made for it (FLIP maps, thumbnails) goes into
+/// madeFolder(). Several runs are lettered A, B, … and stand side by side. Throws Error when a file
+/// cannot be written.
+void writeReport(const std::filesystem::path& file, std::span<const ReportRun> runs,
+                 const ReportOptions& options = {});
+
+/// Where curves, FLIP maps and thumbnails of the run at `index` go for a report that will be
+/// `file`: the run's own folder, where the file lies there too; else beside the file, which leaves
+/// the run as it is: "all.html" → all-files/A.
+std::filesystem::path madeFolder(const std::filesystem::path& runDir, std::size_t index,
+                                 const std::filesystem::path& file);
+
+/// Draws the curves of all experiments below `folder` (writePlots()), or of an empty one nowhere
+/// that stays; `tables` lies beside `experiments`.
+std::vector<Curve> drawCurves(const std::filesystem::path& folder,
+                              const std::vector<tables::Table>& tables,
+                              const std::vector<config::Experiment>& experiments,
+                              std::chrono::milliseconds& patience);
 
 }  // namespace gfxrepro::report

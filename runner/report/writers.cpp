@@ -1,14 +1,16 @@
+#include "runner/report/writers.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/report/csv.h"
+#include "runner/records/csv.h"
 #include "runner/report/latex.h"
 #include "runner/report/markup.h"
-#include "runner/report/printed_parameters.h"
-#include "runner/report/report.h"
+#include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
 
@@ -17,10 +19,10 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The statistics of a column, of all its rows, in the order of their formats.
-std::vector<std::string> statisticsOf(const Table& table, std::size_t column) {
+std::vector<std::string> statisticsOf(const tables::Table& table, std::size_t column) {
     std::vector<std::string> names;
-    for (const TableRow& row : table.rows) {
-        for (const Measured& measured : row.cells[column].values) {
+    for (const tables::TableRow& row : table.rows) {
+        for (const tables::Measured& measured : row.cells[column].values) {
             if (std::find(names.begin(), names.end(), measured.statistic) == names.end()) {
                 names.push_back(measured.statistic);
             }
@@ -31,21 +33,21 @@ std::vector<std::string> statisticsOf(const Table& table, std::size_t column) {
 }
 
 /// Nothing where there is nothing to say it of.
-std::string_view atPrintedWord(const Table& table, const Cell& cell) {
+std::string_view atPrintedWord(const tables::Table& table, const tables::Cell& cell) {
     if (cell.values.empty() || !table.knowsPrintedParameters) return "";
     if (!cell.isAtPrintedParameters) return "no";
     return cell.openParameters.empty() ? "yes" : "as far as given";
 }
 
-bool hasCalibrated(const Table& table, std::size_t column) {
-    return std::ranges::any_of(table.rows,
-                               [&](const TableRow& row) { return row.cells[column].isCalibrated; });
+bool hasCalibrated(const tables::Table& table, std::size_t column) {
+    return std::ranges::any_of(
+        table.rows, [&](const tables::TableRow& row) { return row.cells[column].isCalibrated; });
 }
 
-std::string tableCsv(const Table& table) {
+std::string tableCsv(const tables::Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
-    CsvRow header(text);
+    records::CsvRow header(text);
     for (const std::string& axis : table.rowAxes) header.text(axis);
     if (table.hasSources()) header.text("source");
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -63,72 +65,73 @@ std::string tableCsv(const Table& table) {
     }
     if (table.isPublished) header.text("parameters");
     header.end();
-    for (const TableRow& row : table.rows) {
-        CsvRow line(text);
+    for (const tables::TableRow& row : table.rows) {
+        records::CsvRow line(text);
         for (const std::string& label : row.labels) line.text(label);
-        if (table.hasSources()) line.text(sceneSourceName(row.source));
+        if (table.hasSources()) line.text(tables::sceneSourceName(row.source));
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
-            const Cell& cell = row.cells[i];
+            const tables::Cell& cell = row.cells[i];
             line.text(cell.printed.value_or(""));
             for (const std::string& statistic : statistics[i]) {
-                const Measured* measured = cell.find(statistic);
+                const tables::Measured* measured = cell.find(statistic);
                 if (measured) {
                     line.number(measured->value);
                     line.number(measured->interval.low).number(measured->interval.high);
-                    line.text(boundsName(measured->bounds));
+                    line.text(tables::boundsName(measured->bounds));
                 } else {
                     line.text("").text("").text("").text("");
                 }
             }
-            line.text(cell.isPlanned ? statusName(cell.status) : "");
+            line.text(cell.isPlanned ? records::statusName(cell.status) : "");
             if (table.isPublished) line.text(atPrintedWord(table, cell));
             if (hasCalibrated(table, i)) line.text(cell.isCalibrated ? "yes" : "no");
         }
-        if (table.isPublished) line.text(parametersLine(table, row));
+        if (table.isPublished) line.text(tables::parametersLine(table, row));
         line.end();
     }
     return text;
 }
 
-std::string markdownCell(const Cell& cell, bool isOnlyPrinted) {
+std::string markdownCell(const tables::Cell& cell, bool isOnlyPrinted) {
     std::string text;
     if (cell.printed) text += escapeMarkdown(*cell.printed) + (isOnlyPrinted ? "" : " → ");
     text += cell.isPlanned ? escapeMarkdown(cell.measured) : "";
-    if (cell.isPlanned && cell.isCalibrated) text += kCalibratedMark;
+    if (cell.isPlanned && cell.isCalibrated) text += tables::kCalibratedMark;
     if (cell.hasShownBounds()) {
-        const bool isInterval = cell.bounds() == Bounds::Interval;
+        const bool isInterval = cell.bounds() == tables::Bounds::Interval;
         text += fmt::format(fmt::runtime(isInterval ? " [{}, {}]" : " ({} … {})"),
                             escapeMarkdown(cell.low), escapeMarkdown(cell.high));
     }
     return text;
 }
 
-bool hasCountedShares(const Table& table) {
-    return std::ranges::any_of(table.rows, [](const TableRow& row) {
-        return std::ranges::any_of(row.cells, [](const Cell& cell) {
-            return cell.hasShownBounds() && cell.bounds() == Bounds::Interval && cell.unit == "%";
+bool hasCountedShares(const tables::Table& table) {
+    return std::ranges::any_of(table.rows, [](const tables::TableRow& row) {
+        return std::ranges::any_of(row.cells, [](const tables::Cell& cell) {
+            return cell.hasShownBounds() && cell.bounds() == tables::Bounds::Interval &&
+                   cell.unit == "%";
         });
     });
 }
 
 /// What the bounds beside the numbers are.
-std::string boundsLegend(const Table& table) {
+std::string boundsLegend(const tables::Table& table) {
     const char* interval = hasCountedShares(table)
                                ? " [95 % interval; of a share that was counted once, by its count "
                                  "alone: other scenes may differ by more]"
                                : " [95 % interval]";
-    const bool hasPrinted = std::ranges::any_of(table.rows, [](const TableRow& row) {
-        return std::ranges::any_of(row.cells,
-                                   [](const Cell& cell) { return cell.printed.has_value(); });
+    const bool hasPrinted = std::ranges::any_of(table.rows, [](const tables::TableRow& row) {
+        return std::ranges::any_of(
+            row.cells, [](const tables::Cell& cell) { return cell.printed.has_value(); });
     });
     return fmt::format("{}{}{}.", hasPrinted ? "Printed → measured" : "Measured",
-                       table.hasShown(Bounds::Interval) ? interval : "",
-                       table.hasShown(Bounds::Range)
+                       table.hasShown(tables::Bounds::Interval) ? interval : "",
+                       table.hasShown(tables::Bounds::Range)
                            ? " (range, min … max: too few processes for an interval)"
                            : "");
 }
 
-std::string tableMarkdown(const Table& table) {
+std::string tableMarkdown(const tables::Table& table) {
     std::string text = fmt::format("# {}\n\n", escapeMarkdown(table.label + ". " + table.title));
     text += table.isOnlyPrinted ? "As printed; nothing is measured." : boundsLegend(table);
     if (!table.constants.empty()) {
@@ -136,7 +139,7 @@ std::string tableMarkdown(const Table& table) {
     }
     if (!table.hardware.empty())
         text += fmt::format(" Printed: {}.", escapeMarkdown(table.hardware));
-    if (const std::string parameters = parametersLine(table); !parameters.empty())
+    if (const std::string parameters = tables::parametersLine(table); !parameters.empty())
         text += "\n\n" + escapeMarkdown(parameters);
     text += "\n\n|";
     std::string rule = "|";
@@ -148,30 +151,30 @@ std::string tableMarkdown(const Table& table) {
         text += " source |";
         rule += " --- |";
     }
-    for (const TableColumn& column : table.columns) {
+    for (const tables::TableColumn& column : table.columns) {
         text += fmt::format(" {} |", escapeMarkdown(column.label));
         rule += " ---: |";
     }
     text += "\n" + rule + "\n";
-    for (const TableRow& row : table.rows) {
+    for (const tables::TableRow& row : table.rows) {
         text += "|";
         for (const std::string& label : row.labels)
             text += fmt::format(" {} |", escapeMarkdown(label));
-        if (table.hasSources()) text += fmt::format(" {} |", sceneSourceName(row.source));
-        for (const Cell& cell : row.cells)
+        if (table.hasSources()) text += fmt::format(" {} |", tables::sceneSourceName(row.source));
+        for (const tables::Cell& cell : row.cells)
             text += fmt::format(" {} |", markdownCell(cell, table.isOnlyPrinted));
         text += "\n";
     }
     if (table.hasCalibrated()) {
-        text += fmt::format("\n{} {}.\n", kCalibratedMark, kCalibratedLegend);
+        text += fmt::format("\n{} {}.\n", tables::kCalibratedMark, tables::kCalibratedLegend);
     }
     if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
     for (const std::string& note : table.notes)
         text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
     std::vector<std::string> absent;
-    for (const TableRow& row : table.printedRows) {
+    for (const tables::TableRow& row : table.printedRows) {
         std::vector<std::string> said = row.labels;
-        for (const Cell& cell : row.cells) {
+        for (const tables::Cell& cell : row.cells) {
             if (cell.printed) said.push_back(*cell.printed);
         }
         absent.push_back(joined(said));
@@ -183,17 +186,18 @@ std::string tableMarkdown(const Table& table) {
     return text;
 }
 
-std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportContext& context) {
-    std::string text = fmt::format("{}\n", fmt::join(kClaimsColumns, ","));
-    for (const ClaimResult& result : results) {
+std::string claimsCsv(const std::vector<claims::ClaimResult>& results,
+                      const claims::ReportContext& context) {
+    std::string text = fmt::format("{}\n", fmt::join(claims::kClaimsColumns, ","));
+    for (const claims::ClaimResult& result : results) {
         const std::string_view bound =
             result.boundFrom ? config::boundSourceName(*result.boundFrom) : "";
         const std::string_view kind = result.timeKind ? config::timeKindName(*result.timeKind) : "";
-        CsvRow row(text);
+        records::CsvRow row(text);
         row.text(result.id).text(result.text).text(result.table);
         row.text(context.device).text(context.profile);
         row.text(config::originName(result.origin)).text(bound).text(kind);
-        row.text(verdictName(result.verdict)).text(verdictName(result.known));
+        row.text(claims::verdictName(result.verdict)).text(claims::verdictName(result.known));
         row.text(result.measured).text(result.required).text(result.margin).text(result.reason);
         row.text(result.because).text(result.restsOn).end();
     }
@@ -202,18 +206,8 @@ std::string claimsCsv(const std::vector<ClaimResult>& results, const ReportConte
 
 }  // namespace
 
-std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
-                               std::span<const PlannedCase> planned,
-                               const std::vector<Record>& records) {
-    std::vector<Table> tables;
-    for (const config::Experiment& experiment : experiments) {
-        tables.push_back(buildTable(experiment, planned, records));
-    }
-    return tables;
-}
-
-void writeTables(const fs::path& runDir, const std::vector<Table>& tables) {
-    for (const Table& table : tables) {
+void writeTables(const fs::path& runDir, const std::vector<tables::Table>& tables) {
+    for (const tables::Table& table : tables) {
         if (table.columns.empty()) continue;
         const fs::path folder = runDir / "tables";
         writeFileAtomic(folder / (table.slug + ".csv"), tableCsv(table));
@@ -222,21 +216,9 @@ void writeTables(const fs::path& runDir, const std::vector<Table>& tables) {
     }
 }
 
-std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
-                                        const std::vector<Table>& tables,
-                                        const ReportContext& context) {
-    GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
-    std::vector<ClaimResult> results;
-    for (std::size_t i = 0; i < experiments.size(); ++i) {
-        for (ClaimResult& result : evaluateClaims(experiments[i], tables[i], context)) {
-            results.push_back(std::move(result));
-        }
-    }
-    return results;
-}
-
-void writeClaims(const fs::path& runDir, const std::vector<CaseResult>& cases,
-                 const std::vector<ClaimResult>& results, const ReportContext& context) {
+void writeClaims(const fs::path& runDir, const std::vector<records::CaseResult>& cases,
+                 const std::vector<claims::ClaimResult>& results,
+                 const claims::ReportContext& context) {
     writeFileAtomic(runDir / "claims.csv", claimsCsv(results, context));
     writeFileAtomic(runDir / "junit.xml", junitXml(cases, results));
 }

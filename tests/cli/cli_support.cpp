@@ -28,9 +28,10 @@ std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::
             (lines.find("measure:") == std::string::npos ? "measure: {lane: quality}\n" : ""));
 }
 
-std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric) {
-    std::vector<report::Record> rows = report::readRecords(runDir / "records.csv");
-    std::erase_if(rows, [&](const report::Record& row) { return row.metric != metric; });
+std::vector<records::Record> rowsOf(const std::filesystem::path& runDir,
+                                    const std::string& metric) {
+    std::vector<records::Record> rows = records::readRecords(runDir / "records.csv");
+    std::erase_if(rows, [&](const records::Record& row) { return row.metric != metric; });
     return rows;
 }
 
@@ -45,11 +46,11 @@ std::vector<std::string> statusLines(const std::filesystem::path& runDir) {
     std::vector<std::string> lines;
     std::string lastCase;
     const auto params = paramsOf(runDir);
-    for (const report::Record& row : report::readRecords(runDir / "records.csv")) {
+    for (const records::Record& row : records::readRecords(runDir / "records.csv")) {
         if (row.caseId == lastCase) continue;
         lastCase = row.caseId;
         std::string line = params.at(row.caseId).at("behaviour").get<std::string>() + ": ";
-        line += report::statusName(row.status);
+        line += records::statusName(row.status);
         if (!row.message.empty()) line += " (" + row.message + ")";
         lines.push_back(line);
     }

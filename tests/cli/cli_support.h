@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/report/records.h"
+#include "runner/records/records.h"
 #include "tests/support/process.h"
 #include "tests/support/support.h"
 
@@ -23,7 +23,7 @@ ProcessResult mockGfxrepro(std::vector<std::string> arguments);
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines);
 
 /// Rows of a metric.
-std::vector<report::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);
+std::vector<records::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);
 
 /// The parameters of the cases of a run's plan, by id.
 std::map<std::string, nlohmann::json> paramsOf(const std::filesystem::path& runDir);

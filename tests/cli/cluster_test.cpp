@@ -136,7 +136,7 @@ TEST(Shards, MergeToTheTablesOfOneRun) {
                               merged + "/report.html\n");
     expectSameTables(merged, whole);
     EXPECT_EQ(rowsOf(merged, "number").size(), 10U);
-    for (const report::Record& row : rowsOf(merged, "number")) {
+    for (const records::Record& row : rowsOf(merged, "number")) {
         EXPECT_TRUE(fs::exists(merged + "/images/sweep-mock/" + row.caseId + "-flat.exr"));
     }
     const std::string list = readFile(merged + "/images/index.csv");
@@ -205,18 +205,18 @@ TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     std::string moved = manifest;
     moved.insert(cpu, "Another ");
     writeFileAtomic(dir + "/manifest.json", moved);
-    const auto rows = report::readRecords(dir + "/records.csv");
-    std::vector<report::Record> two = rows;
-    std::erase_if(two, [&](const report::Record& r) { return r.caseId == rows.back().caseId; });
+    const auto rows = records::readRecords(dir + "/records.csv");
+    std::vector<records::Record> two = rows;
+    std::erase_if(two, [&](const records::Record& r) { return r.caseId == rows.back().caseId; });
     fs::remove(dir + "/records.csv");
-    report::RecordWriter(dir + "/records.csv").append(two);
+    records::RecordWriter(dir + "/records.csv").append(two);
     const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
     EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
     EXPECT_THAT(resumed.err, HasSubstr("sweep/mock: begun on another machine; its times are "
                                        "measured again on "));
     EXPECT_EQ(resumed.out, "3 of 3 finished; records: " + dir + "/records.csv\n");
     EXPECT_EQ(rowsOf(dir, "number").size(), 3U);
-    EXPECT_EQ(report::readRecords(dir + "/records-replaced.csv").size(), two.size());
+    EXPECT_EQ(records::readRecords(dir + "/records-replaced.csv").size(), two.size());
 }
 
 TEST(Shards, ValuesOfSeveralMachinesAreMarked) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "runner/core/files.h"
-#include "runner/report/csv.h"
+#include "runner/records/csv.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -48,7 +48,7 @@ class Data : public testing::Test {
     /// "grows holds", … of a run's claims.csv.
     std::vector<std::string> verdicts(const std::string& name) const {
         const std::string text = readFile(dir(name) + "/claims.csv");
-        report::CsvReader reader(text, "claims.csv");
+        records::CsvReader reader(text, "claims.csv");
         std::vector<std::string> fields, lines;
         while (reader.next(fields)) lines.push_back(fields[0] + " " + fields[8]);
         return lines;
@@ -77,7 +77,7 @@ TEST_F(Data, ARunThatWasExportedAndImportedHasTheSameTables) {
     ASSERT_EQ(mockGfxrepro({"export", dir("back"), "--tidy"}).exitCode, 0);
     const auto withoutIds = [&](const std::string& name) {
         const std::string text = readFile(dir(name));
-        report::CsvReader reader(text, name);
+        records::CsvReader reader(text, name);
         std::vector<std::string> fields;
         std::string rest;
         while (reader.next(fields)) {

@@ -1,6 +1,6 @@
 // expect-<device>.yaml: what is known to fail is not held against a run, and what it says is
 // checked.
-#include "runner/batch/expectations.h"
+#include "runner/run/expectations.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ using testing::Not;
 constexpr const char* kDay = "2026-11-21";
 
 /// By the lists beside a config of the folder.
-batch::Expectations expected(const TemporaryFolder& folder, const std::string& deviceClass) {
-    return {batch::findExpectations({folder.path() / "table-1.yaml"}), deviceClass, kDay};
+run::Expectations expected(const TemporaryFolder& folder, const std::string& deviceClass) {
+    return {run::findExpectations({folder.path() / "table-1.yaml"}), deviceClass, kDay};
 }
 
 /// The message about a file with this text, its folder as DIR.
@@ -51,8 +51,8 @@ TEST(Expectations, BadFilesAreRefusedInTheirPlace) {
         "unsupported, timeout, oom, crash, device-lost, missing, error");
 }
 
-batch::Case caseWith(const std::string& experiment, const std::string& axes) {
-    batch::Case item;
+run::Case caseWith(const std::string& experiment, const std::string& axes) {
+    run::Case item;
     item.experiment = experiment;
     item.axes = config::parseYaml(axes, "axes");
     item.params = config::Node::map({});
@@ -65,20 +65,20 @@ TEST(Expectations, MatchByTableAndAxesUntilTheirDay) {
                  "fails:\n"
                  "  - {table: p/1, at: {n: [1, 2]}, status: crash, reason: a, until: 2026-11-21}\n"
                  "  - {table: p/1, at: {n: 9}, reason: b, until: 2026-11-20}\n");
-    batch::Expectations list = expected(folder, "gpu");
-    EXPECT_TRUE(list.isExpected(caseWith("p/1", "{n: 2}"), report::Status::Crash));
-    EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 2}"), report::Status::Timeout));
-    EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 3}"), report::Status::Crash));
-    EXPECT_FALSE(list.isExpected(caseWith("p/2", "{n: 2}"), report::Status::Crash));
-    EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 9}"), report::Status::Crash));
-    list.note(caseWith("p/1", "{n: 1}"), report::Status::Ok);
+    run::Expectations list = expected(folder, "gpu");
+    EXPECT_TRUE(list.isExpected(caseWith("p/1", "{n: 2}"), records::Status::Crash));
+    EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 2}"), records::Status::Timeout));
+    EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 3}"), records::Status::Crash));
+    EXPECT_FALSE(list.isExpected(caseWith("p/2", "{n: 2}"), records::Status::Crash));
+    EXPECT_FALSE(list.isExpected(caseWith("p/1", "{n: 9}"), records::Status::Crash));
+    list.note(caseWith("p/1", "{n: 1}"), records::Status::Ok);
     const std::string file = folder.path() / "expect-gpu.yaml";
     EXPECT_THAT(list.complaints(),
                 ElementsAre(file + ":2:5: the expectation is not needed: every case that it names "
                                    "passed (a)",
                             file + ":3:5: the expectation expired on 2026-11-20 (b)"));
     EXPECT_FALSE(
-        expected(folder, "software").isExpected(caseWith("p/1", "{n: 2}"), report::Status::Crash));
+        expected(folder, "software").isExpected(caseWith("p/1", "{n: 2}"), records::Status::Crash));
 }
 
 TEST(Expectations, WhatTheyNameHasToBeThere) {

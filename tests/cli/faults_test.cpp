@@ -44,11 +44,11 @@ TEST(Faults, MemoryLimit) {
                         "measure: {lane: quality, memory_limit_bytes: 943718400}\n");
     const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
-    const std::vector<report::Record> ok = rowsOf(dir, "number");
+    const std::vector<records::Record> ok = rowsOf(dir, "number");
     EXPECT_EQ(ok.size(), 1U);
-    const std::vector<report::Record> failed = rowsOf(dir, "");
+    const std::vector<records::Record> failed = rowsOf(dir, "");
     ASSERT_EQ(failed.size(), 1U);
-    EXPECT_EQ(failed[0].status, report::Status::Oom);
+    EXPECT_EQ(failed[0].status, records::Status::Oom);
     EXPECT_THAT(failed[0].message,
                 testing::MatchesRegex("resident memory of .* MiB is over the limit of 900 MiB"));
 }
@@ -86,7 +86,7 @@ TEST(Faults, LeakEndsAtTheMemoryLimitAndCostsOneCase) {
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
     EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
     ASSERT_EQ(rowsOf(dir, "").size(), 1U);
-    EXPECT_EQ(rowsOf(dir, "")[0].status, report::Status::Oom);
+    EXPECT_EQ(rowsOf(dir, "")[0].status, records::Status::Oom);
 }
 
 TEST(Faults, AMetricIsGivenOnce) {
@@ -128,8 +128,8 @@ TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
     const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
-    EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, report::kSetup);
-    EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].repeat, report::kSetup);
+    EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, records::kSetup);
+    EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].repeat, records::kSetup);
 }
 
 /// In the place of / a machine of which nothing but a heat is told.
@@ -208,8 +208,8 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
     EXPECT_EQ(run.exitCode, 4) << run.err;
     EXPECT_EQ(run.out, "3 of 3 finished, 2 with void times; records: " + dir + "/records.csv\n");
     std::vector<std::string> messages;
-    for (const report::Record& row : rowsOf(dir, "frame_rate")) {
-        messages.push_back(std::string(report::statusName(row.status)) + ": " + row.message);
+    for (const records::Record& row : rowsOf(dir, "frame_rate")) {
+        messages.push_back(std::string(records::statusName(row.status)) + ": " + row.message);
     }
     const std::string blank =
         "ambiguous: frame 0: the picture of repeat 0 is blank: all its pixels are the same";
@@ -217,8 +217,8 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
         "ambiguous: frame 0: repeat 1 drew a different picture than repeat 0";
     EXPECT_THAT(messages, testing::UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank,
                                                         another, another, another));
-    for (const report::Record& row : rowsOf(dir, "number"))
-        EXPECT_EQ(row.status, report::Status::Ok);
+    for (const records::Record& row : rowsOf(dir, "number"))
+        EXPECT_EQ(row.status, records::Status::Ok);
     EXPECT_EQ(rowsOf(dir, "work_image_digest").size(), 9U);
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 4);
     const std::string table = readFile(dir + "/tables/sweep-mock.md");
@@ -228,7 +228,7 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
 
 std::vector<std::pair<int, double>> roundsOf(const std::string& dir) {
     std::vector<std::pair<int, double>> units;
-    for (const report::Record& row : rowsOf(dir, "number")) {
+    for (const records::Record& row : rowsOf(dir, "number")) {
         units.emplace_back(row.process, row.value);
     }
     return units;
@@ -271,12 +271,12 @@ TEST(Faults, TimesAreMeasuredInRounds) {
     // What was decided stays; a unit that is lost is measured again.
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "0 of 0 finished; records: " + dir + "/records.csv\n");
-    std::vector<report::Record> rows = report::readRecords(dir + "/records.csv");
+    std::vector<records::Record> rows = records::readRecords(dir + "/records.csv");
     const std::string last = rows.back().caseId;
     std::erase_if(
-        rows, [&](const report::Record& row) { return row.process == 7 && row.caseId == last; });
+        rows, [&](const records::Record& row) { return row.process == 7 && row.caseId == last; });
     fs::remove(dir + "/records.csv");
-    report::RecordWriter(dir + "/records.csv").append(rows);
+    records::RecordWriter(dir + "/records.csv").append(rows);
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "1 of 1 finished; records: " + dir + "/records.csv\n");
 }

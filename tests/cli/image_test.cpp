@@ -8,7 +8,7 @@
 #include "runner/image/png_io.h"
 #include "runner/metrics/flip.h"
 #include "runner/metrics/hdr_flip.h"
-#include "runner/report/images.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -80,7 +80,7 @@ TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
     const ProcessResult result =
         gfxrepro({"run", config, "--device", "software", "--quiet", "--out", run});
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    const std::vector<report::ImageEntry> images = report::readImages(run);
+    const std::vector<records::ImageEntry> images = records::readImages(run);
     ASSERT_EQ(images.size(), 2U);
     EXPECT_EQ(images[0].name, "flat");
     EXPECT_EQ(images[0].truthOf, "");

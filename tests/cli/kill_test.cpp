@@ -90,7 +90,7 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
     std::mt19937 random(20261121);
-    const std::size_t unitRows = report::readRecords(whole + "/records.csv").size() / 12;
+    const std::size_t unitRows = records::readRecords(whole + "/records.csv").size() / 12;
     std::size_t unfinished = 0;
     for (int i = 0; i < folderCount(); ++i) {
         const std::string dir = folder.path() / ("killed" + std::to_string(i));

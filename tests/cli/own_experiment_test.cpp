@@ -8,7 +8,7 @@
 
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
-#include "runner/report/images.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -19,9 +19,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// The processes of the rows that are no controls.
-std::set<int> processesOf(const std::vector<report::Record>& rows) {
+std::set<int> processesOf(const std::vector<records::Record>& rows) {
     std::set<int> processes;
-    for (const report::Record& row : rows) {
+    for (const records::Record& row : rows) {
         if (row.process >= 0) processes.insert(row.process);
         EXPECT_EQ(row.lane, "timing");
     }
@@ -93,7 +93,7 @@ TEST_P(OwnExperimentOf, FiveLinesGivesTimesPicturesAndACurve) {
     EXPECT_TRUE(table.starts_with(std::string(lines.swept) + ",")) << table.substr(0, 80);
     EXPECT_THAT(table, Not(HasSubstr("ambiguous")));
     std::set<std::string> pictured;
-    for (const report::ImageEntry& image : report::readImages(dir)) pictured.insert(image.caseId);
+    for (const records::ImageEntry& image : records::readImages(dir)) pictured.insert(image.caseId);
     EXPECT_EQ(pictured.size(), 2u) << "a picture of every row";
     const std::string page = readFile(dir / "report.html");
     EXPECT_THAT(page, HasSubstr("<h1 tabindex=\"-1\">Mine</h1>"));

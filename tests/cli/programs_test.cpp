@@ -11,7 +11,7 @@
 
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
-#include "runner/report/images.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -147,7 +147,7 @@ TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
     EXPECT_EQ(rowsOf(dir, "number").at(0).unit, "1");
     const auto params = paramsOf(dir);
-    for (const report::Record& row : rowsOf(dir, "number")) {
+    for (const records::Record& row : rowsOf(dir, "number")) {
         EXPECT_EQ(row.value, params.at(row.caseId).at("number").get<double>());
     }
     for (const char* metric : {"mse", "rmse", "rel_mse", "psnr_db", "ssim", "flip"}) {
@@ -160,7 +160,7 @@ TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
         EXPECT_GT(rowsOf(dir, metric).front().value, 0.0) << metric;
     }
     EXPECT_LT(rowsOf(dir, "peak_memory_bytes").front().value, 64e6);
-    const auto images = report::readImages(dir);
+    const auto images = records::readImages(dir);
     ASSERT_EQ(images.size(), 4U);
     EXPECT_EQ(images[0].name, "result");
     EXPECT_EQ(images[1].name, "result_truth");
@@ -214,9 +214,9 @@ TEST_F(ExternalProgram, OneThatIsNotHereIsUnsupported) {
     EXPECT_THAT(check.out, HasSubstr("the program 'no-such-program-anywhere' is not on this "
                                      "machine: its cases will be unsupported"));
     EXPECT_EQ(run(config).exitCode, 4);
-    const std::vector<report::Record> rows = rowsOf(dir, "");
+    const std::vector<records::Record> rows = rowsOf(dir, "");
     ASSERT_EQ(rows.size(), 1U);
-    EXPECT_EQ(rows[0].status, report::Status::Unsupported);
+    EXPECT_EQ(rows[0].status, records::Status::Unsupported);
     EXPECT_EQ(rows[0].message, "the program 'no-such-program-anywhere' is not on this machine");
 }
 
@@ -234,7 +234,7 @@ TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
         "sweep: {number: [1, 2, 3]}\nmeasure: {lane: quality}\n");
     ASSERT_EQ(run(config, {"--jobs", "1"}).exitCode, 0);
     EXPECT_EQ(readFile(folder.path() / "runs"), "1\n99\n2\n3\n");
-    for (const report::Record& row : rowsOf(dir, "mse")) EXPECT_EQ(row.value, 0.0);
+    for (const records::Record& row : rowsOf(dir, "mse")) EXPECT_EQ(row.value, 0.0);
 }
 
 /// Processes that work in the run's scratch folder.

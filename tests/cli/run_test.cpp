@@ -26,7 +26,7 @@ TEST(Run, SmokeFromConfigToReport) {
         gfxrepro({"run", smokeConfig(), "--device", "software", "--jobs", "1", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out, "2 of 2 finished; records: " + dir + "/records.csv\n");
-    const std::vector<report::Record> rows = rowsOf(dir, "mean_brightness");
+    const std::vector<records::Record> rows = rowsOf(dir, "mean_brightness");
     ASSERT_EQ(rows.size(), 2U);
     EXPECT_NEAR(rows[0].value, 0.25, 1e-6);
     EXPECT_NEAR(rows[1].value, 0.5, 1e-6);
@@ -62,7 +62,7 @@ TEST(Run, AnExportedSceneMeasuresAsTheCataloguesDoes) {
     const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     for (const char* metric : {"redundant_pct", "available_mean_pct"}) {
-        const std::vector<report::Record> rows = rowsOf(dir, metric);
+        const std::vector<records::Record> rows = rowsOf(dir, metric);
         ASSERT_GE(rows.size(), 2U) << metric;
         const std::size_t half = rows.size() / 2;
         for (std::size_t i = 0; i < half; ++i) {
@@ -255,12 +255,12 @@ TEST(Run, ResumeGoesOnWithWhatWasPlanned) {
         writeMockConfig(folder, "params: {number: 1}\nsweep: {pause_ms: [0, 1]}\n");
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
-    const auto rows = report::readRecords(dir + "/records.csv");
+    const auto rows = records::readRecords(dir + "/records.csv");
     const auto loseACase = [&] {
-        std::vector<report::Record> left = rows;
+        std::vector<records::Record> left = rows;
         std::erase_if(left, [&](const auto& row) { return row.caseId == rows.back().caseId; });
         fs::remove(dir + "/records.csv");
-        report::RecordWriter(dir + "/records.csv").append(left);
+        records::RecordWriter(dir + "/records.csv").append(left);
     };
     const std::string goesOn = "; the run goes on with its configs as they were when it began\n";
     loseACase();
@@ -269,7 +269,7 @@ TEST(Run, ResumeGoesOnWithWhatWasPlanned) {
     EXPECT_EQ(changed.exitCode, 0) << changed.err;
     EXPECT_NE(changed.err.find("warning: " + config + " changed" + goesOn), std::string::npos)
         << changed.err;
-    for (const report::Record& row : rowsOf(dir, "number")) EXPECT_EQ(row.value, 1.0);
+    for (const records::Record& row : rowsOf(dir, "number")) EXPECT_EQ(row.value, 1.0);
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
     loseACase();
     fs::remove(config);

@@ -33,10 +33,10 @@ std::string writeRun(const TemporaryFolder& folder, int count) {
                             "--max-failures", "1", "--out", dir})
                   .exitCode,
               4);
-    std::vector<report::Record> rows;
+    std::vector<records::Record> rows;
     const auto plan = nlohmann::ordered_json::parse(readFile(dir + "/plan.json"));
     for (const auto& item : plan["cases"]) {
-        report::Record row;
+        records::Record row;
         row.caseId = item["id"];
         row.table = item["experiment"];
         row.technique = row.table;
@@ -49,7 +49,7 @@ std::string writeRun(const TemporaryFolder& folder, int count) {
         }
     }
     fs::remove(dir + "/records.csv");
-    report::RecordWriter(dir + "/records.csv").append(rows);
+    records::RecordWriter(dir + "/records.csv").append(rows);
     return dir;
 }
 

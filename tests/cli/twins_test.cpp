@@ -5,7 +5,7 @@
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/report/images.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -42,7 +42,7 @@ ProcessResult measure(std::vector<std::string> configs, const std::string& dir,
 std::map<int, double> timesOf(const std::string& dir, const std::string& table) {
     std::map<int, double> times;
     const auto params = paramsOf(dir);
-    for (const report::Record& row : rowsOf(dir, "wall_time_ms")) {
+    for (const records::Record& row : rowsOf(dir, "wall_time_ms")) {
         if (row.table != table) continue;
         times[params.at(row.caseId).at("number").get<int>()] = row.value;
     }
@@ -93,7 +93,7 @@ TEST(Twins, AreMeasuredOnceAndFillBothTables) {
     expectTablesOfTheirOwn(configs, dir);
 
     std::map<std::string, int> images;
-    for (const report::ImageEntry& image : report::readImages(dir)) {
+    for (const records::ImageEntry& image : records::readImages(dir)) {
         ++images[image.table];
         EXPECT_TRUE(image.title.starts_with(image.table + " number=")) << image.title;
         EXPECT_THAT(image.png, HasSubstr(image.caseId));
@@ -130,23 +130,23 @@ TEST(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
     const std::vector<std::string> configs = writeTables(folder);
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(measure(configs, dir).exitCode, 0);
-    const std::vector<report::Record> all = report::readRecords(dir + "/records.csv");
+    const std::vector<records::Record> all = records::readRecords(dir + "/records.csv");
     const auto keep = [&](auto isKept) {
-        std::vector<report::Record> rows;
+        std::vector<records::Record> rows;
         std::ranges::copy_if(all, std::back_inserter(rows), isKept);
         fs::remove(dir + "/records.csv");
-        report::RecordWriter(dir + "/records.csv").append(rows);
+        records::RecordWriter(dir + "/records.csv").append(rows);
     };
     // As if the runner had ended between the rows of number=2 and those of its twin.
     const std::map<int, double> before = timesOf(dir, "demo2026/1");
-    keep([](const report::Record& row) { return row.table == "demo2026/1"; });
+    keep([](const records::Record& row) { return row.table == "demo2026/1"; });
     const ProcessResult twin = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
     EXPECT_THAT(twin.out, HasSubstr("3 of 3 finished; records: ")) << twin.err;
     EXPECT_EQ(timesOf(dir, "demo2026/1"), before);
     EXPECT_EQ(timesOf(dir, "demo2026/2").size(), 3U);
     // And as if it had measured nothing but number=1 and the twin of number=2.
     const auto params = paramsOf(dir);
-    keep([&](const report::Record& row) {
+    keep([&](const records::Record& row) {
         const int number = params.at(row.caseId).at("number").get<int>();
         return number == (row.table == "demo2026/1" ? 1 : 2);
     });
@@ -212,7 +212,7 @@ TEST(Twins, ShardsKeepThemTogetherAndMerge) {
     const ProcessResult result = mockGfxrepro(merge);
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_EQ(timesOf(merged, "demo2026/1").at(3), timesOf(merged, "demo2026/2").at(3));
-    for (const report::ImageEntry& image : report::readImages(merged)) {
+    for (const records::ImageEntry& image : records::readImages(merged)) {
         EXPECT_TRUE(fs::exists(fs::path(merged) / image.png)) << image.png;
     }
     expectTablesOfTheirOwn(configs, merged);

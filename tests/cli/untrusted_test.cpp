@@ -138,14 +138,14 @@ TEST_F(Untrusted, BracketsAloneDoNotTakeTheStack) {
 
 TEST_F(Untrusted, RecordsAreOfThePlansCases) {
     const std::string file = dir + "/records.csv";
-    const report::Record known = rowsOf(dir, "number")[0];
+    const records::Record known = rowsOf(dir, "number")[0];
     const auto expectUnknown = [&](const std::string& id, const std::string& table) {
         const std::string whole = readFile(file);
-        report::Record row = known;
+        records::Record row = known;
         row.process = 1;
         row.caseId = id;
         row.table = table;
-        report::RecordWriter(file).append({row});
+        records::RecordWriter(file).append({row});
         for (const char* command : {"table", "claims", "report"}) {
             expectRefused({command, dir},
                           file + ": the case " + id + " of " + table + " is not in the plan\n");
@@ -389,16 +389,16 @@ TEST_F(Untrusted, NoTextIsACommandToGitHub) {
         }
     };
     const auto row = [&](int process, const std::string& method, const std::string& message) {
-        report::Record row = rowsOf(dir, "number")[0];
+        records::Record row = rowsOf(dir, "number")[0];
         row.process = process;
         row.method = method;
-        row.status = report::Status::Crash;
+        row.status = records::Status::Crash;
         row.message = message;
         return row;
     };
     const std::string other = folder.path() / "other";
     fs::copy(dir, other, fs::copy_options::recursive);
-    report::RecordWriter(other + "/records.csv")
+    records::RecordWriter(other + "/records.csv")
         .append({row(1, "", "x\n" + stop), row(2, "\n\u00A0" + stop, "##[add-mask]y\x1B[2J")});
     const ProcessResult compared = mockGfxrepro({"compare", dir, other, "--out", out});
     EXPECT_THAT(compared.out, HasSubstr("crash: x\n| ::stop-commands::abc\n"));

@@ -240,9 +240,9 @@ TEST(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
     const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
     EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
     EXPECT_THAT(resumed.out, HasSubstr("3 of 6 finished, 3 failed; "));
-    for (const report::Record& row : report::readRecords(dir + "/records.csv")) {
-        if (row.status == report::Status::Ok) continue;
-        EXPECT_EQ(row.status, report::Status::Crash) << "process " << row.process;
+    for (const records::Record& row : records::readRecords(dir + "/records.csv")) {
+        if (row.status == records::Status::Ok) continue;
+        EXPECT_EQ(row.status, records::Status::Crash) << "process " << row.process;
     }
     const std::string log = readFile(dir + "/log.jsonl");
     EXPECT_EQ(log.find("\"process\":2,\"status\":\"timeout\""), std::string::npos);
@@ -322,7 +322,7 @@ void expectNoTimeout(const std::function<void(BackgroundProgram&, pid_t)>& suspe
     suspend(run, workers.front());
     EXPECT_EQ(run.wait().exitCode, 0);
     EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
-    EXPECT_EQ(rowsOf(dir, "number").front().status, report::Status::Ok);
+    EXPECT_EQ(rowsOf(dir, "number").front().status, records::Status::Ok);
 }
 
 TEST(Weekend, ASuspendedRunMakesNoTimeouts) {

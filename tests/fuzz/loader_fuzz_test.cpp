@@ -16,8 +16,8 @@
 #include "runner/core/random.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
-#include "runner/report/images.h"
-#include "runner/report/records.h"
+#include "runner/records/images.h"
+#include "runner/records/records.h"
 #include "runner/scene/load.h"
 #include "tests/fuzz/memory_meter.h"
 #include "tests/support/support.h"
@@ -92,9 +92,9 @@ const Load kLoadConfig = [](const fs::path& path) {
     config::expandCases(experiment);
 };
 const Load kParseJson = [](const fs::path& path) { config::parseJsonFile(path); };
-const Load kReadRecords = [](const fs::path& path) { report::readRecords(path); };
+const Load kReadRecords = [](const fs::path& path) { records::readRecords(path); };
 const Load kReadImages = [](const fs::path& path) {
-    report::readImages(path.parent_path().parent_path());
+    records::readImages(path.parent_path().parent_path());
 };
 
 /// A file may fail, but only by an Error that names it, and within the memory that its size allows:
@@ -304,18 +304,18 @@ TEST(LoaderFuzz, Configs) {
 TEST(LoaderFuzz, FilesOfRuns) {
     const test::TemporaryFolder own, work;
     const fs::path records = own.path() / "records.csv";
-    report::Record row;
+    records::Record row;
     row.caseId = "0123456789ab";
     row.table = "zju2005/2.1";
     row.method = R"(a, "b")";
     row.metric = "psnr_db";
-    std::vector<report::Record> rows(3, row);
+    std::vector<records::Record> rows(3, row);
     rows[1].frame = 1;
     rows[2].process = 1;
-    rows[2].status = report::Status::Crash;
+    rows[2].status = records::Status::Crash;
     rows[2].message = "about\nto crash";
-    report::RecordWriter(records).append(rows);
-    report::ImageWriter(own.path())
+    records::RecordWriter(records).append(rows);
+    records::ImageWriter(own.path())
         .append({{"0123456789ab", "zju2005/2.1", 0, "flat", "images/a/b.png", "images/a/b.exr",
                   "a, \"title\"", ""}});
     const fs::path plan =

@@ -39,7 +39,7 @@ expect("check_layers", {"runner/report/a.cpp": "#include <EGL/egl.h>\n"},
        "runner/report/a.cpp:1: runner/report may not include EGL/egl.h")
 expect("check_layers", {"techniques/a/a.cpp": '#include "techniques/b/b.h"\n'},
        "techniques/a/a.cpp:1: techniques/a may not include techniques/b/b.h")
-for folder in ("runner/batch", "runner/scene", "techniques/a"):
+for folder in ("runner/run", "runner/scene", "techniques/a"):
     expect("check_layers", {folder + "/a.cpp": '#include "scenes/city/parts.h"\n'},
            f"{folder}/a.cpp:1: {folder} may not include scenes/city/parts.h")
 expect("check_layers", {"scenes/city/a.cpp": '#include "runner/technique/technique.h"\n'},

@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "runner/claims/claims.h"
+#include "runner/claims/kept_claims.h"
 #include "runner/config/experiment.h"
-#include "runner/report/report.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -20,7 +21,7 @@ const fs::path kSource = GFXREPRO_SOURCE_DIR;
 
 /// A verdict of a kept run.
 struct Kept {
-    report::Verdict verdict;
+    claims::Verdict verdict;
     std::string deviceClass, profile;
     std::string file;  // with the claim: what a message names
 };
@@ -37,7 +38,7 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
         if (head.find(",origin,") == head.npos) continue;
         std::ifstream file(entry.path().parent_path() / "manifest.json");
         const auto manifest = nlohmann::json::parse(file);
-        for (const report::ClaimResult& claim : report::readClaims(entry.path())) {
+        for (const claims::ClaimResult& claim : claims::readClaims(entry.path())) {
             kept[{claim.table, claim.id}].push_back(
                 {claim.verdict, manifest.at("device_class"), manifest.at("profile"),
                  fs::relative(entry.path(), root).string() + ": " + claim.table + " " + claim.id});
@@ -62,7 +63,7 @@ std::vector<std::string> complaints(const config::Experiment& experiment,
         for (const Kept& kept : found->second) {
             const bool isKnown =
                 std::ranges::any_of(claim.because, [&](const Known& k) { return isOf(k, kept); });
-            if (kept.verdict == report::Verdict::Fails && !isKnown) {
+            if (kept.verdict == claims::Verdict::Fails && !isKnown) {
                 texts.push_back(kept.file + " fails, and its config has no reason for it");
             }
         }
@@ -71,7 +72,7 @@ std::vector<std::string> complaints(const config::Experiment& experiment,
             std::size_t holding = 0, others = 0;
             for (const Kept& kept : found->second) {
                 if (isOf(known, kept)) {
-                    ++(kept.verdict == report::Verdict::Holds ? holding : others);
+                    ++(kept.verdict == claims::Verdict::Holds ? holding : others);
                 }
             }
             if (holding > 0 && others == 0) {
@@ -132,8 +133,8 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     config::ClaimSpec claim;
     claim.id = "A";
     experiment.claims = {claim};
-    const Kept fails{report::Verdict::Fails, "software", "quick", "f"};
-    const Kept holds{report::Verdict::Holds, "software", "quick", "h"};
+    const Kept fails{claims::Verdict::Fails, "software", "quick", "f"};
+    const Kept holds{claims::Verdict::Holds, "software", "quick", "h"};
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
     experiment.claims[0].because = {{"fails", "software", std::nullopt, "r", ""}};
     EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {fails, holds}}}), testing::IsEmpty());

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "runner/batch/process_memory.h"
+#include "runner/run/process_memory.h"
 #include "techniques/terrain_tessellation/terrain_tessellation.h"
 #include "tests/techniques/technique_fixture.h"
 
@@ -55,10 +55,10 @@ class TerrainMemoryTest : public test::TechniqueTest {
     /// The most that became resident meanwhile.
     template <class Action>
     static long long growth(const Action& action) {
-        batch::resetPeakResident();
-        const long long before = batch::residentBytes(::getpid());
+        run::resetPeakResident();
+        const long long before = run::residentBytes(::getpid());
         action();
-        return batch::peakResidentBytes() - before;
+        return run::peakResidentBytes() - before;
     }
 
     test::TemporaryFolder folder_;

@@ -11,7 +11,7 @@
 #include "runner/config/documents.h"
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
-#include "runner/report/records.h"
+#include "runner/records/records.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
@@ -370,10 +370,10 @@ TEST(Schema, StatusesAreThoseOfRecords) {
     ASSERT_NE(status, keys.end());
     std::size_t count = 0;
     for (const auto& name : status->json.at("enum")) {
-        EXPECT_NO_THROW(report::statusFromName(name.get<std::string>())) << name;
+        EXPECT_NO_THROW(records::statusFromName(name.get<std::string>())) << name;
         ++count;
     }
-    EXPECT_EQ(count, static_cast<std::size_t>(report::Status::Error) + 1);
+    EXPECT_EQ(count, static_cast<std::size_t>(records::Status::Error) + 1);
 }
 
 TEST(Schema, DescribesEveryKeyInWordsAndInMarkdown) {

@@ -458,8 +458,8 @@ TEST(Comparison, CpuTimeStandsForTheClockOnASoftwareDevice) {
     EXPECT_EQ(keys({{clock, twenty}}, true), Metrics{"wall_time_ms: slower"});
 }
 
-report::Record recordOf(const std::string& metric, const std::string& unit, double value) {
-    report::Record record;
+records::Record recordOf(const std::string& metric, const std::string& unit, double value) {
+    records::Record record;
     record.table = "p/1";
     record.lane = "timing";
     record.metric = metric;
@@ -469,8 +469,8 @@ report::Record recordOf(const std::string& metric, const std::string& unit, doub
 }
 
 TEST(SeriesOf, TakesFramesTimesOfTheTimingLaneOnly) {
-    report::Record record = recordOf("wall_time_ms", "ms", 0.0);
-    std::vector<report::Record> records;
+    records::Record record = recordOf("wall_time_ms", "ms", 0.0);
+    std::vector<records::Record> records;
     for (const double value : {3.0, 1.0, 2.0}) {
         record.repeat = static_cast<int>(records.size());
         record.value = value;
@@ -483,7 +483,7 @@ TEST(SeriesOf, TakesFramesTimesOfTheTimingLaneOnly) {
     records.push_back(record);
     record.lane = "quality";
     records.push_back(record);
-    record.status = report::Status::Crash;
+    record.status = records::Status::Crash;
     records.push_back(record);
     const SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
@@ -492,9 +492,9 @@ TEST(SeriesOf, TakesFramesTimesOfTheTimingLaneOnly) {
 }
 
 TEST(SeriesOf, ATimeWithAFrameThatIsVoidIsVoid) {
-    std::vector<report::Record> records(2, recordOf("wall_time_ms", "ms", 3.0));
+    std::vector<records::Record> records(2, recordOf("wall_time_ms", "ms", 3.0));
     records[1].frame = 1;
-    records[1].status = report::Status::Ambiguous;
+    records[1].status = records::Status::Ambiguous;
     records[1].message = "frame 1: blank";
     SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
@@ -511,16 +511,16 @@ TEST(SeriesOf, ATimeWithAFrameThatIsVoidIsVoid) {
 }
 
 TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
-    std::vector<report::Record> records = {recordOf("frame_rate", "1/s", 1),
-                                           recordOf("setup_time_ms", "ms", 1),
-                                           recordOf("load_time_ms", "ms", 1),
-                                           recordOf("preprocess_ms", "ms", 1),
-                                           recordOf("points_per_second", "point/s", 1),
-                                           recordOf("time_fit_r_squared", "1", 1),
-                                           recordOf("work_fragments", "fragment", 1),
-                                           recordOf("peak_memory_bytes", "byte", 1),
-                                           recordOf("wall_time_ms", "ms", 1),
-                                           recordOf("voxels", "voxel", 7)};
+    std::vector<records::Record> records = {recordOf("frame_rate", "1/s", 1),
+                                            recordOf("setup_time_ms", "ms", 1),
+                                            recordOf("load_time_ms", "ms", 1),
+                                            recordOf("preprocess_ms", "ms", 1),
+                                            recordOf("points_per_second", "point/s", 1),
+                                            recordOf("time_fit_r_squared", "1", 1),
+                                            recordOf("work_fragments", "fragment", 1),
+                                            recordOf("peak_memory_bytes", "byte", 1),
+                                            recordOf("wall_time_ms", "ms", 1),
+                                            recordOf("voxels", "voxel", 7)};
     records[8].pass = "draw";
     const SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
@@ -528,15 +528,15 @@ TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
 }
 
 TEST(SeriesOf, TheLastOfTwoValuesOfOnePlaceCounts) {
-    const std::vector<report::Record> records = {recordOf("triangles", "triangle", 5),
-                                                 recordOf("triangles", "triangle", 7)};
+    const std::vector<records::Record> records = {recordOf("triangles", "triangle", 5),
+                                                  recordOf("triangles", "triangle", 7)};
     EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{7.0});
 }
 
 TEST(SeriesOf, SetUpCountsWhereNoFrameHasTheSame) {
-    std::vector<report::Record> records = {recordOf("nodes", "node", 5),
-                                           recordOf("nodes", "node", 7)};
-    records[0].frame = records[0].repeat = report::kSetup;
+    std::vector<records::Record> records = {recordOf("nodes", "node", 5),
+                                            recordOf("nodes", "node", 7)};
+    records[0].frame = records[0].repeat = records::kSetup;
     EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{7.0});
     records.pop_back();
     EXPECT_EQ(seriesOf(records, {}).begin()->second, Series{5.0});

@@ -9,8 +9,8 @@
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
 #include "runner/image/srgb.h"
+#include "runner/records/images.h"
 #include "runner/regression/summary.h"
-#include "runner/report/images.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::regression {
@@ -34,9 +34,9 @@ class Pictures : public ::testing::Test {
                                                  : std::vector<std::string>{"R", "G", "B"});
         image::writeExr(dir / (stem + ".exr"), exr);
         image::writePng(dir / (stem + ".png"), image::toSrgb8(picture));
-        report::ImageWriter(dir).append(
+        records::ImageWriter(dir).append(
             {{side, "p/1", frame, name, stem + ".png", stem + ".exr", "p/1"}});
-        report::Record row;
+        records::Record row;
         row.caseId = side;
         row.table = "p/1";
         row.technique = "mock";
@@ -61,7 +61,7 @@ class Pictures : public ::testing::Test {
     }
 
     test::TemporaryFolder folder;
-    std::map<std::string, std::vector<report::Record>> records;
+    std::map<std::string, std::vector<records::Record>> records;
     CaseParams caseParams;
     std::map<std::string, config::PictureTolerance> tolerances;
 };
@@ -224,7 +224,7 @@ TEST_F(Pictures, NamesOfARunBecomeNoOtherPlace) {
     record("b", "flat", ImageF(16, 16, 3, 0.75F));
     const std::string hostile = "images/p-1/](http:x) $(y).png";
     fs::copy_file(file("b", ".png"), folder.path() / "b" / hostile);
-    report::ImageWriter(folder.path() / "b").append({{"b", "p/1", 0, "flat", hostile, "", "p/1"}});
+    records::ImageWriter(folder.path() / "b").append({{"b", "p/1", 0, "flat", hostile, "", "p/1"}});
     EXPECT_EQ(only().evidence, "pictures/p-1/__http_x____y_");
 }
 

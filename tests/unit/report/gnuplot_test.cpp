@@ -15,10 +15,10 @@
 
 #include "runner/core/files.h"
 #include "runner/report/plot.h"
-#include "runner/report/report.h"
+#include "runner/tables/table.h"
 #include "tests/support/support.h"
-#include "tests/unit/report/fixture.h"
 #include "tests/unit/report/well_formed.h"
+#include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::report {
 namespace {
@@ -34,20 +34,20 @@ constexpr const char* kHostileInSvg =
     "it's \"x\" 50 % %d _a ^{b} {/Bold c} @d &amp;e; &lt;f> ]]&gt; `touch g` $h #i \\n \\ µ→ "
     "fill=\"black\" id='j' EOD print 1";
 
-FigurePoint point(double x, double y, double halfWidth = 0.0) {
-    FigurePoint point;
+tables::FigurePoint point(double x, double y, double halfWidth = 0.0) {
+    tables::FigurePoint point;
     point.x = x;
     point.y = y;
     point.interval = {y - halfWidth, y + halfWidth};
-    if (halfWidth > 0.0) point.bounds = Bounds::Interval;
+    if (halfWidth > 0.0) point.bounds = tables::Bounds::Interval;
     return point;
 }
 
-Figure twoCurves() {
-    Figure figure;
+tables::Figure twoCurves() {
+    tables::Figure figure;
     figure.xLabel = "size";
     figure.curveNames = {"one", "two"};
-    FigurePoint gap;
+    tables::FigurePoint gap;
     gap.x = 2.0;
     gap.remark = "crash";
     figure.panels = {{"",
@@ -58,8 +58,8 @@ Figure twoCurves() {
     return figure;
 }
 
-Figure hostileFigure() {
-    Figure figure = twoCurves();
+tables::Figure hostileFigure() {
+    tables::Figure figure = twoCurves();
     figure.xLabel = figure.notes[0] = kHostile;
     figure.curveNames = {kHostile, "two"};
     figure.panels[0].title = figure.panels[0].yLabel = figure.panels[0].curves[0].name = kHostile;
@@ -125,7 +125,7 @@ class Drawing : public testing::Test {
         if (!runGnuplot(script).problem.empty()) GTEST_SKIP() << "gnuplot is not installed";
     }
     /// The SVG as it is written; the test fails where there is none.
-    std::string svgOf(const Figure& figure, const std::string& name) const {
+    std::string svgOf(const tables::Figure& figure, const std::string& name) const {
         const auto script = folder.write(name + ".gp", gnuplotScript(figure, name, kHostile));
         const Drawn drawn = runGnuplot(script);
         EXPECT_EQ(drawn.problem, "");
@@ -150,7 +150,7 @@ TEST(GnuplotScript, HoldsItsData) {
 }
 
 TEST(GnuplotScript, NamesOnlyWhatIsThere) {
-    Figure figure = twoCurves();
+    tables::Figure figure = twoCurves();
     figure.isLogX = figure.isLogY = true;
     figure.curveNames = {"one"};
     figure.panels[0].curves = {{"one", {point(1, 10), point(4, 30)}, {}}};
@@ -175,7 +175,7 @@ double luminance(const std::string& hex) {
 }
 
 TEST(GnuplotScript, ColoursStandOutFromLightAndDark) {
-    Figure figure = twoCurves();
+    tables::Figure figure = twoCurves();
     figure.panels[0].curves.assign(7, {"c", {point(1, 10)}, {}});
     figure.curveNames.assign(7, "c");
     const std::string script = gnuplotScript(figure, "p", "s");
@@ -239,7 +239,7 @@ TEST_F(Drawing, LeavesGaps) {
         const std::string d = svg.substr(path, svg.find('/', path) - path);
         return std::count(d.begin(), d.end(), 'L');
     };
-    Figure figure = twoCurves();
+    tables::Figure figure = twoCurves();
     figure.panels[0].curves.resize(1);
     figure.curveNames.resize(1);
     figure.panels[0].curves[0].points = {point(1, 10), point(2, 20), point(4, 30)};
@@ -257,7 +257,7 @@ TEST_F(Drawing, SaysWhatGnuplotSays) {
 }
 
 config::Experiment experiment() {
-    return experimentFrom(R"(
+    return tables::experimentFrom(R"(
 sweep: {scene: [a], size: [1, 2, 4]}
 layout: {rows: [scene, size], columns: {time_ms: {metric: gpu_time_ms}}}
 plots:
@@ -266,8 +266,8 @@ plots:
 )");
 }
 
-Recorded records() {
-    RecordMaker maker;
+tables::Recorded records() {
+    tables::RecordMaker maker;
     for (const int size : {1, 2, 4}) {
         maker.beginCase("a", "{\"size\":" + std::to_string(size) + "}");
         maker.add("gpu_time_ms", {3.0 * size, 3.1 * size});
@@ -277,8 +277,8 @@ Recorded records() {
 
 TEST_F(Drawing, WritesFilesOfEachPlot) {
     std::chrono::milliseconds patience = kGnuplotPatience;
-    const auto files =
-        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()}, patience);
+    const auto files = writePlots(folder.path(), tables::buildTables({experiment()}, records()),
+                                  {experiment()}, patience);
     ASSERT_EQ(files.size(), 2U);
     EXPECT_EQ(files[0].table, "zju2005/9.9");
     EXPECT_EQ(files[0].title, "A table");
@@ -296,8 +296,8 @@ TEST_F(Drawing, WritesFilesOfEachPlot) {
 TEST_F(Drawing, DrawsNothingOfNothing) {
     std::chrono::milliseconds patience = kGnuplotPatience;
     const auto stale = folder.write("plots/zju2005-9.9.svg", "old");
-    const auto files =
-        writePlots(folder.path(), buildTables({experiment()}, {}), {experiment()}, patience);
+    const auto files = writePlots(folder.path(), tables::buildTables({experiment()}, {}),
+                                  {experiment()}, patience);
     EXPECT_EQ(files.at(0).problem, "no value was measured");
     EXPECT_EQ(files[0].svg, "");
     EXPECT_EQ(files[0].script, "");
@@ -308,8 +308,8 @@ TEST(Plots, AllTogetherWaitForGnuplotNoLongerThanOne) {
     const test::TemporaryFolder folder;
     const ProgramInFront program(folder, "gnuplot", "#!/bin/sh\nexec sleep 20\n");
     std::chrono::milliseconds patience(500);
-    const auto files =
-        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()}, patience);
+    const auto files = writePlots(folder.path(), tables::buildTables({experiment()}, records()),
+                                  {experiment()}, patience);
     ASSERT_EQ(files.size(), 2U);
     EXPECT_EQ(files[0].problem, "gnuplot did not end in 1.5 s");
     EXPECT_EQ(files[1].problem, "gnuplot did not end in 1 s");
@@ -322,8 +322,8 @@ TEST(Plots, GoWithoutGnuplot) {
     const auto stale = folder.write("plots/zju2005-9.9.svg", "old");
     const std::string path = std::getenv("PATH");
     ::setenv("PATH", folder.path().c_str(), 1);
-    const auto files =
-        writePlots(folder.path(), buildTables({experiment()}, records()), {experiment()}, patience);
+    const auto files = writePlots(folder.path(), tables::buildTables({experiment()}, records()),
+                                  {experiment()}, patience);
     ::setenv("PATH", path.c_str(), 1);
     EXPECT_EQ(files.at(0).problem, "gnuplot is not installed");
     EXPECT_EQ(files[0].svg, "");

@@ -6,7 +6,7 @@
 #include <regex>
 #include <set>
 
-#include "tests/unit/report/fixture.h"
+#include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::report {
 namespace {
@@ -22,17 +22,17 @@ std::vector<std::string> keysOf(const std::string& latex) {
     return keys;
 }
 
-Table tableFrom(const std::string& body, const Recorded& records) {
-    return buildTable(experimentFrom(body), records);
+tables::Table tableFrom(const std::string& body, const tables::Recorded& records) {
+    return tables::buildTable(tables::experimentFrom(body), records);
 }
 
 TEST(Latex, DefinesEachNumberOnceAndSetsTheTableByThem) {
-    RecordMaker maker;
+    tables::RecordMaker maker;
     maker.beginCase("models/duck");
     for (int process = 0; process < 3; ++process) {
         maker.process(process).add("gpu_time_ms", {8.0 + process});
     }
-    maker.beginCase("models/bunny").fail(Status::Crash, "signal 11");
+    maker.beginCase("models/bunny").fail(records::Status::Crash, "signal 11");
     const std::string latex = tableLatex(tableFrom(R"(
 sweep: {scene: [models/duck, models/bunny]}
 layout: {rows: scene, columns: {draw_ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
@@ -59,7 +59,7 @@ printed: {values: "scene,draw_ms\nmodels/duck,9.0"}
 }
 
 TEST(Latex, StatisticsHaveKeysBelowTheCell) {
-    RecordMaker maker;
+    tables::RecordMaker maker;
     maker.beginCase("a").add("error", {1.0, 2.0, 6.0});
     const std::string latex = tableLatex(tableFrom(R"(
 scene: a
@@ -98,15 +98,15 @@ layout: {rows: scene, columns: {"x_1": {metric: m}, "x 1": {metric: m}, "x/1": {
 }
 
 TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
-    Table table;
+    tables::Table table;
     table.id = "p/1";
     table.isOnlyPrinted = true;
     table.rowAxes = {"a"};
     table.columns = {{"b", ""}};
-    Cell cell;
+    tables::Cell cell;
     cell.isPlanned = false;
     cell.printed = "5";
-    table.rows = {{{"1"}, SceneSource::Unknown, {cell}}};
+    table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
     const std::string latex = tableLatex(table);
     EXPECT_THAT(keysOf(latex), testing::ElementsAre("p/1/1/b/printed"));
     EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lr}\n\\toprule\na & b \\\\\n\\midrule\n{1} & "

@@ -1,10 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "runner/claims/claims.h"
+#include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
-#include "runner/report/report.h"
+#include "runner/report/junit.h"
+#include "runner/report/writers.h"
+#include "runner/tables/table.h"
 #include "tests/support/support.h"
-#include "tests/unit/report/fixture.h"
+#include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::report {
 namespace {
@@ -12,10 +16,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const ReportContext kContext{"llvmpipe", "software", "quick", "abc123", "gfxrepro reproduce"};
+const claims::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
+                                     "gfxrepro reproduce"};
 
 config::Experiment experiment() {
-    return withPaperCases(experimentFrom(R"(
+    return tables::withPaperCases(tables::experimentFrom(R"(
 sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
 layout:
   rows: scene
@@ -35,11 +40,11 @@ claims:
 assumptions:
   padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
 )"),
-                          {{"models/duck", "{}"}, {"<b>&|_%", "{light_grid: 16}"}});
+                                  {{"models/duck", "{}"}, {"<b>&|_%", "{light_grid: 16}"}});
 }
 
-Recorded records() {
-    RecordMaker maker;
+tables::Recorded records() {
+    tables::RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
     maker.add("scene_source", {1.0}, "", "enum");
     for (int process = 1; process < 6; ++process) {
@@ -48,7 +53,7 @@ Recorded records() {
     maker.beginCase("<b>&|_%", R"({"light_grid": 4})")
         .add("error", {2.5})
         .add("gpu_time_ms", {1.0 / 3.0});
-    maker.beginCase("models/lost").fail(Status::Crash, "signal <11>");
+    maker.beginCase("models/lost").fail(records::Status::Crash, "signal <11>");
     return maker.records();
 }
 
@@ -59,7 +64,7 @@ struct Written {
 
 TEST(Writers, TableFiles) {
     const Written run;
-    writeTables(run.folder.path(), buildTables({experiment()}, records()));
+    writeTables(run.folder.path(), tables::buildTables({experiment()}, records()));
     const std::string csv = run.read("tables/zju2005-9.9.csv");
     EXPECT_THAT(csv, testing::StartsWith(
                          "scene,source,error_printed,error_mean_measured,error_mean_low,"
@@ -94,15 +99,15 @@ TEST(Writers, TableFiles) {
 
 TEST(Writers, CalibratedCellsAreMarked) {
     const Written run;
-    RecordMaker maker;
+    tables::RecordMaker maker;
     maker.beginCase("models/duck").add("error", {2.0});
     maker.beginCase("models/bunny").add("error", {3.0});
-    writeTables(run.folder.path(), buildTables({experimentFrom(R"(
+    writeTables(run.folder.path(), tables::buildTables({tables::experimentFrom(R"(
 sweep: {scene: [models/duck, models/bunny]}
 layout: {rows: scene, columns: {error: {metric: error, format: "{median:.0f}"}, again: {metric: error, format: "{median:.0f}"}}}
 printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,error,again\nmodels/duck,2,1"}
 )")},
-                                               maker.records()));
+                                                       maker.records()));
     const std::string csv = run.read("tables/zju2005-9.9.csv");
     EXPECT_THAT(csv, HasSubstr("error_status,error_at_printed,error_calibrated,again_printed"));
     EXPECT_THAT(csv, Not(HasSubstr("again_calibrated"))) << "none of the column is";
@@ -124,13 +129,13 @@ printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,erro
 
 TEST(Writers, ClaimFiles) {
     const Written run;
-    const auto tables = buildTables({experiment()}, records());
-    ReportContext context = kContext;
-    context.tried[{"zju2005/9.9", "A"}] = {Verdict::Holds, "none of the 5 tried"};
-    context.tried[{"zju2005/9.9", "B"}] = {Verdict::Holds, "bias (of 5 tried)"};
-    const auto results = evaluateClaims({experiment()}, tables, context);
-    using Outcome = CaseResult::Outcome;
-    const std::vector<CaseResult> cases = {
+    const auto tables = tables::buildTables({experiment()}, records());
+    claims::ReportContext context = kContext;
+    context.tried[{"zju2005/9.9", "A"}] = {claims::Verdict::Holds, "none of the 5 tried"};
+    context.tried[{"zju2005/9.9", "B"}] = {claims::Verdict::Holds, "bias (of 5 tried)"};
+    const auto results = claims::evaluateClaims({experiment()}, tables, context);
+    using Outcome = records::CaseResult::Outcome;
+    const std::vector<records::CaseResult> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>"},
         {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"},
@@ -152,12 +157,12 @@ TEST(Writers, ClaimFiles) {
         "holds then\n"
         "C,maybe,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
         "scene=models/lost: crash (signal <11>),,\n");
-    const auto kept = readClaims(run.folder.path() / "claims.csv");
+    const auto kept = claims::readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
     EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
     EXPECT_EQ(kept[1].boundFrom, config::ClaimSpec::BoundSource::Text);
     EXPECT_EQ(kept[1].timeKind, config::ClaimSpec::TimeKind::Algorithmic);
-    EXPECT_EQ(kept[1].known, Verdict::Fails);
+    EXPECT_EQ(kept[1].known, claims::Verdict::Fails);
     EXPECT_EQ(kept[1].because, "slow, measured");
     EXPECT_EQ(kept[1].text, "no");
     EXPECT_EQ(kept[1].restsOn, "not tried: holds then");

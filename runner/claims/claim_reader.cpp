@@ -1,0 +1,310 @@
+#include "runner/claims/claim_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "runner/core/text.h"
+#include "runner/tables/case_records.h"
+
+namespace gfxrepro::claims {
+
+using config::ClaimSpec;
+
+ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
+    : claim_(claim), table_(table), statistic_(claim.statistic.value_or("")) {
+    const std::string owner = "claim '" + claim.id + "'";
+    for (const std::string& operand : claim.operands) {
+        operands_.emplace_back(operand, table, claim.location, owner);
+    }
+    for (const auto& [axis, values] : claim.at) rowAxis(axis, "at");
+    if (!claim.over) return;
+    const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.over);
+    if (found != table.rowAxes.end()) {
+        overAxis_ = static_cast<std::size_t>(found - table.rowAxes.begin());
+    } else {
+        overColumn_.emplace_back(*claim.over, table, claim.location, owner);
+    }
+}
+
+std::size_t ClaimReader::rowAxis(const std::string& name, const char* key) const {
+    const auto found = std::find(table_.rowAxes.begin(), table_.rowAxes.end(), name);
+    if (found == table_.rowAxes.end()) {
+        fail(std::string(key) + ": '" + name + "' is no row axis" +
+             suggestion(name, table_.rowAxes) + " (row axes: " + joined(table_.rowAxes) + ")");
+    }
+    return static_cast<std::size_t>(found - table_.rowAxes.begin());
+}
+
+Rows ClaimReader::rows() const {
+    Rows rows;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+        bool isRead = true;
+        for (const auto& [axis, values] : claim_.at) {
+            const std::string& label = table_.rows[row].labels[rowAxis(axis, "at")];
+            isRead = isRead && std::any_of(values.begin(), values.end(), [&](const auto& value) {
+                         return tables::canonicalText(value) == label;
+                     });
+        }
+        if (isRead) rows.push_back(row);
+    }
+    return rows;
+}
+
+/// The row axes along which `over` changes: itself, or, if it is a column, each on which that
+/// column depends.
+std::vector<bool> ClaimReader::axesAlongX() {
+    std::vector<bool> along(table_.rowAxes.size(), false);
+    if (overAxis_) along[*overAxis_] = true;
+    if (overColumn_.empty()) return along;
+    const Rows read = rows();
+    std::map<std::size_t, std::optional<double>> x;
+    for (const std::size_t row : read) {
+        if (problemOf(overColumn_[0], row).empty()) x[row] = abscissa(row).point;
+    }
+    for (const std::size_t a : read) {
+        for (const std::size_t b : read) {
+            std::vector<std::size_t> different;
+            for (std::size_t axis = 0; axis < along.size(); ++axis) {
+                if (table_.rows[a].labels[axis] != table_.rows[b].labels[axis]) {
+                    different.push_back(axis);
+                }
+            }
+            if (different.size() == 1 && x[a] != x[b]) along[different[0]] = true;
+        }
+    }
+    return along;
+}
+
+std::vector<Rows> ClaimReader::groups() {
+    const bool isOneGroup = (claim_.type == ClaimSpec::Type::Independent && !claim_.over) ||
+                            claim_.type == ClaimSpec::Type::SameMean;
+    std::vector<bool> along = axesAlongX();
+    if (isOneGroup) along.assign(along.size(), true);
+    std::vector<Rows> groups;
+    std::map<std::vector<std::string>, std::size_t> indices;
+    for (const std::size_t row : rows()) {
+        std::vector<std::string> key;
+        for (std::size_t axis = 0; axis < along.size(); ++axis) {
+            if (!along[axis]) key.push_back(table_.rows[row].labels[axis]);
+        }
+        const auto [found, isNew] = indices.try_emplace(std::move(key), groups.size());
+        if (isNew) groups.emplace_back();
+        groups[found->second].push_back(row);
+    }
+    return groups;
+}
+
+std::string ClaimReader::groupName(const Rows& rows) const {
+    std::vector<std::string> parts;
+    for (std::size_t axis = 0; axis < table_.rowAxes.size(); ++axis) {
+        const std::string& label = table_.rows[rows[0]].labels[axis];
+        const bool isShared = std::all_of(rows.begin(), rows.end(), [&](std::size_t row) {
+            return table_.rows[row].labels[axis] == label;
+        });
+        const std::string& name = table_.rowAxes[axis];
+        if (isShared) parts.push_back(name.empty() ? label : name + "=" + label);
+    }
+    return joined(parts);
+}
+
+bool ClaimReader::readsSome(const std::function<bool(const tables::Cell&)>& isSuch) const {
+    const Rows read = rows();
+    const auto readsOne = [&](const Operand& operand) {
+        return std::ranges::any_of(operand.columns(), [&](std::size_t column) {
+            return std::ranges::any_of(
+                read, [&](std::size_t row) { return isSuch(table_.rows[row].cells[column]); });
+        });
+    };
+    return std::ranges::any_of(operands_, readsOne) || std::ranges::any_of(overColumn_, readsOne);
+}
+
+bool ClaimReader::readsTime() const {
+    return readsSome([](const tables::Cell& cell) { return cell.isTime; });
+}
+
+bool ClaimReader::readsShare() const {
+    return readsSome([](const tables::Cell& cell) {
+        const bool isScaled = cell.metric.empty() && cell.unit.empty();
+        return isScaled || cell.metric.ends_with("_pct");
+    });
+}
+
+bool ClaimReader::readsOnly(const std::string& metric) const {
+    const auto isColumn = [&](const Operand& operand) {
+        const std::string& text = operand.text();
+        return operand.columns().size() == 1 &&
+               (text == table_.columns[operand.columns()[0]].label || text.starts_with('\''));
+    };
+    return std::ranges::all_of(operands_, isColumn) && !readsSome([&](const tables::Cell& cell) {
+               return cell.isPlanned && cell.metric != metric;
+           });
+}
+
+bool ClaimReader::readsCalibrated() const {
+    const Rows read = rows();
+    return std::ranges::all_of(operands_, [&](const Operand& operand) {
+        return std::ranges::all_of(operand.columns(), [&](std::size_t column) {
+            return std::ranges::all_of(read, [&](std::size_t row) {
+                const tables::Cell& cell = table_.rows[row].cells[column];
+                return cell.isCalibrated || !cell.isPlanned;
+            });
+        });
+    });
+}
+
+/// By which factor the operand grows as all times double, where its cells are `base` and above; a
+/// zero by any.
+std::optional<double> ClaimReader::growthAsTimesDouble(Operand& operand, std::size_t row,
+                                                       double base) {
+    std::vector<double> before, after;
+    for (const std::size_t column : operand.columns()) {
+        base *= 1.7;  // no two alike: their difference is no 0
+        before.push_back(base);
+        after.push_back(std::ldexp(base, table_.rows[row].cells[column].timePower));
+    }
+    const double first = operand.evaluate(before), second = operand.evaluate(after);
+    if (first == 0.0 && second == 0.0) return std::nullopt;
+    return second / first;
+}
+
+bool ClaimReader::asksForATimeAsSuch() {
+    using Type = ClaimSpec::Type;
+    const bool isOfValues =
+        claim_.type == Type::Bound || claim_.type == Type::Exact || claim_.type == Type::Tolerance;
+    const bool isOfEach = claim_.type == Type::Trend || claim_.type == Type::Independent;
+    const auto areAlike = [](const std::vector<double>& growths) {
+        constexpr double kTolerance = 1e-9;
+        return std::ranges::all_of(growths, [&](double growth) {
+            return std::abs(growth - growths.front()) < kTolerance;
+        });
+    };
+    for (const std::size_t row : rows()) {
+        std::vector<double> growths;
+        if (isOfValues) growths.push_back(1.0);
+        for (Operand& operand : operands_) {
+            if (isOfEach) growths.clear();
+            // A sum with a number grows by less somewhere, a comparison with one at its number.
+            for (int exponent = -10; exponent <= 30; ++exponent) {
+                const std::optional<double> growth =
+                    growthAsTimesDouble(operand, row, std::ldexp(1.0, exponent));
+                if (growth) growths.push_back(*growth);
+            }
+            if (!areAlike(growths)) return true;
+        }
+    }
+    return false;
+}
+
+std::vector<const tables::Cell*> ClaimReader::timeCells() const {
+    std::vector<const tables::Cell*> cells;
+    for (const auto* operands : {&operands_, &overColumn_}) {
+        for (const Operand& operand : *operands) {
+            for (const std::size_t column : operand.columns()) {
+                for (const std::size_t row : rows()) {
+                    const tables::Cell& cell = table_.rows[row].cells[column];
+                    if (cell.isOk() && cell.isTime) cells.push_back(&cell);
+                }
+            }
+        }
+    }
+    return cells;
+}
+
+bool ClaimReader::isAtPrintedParameters() const {
+    return std::ranges::all_of(
+        timeCells(), [](const tables::Cell* cell) { return cell->isAtPrintedParameters; });
+}
+
+bool ClaimReader::readByProcess() {
+    const std::vector<const tables::Cell*> cells = timeCells();
+    if (std::ranges::any_of(cells,
+                            [](const tables::Cell* cell) { return cell->byProcess.empty(); })) {
+        return false;
+    }
+    clock_ = tables::Clock::Process;
+    return true;
+}
+
+bool ClaimReader::isPlanned(const ClaimPart& part, std::size_t row) const {
+    for (const std::size_t operand : part.operands) {
+        for (const std::size_t column : operands_[operand].columns()) {
+            if (!table_.rows[row].cells[column].isPlanned) return false;
+        }
+    }
+    return true;
+}
+
+std::string ClaimReader::problemOf(const Operand& operand, std::size_t row) const {
+    for (const std::size_t column : operand.columns()) {
+        const tables::Cell& cell = table_.rows[row].cells[column];
+        if (!cell.isOk()) {
+            const std::string name = table_.rowName(row);
+            return table_.columns[column].label + (name.empty() ? "" : " at " + name) + ": " +
+                   std::string(records::statusName(cell.status)) +
+                   (cell.message.empty() ? "" : " (" + cell.message + ")");
+        }
+        if (!cell.find(statistic_)) {
+            fail("statistic '" + statistic_ + "' is not in the format of column '" +
+                 table_.columns[column].label + "'");
+        }
+    }
+    return "";
+}
+
+std::optional<double> ClaimReader::expected(std::size_t operand, std::size_t row) {
+    if (claim_.type == ClaimSpec::Type::Exact && claim_.low) return claim_.low;
+    std::vector<double> printed;
+    for (const std::size_t column : operands_[operand].columns()) {
+        const tables::Cell& cell = table_.rows[row].cells[column];
+        const auto index = static_cast<std::size_t>(cell.find(statistic_) - cell.values.data());
+        if (index >= cell.printedValues.size() || !cell.printedValues[index]) return std::nullopt;
+        printed.push_back(*cell.printedValues[index]);
+    }
+    return operands_[operand].evaluate(printed);
+}
+
+Sampled ClaimReader::abscissa(std::size_t row) {
+    if (!overColumn_.empty()) return overColumn_[0].evaluate(table_.rows[row], statistic_, clock_);
+    if (!overAxis_) fail("expected `over:`, a row axis or a column");
+    const std::string& label = table_.rows[row].labels[*overAxis_];
+    const auto value = parseDouble(label);
+    if (!value) {
+        fail("over: the row axis '" + *claim_.over + "' holds '" + label + "', expected numbers");
+    }
+    return {*value, {}};
+}
+
+ClaimReader::Reading ClaimReader::read(const ClaimPart& part, const Rows& rows) {
+    Reading reading;
+    reading.group.operands.resize(part.operands.size() + (part.needsExpected ? 1 : 0));
+    for (const std::size_t row : rows) {
+        if (!isPlanned(part, row)) continue;
+        for (const std::size_t operand : part.operands) {
+            reading.problem = problemOf(operands_[operand], row);
+            if (!reading.problem.empty()) return reading;
+        }
+        if (part.needsX && !overColumn_.empty()) {
+            reading.problem = problemOf(overColumn_[0], row);
+            if (!reading.problem.empty()) return reading;
+        }
+        if (part.needsExpected) {
+            const auto value = expected(part.operands[0], row);
+            if (!value) continue;  // lost in print
+            reading.group.operands.back().push_back({*value, {}});
+        }
+        for (std::size_t i = 0; i < part.operands.size(); ++i) {
+            reading.group.operands[i].push_back(
+                operands_[part.operands[i]].evaluate(table_.rows[row], statistic_, clock_));
+        }
+        if (part.needsX) reading.group.x.push_back(abscissa(row));
+        reading.rows.push_back(row);
+    }
+    if (!reading.rows.empty() && reading.rows.size() < part.minRows) {
+        reading.problem = "needs at least " + std::to_string(part.minRows) + " rows, found " +
+                          std::to_string(reading.rows.size());
+    }
+    return reading;
+}
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,91 @@
+// Reads the values that a claim is about off a table.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/claims/claim_parts.h"
+#include "runner/claims/operand.h"
+#include "runner/config/experiment.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::claims {
+
+using Rows = std::vector<std::size_t>;
+
+/// A claim made ready to be read off a table.
+class ClaimReader {
+  public:
+    /// Throws Error with the claim's place for operands and axes that the table has not. The claim
+    /// and the table must outlive the reader.
+    ClaimReader(const config::ClaimSpec& claim, const tables::Table& table);
+
+    /// The rows that `at` leaves, parted into the groups that the claim is judged in.
+    std::vector<Rows> groups();
+    /// What `part` reads of a group, or why it cannot be read. Rows that the sweep has not, or
+    /// whose printed number is lost, are passed over.
+    struct Reading {
+        Group group;
+        Rows rows;  // those that were read
+        std::string problem;
+    };
+    Reading read(const ClaimPart& part, const Rows& rows);
+
+    /// Reads times by the process's CPU time from now on; false, and nothing is changed, where one
+    /// of them was not recorded by it.
+    bool readByProcess();
+    tables::Clock clock() const { return clock_; }
+
+    /// The labels that the rows share: "scene=models/duck".
+    std::string groupName(const Rows& rows) const;
+
+    /// Whether the table has a row for it.
+    bool readsAny() const { return !rows().empty(); }
+    /// Whether it reads a time that was measured.
+    bool hasTimes() const { return !timeCells().empty(); }
+    /// Whether all times that it reads were measured at what the paper measured at.
+    bool isAtPrintedParameters() const;
+    /// Whether some cell that it may read is a time or a rate of time.
+    bool readsTime() const;
+    /// Whether some cell that it may read is, perhaps scaled, a recorded percentage, which has an
+    /// interval where it is a share of a count.
+    bool readsShare() const;
+    /// Whether its operands are columns alone, no arithmetic, and show that metric as recorded.
+    bool readsOnly(const std::string& metric) const;
+    /// How many rows it reads.
+    std::size_t rowCount() const { return rows().size(); }
+    /// Whether all cells that it may read are marked as calibrated.
+    bool readsCalibrated() const;
+    /// Whether what it asks could come out otherwise on a machine on which every time is twice as
+    /// long: a time held against a number, or compared with what is no time.
+    bool asksForATimeAsSuch();
+
+  private:
+    [[noreturn]] void fail(const std::string& message) const {
+        throw Error(claim_.location, "claim '" + claim_.id + "': " + message);
+    }
+    Rows rows() const;
+    bool readsSome(const std::function<bool(const tables::Cell&)>& isSuch) const;
+    std::size_t rowAxis(const std::string& name, const char* key) const;
+    std::vector<bool> axesAlongX();
+    std::optional<double> expected(std::size_t operand, std::size_t row);
+    std::optional<double> growthAsTimesDouble(Operand& operand, std::size_t row, double base);
+    /// Empty if the operand can be read; else why not.
+    std::string problemOf(const Operand& operand, std::size_t row) const;
+    bool isPlanned(const ClaimPart& part, std::size_t row) const;
+    /// The cells of times that are read and ok.
+    std::vector<const tables::Cell*> timeCells() const;
+    Sampled abscissa(std::size_t row);
+
+    const config::ClaimSpec& claim_;
+    const tables::Table& table_;
+    std::string statistic_;
+    std::vector<Operand> operands_;
+    std::optional<std::size_t> overAxis_;
+    std::vector<Operand> overColumn_;  // one, or none
+    tables::Clock clock_ = tables::Clock::Wall;
+};
+
+}  // namespace gfxrepro::claims

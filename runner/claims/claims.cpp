@@ -1,0 +1,359 @@
+#include "runner/claims/claims.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "runner/claims/claim_parts.h"
+#include "runner/claims/claim_reader.h"
+#include "runner/claims/claim_same_mean.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::claims {
+
+namespace {
+
+using config::ClaimSpec;
+
+/// What one part came to in one group.
+struct Outcome {
+    Judgement judgement;
+    std::string reason;
+};
+
+bool isWorse(const Outcome& a, const Outcome& b) {
+    const int left = severity(a.judgement.verdict);
+    const int right = severity(b.judgement.verdict);
+    return left != right ? left > right : a.judgement.margin < b.judgement.margin;
+}
+
+/// How times are judged; absent for a claim that reads none.
+struct TimeRule {
+    std::optional<double> noise;  // of the table
+};
+
+Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
+                   const std::string& groupName, bool isNamed,
+                   const std::optional<TimeRule>& times) {
+    Outcome outcome;
+    if (!reading.problem.empty()) {
+        outcome.reason = reading.problem;
+        return outcome;
+    }
+    outcome.judgement = times ? judgeTimes(reading.group, part.onTimes, times->noise)
+                              : judge(reading.group, part.quantity, part.requirement);
+    std::vector<std::string> reasons;
+    if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
+    if (isNamed) reasons.push_back("worst at " + groupName);
+    switch (outcome.judgement.verdict) {
+        case Verdict::Ambiguous:
+            reasons.push_back(outcome.judgement.why.empty() ? "the interval straddles the bound"
+                                                            : outcome.judgement.why);
+            break;
+        case Verdict::Unmeasured:
+            reasons.emplace_back(
+                "not a number: zero, negative or equal values where the quantity "
+                "needs positive, different ones");
+            break;
+        default:
+            break;
+    }
+    if (outcome.judgement.isSingleSample) reasons.emplace_back("one sample");
+    outcome.reason = joined(reasons, "; ");
+    if (!times && !part.measuredName.empty() && !outcome.judgement.measured.empty()) {
+        outcome.judgement.measured = part.measuredName + " " + outcome.judgement.measured;
+    }
+    return outcome;
+}
+
+Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups,
+                  const std::optional<TimeRule>& times) {
+    std::optional<Outcome> worst;
+    for (const Rows& rows : groups) {
+        const ClaimReader::Reading reading = reader.read(part, rows);
+        if (reading.rows.empty() && reading.problem.empty()) continue;
+        const std::string name = reader.groupName(rows);
+        const bool isNamed = groups.size() > 1 && !name.empty();
+        Outcome outcome = judgeGroup(part, reading, name, isNamed, times);
+        if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
+    }
+    if (worst) return *worst;
+    Outcome none;
+    none.reason = part.needsExpected && !groups.empty()
+                      ? "no printed number to compare with"
+                      : "this run has no row that the claim reads";
+    return none;
+}
+
+/// Why the claim is not to be judged here; empty if it is.
+std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& context) {
+    if (claim.device == ClaimSpec::Device::Gpu && context.deviceClass != "gpu") {
+        return "claims about a GPU are not judged on a " + context.deviceClass + " device";
+    }
+    if (claim.profile && *claim.profile != context.profile) {
+        return "judged in the profile '" + *claim.profile + "' only";
+    }
+    return "";
+}
+
+/// What counts of work decide is judged by the work of all cores where they are the device: the
+/// process's CPU time, which waits for no neighbour. Says which clock it is; empty for none.
+std::string chooseClock(const ClaimSpec& claim, const ReportContext& context, ClaimReader& reader) {
+    using Kind = ClaimSpec::TimeKind;
+    const bool isAlgorithmic = claim.timeKind.value_or(Kind::Algorithmic) == Kind::Algorithmic;
+    if (!isAlgorithmic || context.deviceClass != "software" || !reader.hasTimes()) return "";
+    return reader.readByProcess() ? "by the CPU time of the process"
+                                  : "by the clock: no CPU time was recorded of these";
+}
+
+/// The table as the claim reads it: with `across`, rows for columns.
+tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
+    if (!claim.across) return table;
+    const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
+    if (found == table.rowAxes.end()) {
+        throw Error(claim.location, "claim '" + claim.id + "': across: '" + *claim.across +
+                                        "' is no row axis (row axes: " + joined(table.rowAxes) +
+                                        ")");
+    }
+    return tables::transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
+}
+
+/// What the config knows of the claim on this device and in this profile.
+void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
+    for (const ClaimSpec::Known& known : claim.because) {
+        if (known.device.value_or(context.deviceClass) != context.deviceClass) continue;
+        if (known.profile.value_or(context.profile) != context.profile) continue;
+        result.known = verdictFromName(known.verdict);
+        result.because = known.reason;
+        result.shownBy = known.shownBy;
+        return;
+    }
+}
+
+/// The claim with what its config says of it, not judged yet.
+ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
+                     const ReportContext& context) {
+    ClaimResult result;
+    result.id = claim.id;
+    result.table = table.id;
+    result.text = claim.text;
+    result.origin = claim.origin.value_or(ClaimSpec::Origin::Ours);
+    result.boundFrom = claim.boundFrom;
+    result.timeKind = claim.timeKind;
+    takeKnown(claim, context, result);
+    std::vector<std::string> required;
+    for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
+    result.required = joined(required, "; ");
+    result.reason = whyNotApplicable(claim, context);
+    if (!result.reason.empty()) result.verdict = Verdict::NotApplicable;
+    return result;
+}
+
+/// What to know of a claim about a GPU's units where these are not those of a graphics card; empty
+/// elsewhere.
+std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
+    constexpr double kLeast = 0.5;
+    const bool isArchitectural = claim.timeKind == ClaimSpec::TimeKind::Architectural;
+    if (!isArchitectural || context.fragmentShare.value_or(1.0) >= kLeast) return "";
+    return fmt::format(
+        "this device does the same arithmetic {:.1f} times as fast in compute shaders as in "
+        "fragment shaders, a graphics card about as fast: what it says of drawing against "
+        "computing is of this device",
+        1.0 / *context.fragmentShare);
+}
+
+ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
+                     const ReportContext& context) {
+    ClaimResult result = unjudged(claim, table, context);
+    if (result.verdict == Verdict::NotApplicable) return result;
+    ClaimReader reader(claim, table);
+    if (claim.type == ClaimSpec::Type::SameMean && !reader.readsOnly(kSameMeanMetric)) {
+        result.reason = fmt::format("reads another metric than {}", kSameMeanMetric);
+        return result;
+    }
+    const std::vector<ClaimPart> parts = partsOf(claim);
+    const bool isAbsolute = claim.timeKind == ClaimSpec::TimeKind::Absolute;
+    if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
+        result.verdict = Verdict::NotApplicable;
+        result.reason = "a time as such is judged at the printed parameters only";
+        return result;
+    }
+    const std::string clock = chooseClock(claim, context, reader);
+    std::optional<TimeRule> times;
+    if (reader.readsTime()) times = TimeRule{table.noise(reader.clock())};
+    const std::vector<Rows> groups = reader.groups();
+    std::vector<std::string> measured;
+    std::optional<Outcome> worst;
+    for (const ClaimPart& part : parts) {
+        Outcome outcome = judgePart(part, reader, groups, times);
+        if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
+        if (worst && !isWorse(outcome, *worst)) continue;
+        result.margin = outcome.judgement.marginText;
+        result.distance =
+            result.margin.empty() ? std::nullopt : std::optional(outcome.judgement.margin);
+        worst = std::move(outcome);
+    }
+    result.measured = joined(measured, "; ");
+    result.verdict = worst->judgement.verdict;
+    result.reason = worst->reason;
+    for (const std::string& note : {clock, balanceNote(claim, context)}) {
+        if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
+    }
+    return result;
+}
+
+/// The same of a table that may lack what the claim reads.
+ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& table,
+                                const ReportContext& context) {
+    const tables::Table own = tableFor(claim, table);
+    try {
+        return evaluate(claim, own, context);
+    } catch (const AbsentColumnError& error) {
+        ClaimResult result = unjudged(claim, own, context);
+        result.reason = "not among what was measured: " + error.text();
+        return result;
+    }
+}
+
+/// Kept results tell nothing of a verdict that they do not start from.
+std::string restsOn(const ClaimResult& result, const KeptSensitivity& tried) {
+    if (result.verdict == Verdict::NotApplicable || result.verdict == Verdict::Unmeasured) {
+        return "";
+    }
+    const auto found = tried.find({result.table, result.id});
+    if (found == tried.end()) return "not tried";
+    if (found->second.verdict == result.verdict) return found->second.restsOn;
+    return fmt::format("not tried: {} then", verdictName(found->second.verdict));
+}
+
+}  // namespace
+
+std::string whyText(const ClaimResult& claim) {
+    if (claim.because.empty()) return claim.reason;
+    if (claim.verdict != claim.known) {
+        return fmt::format("{}{}Where it is {}: {}", claim.reason, claim.reason.empty() ? "" : ". ",
+                           verdictName(claim.known), claim.because);
+    }
+    return claim.because + (claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason));
+}
+
+std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
+                                        const tables::Table& table, const ReportContext& context) {
+    std::vector<ClaimResult> results;
+    for (const ClaimSpec& claim : experiment.claims) {
+        results.push_back(evaluateWhatIsThere(claim, table, context));
+        results.back().restsOn = restsOn(results.back(), context.tried);
+        const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
+        results.back().where = claim.location.file == file.file ? claim.location : file;
+    }
+    return results;
+}
+
+namespace {
+
+/// Labels that only a measurement knows (of a parameter left to its default) are not in a table
+/// without records.
+bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
+    try {
+        const ClaimReader reader(claim, table);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// Fewer than an interval takes decide no time on any device.
+int processesOfPaper(const config::Experiment& experiment) {
+    if (experiment.paperDocument.isNull()) return config::kFewestRounds;
+    return config::experimentFromDocument(experiment.paperDocument, experiment.file)
+        .measure.processes;
+}
+
+/// Scenes that a verdict in the profile, or in any, is taken over.
+int seedsAtMost(const config::Experiment& experiment, const std::optional<std::string>& profile) {
+    int seeds = experiment.measure.sceneSeeds;
+    if (profile.value_or("paper") != "paper" || experiment.paperDocument.isNull()) return seeds;
+    return std::max(seeds, config::experimentFromDocument(experiment.paperDocument, experiment.file)
+                               .measure.sceneSeeds);
+}
+
+}  // namespace
+
+void requireProvenance(const config::Experiment& experiment, const tables::Table& table) {
+    const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
+    const int paperProcesses = processesOfPaper(experiment);
+    tables::Table read;  // outlives its reader
+    for (const ClaimSpec& claim : experiment.claims) {
+        const auto complain = [&](const std::string& what) {
+            throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, what));
+        };
+        if (isOfDocument && !claim.origin) {
+            complain("needs 'origin': document | derived | ours | definition | calibrated");
+        }
+        if (isOfDocument && claim.hasBound() && !claim.boundFrom) {
+            complain("requires a number and needs 'bound_from': print | text | ours");
+        }
+        if (claim.boundFrom == ClaimSpec::BoundSource::Print && experiment.printed.rows.empty()) {
+            complain("has its bound from print, and the table has no printed values: text | ours");
+        }
+        for (const ClaimSpec::Known& known : claim.because) {
+            if (claim.device == ClaimSpec::Device::Gpu && known.device == "software") {
+                complain("has a reason for software ('because'), and a GPU alone judges it");
+            }
+            if (claim.profile && known.profile && known.profile != claim.profile) {
+                complain(fmt::format("has a reason in the profile {}, and is judged in {} alone",
+                                     *known.profile, *claim.profile));
+            }
+        }
+        if (!isReadable(claim, read = tableFor(claim, table))) continue;
+        ClaimReader reader(claim, read);
+        if (!reader.readsAny()) continue;  // its rows are not of this profile
+        if (claim.type == ClaimSpec::Type::SameMean) {
+            const std::string why = whyNotTestable(experiment, claim, reader);
+            if (!why.empty()) complain(why);
+        }
+        for (const ClaimSpec::Known& known : claim.because) {
+            if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
+            if (reader.readsShare() || seedsAtMost(experiment, known.profile) > 1) continue;
+            complain(
+                "is known as ambiguous, and reads neither a time nor a share, of one scene: a "
+                "number without an interval holds or fails");
+        }
+        if (table.isPublished && claim.origin == ClaimSpec::Origin::Calibrated &&
+            !reader.readsCalibrated()) {
+            complain(
+                "is of a calibrated input, and reads cells that 'printed.calibrated' does not "
+                "mark");
+        }
+        if (reader.readsTime() && !claim.timeKind) {
+            complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
+        }
+        if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
+        if (isOfDocument && claim.timeKind && paperProcesses < config::kFewestRounds) {
+            complain(
+                fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",
+                            config::kFewestRounds, paperProcesses));
+        }
+        if (claim.timeKind && *claim.timeKind != ClaimSpec::TimeKind::Absolute &&
+            reader.asksForATimeAsSuch()) {
+            complain(
+                "holds a time against a number, which neither a count of work nor another machine "
+                "decides; its 'kind' is absolute");
+        }
+    }
+}
+
+std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
+    const tables::Table own = tableFor(claim, table);
+    try {
+        return ClaimReader(claim, own).readsAny() ? "" : "no row that it reads";
+    } catch (const AbsentColumnError& error) {
+        return error.text();
+    }
+}
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,123 @@
+// Claims: what the paper says must follow from its table, judged on the measured one.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::claims {
+
+enum class Verdict { Holds, Fails, Ambiguous, NotApplicable, Unmeasured };
+/// "holds", "fails", "ambiguous", "not-applicable", "unmeasured".
+std::string_view verdictName(Verdict verdict);
+/// Throws Error for a name that is none.
+Verdict verdictFromName(std::string_view name);
+
+/// What counts more when a verdict is made of several: fails, unmeasured, ambiguous, holds.
+int severity(Verdict verdict);
+
+/// What kept results of `gfxrepro sensitivity` say of a claim.
+struct TriedClaim {
+    Verdict verdict = Verdict::Unmeasured;  // as configured, when it was tried
+    std::string restsOn;                    // "bias, scene_seed (of 5 tried)"
+};
+/// By table and claim.
+using KeptSensitivity = std::map<std::pair<std::string, std::string>, TriedClaim>;
+
+/// Where the run took place, as far as claims ask, and what is known of them.
+struct ReportContext {
+    std::string device;       // renderer, for people: "llvmpipe (LLVM 15.0.6, 256 bits)"
+    std::string deviceClass;  // "software" | "gpu"
+    std::string profile;      // "quick" | "full" | "paper"
+    std::string commit;       // of the program
+    std::string command;      // of the whole run, for people
+    std::optional<double> fragmentShare = {};  // of hardware: gl::DeviceBalance::fragmentShare()
+    KeptSensitivity tried = {};
+    tables::TableNotes tableNotes = {};
+};
+
+struct ClaimResult {
+    std::string id;     // "V1"
+    std::string table;  // "zju2005/2.1"
+    std::string text;   // what the paper says
+    Verdict verdict = Verdict::Unmeasured;
+    std::string measured;  // "0.41 [0.38, 0.44]"
+    std::string required;  // "exponent in [0.3, 1.2]"
+    std::string margin;    // distance from the point to the nearest bound, in the quantity's unit;
+                           // negative outside
+    std::optional<double> distance;  // the same as a number; of percent as a share
+    std::string reason;              // of a verdict that is not plain: "worst at …", "one sample"
+
+    config::ClaimSpec::Origin origin = config::ClaimSpec::Origin::Ours;
+    std::optional<config::ClaimSpec::BoundSource> boundFrom;
+    std::optional<config::ClaimSpec::TimeKind> timeKind;
+    Verdict known = Verdict::Holds;  // what it comes to as far as the config knows
+    std::string because;             // why, where it does not hold
+    std::string shownBy = {};        // and what proves it
+
+    /// A statement of the document itself: what counts.
+    bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
+    /// Another verdict than the known one. Ambiguous is none, and tells nothing against one; where
+    /// it is the known one, failing is news.
+    bool isNews() const {
+        const auto isVerdict = [](Verdict one) {
+            return one != Verdict::Ambiguous && one != Verdict::NotApplicable;
+        };
+        if (known == Verdict::Ambiguous) return verdict == Verdict::Fails;
+        return isVerdict(verdict) && isVerdict(known) && verdict != known;
+    }
+
+    SourceLocation where{};  // its config, with the line where that is known; not in claims.csv
+
+    /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not
+    /// tried"; empty where there is no verdict.
+    std::string restsOn = {};
+};
+
+/// Why it does not hold, for people: the known cause, then what the judging noted; where the cause
+/// is of another verdict, behind that and with its name. Empty where neither is known.
+std::string whyText(const ClaimResult& claim);
+
+/// Judges every claim of the experiment on its table. Each type is one quantity with a required
+/// range. Of values that are no times it is computed and judged as it is (judge(),
+/// claim_quantity.h); of times in each round, and a 95 % interval over rounds wholly inside of the
+/// range holds, wholly outside fails, else it is ambiguous (judgeTimes(), claim_times.h). On a
+/// software device the times of an algorithmic claim are the CPU times of the process. Groups of
+/// rows are judged apart; the worst verdict counts. What reads a column that
+/// the table does not have is unmeasured. Throws Error with the claim's place for an operand that
+/// is no expression, or an axis that the table has not.
+std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
+                                        const tables::Table& table, const ReportContext& context);
+
+/// The claims of all experiments, in order; `tables` lies beside `experiments`. Throws Error as the
+/// single-experiment form.
+std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
+                                        const std::vector<tables::Table>& tables,
+                                        const ReportContext& context);
+
+/// What the claim reads and the table does not have, as one whose profile or override took a column
+/// or rows away: "'y' is no column (columns: x)"; empty where it has all of it. The table may have
+/// been built from no records.
+std::string whatIsAbsent(const config::ClaimSpec& claim, const tables::Table& table);
+
+/// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
+/// none, where a document's table does not say whose the claim or its bound is, where a claim of a
+/// calibrated input reads cells that are not marked so, a reason is for a device or profile that
+/// the claim is not judged on, or what has no interval is known as ambiguous. `table` may have been
+/// built from no records.
+void requireProvenance(const config::Experiment& experiment, const tables::Table& table);
+
+/// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.
+std::string claimSummaryLine(const std::vector<ClaimResult>& results);
+
+/// "of the documents' own claims 40 hold, 12 fail; derived from their numbers 5 hold; …": by
+/// origin, only those that occur. A definition and a calibrated input are tests of ours.
+std::string originSummaryLine(const std::vector<ClaimResult>& results);
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,27 @@
+// claims.csv, read back.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/claims/claims.h"
+#include "runner/core/error.h"
+
+namespace gfxrepro::claims {
+
+/// The columns of claims.csv.
+inline constexpr std::array<std::string_view, 16> kClaimsColumns = {
+    "claim",   "says",  "table",    "device",   "profile", "origin", "bound_from", "kind",
+    "verdict", "known", "measured", "required", "margin",  "reason", "because",    "rests_on"};
+
+/// The verdict of that name. Throws Error at `where` for a name that is none.
+Verdict verdictAt(const SourceLocation& where, const std::string& name);
+
+/// claims.csv as writeClaims() wrote it, in older forms too: then nothing is known of a claim's
+/// origin, or of what it says. Throws Error with file and line.
+std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,282 @@
+#include "runner/cluster/predictions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/metrics/statistics.h"
+#include "runner/records/csv.h"
+#include "runner/run/run_files.h"
+
+namespace gfxrepro::cluster {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// In factors of two of one number: 1.5 times as much.
+constexpr double kFarthestTold = 0.6;
+
+/// Behind the source of a prediction in a file that tells people nothing.
+constexpr std::string_view kFarMark = ", far";
+
+constexpr std::string_view kFileHeader = "title,time_s,memory_bytes,source";
+
+double iterationsOf(const config::Measure& measure) {
+    return measure.warmup + static_cast<double>(measure.repeats) * measure.frames;
+}
+
+/// What `past` took, for the iterations and frames that `measure` asks for.
+double scaledTimeS(const PastCase& past, const config::Measure& measure) {
+    const config::Measure& then = past.item.measure;
+    const double iterations = std::max(iterationsOf(then), 1.0);
+    return past.cost.loadS + past.cost.setupS +
+           past.cost.renderS * iterationsOf(measure) / iterations +
+           past.cost.recordS * measure.frames / std::max(then.frames, 1);
+}
+
+/// Everything that a time depends on but for the build, the device and how often it is measured.
+std::string contentOf(const run::Case& item) {
+    return item.technique + item.scene.toFlowText() + item.params.toFlowText() +
+           std::to_string(item.outputWidthPx) + 'x' + std::to_string(item.outputHeightPx);
+}
+
+std::string methodOf(const run::Case& item) {
+    const config::Node* method = item.params.find("method");
+    return item.technique + '/' + (method ? method->text() : "");
+}
+
+double medianOf(std::vector<double> values) {
+    return metrics::summarize(values, metrics::Statistic::Median);
+}
+
+run::Cost medianOf(const std::vector<run::Cost>& costs) {
+    const auto of = [&](auto member) {
+        std::vector<double> values;
+        for (const run::Cost& cost : costs) values.push_back(static_cast<double>(cost.*member));
+        return medianOf(std::move(values));
+    };
+    return {of(&run::Cost::loadS), of(&run::Cost::setupS), of(&run::Cost::renderS),
+            of(&run::Cost::recordS), static_cast<long long>(of(&run::Cost::peakBytes))};
+}
+
+/// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
+std::map<std::string, std::vector<run::Cost>> loggedCosts(const fs::path& runDir) {
+    std::map<std::string, std::vector<run::Cost>> costs;
+    for (const run::Json& event : run::readLog(runDir / "log.jsonl")) {
+        if (!event.contains("cost") || !event.contains("case")) continue;
+        costs[event.at("case").get<std::string>()].push_back(run::costFromJson(event.at("cost")));
+    }
+    return costs;
+}
+
+/// Of a run that is looked at without being asked for.
+constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;
+
+bool isRunOf(const fs::path& folder, const std::string& deviceClass) {
+    const fs::path manifestFile = folder / "manifest.json";
+    if (!fs::exists(folder / "plan.json") || !fs::exists(manifestFile)) return false;
+    if (fs::file_size(manifestFile) > kMostManifestBytes) return false;
+    return run::readManifest(manifestFile).at("device_class") == deviceClass;
+}
+
+std::map<std::string, Prediction> readPredictions(const fs::path& file) {
+    const std::string text = readFile(file);
+    records::CsvReader reader(text, file.string());
+    std::vector<std::string> fields;
+    std::map<std::string, Prediction> predictions;
+    if (!reader.next(fields) || joined(fields, ",") != kFileHeader) {
+        throw Error(file.string() + ": neither a run directory nor a file of predictions");
+    }
+    while (reader.next(fields)) {
+        const auto timeS = fields.size() == 4 ? parseDouble(fields[1]) : std::nullopt;
+        const auto bytes = fields.size() == 4 ? parseInteger(fields[2]) : std::nullopt;
+        if (!timeS || !bytes) throw Error(reader.location(), "is no line of predictions");
+        predictions[fields[0]] = {*timeS, *bytes, Prediction::Source::File, "",
+                                  !fields[3].ends_with(kFarMark)};
+    }
+    return predictions;
+}
+
+}  // namespace
+
+std::string_view sourceName(Prediction::Source source) {
+    static constexpr std::string_view kNames[] = {"same case", "same case, other run", "nearest",
+                                                  "median", "file"};
+    return kNames[static_cast<std::size_t>(source)];
+}
+
+std::vector<PastCase> readPastCases(const fs::path& runDir) {
+    if (!fs::exists(runDir / "plan.json")) {
+        throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
+    }
+    run::requireModestFiles(runDir);
+    const std::map<std::string, std::vector<run::Cost>> costs = loggedCosts(runDir);
+    std::vector<PastCase> past;
+    if (costs.empty()) return past;
+    for (run::Case& item : run::Plan::fromJsonFile(runDir / "plan.json").cases) {
+        const auto found = costs.find(item.id);
+        if (found == costs.end()) continue;
+        const run::Cost cost = medianOf(found->second);
+        past.push_back({std::move(item), cost});
+    }
+    return past;
+}
+
+std::vector<fs::path> newestRuns(const fs::path& folder, const std::string& deviceClass,
+                                 std::size_t count) {
+    std::vector<std::pair<fs::file_time_type, fs::path>> runs;
+    std::error_code problem;
+    fs::directory_iterator entry(folder, problem);
+    for (; !problem && entry != fs::directory_iterator(); entry.increment(problem)) {
+        // Whatever lies there, another user's or broken, stops no run: it is none to learn from.
+        try {
+            if (!isRunOf(entry->path(), deviceClass)) continue;
+            runs.emplace_back(fs::last_write_time(entry->path() / "manifest.json"), entry->path());
+        } catch (const std::exception&) {
+        }
+    }
+    std::ranges::sort(runs, std::greater());
+    std::vector<fs::path> newest;
+    for (std::size_t i = 0; i < std::min(count, runs.size()); ++i) newest.push_back(runs[i].second);
+    return newest;
+}
+
+Predictor::Predictor(std::vector<PastCase> past) : past_(std::move(past)) {
+    for (std::size_t i = 0; i < past_.size(); ++i) {
+        byId_.try_emplace(past_[i].item.id, i);
+        byContent_.try_emplace(contentOf(past_[i].item), i);
+        features_.push_back(featuresOf(past_[i].item));
+    }
+}
+
+Predictor Predictor::from(const std::vector<fs::path>& sources) {
+    std::vector<PastCase> past;
+    std::map<std::string, Prediction> file;
+    for (const fs::path& source : sources) {
+        if (fs::is_regular_file(source)) {
+            file.merge(readPredictions(source));
+        } else {
+            std::vector<PastCase> more = readPastCases(source);
+            std::ranges::move(more, std::back_inserter(past));
+        }
+    }
+    Predictor predictor(std::move(past));
+    predictor.file_ = std::move(file);
+    return predictor;
+}
+
+std::optional<Prediction> Predictor::predict(const run::Case& item) const {
+    if (const auto found = file_.find(item.title()); found != file_.end()) return found->second;
+    const auto as = [&](std::size_t index, Prediction::Source source) {
+        const PastCase& past = past_[index];
+        return Prediction{scaledTimeS(past, item.measure), past.cost.peakBytes, source, "", true};
+    };
+    if (const auto found = byId_.find(item.id); found != byId_.end()) {
+        return as(found->second, Prediction::Source::SameCase);
+    }
+    if (const auto found = byContent_.find(contentOf(item)); found != byContent_.end()) {
+        return as(found->second, Prediction::Source::OtherRun);
+    }
+    std::optional<Prediction> prediction = nearest(item);
+    return prediction ? prediction : median(item);
+}
+
+std::vector<Predictor::Feature> Predictor::featuresOf(const run::Case& item) {
+    std::vector<Feature> features = {
+        {"scene", item.scene.isNull() ? "" : item.scene.text(), {}},
+        {"pixels", "", static_cast<double>(item.outputWidthPx) * item.outputHeightPx}};
+    for (const auto& [name, value] : item.params.entries()) {
+        if (value.isScalar()) {
+            features.push_back({name, value.text(), value.tryDouble()});
+        } else {
+            features.push_back({name, value.toFlowText(), {}});
+        }
+    }
+    return features;
+}
+
+/// A factor of two in a number counts as much as another word in a text. The same technique and
+/// method declare the same parameters in the same order; where not, the name differs.
+double Predictor::distance(const std::vector<Feature>& a, const std::vector<Feature>& b) {
+    double sum = std::abs(static_cast<double>(a.size()) - static_cast<double>(b.size()));
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (a[i].name == b[i].name && a[i].number && b[i].number) {
+            const double x = *a[i].number, y = *b[i].number;
+            if (x > 0.0 && y > 0.0) {
+                sum += std::abs(std::log2(x / y));
+            } else {
+                sum += x == y ? 0.0 : 1.0;
+            }
+        } else {
+            sum += a[i].name == b[i].name && a[i].text == b[i].text ? 0.0 : 1.0;
+        }
+    }
+    return sum;
+}
+
+std::optional<Prediction> Predictor::nearest(const run::Case& item) const {
+    const std::vector<Feature> features = featuresOf(item);
+    const std::string method = methodOf(item);
+    double least = std::numeric_limits<double>::infinity();
+    const PastCase* found = nullptr;
+    for (std::size_t i = 0; i < past_.size(); ++i) {
+        if (past_[i].item.technique != item.technique || methodOf(past_[i].item) != method)
+            continue;
+        const double d = distance(features, features_[i]);
+        if (d >= least) continue;
+        least = d;
+        found = &past_[i];
+    }
+    if (!found) return std::nullopt;
+    return Prediction{scaledTimeS(*found, item.measure), found->cost.peakBytes,
+                      Prediction::Source::Nearest, found->item.title(), least <= kFarthestTold};
+}
+
+std::optional<Prediction> Predictor::median(const run::Case& item) const {
+    if (past_.empty()) return std::nullopt;
+    std::vector<double> timesS[2], bytes[2];  // of all cases; of this technique
+    for (const PastCase& past : past_) {
+        for (int i = 0; i < (past.item.technique == item.technique ? 2 : 1); ++i) {
+            timesS[i].push_back(scaledTimeS(past, item.measure));
+            bytes[i].push_back(static_cast<double>(past.cost.peakBytes));
+        }
+    }
+    const int which = timesS[1].empty() ? 0 : 1;
+    const std::string count = std::to_string(timesS[which].size());
+    return Prediction{medianOf(timesS[which]), static_cast<long long>(medianOf(bytes[which])),
+                      Prediction::Source::Median, "of " + count + " cases", false};
+}
+
+void writePredictions(const fs::path& path, const run::Plan& plan, const Predictor& predictor) {
+    std::string text = std::string(kFileHeader) + '\n';
+    for (const run::Case& item : plan.cases) {
+        const std::optional<Prediction> known = predictor.predict(item);
+        if (!known) continue;
+        records::CsvRow row(text);
+        row.text(item.title()).number(known->timeS).integer(known->memoryBytes);
+        row.text(std::string(sourceName(known->source)) +
+                 std::string(known->isTold ? "" : kFarMark))
+            .end();
+    }
+    writeFileAtomic(path, text);
+}
+
+std::vector<double> caseTimesS(const run::Plan& plan, const Predictor& predictor) {
+    std::vector<double> timesS;
+    for (const run::Case& item : plan.cases) {
+        const std::optional<Prediction> known = predictor.predict(item);
+        timesS.push_back(item.measure.processes *
+                         (known ? known->timeS : iterationsOf(item.measure)));
+    }
+    return timesS;
+}
+
+double remainingS(double totalS, double doneS, double elapsedS, int jobs) {
+    if (doneS <= 0.0) return totalS / jobs;
+    return elapsedS * std::max(totalS - doneS, 0.0) / doneS;
+}
+
+}  // namespace gfxrepro::cluster

@@ -1,0 +1,91 @@
+// What the cases of a plan will take, as far as earlier runs tell.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/run/plan.h"
+#include "runner/run/protocol.h"
+
+namespace gfxrepro::cluster {
+
+/// What one process of a case will take, and how that is known.
+struct Prediction {
+    enum class Source {
+        SameCase,  // measured, by the same hash
+        OtherRun,  // the same parameters, scene and size under another build, device or profile
+        Nearest,   // the same technique and method with the nearest parameters and size
+        Median,    // of all cases of the technique, or of all cases
+        File,      // as a file of predictions says
+    };
+    double timeS = 0.0;
+    long long memoryBytes = 0;
+    Source source = Source::SameCase;
+    std::string detail;  // of Nearest: the other case's title; of Median: "of 12 cases"
+    /// Whether it is good for more than to balance shards by: another method's time, or that of a
+    /// value more than 1.5 times as large (a volume of 3.4 times), tells people nothing.
+    bool isTold = true;
+};
+/// "same case", "same case, other run", "nearest", "median", "file".
+std::string_view sourceName(Prediction::Source source);
+
+/// A case that an earlier run finished.
+struct PastCase {
+    run::Case item;
+    run::Cost cost;  // the median over its processes
+};
+/// Those of a run directory: its plan and its log. Throws Error when it is no run.
+std::vector<PastCase> readPastCases(const std::filesystem::path& runDir);
+
+/// The newest run directories under `folder` that were made on this class of device, at most
+/// `count`, the newest first; none when there is no such folder. What cannot be read is passed
+/// over.
+std::vector<std::filesystem::path> newestRuns(const std::filesystem::path& folder,
+                                              const std::string& deviceClass, std::size_t count);
+
+/// Predicts from what it was given; of equal cases the first counts.
+class Predictor {
+  public:
+    explicit Predictor(std::vector<PastCase> past = {});
+    /// Run directories, or files that writePredictions made. Throws Error.
+    static Predictor from(const std::vector<std::filesystem::path>& sources);
+
+    /// None when nothing is known at all.
+    std::optional<Prediction> predict(const run::Case& item) const;
+
+  private:
+    /// A parameter as a number, or as text where it is none.
+    struct Feature {
+        std::string name;
+        std::string text;
+        std::optional<double> number;
+    };
+    static std::vector<Feature> featuresOf(const run::Case& item);
+    static double distance(const std::vector<Feature>& a, const std::vector<Feature>& b);
+    std::optional<Prediction> nearest(const run::Case& item) const;
+    std::optional<Prediction> median(const run::Case& item) const;
+
+    std::vector<PastCase> past_;
+    std::vector<std::vector<Feature>> features_;  // beside past_
+    std::map<std::string, std::size_t> byId_;
+    std::map<std::string, std::size_t> byContent_;
+    std::map<std::string, Prediction> file_;  // by title
+};
+
+/// A line a case: title, time of one process, memory, source, "…, far" where it tells people
+/// nothing. Every shard of a plan is cut by the same predictions; a file keeps them.
+void writePredictions(const std::filesystem::path& path, const run::Plan& plan,
+                      const Predictor& predictor);
+
+/// The time of each case of the plan, all its processes together. Where nothing is known, each
+/// iteration is taken for a second: good enough to balance shards by, and for nothing else.
+std::vector<double> caseTimesS(const run::Plan& plan, const Predictor& predictor);
+
+/// The time that is left of `totalS` predicted seconds, `doneS` of which took `elapsedS`, with
+/// `jobs` units at once.
+double remainingS(double totalS, double doneS, double elapsedS, int jobs);
+
+}  // namespace gfxrepro::cluster

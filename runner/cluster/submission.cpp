@@ -1,0 +1,153 @@
+#include "runner/cluster/submission.h"
+#include "runner/core/text.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+
+namespace gfxrepro::cluster {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kMergeLimitMin = 60;
+
+/// With the shaders and configs that lie beside it, whatever the user's environment says.
+std::string programCommand(const Submission& submission) {
+    return fmt::format("env GFXREPRO_DATA={} {}", shellQuoted(submission.program.parent_path()),
+                       shellQuoted(submission.program));
+}
+
+/// `shard` and `folder` are shell words.
+std::string runCommand(const Submission& submission, const std::string& shard,
+                       const std::string& folder) {
+    std::string arguments;
+    for (const std::string& argument : submission.runArguments) {
+        arguments += shellQuoted(argument) + ' ';
+    }
+    return fmt::format("{} run --quiet {}--from {} --shard {} --resume {}",
+                       programCommand(submission), arguments,
+                       shellQuoted(submission.out / "predictions.csv"), shard, folder);
+}
+
+/// What both scripts begin with. A task of a lost node runs again; its output goes on in the file.
+std::string scriptHead(const std::string& jobName, int limitMin) {
+    return fmt::format(
+        "#!/bin/sh\n#SBATCH --job-name={}\n#SBATCH --ntasks=1\n#SBATCH --time={}\n"
+        "#SBATCH --requeue\n#SBATCH --open-mode=append\n",
+        jobName, limitMin);
+}
+
+bool isStopped(const std::string& state) {
+    return state != "PENDING" && state != "RUNNING" && state != "CONFIGURING" &&
+           state != "COMPLETING" && state != "SUSPENDED" && state != "REQUEUED" &&
+           state != "REQUEUE_HOLD" && state != "STOPPED";
+}
+
+}  // namespace
+
+fs::path Submission::shardFolder(int index) const {
+    return out / "shards" / std::to_string(index);
+}
+
+std::string shardCommand(const Submission& submission, int index) {
+    return runCommand(submission, fmt::format("{}/{}", index, submission.shardCount),
+                      shellQuoted(submission.shardFolder(index)));
+}
+
+std::string mergeCommand(const Submission& submission) {
+    std::string command =
+        fmt::format("{} merge --out {}", programCommand(submission), shellQuoted(submission.out));
+    for (int index = 1; index <= submission.shardCount; ++index) {
+        command += ' ' + shellQuoted(submission.shardFolder(index));
+    }
+    return command;
+}
+
+std::string taskScript(const Submission& submission) {
+    std::string script = scriptHead("gfxrepro-" + submission.name, submission.timeLimitMin);
+    if (submission.isExclusive) script += "#SBATCH --exclusive\n";
+    for (const std::string& flag : submission.sbatchFlags) {
+        script += fmt::format("#SBATCH {}\n", flag);
+    }
+    const std::string shard = fmt::format("\"$SLURM_ARRAY_TASK_ID\"/{}", submission.shardCount);
+    const std::string folder =
+        fmt::format("{}/\"$SLURM_ARRAY_TASK_ID\"", shellQuoted(submission.out / "shards"));
+    return fmt::format("{}exec {}\n", script, runCommand(submission, shard, folder));
+}
+
+std::string mergeScript(const Submission& submission) {
+    std::string script = scriptHead("gfxrepro-" + submission.name + "-merge", kMergeLimitMin);
+    // No device is needed to merge, and nothing else that was asked for the tasks but the place.
+    for (const std::string& flag : submission.sbatchFlags) {
+        for (const char* place : {"--partition=", "--account=", "--qos=", "--clusters="}) {
+            if (flag.starts_with(place)) script += fmt::format("#SBATCH {}\n", flag);
+        }
+    }
+    return fmt::format("{}exec {}\n", script, mergeCommand(submission));
+}
+
+std::string arrayIndices(const std::vector<int>& shards) {
+    std::string text;
+    for (std::size_t first = 0, next; first < shards.size(); first = next) {
+        for (next = first + 1; next < shards.size() && shards[next] == shards[next - 1] + 1;) {
+            ++next;
+        }
+        text += fmt::format("{}{}", text.empty() ? "" : ",", shards[first]);
+        if (next > first + 1) text += fmt::format("-{}", shards[next - 1]);
+    }
+    return text;
+}
+
+int timeLimitMin(const run::Plan& plan, const std::vector<int>& shardOf,
+                 const std::vector<double>& timesS, bool arePredicted) {
+    std::map<int, double> predictedS, allowedS;
+    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+        const config::Measure& measure = plan.cases[i].measure;
+        predictedS[shardOf[i]] += timesS[i];
+        // An unexpected failure is tried twice.
+        allowedS[shardOf[i]] += 2.0 * measure.processes * measure.timeLimitS;
+    }
+    double limitS = 0.0;
+    for (const auto& [shard, allowed] : allowedS) {
+        const double wanted = arePredicted ? 2.0 * predictedS[shard] + 600.0 : allowed;
+        limitS = std::max(limitS, std::min(wanted, allowed + 600.0));
+    }
+    return std::max(1, static_cast<int>(std::ceil(limitS / 60.0)));
+}
+
+std::map<std::string, std::string> parseQueue(const std::string& squeueOutput) {
+    std::map<std::string, std::string> states;
+    std::istringstream lines(squeueOutput);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string task, state, more;
+        const bool isTask = words >> task >> state && !(words >> more) &&
+                            task.find_first_not_of("0123456789_N/A") == task.npos;
+        if (!isTask) continue;  // a notice
+        states[task.substr(0, task.find("_N/A"))] = state;
+    }
+    return states;
+}
+
+bool isUnderWay(const std::map<std::string, std::string>& queue, const std::string& task) {
+    const auto found = queue.find(task);
+    return found != queue.end() && !isStopped(found->second);
+}
+
+std::string stateOf(const ShardProgress& progress,
+                    const std::optional<std::map<std::string, std::string>>& queue,
+                    const std::string& task) {
+    if (progress.isComplete()) return "complete";
+    if (task.empty()) return "not complete";
+    if (!queue) return "unknown: the queue does not answer";
+    const auto found = queue->find(task);
+    if (found == queue->end()) return "lost: not complete and not in the queue";
+    return (isStopped(found->second) ? "stopped: " : "") + found->second;
+}
+
+}  // namespace gfxrepro::cluster

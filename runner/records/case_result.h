@@ -1,0 +1,20 @@
+// How a case of a run ended.
+#pragma once
+
+#include <string>
+
+#include "runner/core/error.h"
+
+namespace gfxrepro::records {
+
+/// How a case ended.
+struct CaseResult {
+    enum class Outcome { Measured, Skipped, Failed };
+    std::string table;  // "zju2005/2.1"
+    std::string title;  // "zju2005/2.1 scene=models/duck"
+    Outcome outcome = Outcome::Measured;
+    std::string text = {};   // of the others: "crash: SIGSEGV", "not run"
+    SourceLocation where{};  // its config
+};
+
+}  // namespace gfxrepro::records

@@ -1,0 +1,98 @@
+#include "runner/records/csv.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace gfxrepro::records {
+
+void CsvRow::separate() {
+    if (!isFirst_) out_ += ',';
+    isFirst_ = false;
+}
+
+CsvRow& CsvRow::text(std::string_view field) {
+    separate();
+    if (field.find_first_of(",\"\r\n") == std::string_view::npos) {
+        out_ += field;
+        return *this;
+    }
+    out_ += '"';
+    for (const char c : field) {
+        if (c == '"') out_ += '"';
+        out_ += c;
+    }
+    out_ += '"';
+    return *this;
+}
+
+CsvRow& CsvRow::integer(long long field) {
+    separate();
+    out_ += std::to_string(field);
+    return *this;
+}
+
+CsvRow& CsvRow::number(double field) {
+    separate();
+    if (!std::isnan(field)) out_ += shortestText(field);
+    return *this;
+}
+
+std::string shortestText(double value) {
+    char buffer[32];
+    const auto [end, error] = std::to_chars(std::begin(buffer), std::end(buffer), value);
+    GFXREPRO_ASSERT(error == std::errc());
+    return {buffer, end};
+}
+
+CsvReader::CsvReader(std::string_view text, std::string fileName, std::size_t mostRows)
+    : text_(text), fileName_(std::move(fileName)), mostRows_(mostRows) {}
+
+bool CsvReader::next(std::vector<std::string>& fields) {
+    rowLine_ = line_;
+    for (std::size_t count = 0;; ++count) {
+        if (count == kMostColumns) {
+            throw Error(location(), "more than " + std::to_string(kMostColumns) + " columns");
+        }
+        if (count == fields.size()) fields.emplace_back();
+        readField(fields[count]);
+        const bool isTorn = at_ >= text_.size();
+        if (!isTorn && text_[at_++] == ',') continue;
+        fields.resize(count + 1);
+        if (isTorn) return false;
+        if (++rowCount_ > mostRows_) {
+            throw Error(location(),
+                        "more than " + std::to_string(mostRows_) + " rows, which are not read");
+        }
+        ++line_;
+        rowEnd_ = at_;
+        return true;
+    }
+}
+
+void CsvReader::readField(std::string& field) {
+    field.clear();
+    if (at_ < text_.size() && text_[at_] == '"') {
+        for (++at_;; at_ += 2) {
+            const std::size_t quote = std::min(text_.find('"', at_), text_.size());
+            field += text_.substr(at_, quote - at_);
+            at_ = quote;
+            if (quote + 1 >= text_.size() || text_[quote + 1] != '"') break;
+            field += '"';
+        }
+        if (at_ < text_.size()) ++at_;
+        line_ += static_cast<int>(std::count(field.begin(), field.end(), '\n'));
+    } else {
+        const std::size_t begin = at_;
+        while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n' && text_[at_] != '"') {
+            ++at_;
+        }
+        field = text_.substr(begin, at_ - begin);
+    }
+    if (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') {
+        throw Error(location(), "expected a comma or the end of the line after '" +
+                                    field.substr(0, 40) + "', found '" + text_[at_] + "'");
+    }
+}
+
+}  // namespace gfxrepro::records

@@ -1,0 +1,137 @@
+#include "runner/records/images.h"
+
+#include <charconv>
+#include <map>
+#include <tuple>
+
+#include "runner/core/error.h"
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/records/csv.h"
+
+namespace gfxrepro::records {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kHeader = "case,table,frame,name,png,exr,title,truth_of";
+/// Of runs before truths were named.
+constexpr std::string_view kOldHeader = "case,table,frame,name,png,exr,title";
+
+fs::path indexOf(const fs::path& runDir) {
+    return runDir / "images" / "index.csv";
+}
+
+/// How many columns the rows under a header have.
+std::size_t columnCount(const SourceLocation& where, const std::vector<std::string>& header) {
+    const std::string found = joined(header, ",");
+    if (found != kHeader && found != kOldHeader) {
+        throw Error(where, "expected the columns " + std::string(kHeader) + ", found " + found);
+    }
+    return header.size();
+}
+
+ImageEntry entryFromFields(const SourceLocation& where, std::size_t columns,
+                           const std::vector<std::string>& fields) {
+    if (fields.size() != columns) {
+        throw Error(where, "expected " + std::to_string(columns) + " columns, found " +
+                               std::to_string(fields.size()));
+    }
+    ImageEntry entry{fields[0], fields[1], 0, fields[3], fields[4], fields[5], fields[6]};
+    if (columns > 7) entry.truthOf = fields[7];
+    const char* end = fields[2].data() + fields[2].size();
+    const auto [stop, error] = std::from_chars(fields[2].data(), end, entry.frame);
+    if (error != std::errc() || stop != end) {
+        throw Error(where, "column 'frame': expected an integer, found '" + fields[2] + "'");
+    }
+    return entry;
+}
+
+/// The list may be anybody's: it names files of the run, below images/.
+void requireInside(const SourceLocation& where, const fs::path& runDir, const std::string& file) {
+    if (file.empty()) return;
+    const fs::path plain = fs::path(file).lexically_normal();
+    const bool isBelow = plain.is_relative() && plain.begin() != plain.end() &&
+                         *plain.begin() == "images" && plain == fs::path(file);
+    const auto isLink = [&](fs::path path) {
+        for (; !path.empty(); path = path.parent_path()) {
+            if (fs::is_symlink(runDir / path)) return true;
+        }
+        return false;
+    };
+    if (isBelow && !isLink(plain)) return;
+    throw Error(where, "'" + file + "' is no file of the run, below images/ and without a link");
+}
+
+}  // namespace
+
+ImageWriter::ImageWriter(const fs::path& runDir) : index_(indexOf(runDir)) {
+    if (!fs::exists(index_)) return;
+    file_.emplace(index_);
+    const MappedFile file(index_);
+    CsvReader reader(file.text(), index_.string());
+    std::vector<std::string> fields;
+    while (reader.next(fields)) {
+    }
+    file_->cut(reader.rowEnd());
+    if (reader.rowEnd() == 0) writeHeader();
+}
+
+void ImageWriter::writeHeader() {
+    file_->append(std::string(kHeader) + '\n');
+}
+
+void ImageWriter::append(const std::vector<ImageEntry>& images) {
+    requireOurs();
+    if (images.empty()) return;
+    if (!file_) {
+        fs::create_directories(index_.parent_path());
+        file_.emplace(index_);
+        writeHeader();
+    }
+    std::string text;
+    for (const ImageEntry& image : images) {
+        CsvRow row(text);
+        row.text(image.caseId).text(image.table).integer(image.frame).text(image.name);
+        row.text(image.png).text(image.exr).text(image.title).text(image.truthOf).end();
+    }
+    file_->append(text);
+}
+
+void ImageWriter::requireOurs() const {
+    if (file_) return file_->requireOurs();
+    std::error_code unknown;
+    if (!fs::exists(index_, unknown)) return;
+    throw Error(index_.string() +
+                ": was made by another while a run had no images; nothing more is measured into "
+                "its folder");
+}
+
+std::vector<ImageEntry> readImages(const fs::path& runDir) {
+    const fs::path index = indexOf(runDir);
+    if (!fs::exists(index)) return {};
+    const std::string text = readFile(index);
+    CsvReader reader(text, index.string());
+    std::vector<std::string> fields;
+    std::vector<ImageEntry> images;
+    std::map<std::tuple<std::string, int, std::string>, std::size_t> indices;
+    if (!reader.next(fields)) return {};
+    const std::size_t columns = columnCount(reader.location(), fields);
+    while (reader.next(fields)) {
+        ImageEntry entry = entryFromFields(reader.location(), columns, fields);
+        for (const std::string* file : {&entry.png, &entry.exr}) {
+            requireInside(reader.location(), runDir, *file);
+        }
+        const auto [found, isNew] =
+            indices.try_emplace({entry.caseId, entry.frame, entry.name}, images.size());
+        if (isNew) {
+            images.push_back(std::move(entry));
+        } else {
+            images[found->second] = std::move(entry);
+        }
+    }
+    return images;
+}
+
+}  // namespace gfxrepro::records

@@ -1,0 +1,53 @@
+// The list of a run's images: images/index.csv, one row an image.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/core/appended_file.h"
+
+namespace gfxrepro::records {
+
+/// Columns case,table,frame,name,png,exr,title,truth_of in this order. Paths are relative to the
+/// run folder: "images/zju2005-2.1/<case>-<name>.png".
+struct ImageEntry {
+    std::string caseId;
+    std::string table;  // "zju2005/2.1"
+    int frame = 0;
+    std::string name;   // "surface"
+    std::string png;    // empty when there is none
+    std::string exr;    // empty when there is none
+    std::string title;  // the case's title: "zju2005/2.1 scene=models/duck"
+    /// The name of the image, of the same case and frame, that this one is the truth of; or empty.
+    std::string truthOf = {};
+
+    bool operator==(const ImageEntry&) const = default;
+};
+
+/// Appends to `runDir`/images/index.csv, which is made with its header at the first image.
+class ImageWriter {
+  public:
+    /// Cuts off a torn last line. Throws Error.
+    explicit ImageWriter(const std::filesystem::path& runDir);
+    /// Throws Error, leaving the list as it was; also as requireOurs().
+    void append(const std::vector<ImageEntry>& images);
+    /// Throws Error where the list is not what was written: somebody made, removed, replaced or
+    /// changed it.
+    void requireOurs() const;
+
+  private:
+    void writeHeader();
+
+    std::filesystem::path index_;
+    std::optional<AppendedFile> file_;  // none before the first image
+};
+
+/// The images of a run, in the order in which they were made; none when there is no list. Of two
+/// entries of one case, frame and name the last counts (a case that was run again). A torn last
+/// line is passed over; other malformed rows are an Error with file and line. Lists of older runs
+/// end with the title.
+std::vector<ImageEntry> readImages(const std::filesystem::path& runDir);
+
+}  // namespace gfxrepro::records

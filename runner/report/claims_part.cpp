@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runner/config/schema.h"
+#include "runner/report/markup.h"
+#include "runner/report/parts.h"
+
+namespace gfxrepro::report {
+
+using claims::ClaimResult;
+using claims::Verdict;
+
+namespace {
+
+/// What one sees of a verdict without its colour, and what the word means.
+struct VerdictWords {
+    Verdict verdict;
+    const char* sign;
+    const char* meaning;
+};
+constexpr VerdictWords kWords[] = {
+    {Verdict::Holds, "✓", "what was measured agrees with the statement"},
+    {Verdict::Fails, "✗",
+     "on this machine, with these scenes, our implementation does not show what the document says: "
+     "a result, no error of the run, with its reason beside it"},
+    {Verdict::Ambiguous, "?", "the numbers are too few or scatter too much to tell"},
+    {Verdict::Unmeasured, "○", "a case that it needs has no result"},
+    {Verdict::NotApplicable, "–", "it asks for a GPU, or for another profile"},
+};
+
+const VerdictWords& wordsOf(Verdict verdict) {
+    return *std::ranges::find(kWords, verdict, &VerdictWords::verdict);
+}
+
+/// Every claim of any run, in the first run's order.
+std::vector<std::string> claimsOf(const Page& page) {
+    std::vector<std::string> ids;
+    for (const RunPart& part : page.parts) {
+        for (const ClaimResult& claim : part.claims) {
+            if (std::ranges::find(ids, claim.id) == ids.end()) ids.push_back(claim.id);
+        }
+    }
+    return ids;
+}
+
+const ClaimResult* findClaim(const RunPart& part, const std::string& id) {
+    const auto claim = std::ranges::find(part.claims, id, &ClaimResult::id);
+    return claim == part.claims.end() ? nullptr : &*claim;
+}
+
+/// Whose claim it is, and of a time what kind.
+std::string whoseText(const ClaimResult& claim) {
+    std::string text(config::originName(claim.origin));
+    if (claim.timeKind) text += fmt::format(", {}", config::timeKindName(*claim.timeKind));
+    return text;
+}
+
+std::string newsHtml(const ClaimResult& claim) {
+    if (!claim.isNews()) return "";
+    return fmt::format(" <span class=\"news\">news: known as {}</span>", verdictName(claim.known));
+}
+
+std::string paragraph(const char* label, const std::string& text) {
+    if (text.empty()) return "";
+    return fmt::format("<p><span class=\"soft\">{}</span>{}</p>\n", label, escapeXml(text));
+}
+
+std::string requiredText(const ClaimResult& claim) {
+    if (!claim.boundFrom || claim.required.empty()) return claim.required;
+    return fmt::format("{} ({})", claim.required, config::boundSourceName(*claim.boundFrom));
+}
+
+/// What was found in one run, below the claim's words.
+std::string detailHtml(const ClaimResult& claim, const std::string& letter, ClaimDetail detail) {
+    std::string html;
+    if (detail == ClaimDetail::Full) {
+        html += paragraph("measured ", claim.measured) +
+                paragraph("required ", requiredText(claim)) +
+                paragraph(claim.verdict == Verdict::Holds ? "noted: " : "why: ", whyText(claim)) +
+                paragraph("shown by ", claim.shownBy) + paragraph("rests on ", claim.restsOn);
+    } else if (claim.verdict != Verdict::Holds && claim.verdict != Verdict::NotApplicable) {
+        html += paragraph("why: ", whyText(claim));
+    }
+    if (html.empty() || letter.empty()) return html;
+    return fmt::format("<div class=\"of-run\"><b>{}</b>\n{}</div>\n", letter, html);
+}
+
+std::string claimHtml(const Page& page, const std::string& id, const Model& model,
+                      ClaimDetail detail) {
+    std::string badges, details, says;
+    std::string verdictNames;
+    std::set<Verdict> verdicts;
+    const ClaimResult* any = nullptr;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const ClaimResult* claim = findClaim(page.parts[run], id);
+        if (!claim) continue;
+        if (!any) any = claim;
+        if (says.empty()) says = claim->text;  // kept verdicts come without it
+        verdicts.insert(claim->verdict);
+        verdictNames +=
+            fmt::format("{}{}", verdictNames.empty() ? "" : " ", verdictName(claim->verdict));
+        const std::string letter = model.isComparison() ? Model::letter(run) : "";
+        badges += letter.empty() ? "" : fmt::format("<b>{}</b> ", letter);
+        badges += verdictBadge(claim->verdict) + newsHtml(*claim) + ' ';
+        details += detailHtml(*claim, letter, detail);
+    }
+    const std::string text = says.empty() ? id : says;
+    const std::string code =
+        detail == ClaimDetail::Full
+            ? escapeXml(id)
+            : fmt::format("<a href=\"#{}\">{}</a>", escapeXml(page.slug), escapeXml(id));
+    return fmt::format(
+        "<li class=\"claim{}{}\" data-verdict=\"{}\" data-origin=\"{}\" data-text=\"{}\">"
+        "<span class=\"verdicts\">{}</span> <span class=\"says\">{}</span> "
+        "<span class=\"soft code\">{}, {}</span>\n{}</li>\n",
+        any->isOfDocument() ? "" : " uncounted", verdicts.size() > 1 ? " differs" : "",
+        verdictNames, config::originName(any->origin), escapeXml(id + ' ' + text), badges,
+        escapeXml(text), code, whoseText(*any), details);
+}
+
+}  // namespace
+
+std::string verdictBadge(Verdict verdict, const std::string& word) {
+    return fmt::format("<span class=\"badge {0}\"><span aria-hidden=\"true\">{1}</span> {2}</span>",
+                       verdictName(verdict), wordsOf(verdict).sign,
+                       word.empty() ? std::string(verdictName(verdict)) : word);
+}
+
+std::string verdictSign(Verdict verdict) {
+    return wordsOf(verdict).sign;
+}
+
+std::string legendHtml() {
+    std::string html = "<dl class=\"legend-of-verdicts\">\n";
+    for (const VerdictWords& words : kWords) {
+        html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", verdictBadge(words.verdict),
+                            words.meaning);
+    }
+    return html + "</dl>\n";
+}
+
+std::string claimsHtml(const Page& page, const Model& model, ClaimDetail detail) {
+    std::string html;
+    for (const std::string& id : claimsOf(page)) html += claimHtml(page, id, model, detail);
+    if (html.empty()) return "";
+    const char* cssClass = detail == ClaimDetail::Full ? "claims" : "claims short";
+    return fmt::format("<ul class=\"{}\">\n{}</ul>\n", cssClass, html);
+}
+
+std::string filtersHtml(const Model& model) {
+    std::set<std::string> papers;
+    bool hasOwn = false;
+    for (const Page& page : model.pages) {
+        papers.insert(page.paper());
+        for (const RunPart& part : page.parts) {
+            hasOwn |= std::ranges::any_of(part.claims, &ClaimResult::isOfDocument);
+        }
+    }
+    std::string html =
+        "<form class=\"filters\" hidden>\n<label>document <select name=\"paper\">"
+        "<option value=\"\">all</option>";
+    for (const std::string& paper : papers) {
+        html += fmt::format("<option>{}</option>", escapeXml(paper));
+    }
+    html +=
+        "</select></label>\n<label>whose claim <select name=\"origin\"><option value=\"\">all"
+        "</option>";
+    for (const std::string_view origin : config::kOrigins) {
+        const bool isChosen =
+            hasOwn && origin == config::originName(config::ClaimSpec::Origin::Document);
+        html += fmt::format("<option{}>{}</option>", isChosen ? " selected" : "", origin);
+    }
+    html +=
+        "</select></label>\n<label>words <input type=\"search\" name=\"text\" "
+        "placeholder=\"of the claim or table\"></label>\n<fieldset>";
+    for (const VerdictWords& words : kWords) {
+        html += fmt::format(
+            "<label class=\"badge {0}\"><input type=\"checkbox\" name=\"verdict\" "
+            "value=\"{0}\" checked> <span aria-hidden=\"true\">{1}</span> {0}</label>\n",
+            verdictName(words.verdict), words.sign);
+    }
+    html += "</fieldset>\n";
+    if (model.isComparison()) {
+        html += "<label><input type=\"checkbox\" name=\"differ\"> only where runs differ</label>\n";
+    }
+    return html + "<output></output>\n</form>\n";
+}
+
+}  // namespace gfxrepro::report

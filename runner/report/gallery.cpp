@@ -1,0 +1,221 @@
+#include "runner/report/gallery.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/image/limits.h"
+#include "runner/image/png_io.h"
+#include "runner/image/resample.h"
+#include "runner/image/srgb.h"
+#include "runner/metrics/error_map.h"
+#include "runner/metrics/flip.h"
+#include "runner/report/markup.h"
+
+namespace gfxrepro::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Whether `made` is there and no older than what it is made from.
+bool isCurrent(const fs::path& made, const fs::path& source) {
+    std::error_code isAbsent;
+    const auto madeAt = fs::last_write_time(made, isAbsent);
+    return !isAbsent && madeAt >= fs::last_write_time(source);
+}
+
+void makeFolderOf(const fs::path& file) {
+    std::error_code failure;
+    fs::create_directories(file.parent_path(), failure);
+    if (failure) {
+        throw Error("cannot create " + file.parent_path().string() + ": " + failure.message());
+    }
+}
+
+/// A path as a link: its parts may hold what an address may not.
+std::string encodedAddress(const fs::path& path) {
+    std::string address;
+    for (const char c : path.generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool isPlain =
+            std::isalnum(byte) != 0 || std::string_view("/-_.~").find(c) != std::string_view::npos;
+        address += isPlain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+    }
+    return address;
+}
+
+/// The linear values of what a PNG shows, 3 channels.
+image::ImageF displayed(const image::Image8& png) {
+    static const std::array<float, 256> kDecoded = image::srgbDecoding();
+    image::ImageF linear(png.width(), png.height(), 3);
+    for (int y = 0; y < png.height(); ++y) {
+        for (int x = 0; x < png.width(); ++x) {
+            for (int c = 0; c < 3; ++c) {
+                linear.at(x, y, c) = kDecoded[png.at(x, y, png.channels() < 3 ? 0 : c)];
+            }
+        }
+    }
+    return linear;
+}
+
+/// "images/a/b.png" → "<folder>/a/b<suffix>.png".
+fs::path besides(const std::string& png, const fs::path& folder, const std::string& suffix) {
+    const fs::path place = fs::path(png).lexically_relative("images");
+    return folder / place.parent_path() / (place.stem().string() + suffix + ".png");
+}
+
+using ImageKey = std::tuple<std::string, int, std::string>;  // case, frame, name
+
+/// What an <img> of the page takes for a file.
+std::string addressOf(const fs::path& file, const GalleryPlace& place) {
+    if (place.embedding != GalleryPlace::Embedding::None) {
+        return "data:image/png;base64," + base64(readFile(file));
+    }
+    const fs::path folder = fs::absolute(place.page).parent_path();
+    return encodedAddress(fs::relative(fs::absolute(file), folder));
+}
+
+/// The file of a picture whose longer side is at most that, made in `folder` if it is not there;
+/// `file`, which holds `image`, where it is no longer.
+fs::path reducedFile(const fs::path& file, const image::Image8& image, int longestPx,
+                     const fs::path& made) {
+    const int longerPx = std::max(image.width(), image.height());
+    if (longerPx <= longestPx) return file;
+    if (!isCurrent(made, file)) {
+        makeFolderOf(made);
+        image::writePng(made,
+                        image::resizedTo(image, std::max(1, longestPx * image.width() / longerPx)));
+    }
+    return made;
+}
+
+/// One run's images on their way into a page.
+class Gallery {
+  public:
+    explicit Gallery(const GalleryPlace& place) : place_(place), runDir_(place.runDir) {
+        for (records::ImageEntry& entry : records::readImages(runDir_)) {
+            std::error_code isAbsent;
+            if (entry.png.empty() || !fs::is_regular_file(runDir_ / entry.png, isAbsent)) continue;
+            if (!entry.truthOf.empty()) {
+                truths_.try_emplace({entry.caseId, entry.frame, entry.truthOf}, entry);
+            }
+            frames_[entry.caseId].insert(entry.frame);
+            entries_.push_back(std::move(entry));
+        }
+    }
+
+    const std::vector<records::ImageEntry>& entries() const { return entries_; }
+
+    /// Width and height, by its header.
+    std::pair<int, int> sizeOf(const records::ImageEntry& entry) const {
+        const image::PngRows rows(runDir_ / entry.png, image::kMaxSidePx, image::ImageUse::Picture);
+        return {rows.width(), rows.height()};
+    }
+    std::int64_t pixelsOf(const records::ImageEntry& entry) const {
+        const auto [width, height] = sizeOf(entry);
+        return std::int64_t{width} * height;
+    }
+
+    Shot shotOf(const records::ImageEntry& entry) const {
+        const fs::path file = runDir_ / entry.png;
+        Shot shot;
+        shot.table = entry.table;
+        shot.caseId = entry.caseId;
+        shot.caseTitle = entry.title;
+        shot.name = nameOf(entry);
+        shot.baseName = entry.name;
+        shot.png = entry.png;
+        shot.bytes = fs::file_size(file);
+        std::tie(shot.width, shot.height) = sizeOf(entry);
+        if (!entry.truthOf.empty()) shot.content = sha256OfFile(file);
+        if (pixelsOf(entry) > metrics::kMaxFlipPixels) {
+            shot.thumbnail = addressOf(file, place_);  // too large to be decoded for a thumbnail
+            return shot;
+        }
+        const image::Image8 picture = image::readPng8(file);
+        const fs::path thumbnail = shownFile(file, picture, besides(entry.png, "thumbnails", ""));
+        shot.thumbnail = addressOf(thumbnail, place_);
+        if (thumbnail != file && place_.embedding == Embedding::None) {
+            shot.full = addressOf(file, place_);
+        } else if (thumbnail != file) {
+            const image::PngRows rows(thumbnail, image::kMaxSidePx, image::ImageUse::Picture);
+            std::tie(shot.width, shot.height) = std::pair{rows.width(), rows.height()};
+        }
+        const auto truth = truths_.find({entry.caseId, entry.frame, entry.name});
+        if (truth != truths_.end()) compare(entry, picture, truth->second, shot);
+        return shot;
+    }
+
+  private:
+    using Embedding = GalleryPlace::Embedding;
+
+    fs::path shownFile(const fs::path& file, const image::Image8& image,
+                       const fs::path& made) const {
+        if (place_.embedding == Embedding::Whole) return file;
+        return reducedFile(file, image, kShownPx, place_.madeDir / made);
+    }
+
+    /// A frame is named only where a case has several.
+    std::string nameOf(const records::ImageEntry& entry) const {
+        if (frames_.at(entry.caseId).size() == 1) return entry.name;
+        return fmt::format("{}, frame {}", entry.name, entry.frame);
+    }
+
+    void compare(const records::ImageEntry& entry, const image::Image8& picture,
+                 const records::ImageEntry& truth, Shot& shot) const {
+        shot.truth = nameOf(truth);
+        if (sizeOf(truth) != sizeOf(entry)) return;
+        const image::Image8 reference = image::readPng8(runDir_ / truth.png);
+        const image::ImageF map = metrics::flipMap(displayed(reference), displayed(picture));
+        const auto values = map.values();
+        shot.flipMean =
+            std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+        const fs::path made = place_.madeDir / besides(entry.png, "images", "-flip");
+        const image::Image8 shown = metrics::flipPicture(map);
+        if (!isCurrent(made, runDir_ / entry.png)) {
+            makeFolderOf(made);
+            image::writePng(made, shown);
+        }
+        // Beside the page the viewer opens what is shown: a map as large as its pictures.
+        const bool isReduced = place_.embedding == Embedding::Reduced;
+        const fs::path reduced = besides(entry.png, "thumbnails", "-flip");
+        shot.flip = addressOf(isReduced ? shownFile(made, shown, reduced) : made, place_);
+    }
+
+    GalleryPlace place_;
+    fs::path runDir_;
+    std::vector<records::ImageEntry> entries_;
+    std::map<ImageKey, records::ImageEntry> truths_;  // by the image that they are the truth of
+    std::map<std::string, std::set<int>> frames_;     // of each case
+};
+
+}  // namespace
+
+std::vector<Shot> gatherShots(const GalleryPlace& place) {
+    const Gallery gallery(place);
+    const std::vector<records::ImageEntry>& entries = gallery.entries();
+    std::vector<Shot> shots(entries.size());
+    metrics::forEachPicture(
+        shots.size(), [&](std::size_t i) { return gallery.pixelsOf(entries[i]); },
+        [&](std::size_t i) { shots[i] = gallery.shotOf(entries[i]); });
+    return shots;
+}
+
+std::string smallPicture(const Shot& shot, const GalleryPlace& place) {
+    if (std::int64_t{shot.width} * shot.height > metrics::kMaxFlipPixels) return shot.thumbnail;
+    const fs::path file = place.runDir / shot.png;
+    const fs::path made = place.madeDir / besides(shot.png, "thumbnails", "-small");
+    return addressOf(reducedFile(file, image::readPng8(file), kSmallPx, made), place);
+}
+
+}  // namespace gfxrepro::report

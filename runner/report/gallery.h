@@ -1,0 +1,59 @@
+// The images of a run as the pages use them: inside the file or beside it, with their error maps.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/records/images.h"
+
+namespace gfxrepro::report {
+
+/// How the pictures of a run come onto a page.
+struct GalleryPlace {
+    enum class Embedding {
+        None,    // files beside the page; what is longer than kShownPx is shown by a thumbnail
+        Whole,   // inside the page
+        Reduced  // inside the page, the longer ones as their thumbnails alone
+    };
+    std::filesystem::path runDir;
+    std::filesystem::path madeDir;  // for FLIP maps and thumbnails
+    std::filesystem::path page;     // the file
+    Embedding embedding = Embedding::None;
+};
+
+/// The longer side of the pictures on a page, and of those of the overview.
+inline constexpr int kShownPx = 512;
+inline constexpr int kSmallPx = 320;
+
+/// One image: what an <img> shows of it, and what the viewer opens.
+struct Shot {
+    std::string table;
+    std::string caseId;
+    std::string caseTitle;
+    std::string name;      // "result"; with its frame where there are several
+    std::string baseName;  // without it
+    std::string png;       // below the run's folder
+    std::string thumbnail;
+    std::string full;     // empty: the thumbnail is the image itself
+    std::string truth;    // name of the shot that this one is compared with; empty: none
+    std::string content;  // of a truth: the same text for the same picture; empty: no truth
+    std::string flip;     // FLIP map against the truth, as `thumbnail`; empty: none
+    double flipMean = 0.0;
+    std::uintmax_t bytes = 0;  // of the PNG
+    int width = 0;             // of what the viewer opens
+    int height = 0;
+
+    bool isTruth() const { return !content.empty(); }
+};
+
+/// The images of a run. Makes below `madeDir` what is not there yet: FLIP maps of those that have a
+/// truth of their size (images/…-flip.png, judged as displayed), and thumbnails. Throws Error for
+/// an image that is no PNG.
+std::vector<Shot> gatherShots(const GalleryPlace& place);
+
+/// A shot's picture for the overview, as `thumbnail`; made if it is not there.
+std::string smallPicture(const Shot& shot, const GalleryPlace& place);
+
+}  // namespace gfxrepro::report

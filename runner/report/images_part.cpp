@@ -1,0 +1,276 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "runner/report/labels.h"
+#include "runner/report/markup.h"
+#include "runner/report/parts.h"
+#include "runner/report/picture_grid.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+/// "scene=models/duck" of "zju2005/2.1 scene=models/duck": the page says the table.
+std::string withoutTable(const std::string& title, const std::string& table) {
+    return title.starts_with(table + ' ') ? title.substr(table.size() + 1) : title;
+}
+
+/// The pictures of one run on a page. The viewer reads what it needs from the data attributes.
+class Pictures {
+  public:
+    Pictures(const Page& page, std::size_t run, const Model& model)
+        : page_(page),
+          shots_(page.parts[run].shots),
+          letter_(model.isComparison() ? Model::letter(run) : ""),
+          prefix_(Model::letter(run) + "-" + page.slug) {
+        const RunPart& part = page.parts[run];
+        const std::set<std::size_t> main = mainShots(
+            shots_, part.experiment ? part.experiment->shows : std::vector<std::string>());
+        main_ = pictureGrid(part.table, shots_, main);
+        std::set<std::size_t> shown;
+        collect(main_, shown);
+        std::set<std::size_t> rest;
+        for (std::size_t i = 0; i < shots_.size(); ++i) {
+            if (!shown.contains(i) && !isRepeated(i, shown)) rest.insert(i);
+        }
+        rest_ = pictureGrid(part.table, shots_, rest);
+        findTruths();
+    }
+
+    std::string html() const {
+        std::string html = gridHtml(main_);
+        std::string further = gridHtml(rest_);
+        if (!further.empty() && !html.empty()) {
+            further = "<details class=\"further\"><summary>Further pictures of these cases: " +
+                      escapeXml(namesOf(rest_)) + "</summary>\n" + further + "</details>\n";
+        }
+        html += further;
+        if (html.empty() || letter_.empty()) return html;
+        return fmt::format("<h4>{}</h4>\n{}", letter_, html);
+    }
+
+  private:
+    using Cell = std::vector<std::size_t>;
+
+    static void collect(const PictureGrid& grid, std::set<std::size_t>& shown) {
+        const auto add = [&](const Cell& cell) { shown.insert(cell.begin(), cell.end()); };
+        std::ranges::for_each(grid.truths, add);
+        for (const PictureRow& row : grid.rows) {
+            for (const PictureLine& line : row.lines) {
+                add(line.truth);
+                std::ranges::for_each(line.cells, add);
+            }
+        }
+        add(grid.others);
+    }
+
+    /// A truth whose picture is among those.
+    bool isRepeated(std::size_t i, const std::set<std::size_t>& shown) const {
+        return shots_[i].isTruth() && std::ranges::any_of(shown, [&](std::size_t other) {
+                   return shots_[other].content == shots_[i].content;
+               });
+    }
+
+    /// "error, reflection": what a grid shows.
+    std::string namesOf(const PictureGrid& grid) const {
+        std::set<std::size_t> shown;
+        collect(grid, shown);
+        std::vector<std::string> names;
+        for (const std::size_t i : shown) {
+            const std::string& name = shots_[i].baseName;
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+        }
+        return fmt::format("{}", fmt::join(names, ", "));
+    }
+
+    std::string gridHtml(const PictureGrid& grid) const {
+        std::string html;
+        if (grid.rows.size() == 1) {
+            for (const PictureLine& line : grid.rows[0].lines) html += flowHtml(grid, line);
+        } else if (!grid.rows.empty()) {
+            html += tableHtml(grid);
+        }
+        if (!grid.others.empty()) {
+            html += "<div class=\"gallery\">\n";
+            for (const std::size_t i : grid.others) {
+                html += figureHtml(i, fmt::format("{} · {}", shownName(shots_[i].name),
+                                                  withoutTable(shots_[i].caseTitle, page_.id)));
+            }
+            html += "</div>\n";
+        }
+        return html;
+    }
+
+    /// The shot that stands for a truth: where it is shown once for several, that one.
+    void findTruths() {
+        std::map<std::string, std::size_t> shown;  // by content
+        for (const PictureGrid* grid : {&main_, &rest_}) {
+            std::set<std::size_t> all;
+            collect(*grid, all);
+            for (const std::size_t i : all) {
+                if (shots_[i].isTruth()) shown.try_emplace(shots_[i].content, i);
+            }
+        }
+        std::map<std::pair<std::string, std::string>, std::size_t> byName;
+        for (std::size_t i = 0; i < shots_.size(); ++i) {
+            byName.try_emplace({shots_[i].caseId, shots_[i].name}, i);
+        }
+        for (std::size_t i = 0; i < shots_.size(); ++i) {
+            const auto truth = byName.find({shots_[i].caseId, shots_[i].truth});
+            if (shots_[i].truth.empty() || truth == byName.end()) continue;
+            const auto once = shown.find(shots_[truth->second].content);
+            truths_[i] = once == shown.end() ? truth->second : once->second;
+        }
+    }
+
+    std::string idOf(std::size_t i) const { return fmt::format("{}-{}", prefix_, i); }
+
+    /// A picture, what it shows, and below it how far it is from its truth.
+    std::string figureHtml(std::size_t i, const std::string& says) const {
+        const Shot& shot = shots_[i];
+        const std::string title = withoutTable(shot.caseTitle, page_.id);
+        std::string data = fmt::format(
+            " id=\"{}\" data-run=\"{}\" data-case=\"{}\" data-title=\"{}\" data-name=\"{}\"",
+            escapeXml(idOf(i)), letter_, escapeXml(shot.caseId), escapeXml(title),
+            escapeXml(shot.name));
+        if (!shot.full.empty()) data += fmt::format(" data-full=\"{}\"", shot.full);
+        const auto truth = truths_.find(i);
+        if (truth != truths_.end()) {
+            data += fmt::format(" data-truth=\"{}\"", escapeXml(idOf(truth->second)));
+        }
+        std::string html = fmt::format(
+            "<figure><button class=\"shot\"{}><img src=\"{}\" alt=\"{}\" width=\"{}\" "
+            "height=\"{}\" loading=\"lazy\"></button><figcaption>{}</figcaption>\n",
+            data, shot.thumbnail, escapeXml(title + " · " + shot.name), shot.width, shot.height,
+            escapeXml(says));
+        if (!shot.flip.empty()) {
+            html += fmt::format(
+                "<button class=\"error\" data-of=\"{}\"><img src=\"{}\" alt=\"where {} differs "
+                "from "
+                "{}\" width=\"{}\" height=\"{}\" loading=\"lazy\"></button><figcaption>error: FLIP "
+                "{:.4f} to {}</figcaption>\n",
+                escapeXml(idOf(i)), shot.flip, escapeXml(shot.name), escapeXml(shot.truth),
+                shot.width, shot.height, shot.flipMean, escapeXml(shownName(shot.truth)));
+        }
+        return html + "</figure>\n";
+    }
+
+    /// What stands under a picture: its name, where that tells more than its column, and its case
+    /// where a cell holds several.
+    std::string saysOf(std::size_t i, const Cell& cell, const std::string& column) const {
+        const auto isNamedAlike = [&](std::size_t other) {
+            return shots_[other].name == shots_[i].name;
+        };
+        const bool isOne = std::ranges::count_if(cell, isNamedAlike) == 1;
+        const std::string name = shownName(shots_[i].name);
+        std::string says = column.empty() ? name : fmt::format("{}: {}", column, name);
+        if (!isOne) says += " · " + withoutTable(shots_[i].caseTitle, page_.id);
+        return says;
+    }
+
+    /// One row: as many beside each other as the window has place for.
+    std::string flowHtml(const PictureGrid& grid, const PictureLine& line) const {
+        std::string html = "<div class=\"gallery\">\n";
+        for (const std::size_t i : line.truth) html += figureHtml(i, shownName(shots_[i].name));
+        for (std::size_t c = 0; c < line.cells.size(); ++c) {
+            for (const std::size_t i : line.cells[c]) {
+                html += figureHtml(i, saysOf(i, line.cells[c], grid.columns[c]));
+            }
+        }
+        return html + "</div>\n";
+    }
+
+    std::string cellHtml(const Cell& cell) const {
+        std::string html = "<td>";
+        for (const std::size_t i : cell) html += figureHtml(i, saysOf(i, cell, ""));
+        return html + "</td>";
+    }
+
+    std::string tableHtml(const PictureGrid& grid) const {
+        const auto hasTruth = [](const PictureRow& row) {
+            return std::ranges::any_of(row.lines,
+                                       [](const auto& line) { return !line.truth.empty(); });
+        };
+        const bool isTruthBefore = std::ranges::any_of(grid.rows, hasTruth);
+        const std::size_t width = grid.columns.size() + (isTruthBefore ? 1 : 0);
+        std::string html = fmt::format(
+            "<div class=\"scroll\"><table class=\"pictures\" style=\"--columns:{}\">\n<thead><tr>",
+            width);
+        if (isTruthBefore) html += "<th scope=\"col\">truth</th>";
+        for (const std::string& column : grid.columns) {
+            html += fmt::format("<th scope=\"col\">{}</th>", escapeXml(column));
+        }
+        html += "</tr></thead>\n";
+        if (!grid.truths.empty()) {
+            html += fmt::format(
+                "<tbody><tr><th scope=\"rowgroup\" colspan=\"{}\">truth</th></tr>\n<tr>", width);
+            for (const Cell& cell : grid.truths) html += cellHtml(cell);
+            html += "</tr></tbody>\n";
+        }
+        for (const PictureRow& row : grid.rows) {
+            html += fmt::format("<tbody><tr><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n",
+                                width, escapeXml(row.label));
+            for (const PictureLine& line : row.lines) {
+                html += "<tr>";
+                if (isTruthBefore) html += cellHtml(line.truth);
+                for (const Cell& cell : line.cells) html += cellHtml(cell);
+                html += "</tr>\n";
+            }
+            html += "</tbody>\n";
+        }
+        return html + "</table></div>\n";
+    }
+
+    const Page& page_;
+    const std::vector<Shot>& shots_;
+    PictureGrid main_;  // what the page shows first
+    PictureGrid rest_;
+    std::string letter_;
+    std::string prefix_;
+    std::map<std::size_t, std::size_t> truths_;  // of each shot, the one that is shown
+};
+
+}  // namespace
+
+std::string imagesHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        if (page.parts[run].shots.empty()) continue;
+        html += Pictures(page, run, model).html();
+    }
+    if (html.empty()) return "";
+    return "<h3>Images</h3>\n<p class=\"soft small\">A click on a picture lays it beside its truth "
+           "or another one.</p>\n" +
+           html;
+}
+
+std::string casesHtml(const Page& page, const Model& model) {
+    std::string html;
+    std::size_t count = 0;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        for (const ReportCase* item : page.parts[run].cases) {
+            ++count;
+            html += fmt::format(
+                "<article class=\"case\" id=\"{}\"><h4>{}{} <span class=\"soft\">case {}</span>"
+                "</h4>\n<pre class=\"command\">{}</pre>\n",
+                escapeXml(caseAnchor(run, item->id)),
+                model.isComparison() ? Model::letter(run) + ": " : "",
+                escapeXml(withoutTable(item->title, page.id)), escapeXml(item->id),
+                escapeXml(item->command));
+            std::string log;
+            for (const std::string& line : item->log) log += escapeXml(line) + '\n';
+            html += fmt::format("<pre class=\"log\">{}</pre></article>\n",
+                                log.empty() ? "not run" : log);
+        }
+    }
+    if (html.empty()) return "";
+    return fmt::format(
+        "<details class=\"cases\"><summary>Cases: {}, each with the command that runs it again and "
+        "its log</summary>\n{}</details>\n",
+        count, html);
+}
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include "runner/report/markup.h"
+#include "runner/report/parts.h"
+
+namespace gfxrepro::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string paragraph(const char* cssClass, const char* label, const std::string& text) {
+    if (text.empty()) return "";
+    return fmt::format("<p class=\"{}\"><span class=\"soft\">{}</span>{}</p>\n", cssClass, label,
+                       escapeXml(text));
+}
+
+std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions) {
+    if (assumptions.empty()) return "";
+    std::string html =
+        "<h3>Assumptions</h3>\n<div class=\"scroll\"><table class=\"assumed\"><thead><tr>"
+        "<th>what the paper left open</th><th>taken</th><th>range</th><th>why</th></tr></thead>\n"
+        "<tbody>\n";
+    for (const config::Assumption& assumption : assumptions) {
+        const auto text = [](const config::Node& node) {
+            return node.isNull() ? ""
+                                 : escapeXml(node.isScalar() ? node.text() : node.toFlowText());
+        };
+        const std::string unit = assumption.unit.empty() ? "" : ' ' + escapeXml(assumption.unit);
+        html +=
+            fmt::format("<tr><td class=\"id\">{}</td><td>{}{}</td><td>{}</td><td>{}</td></tr>\n",
+                        escapeXml(assumption.name), text(assumption.value),
+                        assumption.value.isNull() ? "" : unit, text(assumption.range),
+                        escapeXml(assumption.why));
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+/// A file as the page at `page` names it.
+std::string shownFrom(const fs::path& page, const fs::path& file) {
+    return file.empty() ? ""
+                        : fs::relative(fs::absolute(file), fs::absolute(page).parent_path())
+                              .generic_string();
+}
+
+std::string curvesHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        for (const Curve* curve : page.parts[run].curves) {
+            const std::string script = shownFrom(model.places[run].page, curve->script);
+            const std::string caption = fmt::format(
+                "{}{} <span class=\"soft\">{}{}</span>",
+                model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(curve->title),
+                escapeXml(script), curve->problem.empty() ? "" : ": " + escapeXml(curve->problem));
+            std::string svg = curve->svg;
+            if (const std::size_t at = svg.find("<svg"); at != svg.npos) {
+                svg.insert(at + 4,
+                           fmt::format(" role=\"img\" aria-label=\"{}\"", escapeXml(curve->title)));
+            }
+            html += fmt::format("<figure class=\"curve\">{}<figcaption>{}</figcaption></figure>\n",
+                                svg, caption);
+        }
+    }
+    return html.empty() ? "" : "<h3>Curves</h3>\n<div class=\"curves\">\n" + html + "</div>\n";
+}
+
+std::string failuresHtml(const Page& page, const Model& model) {
+    std::string items;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        for (const Failure& failure : page.parts[run].failures) {
+            items += fmt::format(
+                "<li>{}{} (case <a href=\"#{}\">{}</a>): <span class=\"status\">{}</span>{}{}"
+                "</li>\n",
+                model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(failure.name),
+                escapeXml(caseAnchor(run, failure.caseId)), escapeXml(failure.caseId),
+                records::statusName(failure.status), failure.message.empty() ? "" : " — ",
+                escapeXml(failure.message));
+        }
+    }
+    if (items.empty()) return "";
+    return "<h3>Cases that did not finish well</h3>\n<ul class=\"small\">\n" + items + "</ul>\n";
+}
+
+bool isImported(const ReportRun& run) {
+    return run.manifest.is_object() && run.manifest.contains("imported");
+}
+
+/// Which numbers were measured elsewhere, where there are some.
+std::string importedHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const ReportRun& from = model.runs[run];
+        if (!page.parts[run].experiment || !isImported(from)) continue;
+        html += fmt::format(
+            "<p class=\"small\"><span class=\"badge ambiguous\">imported</span> {}measured "
+            "elsewhere, on {}, and not by this program; the numbers of {}.</p>\n",
+            model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(from.context.device),
+            escapeXml(from.manifest["imported"].value("file", "a file")));
+    }
+    return html;
+}
+
+std::string againHtml(const RunPart& part, const ReportRun& run) {
+    const claims::ReportContext& context = run.context;
+    if (isImported(run)) {
+        return fmt::format("<h3>Import it again</h3>\n<pre>{}</pre>\n", escapeXml(context.command));
+    }
+    const auto command = run.commands.find(part.table.id);
+    if (command == run.commands.end()) return "";
+    return fmt::format("<h3>Run it again</h3>\n<pre>{}</pre>\n", escapeXml(command->second));
+}
+
+}  // namespace
+
+std::string pageHtml(const Page& page, const Model& model) {
+    const char* heading = model.isOneTable() ? "h1" : "h2";
+    std::string html = fmt::format(
+        "<section class=\"page\" id=\"{0}\">\n<{1} tabindex=\"-1\">{2}</{1}>\n"
+        "<p class=\"soft small\">{3}</p>\n{4}",
+        escapeXml(page.slug), heading, escapeXml(page.heading()), escapeXml(page.id),
+        model.isOneTable() ? machineHtml(model) : "");
+    std::string claims = claimsHtml(page, model, ClaimDetail::Full);
+    if (!claims.empty()) claims = "<h3>Claims</h3>\n" + claims;
+    if (!claims.empty() && model.isOneTable()) {
+        claims +=
+            "<details><summary>What the verdicts mean</summary>\n" + legendHtml() + "</details>\n";
+    }
+    const RunPart* shown = page.shown();
+    if (!shown) return html + claims + "</section>\n";
+    html += importedHtml(page, model);
+    const std::string images = imagesHtml(page, model);
+    // Of a figure, or a table of pictures, the numbers come after them.
+    const bool isPicture = shown->experiment->kind == config::Experiment::Kind::Figure ||
+                           !shown->experiment->shows.empty();
+    if (isPicture) html += images;
+    html += tableHtml(page, model);
+    html += paragraph("small", "Printed numbers: ", shown->table.hardware);
+    html += paragraph("small", "Remark: ", shown->table.remark);
+    for (const std::string& note : shown->table.notes) html += paragraph("small soft", "", note);
+    html += curvesHtml(page, model);
+    html += claims;
+    html += failuresHtml(page, model);
+    if (!isPicture) html += images;
+    html += assumptionsHtml(shown->experiment->assumptions);
+    html += againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())]);
+    html += casesHtml(page, model);
+    return html + "</section>\n";
+}
+
+}  // namespace gfxrepro::report

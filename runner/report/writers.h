@@ -1,0 +1,27 @@
+// The files of a run that people and programs read. Each is written atomically, and may be again.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "runner/claims/claims.h"
+#include "runner/report/junit.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::report {
+
+/// tables/<slug>.csv (every column printed, measured, low, high, what these bounds are, status;
+/// at full precision), .md
+/// (printed beside measured) and .tex (booktabs, a macro a number) for each. All say at which
+/// parameters was measured and which differ from the printed ones: the CSV of each row (column
+/// `parameters`) and of each cell (`…_at_printed`: yes or no).
+void writeTables(const std::filesystem::path& runDir, const std::vector<tables::Table>& tables);
+
+/// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
+/// its own. A case or claim that failed is a failure; a case that was left out and a claim that
+/// could not be judged are skipped.
+void writeClaims(const std::filesystem::path& runDir, const std::vector<records::CaseResult>& cases,
+                 const std::vector<claims::ClaimResult>& results,
+                 const claims::ReportContext& context);
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,225 @@
+#include "runner/results/artifact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "runner/cluster/predictions.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/report/markup.h"
+#include "runner/results/import_run.h"
+#include "runner/results/made_from.h"
+#include "runner/results/results.h"
+#include "runner/run/manifest.h"
+#include "runner/run/run_files.h"
+
+namespace gfxrepro::results {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::uintmax_t sizeOf(const fs::path& path) {
+    if (!fs::exists(path)) return 0;
+    if (fs::is_regular_file(path)) return fs::file_size(path);
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(path)) {
+        if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    return bytes;
+}
+
+/// What was measured; what is made of it is made again there.
+void copyMeasured(const fs::path& runDir, const fs::path& target) {
+    run::requireModestLog(runDir / "log.jsonl");  // the others were read
+    for (const char* name :
+         {"plan.json", "manifest.json", "records.csv", "log.jsonl", "images", "artifacts"}) {
+        copyTree(runDir / name, target / name);
+    }
+}
+
+/// Every number and text of a JSON object, a line each: "gl.vendor: Mesa".
+std::string flatText(const run::Json& object, const std::string& prefix) {
+    std::string text;
+    for (const auto& [key, value] : object.items()) {
+        if (value.is_object()) {
+            text += flatText(value, prefix + key + '.');
+        } else if (!value.is_array()) {
+            text +=
+                prefix + key + ": " + (value.is_string() ? value.get<std::string>() : value.dump());
+            text += '\n';
+        }
+    }
+    return text;
+}
+
+std::string environmentText(run::Json manifest) {
+    manifest.erase("scenes");
+    return flatText(manifest, "");
+}
+
+std::string assetsText(const run::Json& manifest, const scene::Catalog& catalog) {
+    using report::escapeMarkdown;
+    std::string text =
+        "# Scenes\nWhat was loaded. Generated scenes and stand-ins of generators come with the "
+        "program, under its licence (Apache-2.0).\n\n| scene | kind | what | SHA-256 | licence | "
+        "where to get it |\n| --- | --- | --- | --- | --- | --- |\n";
+    for (const auto& [name, use] : manifest.at("scenes").items()) {
+        const std::string sha256 = use.at("sha256").get<std::string>();
+        std::string licence = sha256.empty() ? "Apache-2.0" : "not recorded", where;
+        const auto entry = catalog.entries().find(name);
+        if (entry != catalog.entries().end() && !sha256.empty()) {
+            if (!entry->second.licence.empty()) licence = entry->second.licence;
+            where = entry->second.canonical;
+        }
+        text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", escapeMarkdown(name),
+                            use.at("kind").get<std::string>(),
+                            escapeMarkdown(use.at("description").get<std::string>()), sha256,
+                            escapeMarkdown(licence), escapeMarkdown(where));
+    }
+    return text;
+}
+
+/// Empty where none was measured.
+std::string programsText(const run::Json& manifest) {
+    const std::set<run::ProgramUse> programs = run::programsOf(manifest);
+    if (programs.empty()) return "";
+    std::string text =
+        "\n# Programs\nWhat was measured from outside, with the files that it reads. They are not "
+        "in this folder: who measures again puts them where the config looks for them.\n\n"
+        "| file | version | SHA-256 |\n| --- | --- | --- |\n";
+    for (const run::ProgramUse& use : programs) {
+        text += fmt::format("| {} | {} | {} |\n", report::escapeMarkdown(use.file),
+                            report::escapeMarkdown(use.version), use.sha256);
+    }
+    return text;
+}
+
+/// configs/<folder>/<file> of an experiment.
+fs::path configPlace(const config::Experiment& experiment) {
+    return fs::path("configs") / experiment.file.parent_path().filename() /
+           experiment.file.filename();
+}
+
+std::string scriptText(const run::Plan& plan, const config::Experiment& experiment) {
+    std::string command = "reproduce " + shellQuoted(configPlace(experiment).string()) +
+                          " --profile " + shellQuoted(plan.profile) + " --device " +
+                          shellQuoted(plan.request.device);
+    for (const std::string& set : plan.request.sets) command += " --set " + shellQuoted(set);
+    for (const std::string& sweep : plan.request.sweeps)
+        command += " --sweep " + shellQuoted(sweep);
+    for (const std::string& only : plan.request.only) command += " --only " + shellQuoted(only);
+    return fmt::format(
+        "#!/bin/sh\n# {}: {}\nset -e\ncd \"$(dirname \"$0\")/..\"\n"
+        "exec \"${{GFXREPRO:-gfxrepro}}\" {} --out again/{}\n",
+        experiment.label(), experiment.title, command, experiment.slug());
+}
+
+/// The plan may be anybody's: what it names is taken for a config only when it is that config.
+void requireExperiment(const config::Experiment& experiment) {
+    const config::Node whole = config::parseYamlFile(experiment.file);
+    for (const char* key : {"table", "section", "figure", "sweep_of", "technique", "extends"}) {
+        if (whole.isMap() && whole.find(key)) return;
+    }
+    throw Error(experiment.file.string() + ": is no config");
+}
+
+void writeScripts(const run::Plan& plan, const fs::path& target) {
+    const fs::path configs = dataFolder("configs");
+    for (const char* folder : {"presets", "scenes"}) {
+        if (fs::exists(configs / folder)) {
+            copyTree(configs / folder, target / "configs" / folder);
+        }
+    }
+    for (const config::Experiment& experiment : plan.experiments) {
+        const fs::path place = target / configPlace(experiment);
+        requireExperiment(experiment);
+        copyTree(experiment.file, place);
+        const fs::path script = target / "scripts" / (experiment.slug() + ".sh");
+        writeFileAtomic(script, scriptText(plan, experiment));
+        fs::permissions(script, fs::perms::owner_all | fs::perms::group_read |
+                                    fs::perms::group_exec | fs::perms::others_read |
+                                    fs::perms::others_exec);
+    }
+}
+
+/// Minutes that the cases of each experiment took, one after another.
+std::map<std::string, double> minutesOf(const fs::path& runDir) {
+    std::map<std::string, double> minutes;
+    for (const cluster::PastCase& past : cluster::readPastCases(runDir)) {
+        const run::Cost& cost = past.cost;
+        minutes[past.item.experiment] += cost.totalS() * past.item.measure.processes / 60.0;
+    }
+    return minutes;
+}
+
+/// Of the artifact, when all else is in it.
+std::string readmeText(const fs::path& artifact, const run::StoredRun& run) {
+    std::map<std::string, double> minutes = minutesOf(artifact);
+    const claims::ReportContext context = reportContext(run.manifest);
+    std::string text = fmt::format(
+        "# Measured by gfxrepro {}\nProfile {}, on {}.\n\n"
+        "`report.html` shows all; `tables/` and `claims.csv` are what it shows, made from the "
+        "cases of `plan.json`, where their parameters are, and `records.csv`. `environment.txt` "
+        "says with what and on what it was measured, `ASSETS.md` which models and their terms "
+        "and which programs, "
+        "`SHA256SUMS` that nothing changed since. `scripts/` measures each table again: "
+        "`scripts/NAME.sh`, with the program on the path or named by "
+        "`GFXREPRO`, of the same commit for the same bytes.\n\n| table | script | minutes | MiB of "
+        "results |\n| --- | --- | ---: | ---: |\n",
+        context.commit, context.profile, report::escapeMarkdown(context.device));
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        const std::string slug = experiment.slug();
+        std::uintmax_t bytes = 0;
+        for (const fs::path& part :
+             {fs::path("images") / slug, fs::path("thumbnails") / slug,
+              fs::path("artifacts") / slug, fs::path("tables") / (slug + ".csv"),
+              fs::path("tables") / (slug + ".md"), fs::path("tables") / (slug + ".tex")}) {
+            bytes += sizeOf(artifact / part);
+        }
+        text += fmt::format("| {}: {} | scripts/{}.sh | {:.1f} | {:.1f} |\n", experiment.label(),
+                            report::escapeMarkdown(experiment.title), slug, minutes[experiment.id],
+                            static_cast<double>(bytes) / (1 << 20));
+    }
+    return text;
+}
+
+std::string checksums(const fs::path& target) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(target)) {
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    std::string text;
+    for (const fs::path& file : files) {
+        text += sha256OfFile(file) + "  " + fs::relative(file, target).string() + '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scene::Catalog& catalog,
+                   const fs::path& target) {
+    if (fs::exists(target))
+        throw Error(target.string() + ": is there already; give another folder");
+    requireNotImported(run.manifest, runDir.string(),
+                       "measure again; `export --tidy` gives its numbers");
+    takeFolder(target, runDir, run.manifest);
+    writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
+    copyMeasured(runDir, target);
+    writeResults(target, run, {});
+    writeFileAtomic(target / "manifest.json", run.manifest.dump(2) + '\n');  // with its notes
+    writeFileAtomic(target / "ASSETS.md",
+                    assetsText(run.manifest, catalog) + programsText(run.manifest));
+    writeScripts(run.plan, target);
+    writeFileAtomic(target / "README.md", readmeText(target, run));
+    writeFileAtomic(target / "SHA256SUMS", checksums(target));
+}
+
+}  // namespace gfxrepro::results

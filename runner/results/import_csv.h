@@ -1,0 +1,53 @@
+// A CSV file of numbers that were measured elsewhere, read and checked.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/core/error.h"
+#include "runner/records/records.h"
+
+namespace gfxrepro::results {
+
+/// What is imported. The file has a number a row: columns `metric` and `value`, perhaps `unit`,
+/// `pass`, `frame`, `repeat`, `process`, `lane`, `status`, `message`; every other column is a
+/// parameter of the case, or `experiment`, `technique`, `scene`. With `metrics` it has a column for
+/// each of these instead of `metric`, `value` and `unit`. With `cases` it has `case_id`, and what a
+/// case is stands in that file (as `gfxrepro export --tidy` writes both).
+struct ImportFiles {
+    std::filesystem::path file;
+    std::filesystem::path cases = {};                               // empty: none
+    std::vector<std::pair<std::string, std::string>> metrics = {};  // column, unit
+};
+
+/// The cells of a case that are not empty, by column, in the order of the columns.
+struct ImportedCase {
+    std::vector<std::pair<std::string, std::string>> cells;
+    SourceLocation where;  // the row that has it first
+
+    /// The cell of that column, or "".
+    std::string cell(std::string_view column) const;
+};
+
+/// A record without what belongs to its case: id, table, technique, method, scene.
+struct ImportedRow {
+    std::size_t caseIndex = 0;
+    records::Record record;
+    int line = 0;
+};
+
+struct ImportedNumbers {
+    std::vector<std::string> columns;  // of the cases
+    std::vector<ImportedCase> cases;   // in the order of the file
+    std::vector<ImportedRow> rows;
+};
+
+/// Throws Error with file and line, what was found and what is allowed: for a column that is
+/// missing, there twice or of no use, a row of another length, a number that is none, a unit that
+/// changes, a value that is there twice, a case that is not known, and text that is not UTF-8.
+ImportedNumbers readImport(const ImportFiles& files);
+
+}  // namespace gfxrepro::results

@@ -1,0 +1,367 @@
+#include "runner/results/import_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "runner/config/imported.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/results/tidy.h"
+#include "runner/run/expectations.h"
+#include "runner/run/ledger.h"
+#include "runner/run/plan_hash.h"
+
+namespace gfxrepro::results {
+
+namespace fs = std::filesystem;
+using config::Experiment;
+using config::Node;
+
+namespace {
+
+constexpr const char* kOutputWidth = "output.width";
+constexpr const char* kOutputHeight = "output.height";
+constexpr int kMostOutputPx = 16384;
+
+/// "time ms (2).csv" → "time-ms--2-": a name that a config may have.
+std::string nameFrom(const fs::path& file) {
+    std::string name = file.stem().string().substr(0, 60);
+    for (char& c : name) {
+        const bool isAllowed = std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.';
+        if (!isAllowed) c = '-';
+    }
+    return name.empty() ? "imported" : name;
+}
+
+/// One table of everything, for who gives no config.
+Experiment plainExperiment(const fs::path& file) {
+    const Node document =
+        Node::map({{"sweep_of", Node::scalar(nameFrom(file), {}, true)},
+                   {"title", Node::scalar("Numbers of " + file.filename().string(), {}, true)},
+                   {"technique", Node::scalar(config::kImported)}});
+    return config::experimentFromDocument(document, fs::absolute(file));
+}
+
+/// One node for one number, however it is spelt: 1, 1.0 and 1e0 are one case.
+Node valueOf(const std::string& text, const SourceLocation& where) {
+    const Node node = Node::scalar(text, where);
+    const auto number = node.tryInteger() ? std::nullopt : node.tryDouble();
+    return number ? Node::number(*number, where) : node;
+}
+
+/// Maps whose keys are 0, 1, … are lists.
+Node withLists(const Node& node) {
+    if (!node.isMap()) return node;
+    Node::Sequence items;
+    Node map = Node::map({});
+    bool isList = !node.entries().empty();
+    for (const auto& [key, value] : node.entries()) {
+        isList = isList && key == std::to_string(items.size());
+        items.push_back(withLists(value));
+        map.set(key, items.back());
+    }
+    return isList ? Node::sequence(std::move(items)) : map;
+}
+
+int outputSize(const ImportedCase& given, const std::string& column, int absent) {
+    const std::string text = given.cell(column);
+    if (text.empty()) return absent;
+    const auto size = parseInteger(text);
+    if (size && *size >= 1 && *size <= kMostOutputPx) return static_cast<int>(*size);
+    throw Error(given.where, fmt::format("column '{}': '{}'; allowed: a whole number from 1 to {}",
+                                         column, text, kMostOutputPx));
+}
+
+std::optional<int> sampleOf(const ImportedCase& given) {
+    const std::string text = given.cell(tables::kSceneSample);
+    if (text.empty()) return std::nullopt;
+    const auto sample = parseInteger(text);
+    if (sample && *sample >= 0 && *sample <= tables::kMostSceneSample) {
+        return static_cast<int>(*sample);
+    }
+    throw Error(given.where, fmt::format("column '{}': '{}'; allowed: a whole number from 0 to {}",
+                                         tables::kSceneSample, text, tables::kMostSceneSample));
+}
+
+/// Cases have an output beside their parameters; a parameter of that name would be lost.
+void requireKnownOutput(const std::string& name, const ImportedCase& given) {
+    if (name != "output" && !name.starts_with("output.")) return;
+    throw Error(given.where, fmt::format("column '{}'; allowed of that: {}, {}", name, kOutputWidth,
+                                         kOutputHeight));
+}
+
+/// The name of the parameter in that column; empty where it holds something else of the case.
+std::string paramOf(const std::string& column) {
+    if (column.starts_with(kParamPrefix)) return column.substr(kParamPrefix.size());
+    const bool isOther = std::ranges::find(kCaseColumns, column) != std::end(kCaseColumns) ||
+                         column == kOutputWidth || column == kOutputHeight ||
+                         column == tables::kStandsFor || column == tables::kSceneSample;
+    return isOther ? "" : column;
+}
+
+run::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
+    run::Case item;
+    item.experiment = experiment.id;
+    item.technique = experiment.technique;
+    const std::string technique = given.cell("technique");
+    if (!config::isMeasuredHere(experiment) && !technique.empty()) item.technique = technique;
+    Node params = Node::map({});
+    for (const auto& [column, text] : given.cells) {
+        const std::string name = paramOf(column);
+        if (name.empty()) continue;
+        requireKnownOutput(name, given);
+        const Node value = valueOf(text, given.where);
+        if (name.starts_with(config::kSceneAxisPrefix)) {
+            params.set(name, value);
+        } else {
+            params.setPath(name, value);
+        }
+    }
+    item.params = withLists(params);
+    item.given = item.params;
+    item.axes = Node::map({});
+    if (const std::string scene = given.cell("scene"); !scene.empty()) {
+        item.scene = Node::scalar(scene, {}, true);
+    }
+    if (const std::string name = given.cell(tables::kStandsFor); !name.empty()) {
+        item.standsFor = Node::scalar(name, {}, true);
+    }
+    item.sceneSample = sampleOf(given);
+    item.outputWidthPx = outputSize(given, kOutputWidth, experiment.outputWidthPx);
+    item.outputHeightPx = outputSize(given, kOutputHeight, experiment.outputHeightPx);
+    item.measure = experiment.measure;
+    item.measure.processes = 1;
+    item.measure.relativeError = 0.0;
+    item.measure.processesAtLeast = 0;
+    return item;
+}
+
+/// The value of an axis; null where the case has none.
+Node axisOf(const run::Case& item, const std::string& axis) {
+    if (axis == "scene") return item.standsFor.isNull() ? item.scene : item.standsFor;
+    if (axis == kOutputWidth) return Node::number(item.outputWidthPx);
+    if (axis == kOutputHeight) return Node::number(item.outputHeightPx);
+    const Node* value = &item.params;
+    if (const Node* whole = value->find(axis)) return *whole;
+    for (const std::string& step : split(axis, '.')) {
+        value = value->isMap() ? value->find(step) : nullptr;
+        if (!value) return {};
+    }
+    return *value;
+}
+
+/// What is swept: of a config, its axes; else what differs between the cases.
+std::vector<std::string> axesOf(const Experiment& experiment,
+                                const std::vector<std::string>& columns,
+                                const std::vector<run::Case*>& cases) {
+    std::vector<std::string> axes;
+    const auto add = [&](const std::string& axis) {
+        if (std::ranges::find(axes, axis) == axes.end()) axes.push_back(axis);
+    };
+    for (const config::AxisPoint& point : config::expandSweep(experiment.sweep)) {
+        for (const auto& [axis, value] : point) add(axis);
+    }
+    if (!axes.empty() || !experiment.hasDefaultLayout()) return axes;
+    std::vector<std::string> names = {"scene", kOutputWidth, kOutputHeight};
+    for (const std::string& column : columns) {
+        if (const std::string name = paramOf(column); !name.empty()) names.push_back(name);
+    }
+    for (const std::string& name : names) {
+        const bool varies = std::ranges::any_of(cases, [&](const run::Case* item) {
+            return !axisOf(*item, name).sameContent(axisOf(*cases.front(), name));
+        });
+        if (varies) add(name);
+    }
+    return axes;
+}
+
+const Experiment& experimentOf(const ImportedCase& given,
+                               const std::vector<Experiment>& experiments) {
+    const std::string id = given.cell("experiment");
+    if (id.empty() && experiments.size() == 1) return experiments.front();
+    const auto found = std::ranges::find(experiments, id, &Experiment::id);
+    if (found != experiments.end()) return *found;
+    std::vector<std::string> known;
+    for (const Experiment& experiment : experiments) known.push_back(experiment.id);
+    throw Error(given.where,
+                fmt::format("column 'experiment': '{}'; allowed, as of the configs given: {}", id,
+                            joined(known)));
+}
+
+std::string laneName(config::Measure::Lane lane) {
+    return lane == config::Measure::Lane::Timing ? "timing" : "quality";
+}
+
+/// Claims know a time by its name: one of another name would be judged as what never varies.
+void requireTimeNames(const ImportedNumbers& numbers, const run::Plan& plan, const fs::path& file) {
+    static const std::set<std::string> kUnits = {"ns", "us", "µs", "ms", "s", "min", "h"};
+    std::set<std::string> own;  // of experiments whose metrics no technique declares
+    for (const Experiment& experiment : plan.experiments) {
+        if (!config::isMeasuredHere(experiment)) own.insert(experiment.id);
+    }
+    for (const ImportedRow& row : numbers.rows) {
+        const records::Record& record = row.record;
+        const bool isInMs = record.metric.ends_with("_ms");
+        const bool isTime = kUnits.contains(record.unit);
+        const bool isRight = isTime ? isInMs && record.unit == "ms" : !isInMs;
+        if (isRight || !own.contains(plan.cases[row.caseIndex].experiment)) continue;
+        throw Error({file.string(), row.line, 0},
+                    fmt::format("'{}' has the unit '{}'; a time has a name that ends in _ms and "
+                                "the unit ms, by which claims know it, and nothing else has",
+                                record.metric, record.unit));
+    }
+}
+
+/// How often each case was measured, and in which lane, as its rows say.
+void takeMeasures(const ImportedNumbers& numbers, std::vector<run::Case>& cases) {
+    for (const ImportedRow& row : numbers.rows) {
+        config::Measure& measure = cases[row.caseIndex].measure;
+        measure.processes = std::max(measure.processes, row.record.process + 1);
+        measure.lane = row.record.lane == laneName(config::Measure::Lane::Timing)
+                           ? config::Measure::Lane::Timing
+                           : config::Measure::Lane::Quality;
+    }
+}
+
+void takeAxes(const ImportedNumbers& numbers, run::Plan& plan) {
+    for (const Experiment& experiment : plan.experiments) {
+        std::vector<run::Case*> own;
+        for (run::Case& item : plan.cases) {
+            if (item.experiment == experiment.id) own.push_back(&item);
+        }
+        for (const std::string& axis : axesOf(experiment, numbers.columns, own)) {
+            for (run::Case* item : own) {
+                if (const Node value = axisOf(*item, axis); !value.isNull()) {
+                    item->axes.set(axis, value);
+                }
+            }
+        }
+    }
+}
+
+/// Ids, as a plan that is read must have them.
+void identify(const ImportedNumbers& numbers, run::Plan& plan) {
+    std::map<std::string, int> lines;
+    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+        run::Case& item = plan.cases[i];
+        if (!item.scene.isNull())
+            plan.sceneKeys[item.scene.text()] = "imported " + item.scene.text();
+        item.id = run::caseId(item, item.toJson(), plan);
+        const SourceLocation& where = numbers.cases[i].where;
+        const auto [known, isNew] = lines.try_emplace(item.id, where.line);
+        if (!isNew) {
+            throw Error(
+                where, fmt::format("the same case as in line {}: {}", known->second, item.title()));
+        }
+    }
+    std::vector<run::Json> documents;
+    for (const Experiment& experiment : plan.experiments) {
+        documents.push_back(experiment.document.toJson());
+    }
+    plan.hash = run::planHash(plan, documents);
+}
+
+run::Json manifestOf(const run::Plan& plan, const ImportRequest& request, const std::string& sha256,
+                     std::size_t rowCount) {
+    const std::string file = request.files.file.filename().string();
+    run::Json manifest = {
+        {"schema", 1},
+        {"commit", run::programCommit()},
+        {"build", run::programBuild()},
+        {"build_id", plan.buildId},
+        {"plan", plan.hash},
+        {"profile", plan.profile},
+        {"started", run::utcTime()},
+        {"cpu", "not known: imported"},
+        {"cores", 0},
+        {"device_class", plan.deviceClass},
+        {"gl", {{"vendor", ""}, {"renderer", request.machine}, {"version", ""}}},
+        {"scenes", run::Json::object()},
+        {"invocations", run::Json::array()},
+        {"imported",
+         {{"file", file}, {"sha256", sha256}, {"rows", rowCount}, {"machine", request.machine}}}};
+    run::beginInvocation(manifest, request.commandLine);
+    run::addNote(manifest,
+                 fmt::format("imported: these numbers were measured elsewhere, on {}, and not "
+                             "by this program; they are those of {} (SHA-256 {})",
+                             request.machine, file, sha256.substr(0, 12)));
+    return manifest;
+}
+
+}  // namespace
+
+run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& catalog,
+                         std::span<const technique::TechniqueInfo> techniques) {
+    const ImportedNumbers numbers = readImport(request.files);
+    run::StoredRun run;
+    run::Plan& plan = run.plan;
+    plan.profile = request.profile;
+    plan.deviceClass = request.isOfGpu ? "gpu" : "software";
+    std::string content = sha256OfFile(request.files.file);
+    if (!request.files.cases.empty()) content += sha256OfFile(request.files.cases);
+    plan.buildId = "imported-" + sha256(content);
+    plan.experiments = request.experiments;
+    std::vector<fs::path> configs;
+    for (const Experiment& experiment : plan.experiments) configs.push_back(experiment.file);
+    for (const fs::path& config : configs) plan.request.configs.push_back(config.string());
+    if (plan.experiments.empty()) plan.experiments = {plainExperiment(request.files.file)};
+    const bool isPlain = request.experiments.empty();
+    run::requireCaseCount(numbers.cases.size(), plan.experiments.front());
+    for (const ImportedCase& given : numbers.cases) {
+        plan.cases.push_back(caseFrom(
+            given, isPlain ? plan.experiments.front() : experimentOf(given, plan.experiments)));
+    }
+    requireTimeNames(numbers, plan, request.files.file);
+    takeMeasures(numbers, plan.cases);
+    takeAxes(numbers, plan);
+    for (Experiment& experiment : plan.experiments) {
+        experiment.paperCases = run::resolvePaperCases(experiment, catalog, techniques);
+        if (config::isMeasuredHere(experiment) && experiment.hasDefaultLayout()) {
+            experiment.outputs = technique::outputsOf(
+                technique::findTechnique(techniques, experiment.technique, {}));
+        }
+        std::vector<run::Case> own;
+        std::ranges::copy_if(plan.cases, std::back_inserter(own), [&](const run::Case& item) {
+            return item.experiment == experiment.id;
+        });
+        run::bindAssumptions(experiment, own, catalog, techniques);
+    }
+    if (!configs.empty()) plan.expectations = run::findExpectations(configs);
+    identify(numbers, plan);
+    for (const ImportedRow& row : numbers.rows) {
+        const run::Case& item = plan.cases[row.caseIndex];
+        records::Record record = row.record;
+        record.caseId = item.id;
+        record.table = item.experiment;
+        record.technique = item.technique;
+        record.method = item.method();
+        record.scene = item.recordedScene();
+        run.records.push_back(std::move(record));
+    }
+    run.manifest = manifestOf(plan, request, sha256OfFile(request.files.file), run.records.size());
+    return run;
+}
+
+void writeImported(const run::RunDirectory& directory, const run::StoredRun& run) {
+    run.plan.writeFile(directory.planFile());
+    records::RecordWriter(directory.recordsFile()).append(run.records);
+    directory.log(
+        run::Json{{"event", "imported"}, {"message", run::notesOf(run.manifest).front()}});
+    run::Json manifest = run.manifest;
+    run::sealRecords(manifest, directory.path());
+    writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
+}
+
+void requireNotImported(const run::Json& manifest, const std::string& runDir,
+                        const std::string& purpose) {
+    if (!manifest.contains("imported")) return;
+    throw Error(fmt::format("{}: was imported; there is nothing to {}", runDir, purpose));
+}
+
+}  // namespace gfxrepro::results

@@ -1,0 +1,25 @@
+// Runs as their report shows them.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "runner/report/report.h"
+#include "runner/results/results.h"
+#include "runner/run/run.h"
+
+namespace gfxrepro::results {
+
+/// What the shipped configs say of documents, for every report.
+report::ReportOptions reportOptions(bool embeds = false);
+
+/// With the plan's cases: the command that runs each again, and what log.jsonl says of it. Its
+/// curves are not drawn.
+report::ReportRun reportRun(const std::filesystem::path& runDir, const run::StoredRun& run,
+                            const Results& results);
+
+/// A folder of which only manifest.json and claims.csv are at hand, as results/reference keeps
+/// them: its verdicts stand beside those of whole runs. Throws Error when these are not there.
+report::ReportRun keptRun(const std::filesystem::path& folder);
+
+}  // namespace gfxrepro::results

@@ -1,0 +1,99 @@
+#include "runner/results/results.h"
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/core/files.h"
+#include "runner/report/gnuplot.h"
+#include "runner/report/report.h"
+#include "runner/report/writers.h"
+#include "runner/results/made_from.h"
+#include "runner/results/report_runs.h"
+#include "runner/run/machine_state.h"
+#include "runner/run/manifest.h"
+#include "runner/run/plan.h"
+#include "runner/studies/sensitivity.h"
+#include "runner/tables/fit.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::results {
+
+namespace fs = std::filesystem;
+
+claims::ReportContext reportContext(const run::Json& manifest) {
+    claims::ReportContext context;
+    context.device = manifest.at("gl").at("renderer").get<std::string>();
+    context.deviceClass = manifest.at("device_class").get<std::string>();
+    context.profile = manifest.at("profile").get<std::string>();
+    context.commit = manifest.at("commit").get<std::string>();
+    context.command = manifest.at("invocations").at(0).at("command").get<std::string>();
+    if (const auto info = manifest.at("gl"); info.contains("balance")) {
+        context.fragmentShare = run::balanceFromJson(info["balance"]).fragmentShare();
+    }
+    return context;
+}
+
+claims::ReportContext reportContext(const run::StoredRun& run) {
+    claims::ReportContext context = reportContext(run.manifest);
+    context.tried = studies::keptSensitivity(run.plan);
+    context.tableNotes =
+        tables::keptCalibrations(dataFolder("configs").parent_path() / "results/calibration");
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        const std::string note = run::machineStateNote(run.manifest, experiment.id);
+        if (!note.empty()) context.tableNotes[experiment.id].push_back(note);
+    }
+    return context;
+}
+
+namespace {
+
+/// Behind what the run itself must say: that its files were changed, that machines differ.
+std::vector<tables::Table> withNotes(std::vector<tables::Table> tables,
+                                     const std::vector<std::string>& notes) {
+    for (tables::Table& table : tables) {
+        table.notes.insert(table.notes.begin(), notes.begin(), notes.end());
+    }
+    return tables;
+}
+
+}  // namespace
+
+Results resultsOf(const run::StoredRun& run) {
+    Results results;
+    results.context = reportContext(run);
+    results.tables =
+        tables::buildTables(run.plan.experiments, run::plannedCases(run.plan.cases), run.records);
+    tables::addNotes(results.context.tableNotes, results.tables);
+    results.claims = claims::evaluateClaims(run.plan.experiments, results.tables, results.context);
+    results.printedCells = tables::countPrintedCells(run.plan.experiments, results.tables);
+    return results;
+}
+
+Results writeResults(const fs::path& runDir, const run::StoredRun& run, const ResultFiles& which) {
+    const fs::path out = which.out.empty() ? runDir : which.out;
+    if (!which.out.empty()) takeFolder(out, runDir, run.manifest);
+    const std::vector<config::Experiment>& experiments = run.plan.experiments;
+    Results results = resultsOf(run);
+    if (which.tables) {
+        report::writeTables(out, withNotes(results.tables, run::notesOf(run.manifest)));
+        tables::writeFits(out, experiments, results.tables);
+    }
+    if (which.claims) {
+        report::writeClaims(out, run::caseResults(run), results.claims, results.context);
+    }
+    if (!which.tables && !which.report) return results;
+    std::chrono::milliseconds patience = report::kGnuplotPatience;
+    const bool isKept = which.tables || !which.embeds;
+    std::vector<report::Curve> curves =
+        report::drawCurves(isKept ? out : fs::path(), results.tables, experiments, patience);
+    if (which.report) {
+        report::ReportRun shown = reportRun(runDir, run, results);
+        shown.curves = std::move(curves);
+        report::writeReport(out / "report.html", {&shown, 1}, reportOptions(which.embeds));
+    }
+    return results;
+}
+
+}  // namespace gfxrepro::results

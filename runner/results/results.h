@@ -1,0 +1,41 @@
+// What a run came to: made once, and given to all that write of it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "runner/claims/claims.h"
+#include "runner/run/run.h"
+#include "runner/tables/printed_parameters.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::results {
+
+/// What claims and the report ask of a run.
+claims::ReportContext reportContext(const run::Json& manifest);
+/// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
+claims::ReportContext reportContext(const run::StoredRun& run);
+
+struct Results {
+    claims::ReportContext context;
+    std::vector<tables::Table> tables;        // beside the experiments of the run's plan
+    std::vector<claims::ClaimResult> claims;  // of all of them, in order
+    tables::PrintedCells printedCells;
+};
+Results resultsOf(const run::StoredRun& run);
+
+/// Which files writeResults() makes.
+struct ResultFiles {
+    bool tables = true;  // with their curves
+    bool claims = true;
+    bool report = true;
+    bool embeds = false;             // every picture inside of the report
+    std::filesystem::path out = {};  // where they go; empty: the run's folder
+};
+/// Makes tables/ and plots/, claims.csv with junit.xml, report.html again from the records. With
+/// `out` nothing is written into the run's folder, and nothing over the results of another run
+/// (made_from.h).
+Results writeResults(const std::filesystem::path& runDir, const run::StoredRun& run,
+                     const ResultFiles& which);
+
+}  // namespace gfxrepro::results

@@ -1,0 +1,156 @@
+#include "runner/results/tidy.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "runner/results/made_from.h"
+#include "runner/results/results.h"
+
+namespace gfxrepro::results {
+
+namespace fs = std::filesystem;
+using records::Frame;
+using records::FrameValue;
+
+namespace {
+
+FrameValue valueOf(const run::Json& value) {
+    if (value.is_boolean()) return value.get<bool>();
+    if (value.is_number_integer()) return value.get<long long>();
+    if (value.is_number()) return value.get<double>();
+    if (value.is_string()) return value.get<std::string>();
+    return std::monostate{};
+}
+
+using Fields = std::map<std::string, FrameValue>;
+
+/// A column a part: of maps by their keys, of lists by place. `columns` gets those that are new.
+void addParts(const std::string& name, const run::Json& value, Fields& fields,
+              std::vector<std::string>& columns) {
+    if (!value.is_structured()) {
+        if (!fields.contains(name)) columns.push_back(name);
+        fields[name] = valueOf(value);
+        return;
+    }
+    for (const auto& [key, part] : value.items()) {
+        addParts(name.empty() ? key : name + '.' + key, part, fields, columns);
+    }
+}
+
+std::string columnOf(const std::string& param) {
+    const bool isTaken = std::ranges::find(kCaseColumns, param) != std::end(kCaseColumns);
+    return isTaken ? std::string(kParamPrefix) + param : param;
+}
+
+/// Parameters by column, and the columns in the order in which the case has them.
+std::pair<Fields, std::vector<std::string>> paramsOf(const run::Case& item) {
+    Fields fields;
+    std::vector<std::string> columns;
+    const run::Json params = item.recordedParams();
+    for (const auto& [name, value] : params.items()) {
+        addParts(columnOf(name), value, fields, columns);
+    }
+    return {std::move(fields), std::move(columns)};
+}
+
+std::string laneName(const run::Case& item) {
+    return item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
+}
+
+Frame axisFrame(const run::Plan& plan) {
+    std::vector<std::vector<FrameValue>> rows;
+    std::map<std::string, std::set<std::string>> known;
+    for (const run::Case& item : plan.cases) {
+        std::set<std::string>& own = known[item.experiment];
+        for (const auto& [axis, value] : item.axes.entries()) {
+            if (!own.insert(axis).second) continue;
+            rows.push_back({item.experiment, static_cast<long long>(own.size()),
+                            axis == "scene" ? axis : columnOf(axis)});
+        }
+    }
+    const std::size_t count = rows.size();
+    return {
+        "axes", {"experiment", "place", "axis"}, count, [rows = std::move(rows)](std::size_t i) {
+            return rows[i];
+        }};
+}
+
+Frame runFrame(const run::StoredRun& run) {
+    const claims::ReportContext context = reportContext(run.manifest);
+    std::vector<std::pair<std::string, std::string>> entries = {
+        {"commit", context.commit},
+        {"started", run.manifest.value("started", "")},
+        {"profile", context.profile},
+        {"device_class", context.deviceClass},
+        {"machine", run::machineName(run.manifest)},
+        {"command", context.command}};
+    for (const std::string& note : run::notesOf(run.manifest)) entries.emplace_back("note", note);
+    const std::size_t count = entries.size();
+    return {"run", {"key", "value"}, count, [entries = std::move(entries)](std::size_t i) {
+                return std::vector<FrameValue>{entries[i].first, entries[i].second};
+            }};
+}
+
+}  // namespace
+
+Frame caseFrame(std::span<const run::Case> cases) {
+    Frame frame{"cases", {kCaseColumns, std::end(kCaseColumns)}, cases.size(), {}};
+    std::set<std::string> known;
+    for (const run::Case& item : cases) {
+        for (std::string& column : paramsOf(item).second) {
+            if (known.insert(column).second) frame.columns.push_back(std::move(column));
+        }
+    }
+    frame.row = [cases, columns = frame.columns](std::size_t i) {
+        const run::Case& item = cases[i];
+        std::vector<FrameValue> row = {item.id,        item.experiment,
+                                       item.technique, item.recordedScene(),
+                                       laneName(item), static_cast<long long>(item.seed)};
+        Fields fields = paramsOf(item).first;
+        for (std::size_t at = row.size(); at < columns.size(); ++at) {
+            row.push_back(std::move(fields[columns[at]]));
+        }
+        return row;
+    };
+    return frame;
+}
+
+Frame recordFrame(const std::vector<records::Record>& records) {
+    return {"records",
+            {"case_id", "process", "frame", "repeat", "lane", "pass", "metric", "unit", "value",
+             "status", "message"},
+            records.size(),
+            [&records](std::size_t i) {
+                const records::Record& row = records[i];
+                return std::vector<FrameValue>{row.caseId,
+                                               static_cast<long long>(row.process),
+                                               static_cast<long long>(row.frame),
+                                               static_cast<long long>(row.repeat),
+                                               row.lane,
+                                               row.pass,
+                                               row.metric,
+                                               row.unit,
+                                               row.value,
+                                               std::string(records::statusName(row.status)),
+                                               row.message};
+            }};
+}
+
+void writeTidy(const fs::path& runDir, const run::StoredRun& run, const fs::path& target) {
+    if (fs::exists(target)) {
+        throw Error(target.string() + ": is there already; give another folder");
+    }
+    takeFolder(target, runDir, run.manifest);
+    const Frame frames[] = {caseFrame(run.plan.cases), recordFrame(run.records),
+                            axisFrame(run.plan), runFrame(run)};
+    records::writeFrameCsv(target / "cases.csv", frames[0]);
+    records::writeFrameCsv(target / "records.csv", frames[1]);
+    const records::FrameIndex indices[] = {{"records", "case_id"}, {"records", "metric"}};
+    records::writeSqlite(target / "run.sqlite", frames, indices);
+}
+
+}  // namespace gfxrepro::results

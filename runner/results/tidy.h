@@ -1,0 +1,36 @@
+// A run as tidy tables for the field's other programs: cases and records, without JSON in cells.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/records/frame.h"
+#include "runner/run/run.h"
+
+namespace gfxrepro::results {
+
+/// The columns of cases.csv before the parameters. None is a word of SQL.
+inline constexpr std::string_view kCaseColumns[] = {"case_id", "experiment", "technique",
+                                                    "scene",   "lane",       "run_seed"};
+/// Begins the column of a parameter that has the name of one of these.
+inline constexpr std::string_view kParamPrefix = "params.";
+
+/// A case a row: kCaseColumns, then a column for each parameter of any case, empty where a case has
+/// not got it. What has parts is a column a part: "output.width", "offset.0".
+records::Frame caseFrame(std::span<const run::Case> cases);
+
+/// A number a row: case_id, process, frame, repeat, lane, pass, metric, unit, value, status,
+/// message. `records` must outlive it. Of what belongs to the whole case, frame and repeat are −1.
+records::Frame recordFrame(const std::vector<records::Record>& records);
+
+/// Writes the folder `target`, which must not exist: cases.csv, records.csv, and run.sqlite with
+/// both as tables, beside `axes` (experiment, place, axis: what is swept) and `run` (key, value: of
+/// the manifest).
+void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
+               const std::filesystem::path& target);
+
+}  // namespace gfxrepro::results

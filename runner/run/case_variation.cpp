@@ -1,0 +1,114 @@
+#include "runner/run/case_variation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runner/config/scene_reference.h"
+#include "runner/core/text.h"
+
+namespace gfxrepro::run {
+
+void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item) {
+    item.given = spec.params;
+    for (const auto& [name, value] : instead.entries()) {
+        for (const auto& [axis, swept] : spec.axes) {
+            if (axis != name) continue;
+            throw Error(instead.keyLocation(name),
+                        "'params_instead': '" + name + "' is swept here");
+        }
+        config::Node& map = item.given.find(name) ? item.given : item.offered;
+        map.set(name, value, instead.keyLocation(name));
+    }
+}
+
+namespace {
+
+/// Parameters of the generated scene, which are among the case's.
+config::Node sceneParamsOf(const Case& item) {
+    config::Node params = config::Node::map({});
+    for (const auto& [name, value] : item.params.entries()) {
+        if (!name.starts_with(config::kSceneAxisPrefix)) continue;
+        params.set(name.substr(config::kSceneAxisPrefix.size()), value,
+                   item.params.keyLocation(name));
+    }
+    return params;
+}
+
+}  // namespace
+
+std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
+                             const scene::Catalog& catalog) {
+    if (item.scene.isNull()) return {item};
+    Case first = item;
+    const config::Node& instead = experiment.sceneInstead;
+    const config::Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
+    if (other) first.scene = *other;
+    scene::SceneSource source = catalog.resolve(first.scene);
+    const config::Node params = sceneParamsOf(item);
+    if (!params.entries().empty()) {
+        scene::takeParams(config::sceneName(first.scene.text()), params, source);
+        first.scene = config::withSceneParams(first.scene, params);
+    }
+    const std::uint64_t seed =
+        experiment.sceneSeed ? static_cast<std::uint64_t>(*experiment.sceneSeed) : source.seed;
+    const int count = source.isSeeded() ? experiment.measure.sceneSeeds : 1;
+    std::vector<Case> cases;
+    for (int i = 0; i < count; ++i) {
+        Case& taken = cases.emplace_back(first);
+        if (count > 1) taken.sceneSample = i;
+        if (source.isSeeded() && (i > 0 || experiment.sceneSeed)) {
+            taken.scene = config::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
+        }
+        if (taken.scene.text() != item.scene.text()) taken.standsFor = item.scene;
+    }
+    return cases;
+}
+
+void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases,
+                  const scene::Catalog& catalog) {
+    const auto isSeeded = [&](const Case& item) {
+        return !item.scene.isNull() && catalog.resolve(item.scene).isSeeded();
+    };
+    if (experiment.sceneSeed && std::ranges::none_of(cases, isSeeded)) {
+        throw Error(experiment.document.find("scene_seed")->location(),
+                    "'scene_seed': no scene of " + experiment.id + " is generated");
+    }
+    if (experiment.sceneInstead.isNull()) return;
+    for (const auto& [name, other] : experiment.sceneInstead.entries()) {
+        const auto isTaken = [&](const Case& item) {
+            return !item.standsFor.isNull() && item.standsFor.text() == name;
+        };
+        if (std::ranges::any_of(cases, isTaken)) continue;
+        throw Error(
+            experiment.sceneInstead.keyLocation(name),
+            "'scene_instead': no case of " + experiment.id + " has the scene '" + name + "'");
+    }
+}
+
+void requireSceneNames(const config::Experiment& experiment, const std::vector<Case>& cases,
+                       const scene::Catalog& catalog) {
+    std::set<std::string> known, scenes;
+    for (const auto& [name, entry] : catalog.entries()) scenes.insert(name);
+    for (const Case& item : cases) {
+        for (const auto& [name, value] : item.params.entries()) known.insert(name);
+        const config::Node& scene = item.standsFor.isNull() ? item.scene : item.standsFor;
+        if (!scene.isNull()) scenes.insert(config::sceneName(scene.text()));
+    }
+    const auto require = [](const std::set<std::string>& names, const std::string& name,
+                            const SourceLocation& where, const std::string& what) {
+        if (names.contains(name)) return;
+        const std::vector<std::string> all(names.begin(), names.end());
+        throw Error(where,
+                    fmt::format("params_by_scene: {} '{}'{}", what, name, suggestion(name, all)));
+    };
+    for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
+        require(scenes, scene, experiment.paramsByScene.keyLocation(scene), "unknown scene");
+        for (const auto& [name, value] : params.entries()) {
+            require(known, name, params.keyLocation(name), "unknown parameter");
+        }
+    }
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,39 @@
+// The guard of times: repeats of a frame must have done the same work, and shown something.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/gl/work_query.h"
+#include "runner/image/image.h"
+
+namespace gfxrepro::run {
+
+/// A picture in few numbers.
+struct ImageDigest {
+    static constexpr int kCells = 8;  // along each axis
+
+    /// The first 52 bits of the SHA-256 of the pixels: exact in a double.
+    double hash = 0.0;
+    bool isBlank = false;                        // every pixel the same
+    std::array<float, kCells * kCells> means{};  // of all channels over each cell
+    float range = 0.0F;                          // of the pixels' values
+
+    static ImageDigest of(const image::ImageF& image);
+};
+
+/// What one repeat of a frame did.
+struct RepeatWork {
+    std::optional<gl::Work> counts;
+    std::optional<ImageDigest> image;
+};
+
+/// Why the times of these repeats of one frame cannot stand, with the numbers; empty if they can.
+/// Primitives and compute invocations must be the same. Fragments may differ by 1 %: early depth
+/// tests of a parallel rasterizer depend on the order. Pictures may differ by 1 % of their range in
+/// the mean of a cell: sums of floats do as well.
+std::string whyUnequal(const std::vector<RepeatWork>& repeats);
+
+}  // namespace gfxrepro::run

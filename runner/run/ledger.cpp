@@ -1,0 +1,365 @@
+#include "runner/run/ledger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "runner/config/imported.h"
+#include "runner/config/scene_reference.h"
+#include "runner/core/text.h"
+#include "runner/run/case_variation.h"
+#include "runner/tables/case_records.h"
+
+namespace gfxrepro::run {
+
+namespace {
+
+using config::Assumption;
+using config::Node;
+
+constexpr std::size_t kMostShown = 12;
+/// What techniques call the camera or path of the scene that a case is seen along; some have views
+/// of their own beside.
+constexpr const char* kView = "view";
+
+std::vector<config::ParamInfo> declaredBy(const config::Experiment& experiment,
+                                          std::span<const technique::TechniqueInfo> techniques) {
+    config::Params none(Node::map({}), "technique '" + experiment.technique + "'");
+    technique::makeTechnique(technique::findTechnique(techniques, experiment.technique, {}),
+                             config::programOf(experiment), none);
+    return none.declared();
+}
+
+const config::ParamInfo* findInfo(const std::vector<config::ParamInfo>& declared,
+                                  const std::string& name) {
+    const auto found = std::ranges::find(declared, name, &config::ParamInfo::name);
+    return found == declared.end() ? nullptr : &*found;
+}
+
+bool isOfCases(const std::string& name) {
+    return name == config::kOutputAssumption || name == config::kSceneAssumption ||
+           name == config::kSceneSeedAssumption;
+}
+
+std::string valueIn(const Case& item, const std::string& name, const scene::Catalog& catalog) {
+    if (name == config::kOutputAssumption) {
+        return item.outputWidthPx == item.outputHeightPx
+                   ? std::to_string(item.outputWidthPx)
+                   : fmt::format("{} × {}", item.outputWidthPx, item.outputHeightPx);
+    }
+    if (name == config::kSceneAssumption) return item.scene.isNull() ? "" : item.scene.text();
+    if (name == config::kSceneSeedAssumption) {
+        if (item.scene.isNull()) return "";
+        const scene::SceneSource source = catalog.resolve(item.scene);
+        return source.isSeeded() ? std::to_string(source.seed) : "";
+    }
+    const Node* value = item.params.find(name);
+    return value ? tables::canonicalText(*value) : "";
+}
+
+/// Each value once, in the order of the cases.
+std::string valuesOf(const std::string& name, const std::vector<Case>& cases,
+                     const scene::Catalog& catalog) {
+    std::vector<std::string> values;
+    for (const Case& item : cases) {
+        std::string value = valueIn(item, name, catalog);
+        const bool isKnown = std::ranges::find(values, value) != values.end();
+        if (!value.empty() && !isKnown) values.push_back(std::move(value));
+    }
+    if (values.empty()) return "none";
+    if (values.size() > kMostShown) {
+        return fmt::format("{}, …, {} ({} values)", values.front(), values.back(), values.size());
+    }
+    return joined(values);
+}
+
+std::string unitOf(const std::string& name, const config::ParamInfo* info) {
+    if (name == config::kOutputAssumption) return "pixels";
+    return info && info->unit != "1" ? info->unit : "";
+}
+
+bool isNumber(const Node& node) {
+    return node.isScalar() && parseDouble(node.text()).has_value();
+}
+
+/// Numbers are what parameters take: a number whose name is nearly a parameter's is that one
+/// misspelt, and a range of numbers is of one.
+void requireFreeText(const Assumption& assumption, const config::Experiment& experiment,
+                     const std::vector<config::ParamInfo>& declared) {
+    std::vector<std::string> names = {config::kOutputAssumption, config::kSceneAssumption,
+                                      config::kSceneSeedAssumption};
+    for (const config::ParamInfo& info : declared) names.push_back(info.name);
+    const std::string near = suggestion(assumption.name, names);
+    const auto refuse = [&](const SourceLocation& where, const std::string& what) {
+        throw Error(where, fmt::format("assumption '{}' {}: it is no parameter of technique '{}'{}",
+                                       assumption.name, what, experiment.technique, near));
+    };
+    if (assumption.value.isNull()) refuse(assumption.location, "needs 'value'");
+    const Node& range = assumption.range;
+    const bool isOfNumbers =
+        isNumber(range) || (range.isSequence() && std::ranges::any_of(range.items(), isNumber));
+    if (isOfNumbers) refuse(range.location(), "has a range of numbers");
+    // A list is what is tried in its place, and only parameters are.
+    if (!range.isNull() && (!range.isScalar() || range.text().find('\n') != std::string::npos)) {
+        refuse(range.location(), "has a range that is no line of text");
+    }
+    if (isNumber(assumption.value) && !near.empty()) {
+        refuse(assumption.value.location(), "is a number");
+    }
+}
+
+[[noreturn]] void refuseRange(const Assumption& assumption, const Node& value,
+                              const std::string& allowed) {
+    throw Error(value.location(),
+                fmt::format("assumption '{}': range is {}; allowed: {}", assumption.name,
+                            value.isNull() ? "empty" : value.toFlowText(), allowed));
+}
+
+const Node::Sequence& listOf(const Assumption& assumption) {
+    if (!assumption.range.isSequence() || assumption.range.items().empty()) {
+        refuseRange(assumption, assumption.range, "a list of values, or [first, last]");
+    }
+    return assumption.range.items();
+}
+
+void requireWhole(const Assumption& assumption, long long low, long long high) {
+    for (const Node& value : listOf(assumption)) {
+        const auto number = value.tryInteger();
+        if (number && *number >= low && *number <= high) continue;
+        refuseRange(assumption, value, fmt::format("whole numbers, {} … {}", low, high));
+    }
+}
+
+void requireCatalogued(const Assumption& assumption, const Node& name,
+                       const scene::Catalog& catalog) {
+    const std::string text = name.isScalar() ? name.text() : "";
+    std::vector<std::string> known;
+    for (const auto& [entry, source] : catalog.entries()) known.push_back(entry);
+    if (catalog.entries().contains(config::sceneName(text))) return;
+    refuseRange(assumption, name, "catalogued scenes" + suggestion(text, known));
+}
+
+/// Whether some source of the scene, at hand or not, is a height map. What a generator makes is
+/// seen when it runs.
+bool hasHeights(const scene::SceneEntry& entry) {
+    return std::ranges::any_of(entry.sources, [](const scene::SceneSource& source) {
+        return source.heightMap.has_value();
+    });
+}
+
+/// Catalogued, each once, with a seed and parameters that its generator takes, and of the kind of
+/// `scene`, whose place it takes.
+void requireAlternatives(const Assumption& assumption, const Node& others, const std::string& scene,
+                         const scene::Catalog& catalog) {
+    if (!others.isSequence() || others.items().empty()) {
+        refuseRange(assumption, others, "a list of scenes");
+    }
+    const auto own = catalog.entries().find(config::sceneName(scene));
+    std::vector<std::string> seen;
+    for (const Node& other : others.items()) {
+        requireCatalogued(assumption, other, catalog);
+        if (std::ranges::find(seen, other.text()) != seen.end()) {
+            refuseRange(assumption, other, "each scene once");
+        }
+        seen.push_back(other.text());
+        const std::string name = config::sceneName(other.text());
+        if (name != other.text()) catalog.resolve(other);
+        if (own == catalog.entries().end()) continue;
+        const bool needsHeights = hasHeights(own->second);
+        if (hasHeights(catalog.entries().at(name)) == needsHeights) continue;
+        refuseRange(
+            assumption, other,
+            fmt::format("{} in the place of {}", needsHeights ? "height maps" : "models", scene));
+    }
+    if (seen == std::vector<std::string>{scene}) {
+        refuseRange(assumption, others, "another scene than " + scene);
+    }
+}
+
+/// The scenes of the config, as it names them, and of its profile `paper`.
+std::vector<std::string> scenesOf(const config::Experiment& experiment) {
+    std::vector<std::string> names;
+    const auto add = [&](const config::Experiment& one) {
+        for (const config::CaseSpec& spec : config::expandCases(one)) {
+            const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+        }
+    };
+    add(experiment);
+    if (!experiment.paperDocument.isNull()) {
+        add(config::experimentFromDocument(experiment.paperDocument, experiment.file));
+    }
+    return names;
+}
+
+void requireScenes(const config::Experiment& experiment, const Assumption& assumption,
+                   const scene::Catalog& catalog) {
+    const Node& range = assumption.range;
+    if (range.isMap()) {
+        const std::vector<std::string> measured = scenesOf(experiment);
+        for (const auto& [scene, others] : range.entries()) {
+            const Node name = Node::scalar(scene, range.keyLocation(scene));
+            requireCatalogued(assumption, name, catalog);
+            requireAlternatives(assumption, others, scene, catalog);
+            // A preset names those of all files that extend it.
+            const bool isOfFile = name.location().file.text() == experiment.file.string();
+            if (isOfFile && std::ranges::find(measured, scene) == measured.end()) {
+                refuseRange(assumption, name,
+                            "scenes of " + experiment.id + ", " + joined(measured, " | "));
+            }
+        }
+        return;
+    }
+    std::vector<std::string> names;
+    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
+        const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+    for (const Node& other : listOf(assumption)) requireCatalogued(assumption, other, catalog);
+    if (names.size() > 1) {
+        refuseRange(
+            assumption, range,
+            fmt::format("{{scene: [scenes]}}, as {} has {} scenes", experiment.id, names.size()));
+    }
+    requireAlternatives(assumption, range, names.empty() ? "" : names.front(), catalog);
+}
+
+/// Views are what the scenes of the cases have, whatever their seed.
+void requireViews(const Assumption& assumption, const std::vector<Case>& cases,
+                  const scene::Catalog& catalog) {
+    std::vector<std::string> loaded;
+    for (const Case& item : cases) {
+        if (item.scene.isNull()) continue;
+        const std::string name = config::sceneName(item.scene.text());
+        if (std::ranges::find(loaded, name) != loaded.end()) continue;
+        loaded.push_back(name);
+        const scene::Scene scene = catalog.load(item.scene);
+        std::vector<std::string> views;
+        for (const scene::CameraPath& path : scene.paths) views.push_back(path.name);
+        for (const scene::Camera& camera : scene.cameras) views.push_back(camera.name);
+        for (const Node& value : listOf(assumption)) {
+            const std::string text = value.isScalar() ? value.text() : "";
+            if (std::ranges::find(views, text) != views.end()) continue;
+            refuseRange(assumption, value,
+                        fmt::format("paths and cameras of {}, {}", item.scene.text(),
+                                    views.empty() ? "which has none" : joined(views, " | ")));
+        }
+    }
+}
+
+/// Makes every case with the value; the technique refuses what it cannot take.
+void requireReadable(const config::Experiment& experiment, const Assumption& assumption,
+                     const technique::TechniqueInfo& info) {
+    const std::vector<config::CaseSpec> specs = config::expandCases(experiment);
+    for (const Node& value : listOf(assumption)) {
+        for (config::CaseSpec spec : specs) {
+            spec.axes.clear();  // of a swept one, too
+            Case item;
+            takeInstead(spec, Node::map({{assumption.name, value}}), item);
+            config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+            if (!item.offered.isNull()) params.offer(item.offered);
+            technique::makeTechnique(info, config::programOf(experiment), params);
+        }
+    }
+}
+
+/// A range of numbers holds what is measured: else it says nothing of how the outcome depends on
+/// it. What is swept says so itself.
+void requireMeasuredWithin(const Assumption& assumption, const std::vector<Case>& cases) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Node& value : listOf(assumption)) {
+        const auto number = value.isScalar() ? parseDouble(value.text()) : std::nullopt;
+        if (!number) return;
+        low = std::min(low, *number);
+        high = std::max(high, *number);
+    }
+    for (const Case& item : cases) {
+        const Node* value = item.params.find(assumption.name);
+        if (!value || !value->isScalar() || item.axes.find(assumption.name)) continue;
+        const auto number = parseDouble(value->text());
+        if (!number || (*number >= low && *number <= high)) continue;
+        refuseRange(assumption, assumption.range,
+                    fmt::format("one that holds what is measured, {}", value->text()));
+    }
+}
+
+}  // namespace
+
+void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& cases,
+                     const scene::Catalog& catalog,
+                     std::span<const technique::TechniqueInfo> techniques) {
+    if (!config::isMeasuredHere(experiment)) return;
+    const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
+    for (Assumption& assumption : experiment.assumptions) {
+        const config::ParamInfo* info = findInfo(declared, assumption.name);
+        if (!info && !isOfCases(assumption.name)) {
+            requireFreeText(assumption, experiment, declared);
+            continue;
+        }
+        const auto refuse = [&](const SourceLocation& where, const char* key) {
+            throw Error(where, fmt::format("assumption '{}': '{}' is filled in from the cases; "
+                                           "allowed: range, why",
+                                           assumption.name, key));
+        };
+        if (!assumption.value.isNull()) refuse(assumption.value.location(), "value");
+        if (!assumption.unit.empty()) refuse(assumption.location, "unit");
+        assumption.isBound = true;
+        assumption.value = Node::scalar(valuesOf(assumption.name, cases, catalog));
+        assumption.unit = unitOf(assumption.name, info);
+    }
+}
+
+void requireRanges(const config::Experiment& experiment, const std::vector<Case>& cases,
+                   const scene::Catalog& catalog,
+                   std::span<const technique::TechniqueInfo> techniques) {
+    constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000;
+    if (!config::isMeasuredHere(experiment)) return;
+    const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
+    for (const Assumption& assumption : experiment.assumptions) {
+        if (!assumption.isBound || assumption.range.isNull()) continue;
+        if (assumption.name == config::kOutputAssumption) {
+            requireWhole(assumption, 1, kMaxOutputPx);
+        } else if (assumption.name == config::kSceneSeedAssumption) {
+            requireWhole(assumption, 0, kMaxSeed);
+        } else if (assumption.name == config::kSceneAssumption) {
+            requireScenes(experiment, assumption, catalog);
+        } else {
+            requireReadable(experiment, assumption,
+                            technique::findTechnique(techniques, experiment.technique, {}));
+            requireMeasuredWithin(assumption, cases);
+            const config::ParamInfo* info = findInfo(declared, assumption.name);
+            // A technique whose default is a view by name has views of its own.
+            if (assumption.name == kView && info && info->type == "text" &&
+                (info->defaultValue.empty() || info->defaultValue == "\"\"")) {
+                requireViews(assumption, cases, catalog);
+            }
+        }
+    }
+}
+
+std::vector<std::pair<std::string, Node>> alternativesOf(const Assumption& assumption,
+                                                         const std::vector<std::string>& scenes) {
+    std::vector<std::pair<std::string, Node>> alternatives;
+    for (const std::string& name : scenes) {
+        const Node* others =
+            assumption.range.isMap() ? assumption.range.find(name) : &assumption.range;
+        if (!others || !others->isSequence()) continue;
+        for (const Node& other : others->items()) {
+            if (other.text() != name) alternatives.emplace_back(name, other);
+        }
+    }
+    return alternatives;
+}
+
+std::vector<std::string> sceneNames(const std::vector<Case>& cases) {
+    std::vector<std::string> names;
+    for (const Case& item : cases) {
+        const Node& scene = item.standsFor.isNull() ? item.scene : item.standsFor;
+        if (scene.isNull()) continue;
+        if (std::ranges::find(names, scene.text()) == names.end()) names.push_back(scene.text());
+    }
+    return names;
+}
+
+}  // namespace gfxrepro::run

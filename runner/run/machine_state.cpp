@@ -1,0 +1,240 @@
+#include "runner/run/machine_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::run {
+
+namespace {
+
+// Shares of all processors' time from which on a machine is called loaded or stolen from, and the
+// fewest seconds that are more than ticks.
+constexpr double kLoadedShare = 0.05;
+constexpr double kStolenShare = 0.01;
+constexpr double kLeastS = 0.2;
+
+template <class Value>
+void addTo(std::optional<Value>& sum, const std::optional<Value>& value) {
+    if (value) sum = sum.value_or(Value{}) + *value;
+}
+
+/// What was counted between the two; counters never go back.
+template <class Value>
+std::optional<Value> between(const std::optional<Value>& before,
+                             const std::optional<Value>& after) {
+    if (!before || !after) return std::nullopt;
+    return std::max(Value{}, *after - *before);
+}
+
+template <class Value>
+std::optional<Value> valueOf(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    if (found == json.end() || !found->is_number()) return std::nullopt;
+    return found->get<Value>();
+}
+
+/// To a hundredth of a percent: what is less is the remainder of a subtraction.
+std::string percentText(double share) {
+    return fmt::format("{:.3g} %", std::round(1e4 * share) / 1e2);
+}
+
+}  // namespace
+
+void MachineState::add(const MachineReading& before, const MachineReading& after) {
+    MachineState state;
+    if (before.processors && after.processors) {
+        state.processorCount_ = after.processors->count;
+        state.processorS_ = after.processors->timeS - before.processors->timeS;
+        state.busyS_ = after.processors->busyS - before.processors->busyS;
+        state.stolenS_ = after.processors->stolenS - before.processors->stolenS;
+        state.ownS_ = after.ownS - before.ownS;
+    }
+    state.waitedS_ = between(before.waitedS, after.waitedS);
+    state.load_ = before.load;
+    state.throttleCount_ = between(before.throttleCount, after.throttleCount);
+    state.limitedS_ = between(before.limitedS, after.limitedS);
+    for (const MachineReading* reading : {&before, &after}) {
+        if (reading->heat && isHotter(state.heat_, *reading->heat)) state.heat_ = reading->heat;
+    }
+    state.lowestHz_ = state.highestHz_ = after.clockHz;  // as the work has just ended
+    add(state);
+}
+
+void MachineState::add(const MachineState& other) {
+    processorCount_ = std::max(processorCount_, other.processorCount_);
+    processorS_ += other.processorS_;
+    busyS_ += other.busyS_;
+    ownS_ += other.ownS_;
+    stolenS_ += other.stolenS_;
+    addTo(waitedS_, other.waitedS_);
+    addTo(limitedS_, other.limitedS_);
+    addTo(throttleCount_, other.throttleCount_);
+    if (!load_) load_ = other.load_;  // before the first
+    if (other.heat_ && isHotter(heat_, *other.heat_)) heat_ = other.heat_;
+    if (other.lowestHz_)
+        lowestHz_ = std::min(lowestHz_.value_or(*other.lowestHz_), *other.lowestHz_);
+    if (other.highestHz_) highestHz_ = std::max(highestHz_.value_or(0.0), *other.highestHz_);
+}
+
+double MachineState::othersS() const {
+    return std::max(0.0, busyS_ - ownS_);
+}
+
+Json MachineState::json() const {
+    Json json = Json::object();
+    const auto put = [&](const char* key, const auto& value) {
+        if (value) json[key] = *value;
+    };
+    if (processorS_ > 0.0) {
+        json = {{"processors", processorCount_},
+                {"processor_s", processorS_},
+                {"busy_s", busyS_},
+                {"own_s", ownS_},
+                {"stolen_s", stolenS_}};
+    }
+    put("waited_s", waitedS_);
+    put("load_before", load_);
+    put("throttle_count", throttleCount_);
+    put("limited_s", limitedS_);
+    if (heat_) {
+        json["hottest_c"] = heat_->temperatureC;
+        json["hot_from_c"] = heat_->limitC;
+    }
+    put("lowest_clock_hz", lowestHz_);
+    put("highest_clock_hz", highestHz_);
+    return json;
+}
+
+MachineState MachineState::fromJson(const Json& json) {
+    MachineState state;
+    state.processorCount_ = valueOf<int>(json, "processors").value_or(0);
+    state.processorS_ = valueOf<double>(json, "processor_s").value_or(0.0);
+    state.busyS_ = valueOf<double>(json, "busy_s").value_or(0.0);
+    state.ownS_ = valueOf<double>(json, "own_s").value_or(0.0);
+    state.stolenS_ = valueOf<double>(json, "stolen_s").value_or(0.0);
+    state.waitedS_ = valueOf<double>(json, "waited_s");
+    state.load_ = valueOf<double>(json, "load_before");
+    state.throttleCount_ = valueOf<long long>(json, "throttle_count");
+    state.limitedS_ = valueOf<double>(json, "limited_s");
+    const auto hottest = valueOf<double>(json, "hottest_c");
+    const auto limit = valueOf<double>(json, "hot_from_c");
+    if (hottest && limit) state.heat_ = Heat{*hottest, *limit};
+    state.lowestHz_ = valueOf<double>(json, "lowest_clock_hz");
+    state.highestHz_ = valueOf<double>(json, "highest_clock_hz");
+    return state;
+}
+
+std::vector<std::string> MachineState::problems() const {
+    std::vector<std::string> problems;
+    if (othersS() > std::max(kLeastS, kLoadedShare * processorS_)) {
+        problems.push_back(fmt::format("other processes took {} of {} processor{}",
+                                       percentText(othersS() / processorS_), processorCount_,
+                                       processorCount_ == 1 ? "" : "s"));
+    }
+    if (stolenS_ > std::max(kLeastS, kStolenShare * processorS_)) {
+        problems.push_back(fmt::format("the host took {} of the processors' time",
+                                       percentText(stolenS_ / processorS_)));
+    }
+    if (throttleCount_.value_or(0) > 0) {
+        problems.push_back(fmt::format("cores were throttled for heat {} time{}", *throttleCount_,
+                                       *throttleCount_ == 1 ? "" : "s"));
+    }
+    if (limitedS_.value_or(0.0) > kLeastS) {
+        problems.push_back(
+            fmt::format("the CPU limit of its control group held it for {:.3g} s", *limitedS_));
+    }
+    if (heat_ && heat_->temperatureC >= heat_->limitC) {
+        problems.push_back(fmt::format("it was hot, {:.0f} °C of {:.0f} °C at which it is slowed",
+                                       heat_->temperatureC, heat_->limitC));
+    }
+    return problems;
+}
+
+std::string MachineState::sentence() const {
+    if (!isKnown()) return "";
+    const std::vector<std::string> wrong = problems();
+    if (!wrong.empty()) {
+        return fmt::format("The machine was not quiet while this was timed: {}.",
+                           joined(wrong, "; "));
+    }
+    if (processorS_ <= 0.0) return "The machine was quiet while this was timed.";
+    return fmt::format(
+        "The machine was quiet while this was timed: other processes took {} of {} processor{}, "
+        "the host {}.",
+        percentText(othersS() / processorS_), processorCount_, processorCount_ == 1 ? "" : "s",
+        percentText(stolenS_ / processorS_));
+}
+
+void MachineWatch::unitBegan(const Unit& unit) {
+    before_.reset();
+    if (unit.item->measure.lane == config::Measure::Lane::Timing) before_ = readMachine(root_);
+    next_.unitBegan(unit);
+}
+
+void MachineWatch::unitEnded(const Unit& unit, records::Status status, const std::string& message) {
+    // Timing units run alone: the one that ends is the one that began.
+    if (before_ && unit.item->measure.lane == config::Measure::Lane::Timing) {
+        MachineState state;
+        state.add(*before_, readMachine(root_));
+        before_.reset();
+        if (state.isKnown()) {
+            tables_[unit.item->experiment].add(state);
+            Json event = {{"event", "machine_state"},
+                          {"table", unit.item->experiment},
+                          {"unit", unit.item->id},
+                          {"process", unit.process}};
+            event.update(state.json());
+            directory_.log(event);
+        }
+    }
+    next_.unitEnded(unit, status, message);
+}
+
+Json MachineWatch::states() const {
+    Json states = Json::object();
+    for (const auto& [table, state] : tables_) states[table] = state.json();
+    return states;
+}
+
+std::string MachineWatch::warning() const {
+    constexpr std::size_t kMostNamed = 3;
+    std::vector<std::string> parts;
+    std::size_t others = 0;
+    for (const auto& [table, state] : tables_) {
+        const std::vector<std::string> problems = state.problems();
+        if (problems.empty()) continue;
+        if (parts.size() == kMostNamed) {
+            ++others;
+            continue;
+        }
+        parts.push_back(fmt::format("while {} was timed {}", table, joined(problems, "; ")));
+    }
+    if (parts.empty()) return "";
+    if (others > 0) parts.push_back(fmt::format("and so with {} more", others));
+    return "the machine was not quiet: " + joined(parts, "; ");
+}
+
+std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& log) {
+    std::map<std::string, MachineState> tables;
+    for (const Json& event : log) {
+        const std::string name = event.value("event", "");
+        const std::string table = event.value("table", "");
+        if (name == "machine") tables.erase(table);  // measured again from there
+        if (name == "machine_state") tables[table].add(MachineState::fromJson(event));
+    }
+    return tables;
+}
+
+std::string machineStateNote(const Json& manifest, const std::string& table) {
+    const auto states = manifest.find("machine_states");
+    if (states == manifest.end() || !states->is_object()) return "";
+    const auto state = states->find(table);
+    if (state == states->end() || !state->is_object()) return "";
+    return MachineState::fromJson(*state).sentence();
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,85 @@
+// What else the machine did while cases were timed: the work of others, processor time that a
+// virtual machine's host took, throttling, heat.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/run/machine_reading.h"
+#include "runner/run/protocol.h"
+#include "runner/run/run_directory.h"
+#include "runner/run/scheduler.h"
+
+namespace gfxrepro::run {
+
+/// What the machine did over stretches of time. Shares are of the time of all processors.
+class MachineState {
+  public:
+    void add(const MachineReading& before, const MachineReading& after);
+    void add(const MachineState& other);
+
+    bool isKnown() const { return processorS_ > 0.0 || throttleCount_ || limitedS_ || heat_; }
+    /// {"processors", "processor_s", "busy_s", "own_s", "stolen_s", "waited_s", "load_before",
+    /// "throttle_count", "limited_s", "hottest_c", "hot_from_c", "lowest_clock_hz",
+    /// "highest_clock_hz"}: of these what is known.
+    Json json() const;
+    static MachineState fromJson(const Json& json);
+
+    /// "other processes took 38 % of 2 processors": how the machine was no quiet one; empty where
+    /// it was. Others are counted from 5 % on, stolen time from 1 % on (less is what any system
+    /// does of itself), each from 0.2 s on, as the kernel counts by ticks.
+    std::vector<std::string> problems() const;
+    /// One sentence of it, with numbers also where nothing was wrong; empty where nothing is known.
+    std::string sentence() const;
+
+  private:
+    double othersS() const;
+
+    int processorCount_ = 0;
+    double processorS_ = 0.0, busyS_ = 0.0, ownS_ = 0.0, stolenS_ = 0.0;
+    std::optional<double> waitedS_, load_, limitedS_, lowestHz_, highestHz_;
+    std::optional<long long> throttleCount_;
+    std::optional<Heat> heat_;
+};
+
+/// Watches the machine around each unit of the timing lane, and passes on what a run tells. The
+/// state of each unit is a line of log.jsonl (event `machine_state`), the states of a table's
+/// units together are its state.
+class MachineWatch : public Observer {
+  public:
+    /// Of a run with these states so far (machineStatesIn). `next` and the folder must outlive it;
+    /// `root` as readMachine's.
+    MachineWatch(Observer& next, const RunDirectory& directory,
+                 std::map<std::string, MachineState> states, std::filesystem::path root)
+        : next_(next), directory_(directory), root_(std::move(root)), tables_(std::move(states)) {}
+
+    void unitsAdded(const std::vector<Unit>& units) override { next_.unitsAdded(units); }
+    void unitBegan(const Unit& unit) override;
+    void unitEnded(const Unit& unit, records::Status status, const std::string& message) override;
+    void tick() override { next_.tick(); }
+
+    /// By table, of those that are known: for the manifest.
+    Json states() const;
+    /// One sentence of what was wrong, table by table; empty where nothing was.
+    std::string warning() const;
+
+  private:
+    Observer& next_;
+    const RunDirectory& directory_;
+    std::filesystem::path root_;
+    std::optional<MachineReading> before_;
+    std::map<std::string, MachineState> tables_;
+};
+
+/// By table, from the lines of log.jsonl; of a table that was measured again on another machine
+/// what came after.
+std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& log);
+
+/// What the manifest tells of the machine while the table was timed; empty for none.
+std::string machineStateNote(const Json& manifest, const std::string& table);
+
+}  // namespace gfxrepro::run

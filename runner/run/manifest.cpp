@@ -1,0 +1,188 @@
+#include "runner/run/manifest.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/run/commit.h"  // made by the build
+#include "runner/run/cpu_name.h"
+#include "runner/run/run_directory.h"
+
+namespace gfxrepro::run {
+
+namespace {
+
+constexpr int kManifestSchema = 1;
+// What a run's end fixes the sums of.
+constexpr const char* kSealedFiles[] = {"records.csv", "images/index.csv"};
+
+long long memoryBytes() {
+    return static_cast<long long>(::sysconf(_SC_PHYS_PAGES)) * ::sysconf(_SC_PAGESIZE);
+}
+
+}  // namespace
+
+std::string programCommit() {
+    return GFXREPRO_COMMIT;
+}
+
+std::string programBuild() {
+#if defined(__clang__)
+    const std::string compiler = "Clang " + std::string(__clang_version__);
+#else
+    const std::string compiler = "GCC " + std::string(__VERSION__);
+#endif
+    return std::string(GFXREPRO_BUILD_TYPE) + ", " + compiler;
+}
+
+Json newManifest(const Plan& plan, const gl::DeviceInfo& device) {
+    std::ifstream cpuinfo("/proc/cpuinfo");
+    return {{"schema", kManifestSchema},
+            {"commit", programCommit()},
+            {"build", programBuild()},
+            {"build_id", plan.buildId},
+            {"plan", plan.hash},
+            {"profile", plan.profile},
+            {"started", utcTime()},
+            {"cpu", cpuName(cpuinfo)},
+            {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
+            {"memory_bytes", memoryBytes()},
+            {"device_class", plan.deviceClass},
+            {"gl", toJson(device)},
+            {"scenes", Json::object()},
+            {"invocations", Json::array()}};
+}
+
+void beginInvocation(Json& manifest, const std::string& commandLine) {
+    manifest["invocations"].push_back(Json{{"command", commandLine}, {"started", utcTime()}});
+}
+
+void endInvocation(Json& manifest, const PhaseClock& phases, double wallS) {
+    Json& invocation = manifest["invocations"].back();
+    invocation["ended"] = utcTime();
+    invocation["wall_s"] = wallS;
+    Json& totals = invocation["phases_s"] = Json::object();
+    for (const char* phase : {"device", "load", "setup", "render", "record"}) {
+        const auto found = phases.totalsS().find(phase);
+        totals[phase] = found == phases.totalsS().end() ? 0.0 : found->second;
+    }
+    invocation["overhead_s"] = wallS - phases.busyS();
+    invocation["overhead_share"] = (wallS - phases.busyS()) / wallS;
+}
+
+void sealRecords(Json& manifest, const std::filesystem::path& runDir) {
+    Json& sums = manifest["sha256"] = Json::object();
+    for (const char* file : kSealedFiles) {
+        if (std::filesystem::exists(runDir / file)) sums[file] = sha256OfFile(runDir / file);
+    }
+}
+
+void breakSeal(Json& manifest) {
+    manifest.erase("sha256");
+}
+
+void noteChanges(Json& manifest, const std::filesystem::path& runDir) {
+    if (!manifest.contains("sha256")) return;
+    const Json sums = manifest.at("sha256");  // a note moves what is in the manifest
+    for (const char* file : kSealedFiles) {   // no other file, whatever the manifest names
+        if (!sums.contains(file)) continue;
+        const std::string then = sums.at(file).get<std::string>();
+        const bool isThere = std::filesystem::exists(runDir / file);
+        const std::string now = isThere ? sha256OfFile(runDir / file) : "";
+        if (now == then) continue;
+        const std::string note =
+            fmt::format("{} was {} after the run (SHA-256 {} at its end{})", file,
+                        isThere ? "changed" : "removed", then.substr(0, 12),
+                        isThere ? ", now " + now.substr(0, 12) : "");
+        addNote(manifest, note);
+    }
+}
+
+void addNote(Json& manifest, const std::string& note) {
+    Json& notes = manifest["notes"];
+    if (std::ranges::find(notes, Json(note)) == notes.end()) notes.push_back(note);
+}
+
+std::vector<std::string> machinesOf(const Json& manifest) {
+    std::vector<std::string> machines;
+    const auto add = [&](const Json& run, const std::string& first) {
+        std::vector<std::string> names = {first};
+        for (const Json& invocation : run.at("invocations")) {
+            names.push_back(invocation.value("machine", first));
+        }
+        for (std::string& name : names) {
+            const bool isNew = std::ranges::find(machines, name) == machines.end();
+            if (isNew) machines.push_back(std::move(name));
+        }
+    };
+    const auto merged = manifest.find("merged");
+    if (merged == manifest.end()) {
+        add(manifest, machineName(manifest));
+        return machines;
+    }
+    for (const Json& run : *merged) add(run, run.at("machine").get<std::string>());
+    add(manifest, machines.empty() ? machineName(manifest) : machines.front());
+    return machines;
+}
+
+void noteMachines(Json& manifest) {
+    constexpr std::string_view kBegin = "measured on several machines, ";
+    const std::vector<std::string> machines = machinesOf(manifest);
+    if (machines.size() < 2) return;
+    std::vector<std::string> notes = notesOf(manifest);
+    std::erase_if(notes, [&](const std::string& note) { return note.starts_with(kBegin); });
+    notes.push_back(fmt::format("{}the times of each table on one of them: {}", kBegin,
+                                joined(machines, "; ")));
+    manifest["notes"] = notes;
+}
+
+std::vector<std::string> notesOf(const Json& manifest) {
+    return manifest.value("notes", std::vector<std::string>{});
+}
+
+void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
+    for (const SceneUse& use : scenes) {
+        manifest["scenes"][use.reference] = {
+            {"kind", use.kind}, {"description", use.description}, {"sha256", use.sha256}};
+    }
+}
+
+void addPrograms(Json& manifest, const std::set<ProgramUse>& programs) {
+    for (const ProgramUse& use : programs) {
+        const Json entry = {{"file", use.file}, {"sha256", use.sha256}, {"version", use.version}};
+        Json& known = manifest["programs"];
+        if (std::ranges::find(known, entry) == known.end()) known.push_back(entry);
+    }
+}
+
+std::set<ProgramUse> programsOf(const Json& manifest) {
+    std::set<ProgramUse> programs;
+    for (const Json& use : manifest.value("programs", Json::array())) {
+        programs.insert({use.at("file"), use.at("sha256"), use.at("version")});
+    }
+    return programs;
+}
+
+std::string machineName(const Json& manifest) {
+    const Json& gl = manifest.at("gl");
+    if (manifest.contains("imported")) return "imported: " + gl.at("renderer").get<std::string>();
+    return manifest.at("cpu").get<std::string>() + ", " +
+           std::to_string(manifest.at("cores").get<long>()) + " cores, " +
+           gl.at("renderer").get<std::string>() + ", " + gl.at("version").get<std::string>();
+}
+
+std::string timingMachine(const Json& manifest, const std::string& experiment) {
+    const auto machines = manifest.find("timing_machines");
+    if (machines == manifest.end() || !machines->contains(experiment)) return machineName(manifest);
+    return machines->at(experiment).get<std::string>();
+}
+
+bool isOnlyMerged(const Json& manifest) {
+    return manifest.contains("merged") && manifest.at("invocations").size() == 1;
+}
+
+}  // namespace gfxrepro::run

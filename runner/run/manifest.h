@@ -1,0 +1,63 @@
+// manifest.json: with what, on what and when a run was made.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "runner/run/phase_clock.h"
+#include "runner/run/plan.h"
+#include "runner/run/protocol.h"
+
+namespace gfxrepro::run {
+
+/// Commit, build, machine, device and profile; no invocation and no scene yet.
+Json newManifest(const Plan& plan, const gl::DeviceInfo& device);
+
+/// An invocation is one start of the program on the run; a resumed run has several.
+void beginInvocation(Json& manifest, const std::string& commandLine);
+/// Adds end, wall time, phase totals and the runner's own share to the last invocation: the wall
+/// time in which no worker was inside of a phase.
+void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
+
+/// Notes at the end of a run what records.csv and images/index.csv are (`sha256`), so that a later
+/// change of them is seen.
+void sealRecords(Json& manifest, const std::filesystem::path& runDir);
+/// Before a run goes on, which changes them: the seal goes. What was noted of them stays.
+void breakSeal(Json& manifest);
+/// Adds a note that every reader of the run's results is told; once.
+void addNote(Json& manifest, const std::string& note);
+/// Adds to the manifest's `notes` which of the sealed files are others than at the end of the run.
+/// Nothing for a run that is under way, was killed, or comes from a program that sealed none.
+void noteChanges(Json& manifest, const std::filesystem::path& runDir);
+/// Every machine that measured something of the run, or of the runs that were merged into it, the
+/// first first.
+std::vector<std::string> machinesOf(const Json& manifest);
+/// Adds to the manifest's `notes` that there are several. Values of other metrics than times may be
+/// of any of them; the times of a table are of one.
+void noteMachines(Json& manifest);
+/// The manifest's notes, for people.
+std::vector<std::string> notesOf(const Json& manifest);
+
+/// Adds what workers loaded, one entry a reference.
+void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
+/// Adds the programs that workers ran and the files that these read, each of its versions once.
+void addPrograms(Json& manifest, const std::set<ProgramUse>& programs);
+std::set<ProgramUse> programsOf(const Json& manifest);
+
+/// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6", or "imported: " and what the importing
+/// person calls it: times of two names are not compared.
+std::string machineName(const Json& manifest);
+/// The machine that the times of an experiment come from: all of them from one.
+std::string timingMachine(const Json& manifest, const std::string& experiment);
+
+/// Of the program: commit, "Release, GCC 12.2.0".
+std::string programCommit();
+std::string programBuild();
+
+/// Whether a manifest is of a merge that nothing was measured into since.
+bool isOnlyMerged(const Json& manifest);
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,316 @@
+#include "runner/run/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <vector>
+
+#include "runner/gl/barrier.h"
+#include "runner/run/equal_work.h"
+#include "runner/run/pacing.h"
+#include "runner/run/process_memory.h"
+#include "runner/run/recorder.h"
+#include "runner/run/run_directory.h"
+#include "runner/tables/frame_times.h"
+
+namespace gfxrepro::run {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// Says when a phase begins and ends, at an exception too, and adds its time to `spentS`.
+class PhaseScope {
+  public:
+    PhaseScope(const MeasureContext& context, std::string_view phase, double& spentS)
+        : context_(context), phase_(phase), spentS_(spentS) {
+        context_.onPhase(phase_, true);
+    }
+    ~PhaseScope() {
+        spentS_ += 1e-3 * millisecondsSince(begin_);
+        context_.onPhase(phase_, false);
+    }
+    PhaseScope(const PhaseScope&) = delete;
+    PhaseScope& operator=(const PhaseScope&) = delete;
+
+  private:
+    const MeasureContext& context_;
+    std::string_view phase_;
+    double& spentS_;
+    Clock::time_point begin_ = Clock::now();
+};
+
+/// Where cores are the device their time is recorded, too: of scopes of one name on both clocks
+/// together.
+void recordPasses(gl::Profiler& profiler, bool isSoftware, RunRecorder& recorder) {
+    std::map<std::string, double> processTimesMs;
+    for (const gl::PassTime& time : profiler.collect()) {
+        const bool isGpu = time.clock == gl::PassTime::Clock::Gpu;
+        recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", time.timeMs, "ms", time.pass);
+        processTimesMs[time.pass] += time.processTimeMs;
+    }
+    if (!isSoftware) return;
+    for (const auto& [pass, timeMs] : processTimesMs) {
+        recorder.metric("process_time_ms", timeMs, "ms", pass);
+    }
+}
+
+void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
+    const scene::Scene& scene = entry.scene;
+    recorder.metric("scene_triangles", static_cast<double>(scene.triangleCount()), "triangle", "");
+    recorder.metric("scene_vertices", static_cast<double>(scene.vertexCount()), "vertex", "");
+    // 0 real, 1 stand-in, 2 generated: the kinds in their order.
+    recorder.metric("scene_source", static_cast<int>(scene.origin.kind), "enum", "");
+    recorder.metric("load_time_ms", entry.loadTimeMs, "ms", "");
+}
+
+void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
+                  RunRecorder& recorder) {
+    const long long peakBytes = std::max(peakResidentBytes(), entry.peakResidentBytes);
+    const auto otherBytes = static_cast<long long>(context.scenes.otherBytes());
+    recorder.metric("peak_memory_bytes", static_cast<double>(peakBytes - otherBytes), "byte", "");
+    recorder.metric("baseline_memory_bytes", static_cast<double>(context.baselineMemoryBytes),
+                    "byte", "");
+}
+
+bool isTimeOfFrame(const std::string& metric) {
+    return metric == "wall_time_ms" || metric == "frame_rate" || metric == "gpu_time_ms" ||
+           metric == "cpu_time_ms" || metric == "process_time_ms";
+}
+
+/// What tells whether the repeats of a frame did the same; recorded beside their times.
+class WorkGuard {
+  public:
+    WorkGuard(const gl::Device& device, bool isTiming)
+        : isTiming_(isTiming),
+          query_(isTiming && device.hasExtension("GL_ARB_pipeline_statistics_query")) {}
+
+    void beginFrame() { repeats_.clear(); }
+    void beginRepeat() const { query_.begin(); }
+    /// After the clock has stopped.
+    void endRepeat(const technique::Technique& technique, RunRecorder& recorder) {
+        query_.end();
+        if (!isTiming_) return;
+        RepeatWork work;
+        work.counts = query_.result();
+        if (work.counts) {
+            const gl::Work& counts = *work.counts;
+            const auto record = [&](const char* name, std::uint64_t count, const char* unit) {
+                recorder.metric(name, static_cast<double>(count), unit, "");
+            };
+            record("work_primitives", counts.primitives, "primitive");
+            record("work_fragments", counts.fragments, "fragment");
+            record("work_compute_invocations", counts.invocations, "1");
+        }
+        if (const gl::Texture* image = technique.frameImage()) {
+            work.image = ImageDigest::of(image->readImage(4));
+            recorder.metric("work_image_digest", work.image->hash, "1", "");
+        }
+        repeats_.push_back(std::move(work));
+    }
+    /// Voids the times among the samples from `first` on where the repeats were not alike.
+    void endFrame(int frame, std::size_t first, CaseResult& result) const {
+        const std::string why = whyUnequal(repeats_);
+        if (why.empty()) return;
+        if (result.voidReason.empty()) result.voidReason = fmt::format("frame {}: {}", frame, why);
+        for (std::size_t i = first; i < result.samples.size(); ++i) {
+            result.samples[i].isVoid = isTimeOfFrame(result.samples[i].metric);
+        }
+    }
+
+  private:
+    bool isTiming_;
+    gl::WorkQuery query_;
+    std::vector<RepeatWork> repeats_;
+};
+
+/// The frames of one case, drawn and timed.
+class FrameLoop {
+  public:
+    FrameLoop(const Case& item, bool drawsOnDevice, technique::Technique& technique,
+              gl::Profiler& profiler, const MeasureContext& context)
+        : measure_(item.measure),
+          technique_(technique),
+          profiler_(profiler),
+          context_(context),
+          isSoftware_(context.device.info().isSoftware),
+          pacing_(Pacing::of(item.measure, drawsOnDevice && !isSoftware_)),
+          guard_(context.device, item.measure.lane == config::Measure::Lane::Timing) {}
+
+    /// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is
+    /// recorded.
+    void run(RunRecorder& recorder, CaseResult& result) {
+        for (int frame = 0; frame < measure_.frames; ++frame) {
+            technique::FrameContext frameContext{frame, measure_.frames, profiler_};
+            const std::size_t firstSample = result.samples.size();
+            guard_.beginFrame();
+            {
+                const PhaseScope phase(context_, "render", result.cost.renderS);
+                if (frame == 0) warmUp(frameContext);
+                repeat(frameContext, recorder);
+            }
+            guard_.endFrame(frame, firstSample, result);
+            const PhaseScope phase(context_, "record", result.cost.recordS);
+            recorder.setIteration(frame, 0);
+            technique_.record(recorder);
+            recorder.checkTruths();
+            context_.device.finish("recording");
+            profiler_.collect();
+        }
+    }
+
+  private:
+    /// The time of a frame whose passes nobody asks for.
+    double drawUnmeasuredMs(technique::FrameContext& frame) {
+        const Clock::time_point begin = Clock::now();
+        technique_.render(frame);
+        context_.device.finish("warming up");
+        profiler_.collect();
+        return millisecondsSince(begin);
+    }
+    void warmUp(technique::FrameContext& frame) {
+        for (int i = 0; i < measure_.warmup; ++i) drawUnmeasuredMs(frame);
+        const Clock::time_point begin = Clock::now();
+        const auto spentS = [&] { return 1e-3 * millisecondsSince(begin); };
+        std::vector<double> timesMs;
+        while (spentS() < pacing_.warmUpS ||
+               (spentS() < pacing_.warmUpAtMostS && !Pacing::areSettled(timesMs))) {
+            timesMs.push_back(drawUnmeasuredMs(frame));
+        }
+    }
+    void keepBusy(technique::FrameContext& frame) {
+        const Clock::time_point begin = Clock::now();
+        while (1e-3 * millisecondsSince(begin) < pacing_.busyS) drawUnmeasuredMs(frame);
+    }
+    void repeat(technique::FrameContext& frame, RunRecorder& recorder) {
+        double spentS = 0.0;
+        std::vector<double> timesMs;
+        for (int i = 0; tables::isRepeated(measure_, timesMs) ||
+                        (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
+             ++i) {
+            recorder.setIteration(frame.frame, i);
+            if (pacing_.inFlight(lastMs_) > 1) keepBusy(frame);
+            lastMs_ = measureFrame(frame, recorder);
+            timesMs.push_back(lastMs_);
+            spentS += 1e-3 * lastMs_;
+        }
+    }
+    /// Its wall time, in ms.
+    double measureFrame(technique::FrameContext& frame, RunRecorder& recorder) {
+        guard_.beginRepeat();
+        const double processBeginMs = gl::processTimeMs();
+        const Clock::time_point begin = Clock::now();
+        technique_.render(frame);
+        context_.device.finish("rendering");
+        const double wallTimeMs = millisecondsSince(begin);
+        const double processTimeMs = gl::processTimeMs() - processBeginMs;
+        recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
+        if (const auto elsewhere = technique_.usageElsewhere()) {
+            recorder.metric("process_time_ms", elsewhere->processTimeMs, "ms", "");
+        } else if (isSoftware_) {
+            recorder.metric("process_time_ms", processTimeMs, "ms", "");
+        }
+        recordPasses(profiler_, isSoftware_, recorder);
+        guard_.endRepeat(technique_, recorder);
+        recorder.metric("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs), "1/s", "");
+        return wallTimeMs;
+    }
+    /// The time of a frame of several that follow one another without a wait for each.
+    double timeInFlightMs(technique::FrameContext& frame, double wallTimeMs) {
+        const int count = pacing_.inFlight(wallTimeMs);
+        if (count == 1) return wallTimeMs;
+        const Clock::time_point begin = Clock::now();
+        for (int i = 0; i < count; ++i) {
+            technique_.render(frame);
+            gl::orderAllMemory();
+        }
+        context_.device.finish("rendering frames in flight");
+        const double timeMs = millisecondsSince(begin) / count;
+        profiler_.collect();
+        return timeMs;
+    }
+
+    const config::Measure& measure_;
+    technique::Technique& technique_;
+    gl::Profiler& profiler_;
+    const MeasureContext& context_;
+    bool isSoftware_;
+    Pacing pacing_;
+    WorkGuard guard_;
+    double lastMs_ = 0.0;  // wall time of the last measured frame
+};
+
+}  // namespace
+
+CaseResult measureCase(const Case& item, MeasureContext& context) {
+    CaseResult result;
+    const SourceLocation nowhere;
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(context.techniques, item.technique, nowhere);
+    RunRecorder recorder(context.runDir, context.command, item,
+                         technique::outputsOf(info, item.program), result);
+    config::Params params(item.given, "technique '" + item.technique + "'");
+    if (!item.offered.isNull()) params.offer(item.offered);
+
+    const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();
+    context.scenes.beginCase(sceneName);
+    resetPeakResident();
+    const std::unique_ptr<technique::Technique> technique =
+        technique::makeTechnique(info, item.program, params);
+    if (context.device.isNone() && technique::needsDevice(info, item.program)) {
+        throw UnsupportedError("technique '" + item.technique + "' needs a graphics device");
+    }
+    if (!item.program.isNull()) {
+        result.programs = context.programs.require(item, params.resolved());
+    }
+    const SceneCache::Entry* scene = nullptr;
+    if (!sceneName.empty()) {
+        const PhaseScope phase(context, "load", result.cost.loadS);
+        scene = &context.scenes.get(sceneName);
+        recordScene(*scene, recorder);
+    }
+
+    gl::Profiler profiler(context.device.info().isSoftware);
+    technique::SetupContext setup{context.device,
+                                  context.shaders,
+                                  context.scenes,
+                                  scene ? &scene->scene : nullptr,
+                                  {item.outputWidthPx, item.outputHeightPx},
+                                  item.seed,
+                                  profiler,
+                                  context.runDir / kScratchFolder};
+    {
+        const PhaseScope phase(context, "setup", result.cost.setupS);
+        const Clock::time_point begin = Clock::now();
+        technique->setup(setup);
+        context.device.finish("setting up");
+        recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
+        recordPasses(profiler, context.device.info().isSoftware, recorder);
+    }
+    FrameLoop(item, technique::needsDevice(info, item.program), *technique, profiler, context)
+        .run(recorder, result);
+    recorder.setIteration(records::kSetup, records::kSetup);
+    result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
+    if (const auto elsewhere = technique->usageElsewhere()) {
+        result.cost.peakBytes += elsewhere->peakBytes;
+        recorder.metric("peak_memory_bytes", static_cast<double>(elsewhere->peakBytes), "byte", "");
+    } else if (scene) {
+        recordMemory(context, *scene, recorder);
+    }
+
+    for (const SceneCache::Entry& entry : context.scenes.entries()) {
+        if (!entry.isOfThisCase) continue;
+        const scene::Origin& origin = entry.scene.origin;
+        result.scenes.push_back({entry.reference, std::string(scene::kindName(origin.kind)),
+                                 origin.description, origin.sha256});
+    }
+    return result;
+}
+
+}  // namespace gfxrepro::run

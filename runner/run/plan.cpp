@@ -1,0 +1,271 @@
+#include "runner/run/plan.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "runner/config/imported.h"
+#include "runner/config/scene_reference.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/run/expectations.h"
+#include "runner/run/ledger.h"
+#include "runner/run/plan_hash.h"
+
+namespace gfxrepro::run {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::string hashOf(const Plan& plan) {
+    std::vector<Json> documents;
+    for (const config::Experiment& experiment : plan.experiments) {
+        documents.push_back(experiment.document.toJson());
+    }
+    return planHash(plan, documents);
+}
+
+void requireNoImport(const config::Experiment& experiment) {
+    if (experiment.technique != config::kImported) return;
+    throw Error(experiment.document.find("technique")->location(),
+                "technique 'imported': its numbers are measured elsewhere; `gfxrepro import "
+                "FILE.csv --config " +
+                    experiment.file.filename().string() + "` takes them");
+}
+
+}  // namespace
+
+std::string caseId(const Case& item, Json written, const Plan& plan) {
+    const auto scene =
+        item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
+    written["id"] = "";
+    written["scene"] = scene == plan.sceneKeys.end() ? "" : scene->second;
+    if (written.contains("program")) written["program"].erase(config::placeholder::kHere);
+    written["device_class"] = plan.deviceClass;
+    written["build"] = plan.buildId;
+    return sha256(written.dump()).substr(0, 12);
+}
+
+std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
+    Json content = {{"profile", plan.profile},
+                    {"device_class", plan.deviceClass},
+                    {"build", plan.buildId},
+                    {"seed", plan.seed}};
+    for (const Case& item : plan.cases) content["cases"].push_back(item.id);
+    for (const Json& document : documents) content["documents"].push_back(document);
+    for (const ExpectationList& list : plan.expectations) {  // plans of older versions have none
+        content["expectations"].push_back({fs::path(list.file).filename().string(), list.text});
+    }
+    return sha256(content.dump());
+}
+
+std::string frozenHash(const Json& head, const std::vector<Case>& cases) {
+    Json content = {{"head", head}, {"cases", Json::array()}};
+    for (const Case& item : cases) content["cases"].push_back(item.id);
+    return sha256(content.dump());
+}
+
+std::string Case::title() const {
+    std::string title = experiment;
+    if (!axes.isMap()) return title;
+    for (const auto& [name, value] : axes.entries()) {
+        title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
+    }
+    // A file with its units is no other scene.
+    const bool isOther = !standsFor.isNull() && !config::isSceneFile(scene.text());
+    if (isOther) title += " (" + scene.text() + ")";
+    return title;
+}
+
+std::string Case::slug() const {
+    std::string slug = experiment;
+    std::replace(slug.begin(), slug.end(), '/', '-');
+    return slug;
+}
+
+std::string Case::method() const {
+    const config::Node* method = params.find("method");
+    return method ? method->text() : "";
+}
+
+std::string Case::recordedScene() const {
+    const config::Node* swept = axes.find("scene");
+    const config::Node& shown = swept && standsFor.isNull() ? *swept : scene;
+    return shown.isNull() ? "" : shown.text();
+}
+
+Json Case::recordedParams() const {
+    Json json = params.toJson();
+    json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
+    addSceneTo(json);
+    return json;
+}
+
+std::string Shard::name() const {
+    return std::to_string(index) + '/' + std::to_string(count);
+}
+
+bool Plan::measures(const Case& item) const {
+    return !shard || shard->caseIds.contains(item.id);
+}
+
+std::vector<tables::PlannedCase> plannedCases(const std::vector<Case>& cases) {
+    std::vector<tables::PlannedCase> planned;
+    planned.reserve(cases.size());
+    for (const Case& item : cases) {
+        planned.push_back(
+            {item.id, item.experiment, item.recordedScene(), item.recordedParams(), {}});
+        for (const auto& [axis, value] : item.axes.entries()) {
+            planned.back().axes.push_back(axis);
+        }
+    }
+    return planned;
+}
+
+Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
+              std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
+              const std::string& deviceClass, std::uint64_t seed) {
+    Plan plan;
+    plan.profile = profile;
+    plan.deviceClass = deviceClass;
+    plan.seed = seed;
+    plan.buildId = programBuildId();
+    plan.experiments = experiments;
+    for (config::Experiment& experiment : plan.experiments) {
+        requireNoImport(experiment);
+        experiment.paperCases = resolvePaperCases(experiment, catalog, techniques);
+    }
+    std::set<std::string> experimentIds;
+    std::set<std::string> caseIds;
+    config::FileDigests digests;
+    for (config::Experiment& experiment : plan.experiments) {
+        if (!experimentIds.insert(experiment.id).second) {
+            throw Error(experiment.file.string() + ": the experiment '" + experiment.id +
+                        "' is given twice");
+        }
+        std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
+        bindAssumptions(experiment, cases, catalog, techniques);
+        if (experiment.hasDefaultLayout()) {
+            experiment.outputs =
+                technique::outputsOf(technique::findTechnique(techniques, experiment.technique, {}),
+                                     config::programOf(experiment));
+        }
+        requireCaseCount(plan.cases.size() + cases.size(), experiment);
+        for (Case& item : cases) {
+            if (!item.scene.isNull()) {
+                std::string& known = plan.sceneKeys[item.scene.text()];
+                if (known.empty()) known = catalog.contentKey(item.scene);
+            }
+            item.programKey = programKeyOf(item, digests);
+            item.id = caseId(item, item.toJson(), plan);
+            if (!caseIds.insert(item.id).second) {
+                throw Error(experiment.file.string() + ": the sweep gives the case '" +
+                            item.title() + "' twice");
+            }
+        }
+        if (plan.cases.empty()) {
+            plan.cases = std::move(cases);  // of 100,000 cases a second list counts
+        } else {
+            std::ranges::move(cases, std::back_inserter(plan.cases));
+        }
+    }
+    std::vector<fs::path> files;
+    for (const config::Experiment& experiment : experiments) files.push_back(experiment.file);
+    plan.expectations = findExpectations(files);
+    for (const ExpectationList& list : plan.expectations) readExpectations(list);  // or throws
+    plan.hash = hashOf(plan);
+    return plan;
+}
+
+std::string programKeyOf(const Case& item, config::FileDigests& digests) {
+    if (item.program.isNull()) return "";
+    const config::Program program = config::readProgram(item.program);
+    return config::programKey(config::filesOf(program, program.valuesOf(item.params)), digests);
+}
+
+void rebind(Plan& plan, const std::string& deviceClass) {
+    plan.deviceClass = deviceClass;
+    for (Case& item : plan.cases) item.id = caseId(item, item.toJson(), plan);
+    plan.hash = hashOf(plan);
+}
+
+std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
+                            const scene::Catalog& catalog) {
+    if (const std::string build = programBuildId(); plan.buildId != build) {
+        return "the program or a shader changed (build " + plan.buildId.substr(0, 12) + " then, " +
+               build.substr(0, 12) + " now)";
+    }
+    if (plan.deviceClass != deviceClass) {
+        return "the run began on a " + plan.deviceClass + " device, this one is a " + deviceClass +
+               " device";
+    }
+    if (!plan.isVerified) {
+        return "its plan has no frozen_hash: that it is as it was made cannot be verified";
+    }
+    for (const auto& [reference, key] : plan.sceneKeys) {
+        if (catalog.contentKey(config::Node::scalar(reference)) != key) {
+            return "the scene '" + reference + "' changed";
+        }
+    }
+    config::FileDigests digests;
+    for (const Case& item : plan.cases) {
+        if (item.programKey.empty()) continue;  // of none, or one that was not at hand then
+        if (programKeyOf(item, digests) != item.programKey) {
+            return "the program of " + item.experiment + ", or a file of it, changed";
+        }
+    }
+    return "";
+}
+
+std::string planDifference(const Plan& then, const Plan& now) {
+    if (then.hash == now.hash) return "";
+    if (then.buildId != now.buildId) {
+        return "the program or a shader changed (build " + then.buildId.substr(0, 12) + " then, " +
+               now.buildId.substr(0, 12) + " now)";
+    }
+    if (then.deviceClass != now.deviceClass) {
+        return "the run began on a " + then.deviceClass + " device, this one is a " +
+               now.deviceClass + " device";
+    }
+    for (const auto& [reference, key] : then.sceneKeys) {
+        const auto found = now.sceneKeys.find(reference);
+        if (found != now.sceneKeys.end() && found->second != key) {
+            return "the scene '" + reference + "' changed";
+        }
+    }
+    for (std::size_t i = 0; i < std::min(then.experiments.size(), now.experiments.size()); ++i) {
+        const config::Experiment& before = then.experiments[i];
+        if (before.document.toJson() != now.experiments[i].document.toJson()) {
+            return "the config " + before.file.string() + " changed";
+        }
+    }
+    const auto textsOf = [](const Plan& plan) {
+        std::vector<std::string> texts;
+        for (const ExpectationList& list : plan.expectations) texts.push_back(list.text);
+        return texts;
+    };
+    if (textsOf(then) != textsOf(now))
+        return "the lists of expectations beside the configs changed";
+    return "the experiments are not the same";
+}
+
+std::string programBuildId() {
+    return buildIdOf("/proc/self/exe", dataFolder("shaders"));
+}
+
+std::string buildIdOf(const fs::path& program, const fs::path& shaders) {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(shaders)) {
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::string content = sha256OfFile(program);
+    for (const fs::path& file : files) {
+        content += '\n' + fs::relative(file, shaders).string() + ' ' + sha256OfFile(file);
+    }
+    return sha256(content);
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,164 @@
+// The plan: every case resolved and frozen before the first is run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/config/program.h"
+#include "runner/scene/catalog.h"
+#include "runner/tables/case_records.h"
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::run {
+
+/// One case, complete: a worker needs nothing else.
+struct Case {
+    std::string id;          // 12 hexadecimal digits of the content hash
+    std::string experiment;  // "zju2005/2.1"
+    std::string technique;
+    config::Node program;            // null, or the config's `program`
+    std::string programKey;          // identity of its files; empty where it is not at hand
+    config::Node scene;              // null or a reference: what is loaded
+    config::Node standsFor;          // what the config calls it, where that is another; else null
+    std::optional<int> sceneSample;  // from 0, where several seeds are measured
+    config::Node given;    // the parameters that the config gives: a technique is made from these
+    config::Node offered;  // null, or values that take the place of the technique's defaults
+    config::Node params;   // every declared parameter with its value, and `scene.NAME` of a
+                           // generated scene where the config gives it: what records say
+    config::Node axes;     // the swept ones
+    int outputWidthPx = 0;
+    int outputHeightPx = 0;
+    config::Measure measure;
+    std::uint64_t seed = 0;
+
+    std::string title() const;   // "zju2005/2.1 scene=models/duck"
+    std::string slug() const;    // "zju2005-2.1": for file names
+    std::string method() const;  // the parameter of that name; empty when there is none
+    /// As the config spells it, unless another takes its place: a user's own file is an absolute
+    /// path in `scene`. Empty for none.
+    std::string recordedScene() const;
+    /// `params` with the size of the output and which scene it is: what images say.
+    nlohmann::ordered_json recordedParams() const;
+    nlohmann::ordered_json toJson() const;
+    void addSceneTo(nlohmann::ordered_json& json) const;
+    static Case fromJson(const config::Node& node);
+};
+
+/// What was asked for, so that a resumed run can ask for the same again.
+struct Request {
+    std::vector<std::string> configs;  // absolute paths
+    std::vector<std::string> sets;     // --set, as written
+    std::vector<std::string> sweeps;   // --sweep, as written
+    std::vector<std::string> only;     // --only, as written
+    std::string device = "auto";
+};
+
+/// The part of a plan that one of several runs measures.
+struct Shard {
+    int index = 1;  // from 1
+    int count = 1;
+    std::set<std::string> caseIds = {};
+
+    std::string name() const;  // "2/4"
+};
+
+/// `expect-<class>.yaml` as it was when a plan was made (expectations.h reads it).
+struct ExpectationList {
+    std::string file;  // absolute path
+    std::string text;
+};
+
+struct Plan {
+    Request request;
+    std::string profile;
+    std::string deviceClass;  // "software" | "gpu"
+    std::uint64_t seed = 1;
+    /// Of everything that a result depends on; with --only that of the plan before.
+    std::string hash;
+    /// Whether it was found to be as it was written: of older versions' plans, which have no
+    /// frozen_hash, that is not known; nor are they given one.
+    bool isVerified = true;
+    std::string buildId;                           // of the program and its shaders
+    std::map<std::string, std::string> sceneKeys;  // scene reference → identity of its content
+    std::vector<Case> cases;
+    /// The experiments as loaded (file text after merging), so that tables can be made again from
+    /// the run directory alone; with their cases under the profile `paper`, which no worker sees.
+    std::vector<config::Experiment> experiments;
+    /// Those beside the experiments' configs, of every class of device: rebind() may change it.
+    std::vector<ExpectationList> expectations;
+    std::optional<Shard> shard;  // none: all cases
+
+    /// Whether a run of this plan measures the case: all do but those of other shards.
+    bool measures(const Case& item) const;
+    /// As JSON, in pieces: of 100,000 cases the whole text would take a fifth of the memory.
+    void write(const std::function<void(std::string_view)>& to) const;
+    /// The same to a file, which is there as a whole or not at all. Throws Error.
+    void writeFile(const std::filesystem::path& path) const;
+    static Plan fromJsonFile(const std::filesystem::path& path);
+};
+
+/// Of a plan: one of more could be written, and would be refused when it is read.
+inline constexpr std::size_t kMostCases = 200'000;
+/// Throws Error, naming the config, for more.
+void requireCaseCount(std::size_t count, const config::Experiment& experiment);
+
+/// As tables see them.
+std::vector<tables::PlannedCase> plannedCases(const std::vector<Case>& cases);
+
+/// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
+/// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.
+/// Needs no device.
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed);
+
+/// The same without what takes a scene's place, its seeds included; it need not be at hand.
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed);
+
+/// The cases of the experiment under the profile `paper`: what tables compare a run's parameters
+/// with. None where nothing is published. Scenes need not be at hand. Throws Error as resolveCases,
+/// and for what `printed.at` names that is no parameter, or a value that the technique does not
+/// take.
+std::vector<config::PaperCase> resolvePaperCases(
+    const config::Experiment& experiment, const scene::Catalog& catalog,
+    std::span<const technique::TechniqueInfo> techniques);
+
+/// Expands, constructs each technique once a case (which validates all parameters), resolves
+/// scenes, and hashes. Throws Error for anything that is wrong in a config.
+Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
+              std::span<const technique::TechniqueInfo> techniques, const std::string& profile,
+              const std::string& deviceClass, std::uint64_t seed);
+
+/// Identity of the program's files as the case has it, as Case::programKey.
+std::string programKeyOf(const Case& item, config::FileDigests& digests);
+
+/// Makes it a plan for another class of device: the same cases, under the ids that they have there.
+void rebind(Plan& plan, const std::string& deviceClass);
+
+/// Why a run of this plan may not go on with this program, this class of device and these scenes;
+/// empty when it may. What became of its configs does not matter: the plan has them as they were.
+std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
+                            const scene::Catalog& catalog);
+
+/// Why results under `now` may not be put beside those under `then`; empty when they may.
+std::string planDifference(const Plan& then, const Plan& now);
+
+/// Identity of a program: SHA-256 over the executable and every shader file.
+std::string buildIdOf(const std::filesystem::path& program, const std::filesystem::path& shaders);
+/// Of the running one.
+std::string programBuildId();
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,23 @@
+// What identifies a plan and its cases.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "runner/run/plan.h"
+
+namespace gfxrepro::run {
+
+/// The first 12 digits of the hash of everything that the case's results depend on: `written` is
+/// the case as plan.json has it, whatever its id.
+std::string caseId(const Case& item, nlohmann::ordered_json written, const Plan& plan);
+
+/// The hash of a plan whose experiments have these documents.
+std::string planHash(const Plan& plan, const std::vector<nlohmann::ordered_json>& documents);
+
+/// The hash of a plan as it is written: `head` is all of plan.json but its cases and this hash. The
+/// plan's own hash is another: that of what results depend on, which shards on several machines
+/// have in common.
+std::string frozenHash(const nlohmann::ordered_json& head, const std::vector<Case>& cases);
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,379 @@
+// plan.json: written by the program, and read by it alone.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <climits>
+#include <nlohmann/json.hpp>
+
+#include "runner/core/atomic_file.h"
+#include "runner/run/plan.h"
+#include "runner/run/plan_hash.h"
+#include "runner/tables/case_records.h"
+
+namespace gfxrepro::run {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr int kPlanSchema = 1;
+constexpr const char* kFrozenHash = "frozen_hash";
+
+Json toJson(const config::Measure& measure) {
+    Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
+                 {"warmup", measure.warmup},
+                 {"repeats", measure.repeats},
+                 {"processes", measure.processes},
+                 {"relative_error", measure.relativeError},
+                 {"processes_at_most", measure.processesAtMost},
+                 {"time_budget_s", measure.timeBudgetS},
+                 {"frames", measure.frames},
+                 {"time_limit_s", measure.timeLimitS},
+                 {"memory_limit_bytes", measure.memoryLimitBytes}};
+    if (measure.repeatsAtMost > 0) json["repeats_at_most"] = measure.repeatsAtMost;
+    if (measure.processesAtLeast > 0) json["processes_at_least"] = measure.processesAtLeast;
+    return json;
+}
+
+void requireMap(const config::Node& node, const char* what) {
+    if (node.isMap()) return;
+    throw Error(node.location(), std::string(what) + " is no map but " + node.kindName());
+}
+
+const config::Node& required(const config::Node& map, const char* key) {
+    requireMap(map, ("what should hold '" + std::string(key) + "'").c_str());
+    const config::Node* value = map.find(key);
+    if (!value) throw Error(map.location(), "the entry '" + std::string(key) + "' is missing");
+    return *value;
+}
+
+const config::Node& requiredMap(const config::Node& map, const char* key) {
+    const config::Node& value = required(map, key);
+    requireMap(value, key);
+    return value;
+}
+
+std::uint64_t requiredSeed(const config::Node& map) {
+    const config::Node& node = required(map, "seed");
+    const std::string& text = node.text();
+    std::uint64_t seed = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (problem != std::errc() || end != text.data() + text.size()) {
+        throw Error(node.location(), "the seed '" + text + "' is no number");
+    }
+    return seed;
+}
+
+/// Twelve hexadecimal digits: files have it in their names.
+std::string requiredId(const config::Node& map) {
+    const config::Node& node = required(map, "id");
+    const std::string& id = node.text();
+    const bool isId = id.size() == 12 && id.find_first_not_of("0123456789abcdef") == id.npos;
+    if (!isId) throw Error(node.location(), "'" + id + "' is no id of a case");
+    return id;
+}
+
+int intFrom(const config::Node& node, const char* what, int most = INT_MAX) {
+    const auto value = node.tryInteger();
+    if (value && *value >= 0 && *value <= most) return static_cast<int>(*value);
+    throw Error(node.location(),
+                fmt::format("'{}' is {}; expected a whole number from 0 to {}", what,
+                            node.isScalar() ? node.text() : node.kindName(), most));
+}
+
+int requiredInt(const config::Node& map, const char* key) {
+    return intFrom(required(map, key), key);
+}
+
+const std::string& requiredText(const config::Node& map, const char* key) {
+    const config::Node& node = required(map, key);
+    if (node.isScalar()) return node.text();
+    throw Error(node.location(), fmt::format("'{}' is {}; expected text", key, node.kindName()));
+}
+
+config::Measure measureFrom(const config::Node& node) {
+    config::Measure measure;
+    measure.lane = requiredText(node, "lane") == "timing" ? config::Measure::Lane::Timing
+                                                          : config::Measure::Lane::Quality;
+    measure.warmup = requiredInt(node, "warmup");
+    measure.repeats = requiredInt(node, "repeats");
+    measure.processes = requiredInt(node, "processes");
+    // Plans of older versions know of no further rounds.
+    if (node.find("relative_error")) {
+        measure.relativeError = required(node, "relative_error").asDouble();
+        measure.processesAtMost = requiredInt(node, "processes_at_most");
+        measure.timeBudgetS = required(node, "time_budget_s").asDouble();
+    }
+    measure.frames = requiredInt(node, "frames");
+    measure.timeLimitS = required(node, "time_limit_s").asDouble();
+    measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
+    if (const config::Node* rounds = node.find("processes_at_least")) {
+        measure.processesAtLeast = intFrom(*rounds, "processes_at_least");
+    }
+    if (const config::Node* repeats = node.find("repeats_at_most")) {
+        measure.repeatsAtMost = intFrom(*repeats, "repeats_at_most");
+    }
+    return measure;
+}
+
+/// Value and unit of the assumptions that are bound to the cases.
+Json assumedJson(const config::Experiment& experiment) {
+    Json json = Json::object();
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        if (!assumption.isBound) continue;
+        json[assumption.name] = {{"value", assumption.value.text()}, {"unit", assumption.unit}};
+    }
+    return json;
+}
+
+void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
+    requireMap(assumed, "assumed");
+    for (config::Assumption& assumption : experiment.assumptions) {
+        const config::Node* bound = assumed.find(assumption.name);
+        if (!bound) continue;
+        assumption.isBound = true;
+        assumption.value = required(*bound, "value");
+        assumption.unit = requiredText(*bound, "unit");
+    }
+}
+
+Json paperToJson(const config::Experiment& experiment) {
+    Json cases = Json::array();
+    for (const config::PaperCase& item : experiment.paperCases) {
+        cases.push_back({{"scene", item.scene}, {"params", item.params.toJson()}});
+    }
+    return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
+}
+
+void readPaper(const config::Node& node, config::Experiment& experiment) {
+    experiment.paperDocument = requiredMap(node, "document");
+    for (const config::Node& item : required(node, "cases").items()) {
+        experiment.paperCases.push_back({requiredText(item, "scene"), requiredMap(item, "params")});
+    }
+}
+
+Json outputsToJson(const config::Outputs& outputs) {
+    Json metrics = Json::array();
+    for (const config::MetricInfo& info : outputs.metrics) {
+        metrics.push_back({{"name", info.name},
+                           {"unit", info.unit},
+                           {"doc", info.doc},
+                           {"better", config::betterText(info.better)},
+                           {"detail", info.isDetail}});
+    }
+    return metrics;
+}
+
+config::Outputs outputsFrom(const config::Node& metrics) {
+    config::Outputs outputs;
+    for (const config::Node& item : metrics.items()) {
+        config::MetricInfo info{requiredText(item, "name"), requiredText(item, "unit"),
+                                requiredText(item, "doc")};
+        for (const config::Better better : {config::Better::Lower, config::Better::Higher}) {
+            if (requiredText(item, "better") == config::betterText(better)) info.better = better;
+        }
+        info.isDetail = required(item, "detail").asBool();
+        outputs.metrics.push_back(std::move(info));
+    }
+    return outputs;
+}
+
+/// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
+/// had fewer entries and no hash of all of them. (The plan's own hash has neither assumptions nor
+/// published parameters, and with --only it is that of all cases, which the plan has not.) Gives
+/// whether all could be verified.
+bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
+    const auto fail = [&](const std::string& what) {
+        throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
+                    " was changed");
+    };
+    const config::Node::Sequence& cases = required(node, "cases").items();
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Case& item = plan.cases[i];
+        if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
+        fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
+    }
+    bool isSame = true;
+    const config::Node* frozen = node.find(kFrozenHash);
+    if (frozen) {
+        Json head = Json::object();
+        for (const auto& [name, value] : node.entries()) {
+            if (name != "cases" && name != kFrozenHash) head[name] = value.toJson();
+        }
+        isSame = frozenHash(head, plan.cases) == frozen->text();
+    } else if (plan.request.only.empty()) {
+        std::vector<Json> documents;
+        for (const config::Node& item : required(node, "experiments").items()) {
+            documents.push_back(required(item, "document").toJson());
+        }
+        isSame = planHash(plan, documents) == plan.hash;
+    }
+    if (!isSame) fail("the experiments, their cases or the profile are not those that were");
+    return frozen != nullptr;
+}
+
+std::vector<std::string> textsFrom(const config::Node& list) {
+    std::vector<std::string> texts;
+    for (const config::Node& item : list.items()) texts.push_back(item.text());
+    return texts;
+}
+
+}  // namespace
+
+void Case::addSceneTo(Json& json) const {
+    if (!standsFor.isNull()) json[tables::kStandsFor] = standsFor.toJson();
+    if (sceneSample) json[tables::kSceneSample] = *sceneSample;
+}
+
+Json Case::toJson() const {
+    Json json = {{"id", id},
+                 {"experiment", experiment},
+                 {"technique", technique},
+                 {"scene", scene.toJson()},
+                 {"given", given.toJson()},
+                 {"params", params.toJson()},
+                 {"axes", axes.toJson()},
+                 {"output", {outputWidthPx, outputHeightPx}},
+                 {"measure", run::toJson(measure)},
+                 {"seed", std::to_string(seed)}};
+    if (!offered.isNull()) json["offered"] = offered.toJson();
+    if (!program.isNull()) {
+        json["program"] = program.toJson();
+        json["program_key"] = programKey;
+    }
+    addSceneTo(json);
+    return json;
+}
+
+Case Case::fromJson(const config::Node& node) {
+    const config::Node::Sequence& output = required(node, "output").items();
+    if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
+    Case item;
+    item.id = requiredId(node);
+    item.experiment = requiredText(node, "experiment");
+    item.technique = requiredText(node, "technique");
+    item.scene = required(node, "scene");
+    item.given = requiredMap(node, "given");
+    item.params = requiredMap(node, "params");
+    item.axes = requiredMap(node, "axes");
+    item.outputWidthPx = intFrom(output[0], "output");
+    item.outputHeightPx = intFrom(output[1], "output");
+    item.measure = measureFrom(required(node, "measure"));
+    item.seed = requiredSeed(node);
+    if (const config::Node* offered = node.find("offered")) item.offered = *offered;
+    if (const config::Node* program = node.find("program")) {
+        item.program = *program;
+        item.programKey = requiredText(node, "program_key");
+    }
+    if (const config::Node* name = node.find(tables::kStandsFor)) item.standsFor = *name;
+    if (const config::Node* sample = node.find(tables::kSceneSample)) {
+        item.sceneSample = intFrom(*sample, tables::kSceneSample, tables::kMostSceneSample);
+    }
+    return item;
+}
+
+void Plan::write(const std::function<void(std::string_view)>& to) const {
+    Json json = {{"schema", kPlanSchema},
+                 {"hash", hash},
+                 {"build", buildId},
+                 {"profile", profile},
+                 {"device_class", deviceClass},
+                 {"seed", std::to_string(seed)},
+                 {"request",
+                  {{"configs", request.configs},
+                   {"sets", request.sets},
+                   {"sweeps", request.sweeps},
+                   {"only", request.only},
+                   {"device", request.device}}},
+                 {"scenes", Json::object()},
+                 {"experiments", Json::array()}};
+    for (const auto& [reference, key] : sceneKeys) json["scenes"][reference] = key;
+    for (const config::Experiment& experiment : experiments) {
+        json["experiments"].push_back({{"file", experiment.file.string()},
+                                       {"document", experiment.document.toJson()},
+                                       {"assumed", assumedJson(experiment)}});
+        if (!experiment.paperCases.empty()) {
+            json["experiments"].back()["paper"] = paperToJson(experiment);
+        }
+        if (!experiment.outputs.metrics.empty()) {
+            json["experiments"].back()["metrics"] = outputsToJson(experiment.outputs);
+        }
+    }
+    for (const ExpectationList& list : expectations) {
+        json["expectations"].push_back({{"file", list.file}, {"text", list.text}});
+    }
+    if (shard) {
+        json["shard"] = {
+            {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
+    }
+    if (isVerified) json[kFrozenHash] = frozenHash(json, cases);
+    std::string text = json.dump(1);
+    text.resize(text.size() - 2);  // "\n}"
+    to(text + ",\n \"cases\": [");
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        to(fmt::format("{}\n  {}", i == 0 ? "" : ",", cases[i].toJson().dump()));
+    }
+    to("\n ]\n}\n");
+}
+
+void Plan::writeFile(const fs::path& path) const {
+    AtomicFile file(path);
+    write([&](std::string_view text) { file.write(text); });
+    file.commit();
+}
+
+Plan Plan::fromJsonFile(const fs::path& path) {
+    const config::Node node = config::parseJsonFile(path);
+    if (required(node, "schema").asInteger() != kPlanSchema) {
+        throw Error(path.string() + ": schema " + requiredText(node, "schema") +
+                    "; this program reads schema " + std::to_string(kPlanSchema));
+    }
+    Plan plan;
+    plan.hash = requiredText(node, "hash");
+    plan.buildId = requiredText(node, "build");
+    plan.profile = requiredText(node, "profile");
+    plan.deviceClass = requiredText(node, "device_class");
+    plan.seed = requiredSeed(node);
+    const config::Node& request = required(node, "request");
+    plan.request = {textsFrom(required(request, "configs")),
+                    textsFrom(required(request, "sets")),
+                    textsFrom(required(request, "sweeps")),
+                    {},
+                    requiredText(request, "device")};
+    if (const config::Node* only = request.find("only")) plan.request.only = textsFrom(*only);
+    for (const auto& [reference, key] : required(node, "scenes").entries()) {
+        plan.sceneKeys[reference] = key.text();
+    }
+    for (const config::Node& item : required(node, "experiments").items()) {
+        plan.experiments.push_back(config::experimentFromDocument(
+            requiredMap(item, "document"), fs::path(requiredText(item, "file"))));
+        if (const config::Node* assumed = item.find("assumed")) {
+            takeAssumed(*assumed, plan.experiments.back());
+        }
+        if (const config::Node* paper = item.find("paper")) {  // older plans have none
+            readPaper(*paper, plan.experiments.back());
+        }
+        if (const config::Node* metrics = item.find("metrics")) {
+            plan.experiments.back().outputs = outputsFrom(*metrics);
+        }
+    }
+    if (const config::Node* lists = node.find("expectations")) {
+        for (const config::Node& item : lists->items()) {
+            plan.expectations.push_back({requiredText(item, "file"), requiredText(item, "text")});
+        }
+    }
+    for (const config::Node& item : required(node, "cases").items()) {
+        plan.cases.push_back(Case::fromJson(item));
+    }
+    if (const config::Node* shard = node.find("shard")) {
+        plan.shard = Shard{requiredInt(*shard, "index"), requiredInt(*shard, "count")};
+        for (const std::string& id : textsFrom(required(*shard, "cases"))) {
+            plan.shard->caseIds.insert(id);
+        }
+    }
+    plan.isVerified = isAsPlanned(path, node, plan);
+    return plan;
+}
+
+}  // namespace gfxrepro::run

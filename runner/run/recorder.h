@@ -1,0 +1,59 @@
+// Takes what a technique reports and puts its files into the run directory.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "runner/run/plan.h"
+#include "runner/run/protocol.h"
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::run {
+
+/// Metrics and images go into `result`; files are written atomically. Throws Error for a
+/// metric, unit or pass that `outputs` does not declare, for a second value of a metric, pass,
+/// frame and repeat, for values that are not finite (but +∞ dB, which two equal pictures have), for
+/// names that are no file names, and where the run directory is gone.
+class RunRecorder : public technique::Recorder {
+  public:
+    /// `command` is the one that measures, as typed.
+    RunRecorder(const std::filesystem::path& runDir, const std::string& command, const Case& item,
+                config::Outputs outputs, CaseResult& result)
+        : runDir_(runDir),
+          command_(command),
+          item_(item),
+          outputs_(std::move(outputs)),
+          result_(result) {}
+
+    /// Where in the case the next calls belong; at first to the set-up.
+    void setIteration(int frame, int repeat) {
+        frame_ = frame;
+        repeat_ = repeat;
+    }
+
+    void metric(std::string_view metric, double value, std::string_view unit,
+                std::string_view pass) override;
+    void image(std::string_view name, const image::ImageF& image,
+               const technique::ImageOptions& options) override;
+    std::filesystem::path artifact(std::string_view fileName) override;
+    /// Throws Error when an image of this frame is the truth of one that was not given.
+    void checkTruths() const;
+
+  private:
+    void requireDeclared(std::string_view metric, std::string_view unit,
+                         std::string_view pass) const;
+
+    std::filesystem::path runDir_;
+    std::string command_;
+    const Case& item_;
+    config::Outputs outputs_;
+    CaseResult& result_;
+    int frame_ = records::kSetup;
+    int repeat_ = records::kSetup;
+    std::set<std::tuple<int, int, std::string, std::string>> given_;  // frame, repeat, pass, metric
+};
+
+}  // namespace gfxrepro::run

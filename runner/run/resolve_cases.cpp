@@ -1,0 +1,286 @@
+// The cases of an experiment, every parameter resolved by the technique that declares it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "runner/config/imported.h"
+#include "runner/config/scene_reference.h"
+#include "runner/core/hash.h"
+#include "runner/core/text.h"
+#include "runner/run/case_variation.h"
+#include "runner/run/plan.h"
+
+namespace gfxrepro::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The parameter of techniques that save pictures only when they are asked to.
+constexpr const char* kPictures = "pictures";
+
+/// A user's own scene file is named relative to the config; a worker gets the absolute path.
+config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
+    if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
+    const fs::path path = reference.text();
+    if (!config::isSceneFile(reference.text()) || path.is_absolute()) return reference;
+    const fs::path folder = fs::path(reference.location().file.text()).parent_path();
+    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
+                                reference.location());
+}
+
+/// Keys with a dot are checked where `printed.at` is read. A value is one that the technique takes:
+/// its type and range are the parameter's.
+void requireKnownAt(const config::Printed& printed, const Case& item,
+                    const technique::TechniqueInfo& info, const scene::Catalog& catalog) {
+    std::vector<std::string> known;
+    for (const auto& [name, value] : item.params.entries()) known.push_back(name);
+    for (const auto& [name, value] : printed.at) {
+        if (name.find('.') != std::string::npos) continue;
+        if (name == "scene") {
+            const std::string text = value.isScalar() ? value.text() : "";
+            if (catalog.entries().contains(config::sceneName(text))) continue;
+            throw Error(value.location(), fmt::format("printed.at: scene is {}; allowed: a "
+                                                      "catalogued scene",
+                                                      value.toFlowText()));
+        }
+        if (std::ranges::find(known, name) == known.end()) {
+            throw Error(value.location(),
+                        "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
+        }
+        config::Node given = item.given;
+        given.set(name, value, value.location());
+        config::Params params(given, "printed.at");
+        if (!item.offered.isNull()) params.offer(item.offered);
+        info.create(params);
+    }
+}
+
+/// What is laid out is recorded: metrics and passes of the technique.
+void requireOutputs(const config::Experiment& experiment,
+                    std::span<const technique::TechniqueInfo> techniques) {
+    if (!config::isMeasuredHere(experiment)) return;
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(techniques, experiment.technique, {});
+    const config::Outputs outputs = technique::outputsOf(info, config::programOf(experiment));
+    const std::string owner = "technique '" + experiment.technique + "'";
+    const auto require = [&](const config::Selection& selection) {
+        const SourceLocation& where = selection.location;
+        if (selection.metric) outputs.requireMetric(*selection.metric, owner, where);
+        if (selection.pass && !selection.pass->empty()) {
+            outputs.requirePass(*selection.pass, owner, where);
+        }
+        if (!selection.shareOf) return;
+        outputs.requireMetric(selection.shareOf->metric, owner, where);
+        if (!selection.shareOf->pass.empty()) {
+            outputs.requirePass(selection.shareOf->pass, owner, where);
+        }
+    };
+    require(experiment.layout.cell);
+    for (const auto* axes : {&experiment.layout.rows, &experiment.layout.columns}) {
+        for (const config::LayoutAxis& axis : *axes) {
+            for (const auto& [label, selection] : axis.labels) require(selection);
+        }
+    }
+}
+
+/// A scene where the technique needs one, and of the kind that it takes. What a generator makes is
+/// seen when it runs.
+void requireScene(const Case& item, technique::SceneNeed need, const config::Experiment& experiment,
+                  const scene::Catalog& catalog) {
+    if (need == technique::SceneNeed::Nothing) return;
+    const bool needsHeights = need == technique::SceneNeed::HeightMap;
+    const char* wanted = needsHeights ? "a height map (.png, .tif, .hgt, .raw)"
+                                      : "a model (.glb, .gltf, .obj, .ply)";
+    if (item.scene.isNull()) {
+        throw Error(experiment.document.find("technique")->location(),
+                    fmt::format("technique '{}' needs a scene: `scene:` with a name of `gfxrepro "
+                                "list scenes`, or {} beside this file",
+                                item.technique, wanted));
+    }
+    const scene::SceneSource source = catalog.resolve(item.scene);
+    if (source.generator || source.heightMap.has_value() == needsHeights) return;
+    throw Error(item.scene.location(),
+                fmt::format("scene '{}' is {}; technique '{}' takes {}", item.scene.text(),
+                            needsHeights ? "a model" : "a height map", item.technique, wanted));
+}
+
+/// A table that nobody laid out shows what its cases look like: techniques save pictures when they
+/// are asked to.
+void offerPictures(const technique::TechniqueInfo& info, Case& item) {
+    if (item.given.find(kPictures) || (item.offered.isMap() && item.offered.find(kPictures)))
+        return;
+    config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+    technique::makeTechnique(info, item.program, params);
+    const bool isTaken = std::ranges::any_of(
+        params.declared(), [](const auto& param) { return param.name == kPictures; });
+    if (isTaken) item.offered.set(kPictures, config::Node::scalar("true"));
+}
+
+/// Throws Error for two cases that are alike. Those whose scenes have two names, but one content,
+/// makePlan finds.
+void requireDistinct(const config::Experiment& experiment, const std::vector<Case>& cases) {
+    std::set<std::string> known;
+    for (const Case& item : cases) {
+        // All else of a case follows from these.
+        const std::string key = item.axes.toJson().dump() + item.scene.toJson().dump() +
+                                std::to_string(item.sceneSample.value_or(-1));
+        if (known.insert(sha256(key)).second) continue;
+        throw Error(experiment.file.string() + ": the sweep gives the case '" + item.title() +
+                    "' twice");
+    }
+}
+
+/// A title stands in every line of the log, in tables and in pictures. Throws Error with the place
+/// of the longest value of an axis.
+void requireModestTitle(const config::Experiment& experiment, const Case& item) {
+    constexpr std::size_t kMostBytes = 4096;
+    const std::size_t size = item.title().size();
+    if (size <= kMostBytes) return;
+    std::size_t longest = experiment.id.size();
+    std::string what = "the id";
+    SourceLocation where{experiment.file.string(), 0, 0};
+    for (const auto& [axis, value] : item.axes.entries()) {
+        const std::size_t own = value.toFlowText().size();
+        if (own <= longest) continue;
+        longest = own;
+        what = "a value of axis '" + axis + "'";
+        where = value.location();
+    }
+    throw Error(where, fmt::format("{} has {} bytes, its case's title {}; at most {} are allowed",
+                                   what, longest, size, kMostBytes));
+}
+
+/// What a technique needs beside a swept parameter, with how a sweep says so.
+[[noreturn]] void throwWithWhen(const Error& error, const config::CaseSpec& spec) {
+    const std::string text = error.what();
+    std::smatch found;
+    static const std::regex kNeeds(R"('(\w+)' needs '(\w+): (\w+)'$)");
+    const auto isSwept = [&](const std::string& name) {
+        for (const auto& [axis, value] : spec.axes) {
+            if (axis == name) return true;
+        }
+        return false;
+    };
+    if (!std::regex_search(text, found, kNeeds) || !isSwept(found[1])) throw;
+    const std::string place = toString(error.where()) + ": ";
+    throw Error(
+        error.where(),
+        fmt::format("{}; or `when: {{{}: {{{}: {}}}}}` in `sweep`, for the cases that have it",
+                    text.substr(text.starts_with(place) ? place.size() : 0), found[1].str(),
+                    found[2].str(), found[3].str()));
+}
+
+}  // namespace
+
+void requireCaseCount(std::size_t count, const config::Experiment& experiment) {
+    if (count <= kMostCases) return;
+    throw Error(fmt::format("{}: the plan has {} cases; at most {} are allowed",
+                            experiment.file.string(), count, kMostCases));
+}
+
+namespace {
+
+/// Gives each case of the sweep to `take`, without what takes a scene's place: there may be
+/// 100,000.
+void forEachCase(const config::Experiment& experiment, const scene::Catalog& catalog,
+                 std::span<const technique::TechniqueInfo> techniques, std::uint64_t seed,
+                 const std::function<void(Case, technique::SceneNeed)>& take) {
+    if (!config::isMeasuredHere(experiment)) return;
+    const config::Node* named = experiment.document.find("technique");
+    const SourceLocation where =
+        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0};
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(techniques, experiment.technique, where);
+    std::vector<config::CaseSpec> specs = config::expandCases(experiment);
+    requireCaseCount(specs.size(), experiment);
+    for (config::CaseSpec& given : specs) {
+        const config::CaseSpec spec = std::move(given);
+        Case item;
+        takeInstead(spec, experiment.paramsInstead, item);
+        item.program = config::programOf(experiment);
+        config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+        technique::SceneNeed need{};
+        try {
+            if (experiment.hasDefaultLayout()) offerPictures(info, item);
+            if (!item.offered.isNull()) params.offer(item.offered);
+            need = technique::makeTechnique(info, item.program, params)->sceneNeed();
+        } catch (const Error& error) {
+            throwWithWhen(error, spec);
+        }
+        params.finish();
+        item.experiment = experiment.id;
+        item.technique = experiment.technique;
+        item.scene = absoluteReference(spec.scene, catalog);
+        item.params = config::Node::map(params.resolved().entries());  // without places of keys
+        for (const auto& [name, value] : spec.sceneParams.entries()) {
+            item.params.set(std::string(config::kSceneAxisPrefix) + name, value,
+                            spec.sceneParams.keyLocation(name));
+        }
+        item.axes = config::Node::map(spec.axes);
+        requireModestTitle(experiment, item);
+        item.outputWidthPx = spec.outputWidthPx;
+        item.outputHeightPx = spec.outputHeightPx;
+        item.measure = experiment.measure;
+        item.seed = seed;
+        take(std::move(item), need);
+    }
+}
+
+}  // namespace
+
+std::vector<Case> resolveParameters(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques,
+                                    std::uint64_t seed) {
+    std::vector<Case> cases;
+    forEachCase(experiment, catalog, techniques, seed,
+                [&](Case item, technique::SceneNeed) { cases.push_back(std::move(item)); });
+    return cases;
+}
+
+std::vector<Case> resolveCases(const config::Experiment& experiment, const scene::Catalog& catalog,
+                               std::span<const technique::TechniqueInfo> techniques,
+                               std::uint64_t seed) {
+    std::vector<Case> cases;
+    std::map<std::string, technique::SceneNeed> asked;
+    forEachCase(experiment, catalog, techniques, seed, [&](const Case& item, const auto need) {
+        const std::string scene = item.scene.isNull() ? "" : item.scene.text();
+        const auto [known, isNew] = asked.try_emplace(scene, need);
+        if (isNew || known->second != need) requireScene(item, need, experiment, catalog);
+        std::ranges::move(withScenes(item, experiment, catalog), std::back_inserter(cases));
+    });
+    requireOutputs(experiment, techniques);
+    requireTaken(experiment, cases, catalog);
+    requireSceneNames(experiment, cases, catalog);
+    requireDistinct(experiment, cases);
+    return cases;
+}
+
+std::vector<config::PaperCase> resolvePaperCases(
+    const config::Experiment& experiment, const scene::Catalog& catalog,
+    std::span<const technique::TechniqueInfo> techniques) {
+    if (experiment.paperDocument.isNull()) return {};
+    const config::Experiment paper =
+        config::experimentFromDocument(experiment.paperDocument, experiment.file);
+    std::vector<config::PaperCase> cases;
+    for (const Case& item : resolveParameters(paper, catalog, techniques, 0)) {
+        requireKnownAt(paper.printed, item,
+                       technique::findTechnique(techniques, paper.technique, {}), catalog);
+        config::Node params = item.params;
+        params.setPath("output.width", config::Node::number(item.outputWidthPx));
+        params.setPath("output.height", config::Node::number(item.outputHeightPx));
+        const config::Node* axis = item.axes.find("scene");
+        const config::Node& scene = axis ? *axis : item.scene;  // as records say it
+        cases.push_back({scene.isNull() ? "" : scene.text(), std::move(params)});
+    }
+    return cases;
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,201 @@
+#include "runner/run/rounds.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+namespace gfxrepro::run {
+
+namespace {
+
+using Lane = config::Measure::Lane;
+
+/// Of each case, the processes of which all rows have values; and of each experiment one past the
+/// last process that has rows.
+struct Recorded {
+    std::map<std::string, std::set<int>> complete;
+    std::map<std::string, int> rounds;
+};
+
+Recorded recordedOf(const std::vector<records::Record>& records) {
+    Recorded recorded;
+    std::set<std::pair<std::string, int>> failed;
+    for (const records::Record& row : records) {
+        int& rounds = recorded.rounds[row.table];
+        rounds = std::max(rounds, row.process + 1);
+        recorded.complete[row.caseId].insert(row.process);
+        if (row.status != records::Status::Ok && row.status != records::Status::Flaky) {
+            failed.emplace(row.caseId, row.process);
+        }
+    }
+    for (const auto& [id, process] : failed) recorded.complete[id].erase(process);
+    return recorded;
+}
+
+bool hasAllBefore(const std::set<int>& complete, int process) {
+    for (int i = 0; i < process; ++i) {
+        if (!complete.contains(i)) return false;
+    }
+    return true;
+}
+
+/// The cases from `first` on that are of one experiment.
+std::vector<const Case*> casesFrom(const Plan& plan, std::size_t first) {
+    std::vector<const Case*> cases;
+    for (std::size_t i = first; i < plan.cases.size(); ++i) {
+        if (plan.cases[i].experiment != plan.cases[first].experiment) break;
+        cases.push_back(&plan.cases[i]);
+    }
+    return cases;
+}
+
+/// Whether rounds may follow those that are measured whatever they take.
+bool mayFollow(const config::Measure& measure) {
+    return measure.mayContinue() || measure.certainRounds() < measure.processes;
+}
+
+/// Round `process` of these cases, all of which take part in it.
+void addRound(std::vector<const Case*> cases, int process, std::vector<Unit>& units) {
+    const bool isBackwards =
+        process % 2 == 1 && !cases.empty() && cases.front()->measure.lane == Lane::Timing;
+    if (isBackwards) std::ranges::reverse(cases);
+    for (const Case* item : cases) units.push_back({item, process, {}});
+}
+
+}  // namespace
+
+std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& records) {
+    const Recorded recorded = recordedOf(records);
+    std::vector<Unit> units;
+    for (std::size_t first = 0; first < plan.cases.size();) {
+        const std::vector<const Case*> all = casesFrom(plan, first);
+        first += all.size();
+        const auto begun = recorded.rounds.find(all.front()->experiment);
+        int rounds = begun == recorded.rounds.end() ? 0 : begun->second;
+        for (const Case* item : all) rounds = std::max(rounds, item->measure.certainRounds());
+        for (int process = 0; process < rounds; ++process) {
+            std::vector<const Case*> cases;
+            for (const Case* item : all) {
+                const auto complete = recorded.complete.find(item->id);
+                const bool isFurther = mayFollow(item->measure) &&
+                                       complete != recorded.complete.end() &&
+                                       hasAllBefore(complete->second, process);
+                const bool isCertain = process < item->measure.certainRounds();
+                if (plan.measures(*item) && (isCertain || isFurther)) cases.push_back(item);
+            }
+            addRound(std::move(cases), process, units);
+        }
+    }
+    std::ranges::stable_partition(
+        units, [](const Unit& unit) { return unit.item->measure.lane == Lane::Quality; });
+    return units;
+}
+
+Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
+               const std::vector<Json>& log) {
+    for (const Case& item : plan.cases) {
+        if (item.measure.lane != Lane::Timing || !plan.measures(item)) continue;
+        const auto [table, isNew] = tables_.try_emplace(item.experiment);
+        if (isNew) order_.push_back(item.experiment);
+        table->second.cases.push_back(&item);
+    }
+    add(records);
+    for (const Json& event : log) {
+        const auto table = tables_.find(event.value("table", ""));
+        if (table == tables_.end()) continue;
+        const std::string name = event.value("event", "");
+        if (name == "machine") table->second.ending = nullptr;  // measured again from there
+        if (name == "rounds") table->second.ending = event;
+    }
+    for (auto& [name, table] : tables_) {
+        if (!table.ending.is_object()) continue;
+        for (const char* key : {"event", "time"}) table.ending.erase(key);
+    }
+}
+
+void Rounds::begin(const std::string& experiment, TimePoint now) {
+    const auto table = tables_.find(experiment);
+    if (table != tables_.end() && !table->second.begin) table->second.begin = now;
+}
+
+void Rounds::add(const std::vector<records::Record>& rows) {
+    for (const records::Record& row : rows) {
+        const auto table = tables_.find(row.table);
+        if (table != tables_.end()) table->second.times.add(row);
+    }
+}
+
+std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
+    const auto found = tables_.find(experiment);
+    if (found == tables_.end() || !found->second.ending.is_null()) return {};
+    Table& table = found->second;
+    const config::Measure& measure = table.cases.front()->measure;
+    const std::size_t rounds = table.times.roundCount();
+    const auto process = static_cast<int>(rounds);
+    const std::optional<double> error = table.times.relativeError();
+    const std::chrono::duration<double> spent =
+        table.begin ? now - *table.begin : std::chrono::duration<double>(0.0);
+    std::vector<const Case*> cases;
+    for (const Case* item : table.cases) {
+        if (table.times.hasRounds(item->id, process)) cases.push_back(item);
+    }
+    // A round takes as long as those before it did.
+    const int measured = std::max(table.roundsBegun, measure.certainRounds());
+    const bool isAffordable = spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
+    const bool isAsked = process < measure.processes;
+    const bool isUnknown = measure.mayContinue() && process < measure.processesAtMost &&
+                           !table.times.isKnownTo(measure.relativeError, measure.processes);
+    const bool isWanted = rounds > 0 && (isAsked || isUnknown);
+    if (isWanted && isAffordable && !cases.empty()) {
+        table.roundsBegun = measured + 1;
+        std::vector<Unit> units;
+        addRound(std::move(cases), process, units);
+        return units;
+    }
+    table.ending = {{"table", experiment},
+                    {"rounds", rounds},
+                    {"ended_by", tables::endOfRounds(measure, table.times)},
+                    {"relative_error", error ? Json(*error) : Json(nullptr)},
+                    {"seconds", spent.count()}};
+    return {};
+}
+
+bool Rounds::isUndecided(const std::string& experiment) const {
+    const auto table = tables_.find(experiment);
+    return table != tables_.end() && table->second.ending.is_null();
+}
+
+std::vector<std::string> Rounds::undecided() const {
+    std::vector<std::string> names;
+    std::ranges::copy_if(order_, std::back_inserter(names),
+                         [&](const std::string& name) { return isUndecided(name); });
+    return names;
+}
+
+Json Rounds::endings() const {
+    Json all = Json::object();
+    for (const std::string& name : order_) {
+        Json ending = tables_.at(name).ending;
+        if (ending.is_null()) continue;
+        ending.erase("table");
+        all[name] = ending;
+    }
+    return all;
+}
+
+std::vector<std::string> Rounds::warnings() const {
+    std::vector<std::string> lines;
+    for (const std::string& name : order_) {
+        for (const std::string& text : tables::outlierTexts(tables_.at(name).times)) {
+            lines.push_back(name + ": " + text);
+        }
+    }
+    return lines;
+}
+
+Json Rounds::ending(const std::string& experiment) const {
+    const auto table = tables_.find(experiment);
+    return table == tables_.end() ? Json(nullptr) : table->second.ending;
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,71 @@
+// Rounds of a table of times: in round k every case is measured once, as its process k. Which
+// units that are, and when there are enough.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/run/plan.h"
+#include "runner/run/protocol.h"
+#include "runner/run/worker_handle.h"
+#include "runner/tables/frame_times.h"
+
+namespace gfxrepro::run {
+
+/// The units of a plan, or of its shard, in the order in which they run: the quality lane, side by
+/// side, then the timing lane; experiment by experiment, round by round. In the timing lane every
+/// other round goes backwards (ABBA), so that what drifts evenly reaches all cases of a table
+/// alike.
+///
+/// With the `records` of a run, of rounds beyond the first `processes` those that were begun, too:
+/// in these a case takes part that was measured in all rounds before.
+std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& records = {});
+
+/// Decides after each round of a table of times whether another follows: while the time of some
+/// case is not known to its `relative_error` (tables::FrameTimes::isKnownTo), there are fewer than
+/// `processes_at_most`, and the next would end within `time_budget_s`. A decision is final, also
+/// for a run that is resumed.
+class Rounds {
+  public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    /// Of a run with these records and lines of log.jsonl so far. The plan must outlive it.
+    Rounds(const Plan& plan, const std::vector<records::Record>& records,
+           const std::vector<Json>& log);
+
+    /// A unit is about to run; the first one of an experiment starts its budget, which counts what
+    /// is spent by this start of the program.
+    void begin(const std::string& experiment, TimePoint now);
+    void add(const std::vector<records::Record>& rows);
+    /// The units of the next round of an experiment whose rounds so far are complete; empty when
+    /// there is none, which is then decided and said by ending().
+    std::vector<Unit> next(const std::string& experiment, TimePoint now);
+    bool isUndecided(const std::string& experiment) const;
+    /// Experiments that are still to be decided, in the plan's order.
+    std::vector<std::string> undecided() const;
+
+    /// {"table", "rounds", "ended_by", "relative_error", "seconds"}; null while it is undecided.
+    /// "ended_by" is a key of `measure` (tables::endOfRounds).
+    Json ending(const std::string& experiment) const;
+    /// The endings of all experiments that have one, by name: for the manifest.
+    Json endings() const;
+    /// Frames that took far longer than their fellows: "zju2005/4.1: Outlier: …".
+    std::vector<std::string> warnings() const;
+
+  private:
+    struct Table {
+        std::vector<const Case*> cases;  // those that this run measures
+        tables::FrameTimes times;
+        std::optional<TimePoint> begin = {};
+        int roundsBegun = 0;
+        Json ending;
+    };
+
+    std::map<std::string, Table> tables_;
+    std::vector<std::string> order_;
+};
+
+}  // namespace gfxrepro::run

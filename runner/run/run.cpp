@@ -1,0 +1,255 @@
+#include "runner/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/records/case_result.h"
+#include "runner/records/records.h"
+#include "runner/run/run_files.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool hasValues(records::Status status) {
+    return status == records::Status::Ok || status == records::Status::Flaky;
+}
+
+/// The first row of each unit that has no value; else the first that is not `ok`; else its first.
+using WorstRows = std::map<UnitKey, const records::Record*>;
+WorstRows worstRows(const std::vector<records::Record>& records) {
+    const auto weight = [](const records::Record& row) {
+        return hasValues(row.status) ? (row.status == records::Status::Ok ? 0 : 1) : 2;
+    };
+    WorstRows worst;
+    for (const records::Record& row : records) {
+        const auto [unit, isNew] = worst.try_emplace({row.caseId, row.process}, &row);
+        if (!isNew && weight(row) > weight(*unit->second)) unit->second = &row;
+    }
+    return worst;
+}
+
+void rewriteRecords(const RunDirectory& directory, const std::vector<records::Record>& rows) {
+    fs::path rewritten = directory.recordsFile();
+    rewritten += ".tmp";
+    fs::remove(rewritten);
+    records::RecordWriter(rewritten).append(rows);
+    fs::rename(rewritten, directory.recordsFile());
+}
+
+}  // namespace
+
+std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
+    if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
+    const std::vector<records::Record> records = records::readRecords(directory.recordsFile());
+    const WorstRows worst = worstRows(records);
+    std::vector<records::Record> kept;
+    for (const records::Record& row : records) {
+        if (hasValues(worst.at({row.caseId, row.process})->status)) kept.push_back(row);
+    }
+    if (kept.size() != records.size()) rewriteRecords(directory, kept);
+    std::vector<Unit> units = unitsOf(plan, records);
+    std::erase_if(units, [&](const Unit& unit) {
+        const auto found = worst.find({unit.item->id, unit.process});
+        return found != worst.end() && hasValues(found->second->status);
+    });
+    return units;
+}
+
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& log) {
+    std::vector<records::Record> records;
+    if (fs::exists(directory.recordsFile()))
+        records = records::readRecords(directory.recordsFile());
+    return {plan, records, log};
+}
+
+std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
+                                             Json& manifest, const std::string& machine) {
+    if (!fs::exists(directory.recordsFile())) records::RecordWriter{directory.recordsFile()};
+    std::set<std::string> unfinished;
+    for (const Unit& unit : remainingUnits(plan, directory)) {
+        if (unit.item->measure.lane != config::Measure::Lane::Timing) continue;
+        const std::string& experiment = unit.item->experiment;
+        if (timingMachine(manifest, experiment) != machine) unfinished.insert(experiment);
+    }
+    if (unfinished.empty()) return {};
+    std::vector<records::Record> kept, replaced;
+    std::set<std::string> experiments;
+    for (const records::Record& row : records::readRecords(directory.recordsFile())) {
+        const bool isReplaced = row.lane == "timing" && unfinished.contains(row.table);
+        (isReplaced ? replaced : kept).push_back(row);
+        if (isReplaced) experiments.insert(row.table);
+    }
+    if (!replaced.empty()) {
+        records::RecordWriter(directory.path() / "records-replaced.csv").append(replaced);
+        rewriteRecords(directory, kept);
+    }
+    for (const std::string& experiment : unfinished) {
+        manifest["timing_machines"][experiment] = machine;
+    }
+    return {experiments.begin(), experiments.end()};
+}
+
+namespace {
+
+/// Throws Error for a record of a case that the plan has not, or has in another table.
+void requirePlanned(const fs::path& file, const Plan& plan,
+                    const std::vector<records::Record>& records) {
+    std::unordered_map<std::string_view, std::string_view> tables;
+    for (const Case& item : plan.cases) tables[item.id] = item.experiment;
+    for (const records::Record& row : records) {
+        const auto found = tables.find(row.caseId);
+        if (found != tables.end() && found->second == row.table) continue;
+        throw Error({file.string(), 0, 0},
+                    fmt::format("the case {} of {} is not in the plan", row.caseId, row.table));
+    }
+}
+
+}  // namespace
+
+StoredRun readRun(const fs::path& runDir) {
+    if (!fs::exists(runDir / "plan.json")) {
+        throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
+    }
+    requirePlainFiles(runDir);
+    requireModestFiles(runDir);
+    StoredRun run;
+    run.plan = Plan::fromJsonFile(runDir / "plan.json");
+    run.manifest = readManifest(runDir / "manifest.json");
+    noteChanges(run.manifest, runDir);
+    noteMachines(run.manifest);
+    if (!run.plan.isVerified) {
+        const bool isWhole = run.plan.request.only.empty();
+        addNote(run.manifest,
+                fmt::format("plan.json has no frozen_hash, as those of older versions have none: "
+                            "that its {} are those that were {} cannot be verified",
+                            isWhole ? "assumptions and published parameters" : "experiments",
+                            isWhole ? "planned" : "measured"));
+    }
+    if (fs::exists(runDir / "records.csv")) {
+        run.records = records::readRecords(runDir / "records.csv");
+        requirePlanned(runDir / "records.csv", run.plan, run.records);
+    }
+    return run;
+}
+
+Expectations expectationsOf(const Plan& plan, const Json& manifest) {
+    const auto startOf = [](const Json& json) {
+        const auto found = json.find("started");
+        return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    const auto dayOf = [&](const Json& run) {
+        const Json& invocations = run.at("invocations");
+        std::string start = invocations.empty() ? "" : startOf(invocations.back());
+        return (start.empty() ? startOf(manifest) : start).substr(0, 10);
+    };
+    std::string day = dayOf(manifest);
+    if (isOnlyMerged(manifest)) {  // that of the shards, not of the merge
+        day.clear();
+        for (const Json& shard : manifest.at("merged")) day = std::max(day, dayOf(shard));
+    }
+    return {plan.expectations, plan.deviceClass, day};
+}
+
+Completeness completeness(const StoredRun& run) {
+    const WorstRows worst = worstRows(run.records);
+    Expectations expectations = expectationsOf(run.plan, run.manifest);
+    Completeness counts;
+    for (const Unit& unit : unitsOf(run.plan, run.records)) {
+        ++counts.units;
+        const auto found = worst.find({unit.item->id, unit.process});
+        if (found == worst.end()) {
+            ++counts.missing;
+            continue;
+        }
+        const records::Status status = found->second->status;
+        expectations.note(*unit.item, status);
+        if (hasValues(status)) continue;
+        if (expectations.isExpected(*unit.item, status)) {
+            ++counts.expected;
+        } else {
+            ++counts.failed;
+            ++counts.failures[status];
+        }
+    }
+    counts.complaints = expectations.complaints();
+    return counts;
+}
+
+namespace {
+
+/// How one unit of a case ended; nothing more than that where it has values.
+records::CaseResult resultOf(const Case& item, const records::Record* row,
+                             const Expectations& expectations) {
+    using Ended = records::CaseResult::Outcome;
+    records::CaseResult result{item.experiment, item.title()};
+    if (!row) {
+        result.outcome = Ended::Failed;
+        result.text = "not run";
+        return result;
+    }
+    if (hasValues(row->status)) {
+        const Expectation* unmet = expectations.failureOf(item);
+        if (!unmet || row->status != records::Status::Ok) return result;
+        result.outcome = Ended::Failed;
+        result.text = fmt::format("ended well, but was expected to fail until {}: {} ({})",
+                                  unmet->until, unmet->reason, toString(unmet->location));
+        return result;
+    }
+    result.text = records::statusName(row->status);
+    if (!row->message.empty()) result.text += ": " + row->message;
+    const Expectation* excuse = expectations.excuseOf(item, row->status);
+    const bool isSkipped =
+        row->status == records::Status::Missing || row->status == records::Status::Unsupported;
+    result.outcome = excuse || isSkipped ? Ended::Skipped : Ended::Failed;
+    if (excuse && excuse->kind == Expectation::Kind::Fails) {
+        result.text += fmt::format("; expected until {}: {}", excuse->until, excuse->reason);
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<records::CaseResult> caseResults(const StoredRun& run) {
+    using Ended = records::CaseResult::Outcome;
+    const Expectations expectations = expectationsOf(run.plan, run.manifest);
+    const WorstRows worst = worstRows(run.records);
+    std::map<std::string, SourceLocation> files;
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        files[experiment.id] = {experiment.file.string(), 0, 0};
+    }
+    // Of the processes of a case what failed weighs most, then what was left out; a case that was
+    // to fail does so in all of them.
+    const auto weight = [](const records::CaseResult& result, bool isUnmet) {
+        return result.outcome == Ended::Failed ? (isUnmet ? 1 : 3)
+                                               : (result.outcome == Ended::Skipped ? 2 : 0);
+    };
+    std::map<std::string, std::pair<int, records::CaseResult>> results;
+    std::vector<std::string> order;
+    for (const Unit& unit : unitsOf(run.plan, run.records)) {
+        const Case& item = *unit.item;
+        const auto found = worst.find({item.id, unit.process});
+        const records::Record* row = found == worst.end() ? nullptr : found->second;
+        records::CaseResult result = resultOf(item, row, expectations);
+        result.where = files[item.experiment];
+        const int own = weight(result, row && hasValues(row->status));
+        const auto [known, isNew] = results.try_emplace(item.id, own, result);
+        if (isNew) order.push_back(item.id);
+        if (own > known->second.first) known->second = {own, std::move(result)};
+    }
+    std::vector<records::CaseResult> ordered;
+    for (const std::string& id : order) ordered.push_back(std::move(results.at(id).second));
+    return ordered;
+}
+
+}  // namespace gfxrepro::run

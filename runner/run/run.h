@@ -1,0 +1,67 @@
+// A run from its plan to its tables; what `run`, `reproduce` and the commands over a finished run
+// share.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/records/case_result.h"
+#include "runner/records/records.h"
+#include "runner/run/manifest.h"
+#include "runner/run/plan.h"
+#include "runner/run/run_directory.h"
+#include "runner/run/scheduler.h"
+#include "runner/tables/printed_parameters.h"
+
+namespace gfxrepro::run {
+
+/// The units, also of further rounds that were begun, that have no complete set of `ok` or `flaky`
+/// rows yet. Rows of failed units are taken out of records.csv: they are about to be made again.
+std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
+
+/// What was decided so far of the rounds of a run's tables.
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& log);
+
+/// A run that goes on on another machine: the times of an experiment are of one machine, so where
+/// some of them are still to be measured, all are measured again. The rows so far go from
+/// records.csv to `records-replaced.csv`. Notes the machine in the manifest and gives the
+/// experiments. Does nothing on the machine on which the run began.
+std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
+                                             Json& manifest, const std::string& machine);
+
+/// What a run directory holds, for tables, claims and report.
+struct StoredRun {
+    Plan plan;
+    Json manifest;
+    std::vector<records::Record> records;
+};
+/// Throws Error when the folder is no run. The manifest notes what was changed since its end
+/// (noteChanges), and that several machines measured (noteMachines).
+StoredRun readRun(const std::filesystem::path& runDir);
+
+/// What the lists of expectations that the run's plan froze say, on the day of the run.
+Expectations expectationsOf(const Plan& plan, const Json& manifest);
+
+/// What became of the units of the run's plan, or of its shard. Every exit code that says whether a
+/// run is complete is of this.
+struct Completeness {
+    int units = 0;
+    int missing = 0;   // without a row of any kind
+    int failed = 0;    // did not end `ok` or `flaky`, and nobody expected it
+    int expected = 0;  // likewise, as a list of expectations says
+    std::map<records::Status, int> failures = {};  // the failed ones
+    std::vector<std::string> complaints = {};      // about expectations
+
+    bool isComplete() const { return missing + failed == 0; }
+    int measured() const { return units - missing - failed - expected; }
+};
+Completeness completeness(const StoredRun& run);
+
+/// How every case of the run's plan, or of its shard, ended: by its worst process. What was
+/// expected to fail and did is skipped, with the reason; what was and did not is a failure.
+std::vector<records::CaseResult> caseResults(const StoredRun& run);
+
+}  // namespace gfxrepro::run

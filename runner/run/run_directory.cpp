@@ -1,0 +1,237 @@
+#include "runner/run/run_directory.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "runner/core/error.h"
+#include "runner/core/files.h"
+#include "runner/core/temporary.h"
+#include "runner/run/run_files.h"
+
+namespace gfxrepro::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A line stays below the 1 MiB that are read again (run_files.h) were each byte of its texts, at
+// most four of them long, escaped with six.
+constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
+// In a log of this size what drivers print is left out: one of 512 MiB is not read again.
+constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
+constexpr auto kMostWholeBytes = static_cast<off_t>(kMostWholeLogBytes);
+constexpr auto kMostBytes = static_cast<off_t>(kMostLogBytes - (std::size_t{1} << 20));  // a line
+
+/// A worker that its runner began when it was killed has the lock until it is its own program.
+constexpr std::chrono::seconds kLockPatience{2};
+
+off_t sizeOf(int fd) {
+    struct stat now = {};
+    ::fstat(fd, &now);
+    return now.st_size;
+}
+
+/// The beginning of a long text, or its end.
+std::string shortened(const std::string& text, bool isEndKept) {
+    if (text.size() <= kMostTextBytes) return text;
+    const std::string mark = fmt::format("[{} bytes left out]", text.size() - kMostTextBytes);
+    return isEndKept ? mark + text.substr(text.size() - kMostTextBytes)
+                     : text.substr(0, kMostTextBytes) + mark;
+}
+
+/// The event as a log that has `logBytes` takes it.
+nlohmann::ordered_json logged(nlohmann::ordered_json event, off_t logBytes) {
+    for (const auto& [name, value] : event.items()) {
+        if (!value.is_string()) continue;
+        const std::string& text = value.get_ref<const std::string&>();
+        const bool isOutput = name == "output";
+        value = isOutput && logBytes > kMostBytesWithOutput
+                    ? fmt::format("[{} bytes left out: the log has {} MiB]", text.size(),
+                                  logBytes >> 20)
+                    : shortened(text, isOutput);
+    }
+    return event;
+}
+
+std::string utcTime(const char* format) {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof(text), format, &parts);
+    return text;
+}
+
+void removeScratchOf(const fs::path& folder) {
+    std::error_code isAbsent;
+    fs::remove_all(folder / kScratchFolder, isAbsent);  // of a link the link
+}
+
+/// What killed processes left of files that they were writing; the folder is locked.
+void removeTemporaryFiles(const fs::path& folder) {
+    removeScratchOf(folder);
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file() && isTemporary(entry.path())) files.push_back(entry.path());
+    }
+    for (const fs::path& file : files) fs::remove(file);
+}
+
+bool isBegun(const fs::path& folder) {
+    return fs::exists(folder / "lock") || fs::exists(folder / "plan.json");
+}
+
+/// A folder in which no run ever began keeps what it has: the name of the first file that a run
+/// write over; empty when there is none.
+std::string foreignFile(const fs::path& folder) {
+    if (isBegun(folder)) return "";
+    for (const char* name :
+         {"manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html", "log.jsonl",
+          "images", "tables", "plots", "thumbnails", "artifacts", kScratchFolder}) {
+        if (fs::exists(fs::symlink_status(folder / name))) return name;
+    }
+    return "";
+}
+
+int openFile(const fs::path& path, int flags) {
+    const int safe = O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
+    const int fd = ::open(path.c_str(), flags | safe, 0644);
+    if (fd < 0) throw Error("cannot write " + path.string() + ": " + std::strerror(errno));
+    return fd;
+}
+
+}  // namespace
+
+std::string utcTime() {
+    return utcTime("%Y-%m-%dT%H:%M:%SZ");
+}
+
+fs::path defaultRunPath(const std::string& slug) {
+    const fs::path base = "runs/" + utcTime("%Y%m%d-%H%M%S") + "-" + slug;
+    fs::path path = base;
+    for (int i = 2; fs::exists(path); ++i) path = base.string() + "-" + std::to_string(i);
+    return path;
+}
+
+void requirePlainFiles(const fs::path& runDir) {
+    std::error_code problem;
+    fs::recursive_directory_iterator entry(runDir, problem);
+    for (; !problem && entry != fs::recursive_directory_iterator(); entry.increment(problem)) {
+        if (entry.depth() == 0 && entry->path().filename() == kScratchFolder) {
+            entry.disable_recursion_pending();
+            if (!entry->is_symlink()) continue;
+        }
+        std::error_code isGone;  // meanwhile
+        const bool isLink = entry->is_symlink(isGone);
+        if (!isLink && (entry->is_regular_file(isGone) || entry->is_directory(isGone))) continue;
+        if (!isLink && !fs::exists(entry->symlink_status(isGone))) continue;
+        throw Error(entry->path().string() +
+                    ": a link, a pipe or a device, which a run folder does not hold");
+    }
+    if (problem) throw Error("cannot read " + runDir.string() + ": " + problem.message());
+}
+
+RunDirectory::RunDirectory(const fs::path& path) : path_(path) {
+    lockFd_ = openFile(path_ / "lock", O_RDWR);
+    const auto until = std::chrono::steady_clock::now() + kLockPatience;
+    while (::flock(lockFd_, LOCK_EX | LOCK_NB) != 0) {
+        if (std::chrono::steady_clock::now() >= until) {
+            ::close(lockFd_);
+            throw Error(path.string() + ": another run is writing to this folder");
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    logFd_ = openFile(path_ / "log.jsonl", O_WRONLY | O_APPEND);
+}
+
+RunDirectory::RunDirectory(RunDirectory&& other) noexcept
+    : path_(std::move(other.path_)),
+      lockFd_(std::exchange(other.lockFd_, -1)),
+      logFd_(std::exchange(other.logFd_, -1)) {}
+
+RunDirectory::~RunDirectory() {
+    if (logFd_ >= 0) ::close(logFd_);
+    if (lockFd_ >= 0) ::close(lockFd_);
+}
+
+RunDirectory RunDirectory::create(const fs::path& path) {
+    std::error_code problem;
+    fs::create_directories(path, problem);
+    if (problem) throw Error("cannot make the folder " + path.string() + ": " + problem.message());
+    if (const std::string file = foreignFile(path); !file.empty()) {
+        throw Error(path.string() + ": has a " + file +
+                    " that is of no run and would be written over; give another folder");
+    }
+    const bool wasBegun = isBegun(path);
+    if (wasBegun) requirePlainFiles(path);
+    RunDirectory directory(path);
+    if (fs::exists(directory.planFile())) {
+        throw Error(path.string() + ": holds a run already; continue it with --resume " +
+                    path.string() + ", or give another folder");
+    }
+    if (wasBegun) removeTemporaryFiles(path);
+    return directory;
+}
+
+RunDirectory RunDirectory::open(const fs::path& path) {
+    if (!fs::exists(path / "plan.json")) {
+        throw Error(path.string() + ": is no run directory (it has no plan.json)");
+    }
+    requirePlainFiles(path);
+    RunDirectory directory(path);
+    removeTemporaryFiles(path);
+    return directory;
+}
+
+void RunDirectory::removeScratch() const {
+    removeScratchOf(path_);
+}
+
+void RunDirectory::requireOurs() const {
+    if (isStillAt(path_ / "lock", lockFd_)) return;
+    throw Error(path_.string() +
+                ": was removed or moved, or its lock was, while a run wrote to it; nothing is "
+                "measured into it any more");
+}
+
+void RunDirectory::log(const nlohmann::ordered_json& event) const {
+    requireOurs();
+    const off_t bytes = sizeOf(logFd_);
+    if (bytes > kMostBytes) {
+        throw Error(
+            fmt::format("{}: has {} MiB, and a larger one is not read again: nothing more "
+                        "is measured into this folder",
+                        (path_ / "log.jsonl").string(), bytes >> 20));
+    }
+    if (bytes > kMostWholeBytes) return appendToLog(inShort(event));
+    appendToLog(event);
+    if (sizeOf(logFd_) > kMostWholeBytes) appendToLog(inShortFromHere());
+}
+
+void RunDirectory::appendToLog(const nlohmann::ordered_json& event) const {
+    nlohmann::ordered_json line = {{"time", utcTime()}};
+    line.update(logged(event, sizeOf(logFd_)));
+    const std::string text =
+        line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    // One write a line; a log that cannot be written (disk full) does not stop the measurement.
+    [[maybe_unused]] const ssize_t written = ::write(logFd_, text.data(), text.size());
+}
+
+void RunDirectory::logFlushed(const nlohmann::ordered_json& event) const {
+    log(event);
+    ::fdatasync(logFd_);
+}
+
+}  // namespace gfxrepro::run

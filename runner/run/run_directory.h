@@ -1,0 +1,66 @@
+// A run directory: its files, and the lock that keeps a second run out.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace gfxrepro::run {
+
+/// plan.json, manifest.json, records.csv, log.jsonl, images/, artifacts/, tables/, … under one
+/// folder, locked for writing as long as the object lives.
+class RunDirectory {
+  public:
+    /// Makes the folder; of one whose run was killed before it had a plan, removes the temporary
+    /// files. Throws Error when it holds a run already, when another run writes to it, and when it
+    /// is no run's but has a file that a run writes.
+    static RunDirectory create(const std::filesystem::path& path);
+    /// A run that was begun; removes the temporary files of processes that were killed. Throws
+    /// Error when there is none, when another run writes to it, and as requirePlainFiles().
+    static RunDirectory open(const std::filesystem::path& path);
+    RunDirectory(RunDirectory&& other) noexcept;
+    RunDirectory& operator=(RunDirectory&&) = delete;
+    ~RunDirectory();
+
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path planFile() const { return path_ / "plan.json"; }
+    std::filesystem::path manifestFile() const { return path_ / "manifest.json"; }
+    std::filesystem::path recordsFile() const { return path_ / "records.csv"; }
+    /// Removes what cases keep for each other only while the run is under way.
+    void removeScratch() const;
+
+    /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
+    /// outputs left out once it has 64 MiB, and all of it written in short beyond
+    /// kMostWholeLogBytes. Throws as requireOurs(), and where the log would not be read again: what
+    /// began is known of every run.
+    void log(const nlohmann::ordered_json& event) const;
+    /// … and waits until it is on the disk.
+    void logFlushed(const nlohmann::ordered_json& event) const;
+
+    /// Throws Error where the folder is no longer this run's: removed, moved, or without its lock,
+    /// so that another one may write to it.
+    void requireOurs() const;
+
+  private:
+    explicit RunDirectory(const std::filesystem::path& path);
+    void appendToLog(const nlohmann::ordered_json& event) const;
+
+    std::filesystem::path path_;
+    int lockFd_ = -1;
+    int logFd_ = -1;
+};
+
+/// Below a run folder, where programs of any kind work while it is under way; it goes at the end.
+inline constexpr const char* kScratchFolder = "scratch";
+
+/// Below a run folder there are files and folders alone: what is written to it goes nowhere else,
+/// and nothing is waited for. The folder itself may be a link; what programs left in
+/// kScratchFolder is not looked at, nor ever read. Throws Error naming what is neither.
+void requirePlainFiles(const std::filesystem::path& runDir);
+
+/// "2026-11-21T03:14:00Z", for manifests and logs.
+std::string utcTime();
+/// "runs/20261121-031400-zju2005": where a run goes when no folder is given.
+std::filesystem::path defaultRunPath(const std::string& slug);
+
+}  // namespace gfxrepro::run

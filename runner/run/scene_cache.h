@@ -1,0 +1,45 @@
+// The scenes that a worker holds, for the case at hand and for later ones.
+#pragma once
+
+#include <list>
+#include <string>
+
+#include "runner/scene/catalog.h"
+#include "runner/technique/technique.h"
+
+namespace gfxrepro::run {
+
+/// Least recently used scenes go when the rest would exceed the budget; those of the present case
+/// stay whatever their size.
+class SceneCache : public technique::SceneProvider {
+  public:
+    struct Entry {
+        std::string reference;
+        scene::Scene scene;
+        std::size_t sizeBytes = 0;
+        double loadTimeMs = 0.0;          // when it was read, perhaps for an earlier case
+        long long peakResidentBytes = 0;  // of the process while it was read
+        bool isOfThisCase = true;
+    };
+
+    SceneCache(const scene::Catalog& catalog, std::size_t budgetBytes)
+        : catalog_(catalog), budgetBytes_(budgetBytes) {}
+
+    /// Unpins everything; with a budget of zero, drops all scenes but `keep`.
+    void beginCase(const std::string& keep);
+    const Entry& get(const std::string& reference);
+    const scene::Scene& load(const std::string& reference) override { return get(reference).scene; }
+
+    /// Of scenes that the present case has not asked for.
+    std::size_t otherBytes() const;
+    const std::list<Entry>& entries() const { return entries_; }
+
+  private:
+    void trim();
+
+    const scene::Catalog& catalog_;
+    std::size_t budgetBytes_;
+    std::list<Entry> entries_;  // the most recently used one first
+};
+
+}  // namespace gfxrepro::run

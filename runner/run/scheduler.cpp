@@ -1,0 +1,399 @@
+#include "runner/run/scheduler.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string_view>
+
+#include "runner/run/twins.h"
+
+namespace gfxrepro::run {
+
+namespace {
+
+using Lane = config::Measure::Lane;
+using Clock = PhaseClock::Clock;
+constexpr std::chrono::milliseconds kTickInterval{250};
+constexpr std::chrono::seconds kSuspended{1};  // nothing but a suspended runner oversleeps so long
+
+/// Ctrl-C, SIGTERM and the terminal's end (unless ignored: nohup) as a descriptor to poll.
+class SignalWatch {
+  public:
+    SignalWatch() {
+        sigset_t signals;
+        sigemptyset(&signals);
+        sigaddset(&signals, SIGINT);
+        sigaddset(&signals, SIGTERM);
+        struct sigaction hangUp = {};
+        ::sigaction(SIGHUP, nullptr, &hangUp);
+        if (hangUp.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
+        ::sigprocmask(SIG_BLOCK, &signals, &before_);
+        fd_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+    }
+    ~SignalWatch() {
+        for (signalfd_siginfo ignored; ::read(fd_, &ignored, sizeof(ignored)) > 0;) {
+        }
+        ::close(fd_);
+        ::sigprocmask(SIG_SETMASK, &before_, nullptr);
+    }
+    SignalWatch(const SignalWatch&) = delete;
+    SignalWatch& operator=(const SignalWatch&) = delete;
+    int fd() const { return fd_; }
+
+  private:
+    sigset_t before_;
+    int fd_;
+};
+
+CaseResult notRun(records::Status status, const std::string& why) {
+    CaseResult result;
+    result.status = status;
+    result.message = why;
+    return result;
+}
+
+/// The second try tells the result; the first one may still show in its status and message.
+CaseResult inViewOfFirstTry(const Unit& unit, CaseResult result) {
+    if (!unit.firstTry || unit.firstTry->isOutsideKill) return result;
+    const std::string first = std::string(records::statusName(unit.firstTry->status)) +
+                              (unit.firstTry->message.empty() ? "" : ": ") + unit.firstTry->message;
+    if (result.status == records::Status::Ok) {
+        result.status = records::Status::Flaky;
+        result.message = "passed at the second try; the first: " + first;
+    } else if (result.status != unit.firstTry->status) {
+        result.message += "; the first try: " + first;
+    }
+    return result;
+}
+
+class Scheduler {
+  public:
+    Scheduler(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
+              const SchedulerOptions& options, PhaseClock& phases, Observer& observer)
+        : waiting_(units.begin(), units.end()),
+          rounds_(rounds),
+          directory_(directory),
+          options_(options),
+          phases_(phases),
+          observer_(observer),
+          expectations_(options.expectations),
+          images_(directory.path()),
+          records_(directory.recordsFile()) {
+        for (const Unit& unit : units) {
+            if (std::string key = workKey(*unit.item); !key.empty()) {
+                workKeys_.try_emplace(unit.item, std::move(key));
+            }
+        }
+        std::map<std::string_view, int> cases;
+        for (const auto& [item, key] : workKeys_) ++cases[key];
+        std::set<const Case*> alone;
+        for (const auto& [item, key] : workKeys_) {
+            if (cases[key] == 1) alone.insert(item);
+        }
+        std::erase_if(workKeys_, [&](const auto& entry) { return alone.contains(entry.first); });
+    }
+
+    RunOutcome run() {
+        while (true) {
+            dispatch();
+            if (waiting_.empty() && busyCount() == 0) break;
+            if (waitForEvents()) {
+                outcome_.isInterrupted = true;
+                break;
+            }
+            collect();
+            observer_.tick();
+            if (!outcome_.stopReason.empty()) break;
+        }
+        workers_.clear();
+        images_.requireOurs();
+        records_.requireOurs();
+        outcome_.warnings = rounds_.warnings();
+        return std::move(outcome_);
+    }
+
+  private:
+    int busyCount() const {
+        return static_cast<int>(
+            std::ranges::count_if(workers_, [](auto& w) { return w->isBusy(); }));
+    }
+
+    /// Whether a unit waits that may run now. When a table of times is through, another round of it
+    /// may come first; when nothing waits at all, one of a table that was left undecided.
+    bool hasNext() {
+        const bool isThrough = waiting_.empty() || waiting_.front().item->experiment != table_;
+        if (isThrough && rounds_.isUndecided(table_)) {
+            if (busyCount() > 0) return false;  // its last unit is running
+            if (addRound(table_)) return true;
+        }
+        while (waiting_.empty() && busyCount() == 0 && !rounds_.undecided().empty()) {
+            addRound(rounds_.undecided().front());
+        }
+        if (!waiting_.empty()) table_ = waiting_.front().item->experiment;
+        return !waiting_.empty();
+    }
+
+    /// Puts the next round of a table first; or says in the log why there is none.
+    bool addRound(const std::string& table) {
+        const std::vector<Unit> more = rounds_.next(table, Clock::now());
+        if (more.empty()) {
+            Json event = {{"event", "rounds"}};
+            event.update(rounds_.ending(table));
+            directory_.log(event);
+            return false;
+        }
+        waiting_.insert(waiting_.begin(), more.begin(), more.end());
+        observer_.unitsAdded(more);
+        return true;
+    }
+
+    /// Gives out units in order, as far as the lanes allow.
+    void dispatch() {
+        while (hasNext()) {
+            if (const Expectation* skip = expectations_.skipOf(*waiting_.front().item)) {
+                const std::string why = "skipped until " + skip->until + ": " + skip->reason;
+                finish(waiting_.front(), notRun(records::Status::Missing, why), "");
+                waiting_.pop_front();
+                continue;
+            }
+            const auto givenUp = options_.givenUp.find(waiting_.front().item->id);
+            if (givenUp != options_.givenUp.end()) {
+                finish(waiting_.front(), notRun(records::Status::Crash, givenUp->second), "",
+                       "given_up");
+                waiting_.pop_front();
+                continue;
+            }
+            const Lane lane = waiting_.front().item->measure.lane;
+            const bool timingRuns = std::any_of(workers_.begin(), workers_.end(), [](auto& w) {
+                return w->isBusy() && w->lane() == Lane::Timing;
+            });
+            const int allowed = lane == Lane::Timing || timingRuns ? 1 : options_.jobs;
+            if (busyCount() >= allowed) return;
+            Unit unit = std::move(waiting_.front());
+            waiting_.pop_front();
+            takeTwins(unit);
+            start(unit);
+        }
+    }
+
+    /// Moves the waiting twins of the unit into it.
+    void takeTwins(Unit& unit) {
+        const auto key = workKeys_.find(unit.item);
+        if (key == workKeys_.end()) return;
+        for (auto other = waiting_.begin(); other != waiting_.end();) {
+            const auto otherKey = workKeys_.find(other->item);
+            const bool isTwin = otherKey != workKeys_.end() && otherKey->second == key->second &&
+                                other->process == unit.process &&
+                                !expectations_.skipOf(*other->item);
+            if (isTwin) unit.twins.push_back(other->item);
+            other = isTwin ? waiting_.erase(other) : std::next(other);
+        }
+        const auto withPictures =
+            std::ranges::find_if(unit.twins, [](const Case* twin) { return savesPictures(*twin); });
+        if (!savesPictures(*unit.item) && withPictures != unit.twins.end()) {
+            std::swap(unit.item, *withPictures);
+        }
+    }
+
+    void start(const Unit& unit) {
+        const Lane lane = unit.item->measure.lane;
+        const bool needsOwn = unit.item->measure.processes > 1 || unit.firstTry;
+        rounds_.begin(unit.item->experiment, Clock::now());
+        // Nothing beside a timing unit, and no memory held by the other lane.
+        std::erase_if(workers_, [&](auto& w) {
+            return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && needsOwn));
+        });
+        auto worker = std::find_if(workers_.begin(), workers_.end(),
+                                   [&](auto& w) { return !needsOwn && !w->isBusy(); });
+        if (worker == workers_.end()) {
+            workers_.push_back(std::make_unique<WorkerHandle>(
+                workerCommand(options_, lane, directory_.path()), lane, needsOwn, phases_));
+            worker = std::prev(workers_.end());
+        }
+        // On the disk before it runs: what takes the machine with it is known afterwards.
+        directory_.logFlushed(
+            {{"event", "start"}, {"case", unit.item->id}, {"process", unit.process}});
+        (*worker)->assign(unit);
+        observer_.unitBegan(unit);
+    }
+
+    /// Sleeps until a worker says something or a limit is due; true on Ctrl-C. Where it slept
+    /// longer (the run was suspended), limits move.
+    bool waitForEvents() {
+        const Clock::time_point now = Clock::now();
+        Clock::time_point until = now + kTickInterval;
+        std::vector<pollfd> fds = {{signals_.fd(), POLLIN, 0}};
+        for (const auto& worker : workers_) {
+            until = std::min(until, worker->nextCheck(now));
+            fds.push_back({worker->process().messageFd(), POLLIN, 0});
+            fds.push_back({worker->process().outputFd(), POLLIN, 0});
+        }
+        const auto timeoutMs = std::chrono::ceil<std::chrono::milliseconds>(until - now).count();
+        ::poll(fds.data(), fds.size(), static_cast<int>(std::max<long long>(timeoutMs, 0)));
+        const Clock::duration late = Clock::now() - std::max(until, now);
+        if (late > kSuspended) {
+            for (const auto& worker : workers_) worker->postpone(late);
+        }
+        return (fds.front().revents & POLLIN) != 0;
+    }
+
+    void collect() {
+        for (auto& worker : workers_) {
+            std::optional<CaseResult> result = worker->receive();
+            if (!result) result = worker->checkLimits(Clock::now());
+            if (!result) continue;
+            const Unit unit = *worker->unit();
+            if (isTriedAgain(unit, *result)) {
+                logCase("retry", unit, *result, worker->output());
+                waiting_.push_front({unit.item, unit.process, *result, unit.twins});
+            } else {
+                finish(unit, inViewOfFirstTry(unit, *result), worker->output());
+            }
+            if (!worker->release(*result)) worker.reset();
+        }
+        std::erase(workers_, nullptr);
+        std::erase_if(workers_, [](auto& w) { return w->isGone(); });
+    }
+
+    bool isTriedAgain(const Unit& unit, const CaseResult& result) const {
+        const auto isExpected = [&](const Case* item) {
+            return expectations_.isExpected(*item, result.status);
+        };
+        return !unit.firstTry && result.status != records::Status::Ok &&
+               result.status != records::Status::Unsupported &&
+               !(isExpected(unit.item) && std::ranges::all_of(unit.twins, isExpected));
+    }
+
+    void logCase(const char* name, const Unit& unit, const CaseResult& result,
+                 const std::string& output) const {
+        Json event = {{"event", name},
+                      {"case", unit.item->id},
+                      {"title", unit.item->title()},
+                      {"process", unit.process},
+                      {"status", records::statusName(result.status)}};
+        if (unit.measuredAs) event["as"] = unit.measuredAs->title();
+        if (result.status == records::Status::Ok || result.status == records::Status::Flaky) {
+            event["cost"] = toJson(result.cost);
+        }
+        if (!result.message.empty()) event["message"] = result.message;
+        if (!output.empty()) event["output"] = output;
+        directory_.log(event);
+    }
+
+    void finish(const Unit& unit, const CaseResult& result, const std::string& output,
+                const char* event = "case") {
+        record(unit, result, output, event);
+        for (const Case* twin : unit.twins) {
+            record({twin, unit.process, {}, {}, unit.item}, result, "", event);
+        }
+        noteFailure(unit, result.status);
+        outcome_.voided += result.voidReason.empty() ? 0 : 1;
+        outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
+        outcome_.programs.insert(result.programs.begin(), result.programs.end());
+    }
+
+    /// Stops the run where the machine cannot be trusted any more, or as often as was asked for.
+    void noteFailure(const Unit& unit, records::Status status) {
+        lostInARow_ = status == records::Status::DeviceLost ? lostInARow_ + 1 : 0;
+        if (lostInARow_ >= 2 && !expectations_.isExpected(*unit.item, status)) {
+            outcome_.stopReason = "the device was lost in two cases in a row";
+        } else if (options_.failuresAtMost > 0 && outcome_.failed >= options_.failuresAtMost) {
+            outcome_.stopReason = std::to_string(outcome_.failed) + " failed";
+        }
+    }
+
+    /// Images first: a unit whose rows are there is complete.
+    void record(const Unit& unit, const CaseResult& result, const std::string& output,
+                const char* event) {
+        directory_.requireOurs();
+        const bool hasValues =
+            result.status == records::Status::Ok || result.status == records::Status::Flaky;
+        images_.append(
+            unit.measuredAs && hasValues
+                ? shareFiles(directory_.path(), *unit.measuredAs, *unit.item, result.images)
+                : result.images);
+        const std::vector<records::Record> rows = recordsOf(unit, result);
+        records_.append(rows);
+        rounds_.add(rows);
+        logCase(event, unit, result, output);
+        count(unit, result.status);
+        observer_.unitEnded(unit, result.status, result.message);
+    }
+
+    void count(const Unit& unit, records::Status status) {
+        ++outcome_.begun;
+        if (status == records::Status::Ok || status == records::Status::Flaky) {
+            ++outcome_.finished;
+            if (unit.measuredAs) ++outcome_.shared;
+            if (status == records::Status::Flaky) ++outcome_.flaky;
+        } else {
+            ++(expectations_.isExpected(*unit.item, status) ? outcome_.expected : outcome_.failed);
+        }
+    }
+
+    SignalWatch signals_;
+    std::deque<Unit> waiting_;
+    std::map<const Case*, std::string> workKeys_;  // of cases in the quality lane that have twins
+    Rounds& rounds_;
+    std::string table_;  // of the unit that ran last, or is next
+    const RunDirectory& directory_;
+    const SchedulerOptions& options_;
+    PhaseClock& phases_;
+    Observer& observer_;
+    Expectations expectations_;
+    records::ImageWriter images_;
+    records::RecordWriter records_;
+    std::vector<std::unique_ptr<WorkerHandle>> workers_;
+    int lostInARow_ = 0;  // units that ended device-lost
+    RunOutcome outcome_;
+};
+
+}  // namespace
+
+std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lane,
+                                       const std::filesystem::path& runDir) {
+    return {"/proc/self/exe", "worker",
+            "--device",       options.device,
+            "--assets",       options.assetsFolder,
+            "--lane",         lane == Lane::Timing ? "timing" : "quality",
+            "--run",          runDir.string(),
+            "--command",      options.command,
+            "--jobs",         std::to_string(options.jobs)};
+}
+
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
+                           bool isBalanceMeasured) {
+    std::vector<std::string> command = workerCommand(options, Lane::Quality, ".");
+    if (isBalanceMeasured) command.emplace_back("--balance");
+    WorkerHandle worker(command, Lane::Quality, true, phases);
+    const Clock::time_point limit = Clock::now() + WorkerHandle::startLimit();
+    while (!worker.device() && !worker.isGone()) {
+        pollfd fds[] = {{worker.process().messageFd(), POLLIN, 0},
+                        {worker.process().outputFd(), POLLIN, 0}};
+        const auto leftMs =
+            std::chrono::ceil<std::chrono::milliseconds>(limit - Clock::now()).count();
+        if (leftMs <= 0) {
+            throw NoDeviceError("the driver did not open a device within " +
+                                std::to_string(WorkerHandle::startLimit().count()) + " s");
+        }
+        ::poll(fds, 2, static_cast<int>(leftMs));
+        worker.receive();
+    }
+    if (worker.device()) return *worker.device();
+    throw NoDeviceError(worker.startProblem());
+}
+
+RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
+                    const SchedulerOptions& options, PhaseClock& phases, Observer& observer) {
+    return Scheduler(units, rounds, directory, options, phases, observer).run();
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,80 @@
+// Runs the units of a plan in worker processes: timing units alone, quality units side by side.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "runner/run/expectations.h"
+#include "runner/run/phase_clock.h"
+#include "runner/run/plan.h"
+#include "runner/run/protocol.h"
+#include "runner/run/rounds.h"
+#include "runner/run/run_directory.h"
+#include "runner/run/worker_handle.h"
+
+namespace gfxrepro::run {
+
+/// Told about progress; called from the thread that runs the scheduler.
+class Observer {
+  public:
+    virtual ~Observer() = default;
+    /// A further round was found to be needed.
+    virtual void unitsAdded(const std::vector<Unit>&) {}
+    virtual void unitBegan(const Unit& unit) = 0;
+    /// Also for the unit of each twin that this one was measured for.
+    virtual void unitEnded(const Unit& unit, records::Status status,
+                           const std::string& message) = 0;
+    /// Now and then, for a display that shows time.
+    virtual void tick() = 0;
+};
+
+struct SchedulerOptions {
+    std::string device = "auto";  // passed through to the workers
+    std::string assetsFolder;
+    int jobs = 1;  // quality units at once
+    Expectations expectations = {};
+    std::string command = {};  // as typed: images say what measured them
+    /// Cases, by id, that are not tried (again), and are recorded as crashes with this message.
+    std::map<std::string, std::string> givenUp = {};
+    int failuresAtMost = 0;  // with as many failed units the run stops; 0: never
+};
+
+struct RunOutcome {
+    int begun = 0;     // units, those of further rounds too
+    int finished = 0;  // units that ended `ok` or `flaky`
+    int flaky = 0;     // of these
+    int shared = 0;    // of these: recorded from a twin's measurement
+    int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
+    int failed = 0;    // others, but for those that were expected
+    int expected = 0;  // that failed or were skipped as a list of expectations says
+    std::vector<std::string> warnings;  // about times
+    bool isInterrupted = false;         // by SIGINT, SIGTERM or SIGHUP
+    std::string stopReason;             // of a stop before the end that nobody asked for then
+    std::vector<SceneUse> scenes;
+    std::set<ProgramUse> programs;
+};
+
+/// The command of a worker process: this program, with `worker` and the options.
+std::vector<std::string> workerCommand(const SchedulerOptions& options, config::Measure::Lane lane,
+                                       const std::filesystem::path& runDir);
+
+/// Starts a worker for a moment to ask what the device is; a driver that crashes does not take the
+/// runner with it. On hardware with its balance where that is asked for: a second or two. Throws
+/// NoDeviceError.
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
+                           bool isBalanceMeasured = false);
+
+/// Runs `units` and the further rounds that `rounds` asks for, appending records, images and log
+/// lines as each ends. Of units that are twins the first is run and recorded for each; one that is
+/// to be skipped is no twin. A failure that nobody expects is tried once more, in a fresh worker;
+/// what passes then is `flaky`, unless the first worker was killed from outside.
+RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
+                    const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
+
+/// The rows of one unit: a row a sample, or one row with the status.
+std::vector<records::Record> recordsOf(const Unit& unit, const CaseResult& result);
+
+}  // namespace gfxrepro::run

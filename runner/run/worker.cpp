@@ -1,0 +1,120 @@
+#include "runner/run/worker.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <new>
+
+#include "runner/core/files.h"
+#include "runner/gl/balance.h"
+#include "runner/run/child_process.h"
+#include "runner/run/measure.h"
+#include "runner/run/process_memory.h"
+#include "runner/run/protocol.h"
+
+namespace gfxrepro::run {
+
+namespace {
+
+constexpr std::size_t kSceneBudgetBytes = std::size_t{2} << 30;
+
+void send(const Json& message) {
+    // Messages may quote files of any encoding; they arrive with replacement characters.
+    const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    std::string_view rest = text;
+    while (!rest.empty()) {
+        const ssize_t written = ::write(kMessageFd, rest.data(), rest.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            throw Error("the runner is gone: " + std::string(std::strerror(errno)));
+        }
+        rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+CaseResult failure(records::Status status, const std::string& message) {
+    CaseResult result;
+    result.status = status;
+    result.message = message;
+    return result;
+}
+
+/// The batch case loop's catch: whatever a case throws becomes its status.
+CaseResult resultOf(const Case& item, MeasureContext& context) {
+    try {
+        return measureCase(item, context);
+    } catch (const UnsupportedError& error) {
+        return failure(records::Status::Unsupported, error.what());
+    } catch (const technique::CrashError& error) {
+        return failure(records::Status::Crash, error.what());
+    } catch (const DeviceLostError& error) {
+        return failure(records::Status::DeviceLost, error.what());
+    } catch (const std::bad_alloc&) {
+        return failure(records::Status::Oom, "out of memory");
+    } catch (const std::exception& error) {
+        return failure(records::Status::Error, error.what());
+    }
+}
+
+void serve(gl::Device& device, const WorkerOptions& options,
+           std::span<const technique::TechniqueInfo> techniques,
+           std::span<const scene::GeneratorInfo> generators) {
+    const scene::Catalog catalog(dataFolder("configs") / "scenes", options.assetsFolder,
+                                 generators);
+    const gl::ShaderLibrary shaders(dataFolder("shaders"));
+    // A timing worker keeps nothing but the scene at hand, so that memory is the case's own.
+    ProgramCache programs;
+    SceneCache scenes(catalog,
+                      options.lane == config::Measure::Lane::Timing ? 0 : kSceneBudgetBytes);
+    MeasureContext context{device,
+                           shaders,
+                           scenes,
+                           programs,
+                           techniques,
+                           options.runDir,
+                           options.command,
+                           residentBytes(::getpid()),
+                           [](std::string_view phase, bool isBegin) {
+                               send({{isBegin ? "begin" : "end", phase}});
+                           }};
+    gl::DeviceInfo info = device.info();
+    if (options.isBalanceMeasured && !device.isNone() && !info.isSoftware) {
+        info.balance = gl::measureBalance(shaders);
+    }
+    send({{"ready", toJson(info)}});
+    std::string line;
+    while (std::getline(std::cin, line)) {
+        const config::Node request = config::parseJson(line, "what the runner sent");
+        const config::Node* asked = request.isMap() ? request.find("case") : nullptr;
+        if (!asked) throw Error("what the runner sent: '/case' is missing");
+        const Case item = Case::fromJson(*asked);
+        const CaseResult result = resultOf(item, context);
+        std::cout.flush();
+        std::cerr.flush();
+        send({{"done", toJson(result)}});
+    }
+}
+
+}  // namespace
+
+void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques,
+               std::span<const scene::GeneratorInfo> generators) {
+    if (::fcntl(kMessageFd, F_SETFD, FD_CLOEXEC) != 0) {
+        throw UsageError("the worker command is for the program's own use: descriptor 3 is closed");
+    }
+    send({{"begin", "device"}});
+    const bool isTiming = options.lane == config::Measure::Lane::Timing;
+    const gl::DebugOutput debug = isTiming ? gl::DebugOutput::Off : gl::DebugOutput::Log;
+    try {
+        gl::Device device = gl::Device::open({options.device, debug, isTiming ? 1 : options.jobs});
+        send({{"end", "device"}});
+        serve(device, options, techniques, generators);
+    } catch (const NoDeviceError& error) {
+        send({{"unavailable", error.what()}});
+    }
+}
+
+}  // namespace gfxrepro::run

@@ -1,0 +1,249 @@
+#include "runner/studies/sensitivity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "runner/core/text.h"
+#include "runner/records/csv.h"
+#include "runner/report/markup.h"
+#include "runner/run/ledger.h"
+
+namespace gfxrepro::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using claims::ClaimResult;
+using claims::Verdict;
+
+std::string textOf(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number()) {
+        // 100000, not 1e+05, which is no integer to a config.
+        const auto number = value.get<double>();
+        const bool isWhole = number == std::round(number) && std::abs(number) < 1e15;
+        return isWhole ? fmt::format("{:.0f}", number) : records::shortestText(number);
+    }
+    return value.dump();
+}
+
+/// `points` values of [low, high].
+std::vector<double> pointsOf(double low, double high, int points, bool isInteger) {
+    constexpr double kWideFactor = 10.0;
+    const bool isByRatio = low > 0.0 && high / low > kWideFactor;
+    std::vector<double> values;
+    for (int i = 0; i < points; ++i) {
+        const double t = points == 1 ? 0.0 : i / (points - 1.0);
+        double value = isByRatio ? low * std::pow(high / low, t) : low + (high - low) * t;
+        if (isInteger) value = std::round(value);
+        if (values.empty() || value != values.back()) values.push_back(value);
+    }
+    return values;
+}
+
+std::vector<std::string> setsOf(const std::string& name, const std::string& value) {
+    if (name == config::kOutputAssumption)
+        return {"output.width=" + value, "output.height=" + value};
+    if (name == config::kSceneSeedAssumption) return {"scene_seed=" + value};
+    return {"params_instead." + name + "=" + value};
+}
+
+/// Why the assumption is not varied; empty if it is.
+std::string whyFixed(const config::Assumption& assumption, const std::vector<run::Case>& cases) {
+    if (!assumption.isBound) return "no parameter of the technique";
+    const bool isScene = assumption.name == config::kSceneAssumption;
+    for (const std::string& axis : {assumption.name, assumption.name + ".width"}) {
+        const auto isSwept = [&](const run::Case& item) { return item.axes.find(axis) != nullptr; };
+        if (!isScene && std::ranges::any_of(cases, isSwept)) {
+            return "an axis of the table: it is varied there";
+        }
+    }
+    if (assumption.range.isNull()) return "it has no range";
+    if (isScene && run::alternativesOf(assumption, run::sceneNames(cases)).empty()) {
+        return "no other scene for those of the table";
+    }
+    if (assumption.name == config::kSceneSeedAssumption && assumption.value.text() == "none") {
+        return "no scene of the table is generated";
+    }
+    return "";
+}
+
+std::vector<Variation> sceneVariations(const config::Assumption& assumption,
+                                       const std::vector<run::Case>& cases) {
+    std::vector<Variation> variations;
+    for (const auto& [name, other] : run::alternativesOf(assumption, run::sceneNames(cases))) {
+        variations.push_back({assumption.name,
+                              fmt::format("{} for {}", other.text(), name),
+                              std::nullopt,
+                              {fmt::format("scene_instead={{{}: {}}}", name, other.text())}});
+    }
+    return variations;
+}
+
+/// The values of the range but for the one that the cases take.
+std::vector<Variation> variationsOf(const config::Assumption& assumption,
+                                    const std::vector<run::Case>& cases, int points) {
+    if (assumption.name == config::kSceneAssumption) return sceneVariations(assumption, cases);
+    const Json range = assumption.range.toJson();
+    const config::Node* current = cases.front().params.find(assumption.name);
+    std::vector<Json> values(range.begin(), range.end());
+    if (range.size() == 2 && range[0].is_number() && range[1].is_number()) {
+        values.clear();
+        const bool isInteger = range[0].is_number_integer() && range[1].is_number_integer() &&
+                               (!current || current->tryInteger().has_value());
+        for (const double value :
+             pointsOf(range[0].get<double>(), range[1].get<double>(), points, isInteger)) {
+            values.emplace_back(value);
+        }
+    }
+    std::vector<Variation> variations;
+    for (const Json& value : values) {
+        Variation variation{assumption.name, textOf(value), std::nullopt, {}};
+        if (variation.value == assumption.value.text()) continue;
+        if (value.is_number()) variation.number = value.get<double>();
+        variation.sets = setsOf(assumption.name, variation.value);
+        variations.push_back(std::move(variation));
+    }
+    return variations;
+}
+
+/// Where the margin of a claim passes 0 between two values; nothing where the margins do not tell.
+std::optional<double> flipBetween(const Outcome& a, const Outcome& b, std::size_t claim) {
+    const std::optional<double> first = a.claims[claim].distance;
+    const std::optional<double> second = b.claims[claim].distance;
+    if (!first || !second || (*first < 0.0) == (*second < 0.0)) return std::nullopt;
+    const double t = *first / (*first - *second);
+    return *a.variation.number + t * (*b.variation.number - *a.variation.number);
+}
+
+bool holds(const Outcome& outcome, std::size_t claim) {
+    return outcome.claims[claim].verdict == Verdict::Holds;
+}
+
+bool isJudged(const Outcome& outcome, std::size_t claim) {
+    if (claim >= outcome.claims.size()) return false;
+    const Verdict verdict = outcome.claims[claim].verdict;
+    return verdict != Verdict::NotApplicable && verdict != Verdict::Unmeasured;
+}
+
+/// The runs that judge the claim; the config as it is comes first, or none do.
+std::vector<Outcome> judged(const std::vector<Outcome>& outcomes, std::size_t claim) {
+    if (outcomes.empty() || !isJudged(outcomes.front(), claim)) return {};
+    std::vector<Outcome> kept;
+    std::ranges::copy_if(outcomes, std::back_inserter(kept),
+                         [&](const Outcome& outcome) { return isJudged(outcome, claim); });
+    return kept;
+}
+
+/// "bias is 0.03 or 0.1 (flips between 0.003 and 0.03, near 0.012)": the values under which the
+/// claim holds, or those under which it does not.
+std::string condition(const std::string& assumption, std::vector<const Outcome*> outcomes,
+                      std::size_t claim, bool whereItHolds) {
+    std::vector<std::string> values;
+    std::string flips;
+    for (const Outcome* outcome : outcomes) {
+        if (holds(*outcome, claim) == whereItHolds) values.push_back(outcome->variation.value);
+    }
+    std::erase_if(outcomes, [](const Outcome* outcome) { return !outcome->variation.number; });
+    std::ranges::sort(outcomes, {},
+                      [](const Outcome* outcome) { return *outcome->variation.number; });
+    for (std::size_t i = 1; i < outcomes.size(); ++i) {
+        const Outcome &a = *outcomes[i - 1], &b = *outcomes[i];
+        if (holds(a, claim) == holds(b, claim)) continue;
+        flips += fmt::format("{} between {} and {}", flips.empty() ? "flips" : ",",
+                             a.variation.value, b.variation.value);
+        if (const auto at = flipBetween(a, b, claim)) flips += fmt::format(", near {:.3g}", *at);
+    }
+    return fmt::format("{} is {}{}", assumption, joined(values, " or "),
+                       flips.empty() ? "" : " (" + flips + ")");
+}
+
+}  // namespace
+
+std::string Variation::title() const {
+    return assumption.empty() ? "as configured" : assumption + " = " + value;
+}
+
+Variations variationsOf(const config::Experiment& experiment, const std::vector<run::Case>& cases,
+                        int points) {
+    Variations result;
+    result.runs.push_back({});
+    std::vector<std::vector<Variation>> byAssumption;
+    for (const config::Assumption& assumption : experiment.assumptions) {
+        const std::string why =
+            cases.empty() ? "the table has no cases" : whyFixed(assumption, cases);
+        if (!why.empty()) {
+            result.fixed.emplace_back(assumption.name, why);
+            continue;
+        }
+        byAssumption.push_back(variationsOf(assumption, cases, points));
+    }
+    std::ranges::stable_partition(byAssumption, [](const std::vector<Variation>& variations) {
+        return !variations.empty() &&
+               variations.front().assumption.starts_with(config::kSceneAssumption);
+    });
+    std::size_t most = 0;
+    for (const auto& variations : byAssumption) most = std::max(most, variations.size());
+    for (std::size_t i = 0; i < most; ++i) {
+        for (const auto& variations : byAssumption) {
+            if (i < variations.size()) result.runs.push_back(variations[i]);
+        }
+    }
+    return result;
+}
+
+std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
+    const std::vector<Outcome> outcomes = judged(all, claim);
+    if (outcomes.empty()) return "not judged as configured";
+    const auto holding =
+        std::ranges::count_if(outcomes, [&](const Outcome& o) { return holds(o, claim); });
+    if (static_cast<std::size_t>(holding) == outcomes.size()) {
+        return fmt::format("holds under all {}", outcomes.size());
+    }
+    if (holding == 0) return fmt::format("holds under none of {}", outcomes.size());
+    std::vector<std::string> order;
+    std::map<std::string, std::vector<const Outcome*>> byAssumption;
+    for (const Outcome& outcome : outcomes) {
+        const std::string& name = outcome.variation.assumption;
+        if (name.empty()) continue;
+        if (!byAssumption.contains(name)) order.push_back(name);
+        byAssumption[name].push_back(&outcome);
+    }
+    const bool holdsAsConfigured = holds(outcomes.front(), claim);
+    std::vector<std::string> conditions;
+    for (const std::string& name : order) {
+        const bool decides = std::ranges::any_of(byAssumption[name], [&](const Outcome* o) {
+            return holds(*o, claim) != holdsAsConfigured;
+        });
+        if (decides) {
+            conditions.push_back(condition(name, byAssumption[name], claim, !holdsAsConfigured));
+        }
+    }
+    return fmt::format("holds {} {}", holdsAsConfigured ? "unless" : "only if",
+                       joined(conditions, ", or "));
+}
+
+std::string restsOn(const std::vector<Outcome>& all, std::size_t claim) {
+    const std::vector<Outcome> outcomes = judged(all, claim);
+    std::vector<std::string> tried, deciding;
+    const auto note = [](std::vector<std::string>& names, const std::string& name) {
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    };
+    for (const Outcome& outcome : outcomes) {
+        const std::string& name = outcome.variation.assumption;
+        if (name.empty()) continue;
+        note(tried, name);
+        const bool isOther =
+            outcome.claims[claim].verdict != outcomes.front().claims[claim].verdict;
+        if (isOther) note(deciding, name);
+    }
+    if (tried.empty()) return "not tried";
+    if (deciding.empty()) return fmt::format("none of the {} tried", tried.size());
+    return fmt::format("{} (of {} tried)", joined(deciding), tried.size());
+}
+
+}  // namespace gfxrepro::studies

@@ -1,0 +1,369 @@
+#include "runner/tables/cell_builder.h"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <set>
+
+#include "runner/core/text.h"
+#include "runner/tables/sampling.h"
+#include "runner/tables/share_draws.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+constexpr std::string_view kDefaultFormat = "{median:.4g}";
+
+void layOver(const config::Selection& part, config::Selection& selection, Where& where) {
+    if (part.metric) selection.metric = part.metric;
+    if (part.pass) selection.pass = part.pass;
+    if (part.format) selection.format = part.format;
+    if (part.scale) selection.scale = part.scale;
+    if (part.shareOf) selection.shareOf = part.shareOf;
+    if (part.location.line > 0) selection.location = part.location;
+    for (const auto& [axis, value] : part.where) {
+        std::vector<std::string> allowed = {canonicalText(value)};
+        if (value.isSequence()) {
+            for (const config::Node& item : value.items()) allowed.push_back(canonicalText(item));
+        }
+        where[axis] = std::move(allowed);
+    }
+}
+
+/// Lays the parts of the labels of one dimension; a sweep axis asks for its own value.
+void layKeyOver(const std::vector<config::LayoutAxis>& axes, const Key& key,
+                config::Selection& selection, Where& where) {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (axes[i].isSweepAxis()) {
+            where[axes[i].name] = {key[i]};
+            continue;
+        }
+        for (const auto& [label, part] : axes[i].labels) {
+            if (label == key[i]) layOver(part, selection, where);
+        }
+    }
+}
+
+struct Laid {
+    config::Selection selection;
+    Where where;
+};
+
+/// The parts of `cell`, the row and the column, laid over one another.
+Laid partsOver(const config::Layout& layout, const Key& row, const Key& column) {
+    Laid laid;
+    layOver(layout.cell, laid.selection, laid.where);
+    layKeyOver(layout.rows, row, laid.selection, laid.where);
+    layKeyOver(layout.columns, column, laid.selection, laid.where);
+    return laid;
+}
+
+bool matchesFrame(const Where& where, int frame) {
+    const auto found = where.find("frame");
+    if (found == where.end()) return true;
+    const std::string text = std::to_string(frame);
+    return std::find(found->second.begin(), found->second.end(), text) != found->second.end();
+}
+
+bool isFrameTime(const std::string& metric) {
+    return metric == "wall_time_ms" || metric == "gpu_time_ms" || metric == "cpu_time_ms";
+}
+
+/// The same place by the CPU time of the process, where such is recorded.
+std::optional<CellQuery> byProcessTime(const CellQuery& query) {
+    const bool isRate = query.metric == "frame_rate";
+    if (!isRate && !isFrameTime(query.metric)) return std::nullopt;
+    CellQuery other = query;
+    other.metric = "process_time_ms";
+    if (other.shareOf) {
+        if (isRate || !isFrameTime(other.shareOf->metric)) return std::nullopt;
+        other.shareOf->metric = "process_time_ms";
+    }
+    other.isRateOfTime = isRate;
+    return other;
+}
+
+/// What a share is of.
+std::optional<CellQuery> wholeOf(const CellQuery& query) {
+    if (!query.shareOf) return std::nullopt;
+    CellQuery whole = query;
+    whole.metric = query.shareOf->metric;
+    whole.pass = query.shareOf->pass;
+    whole.shareOf.reset();
+    return whole;
+}
+
+struct Gathered {  // what the records of a cell came to
+    Samples samples;
+    std::optional<Samples> whole;  // of a share
+    records::Status worst = records::Status::Ok;
+    std::string message;
+    bool isUntimed = false;  // ambiguous for being a time of the quality lane
+    std::set<std::string> units;
+    std::vector<std::string> caseIds;
+    std::size_t notRun = 0;           // further cases
+    std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
+
+    void note(records::Status status, const std::string& why) {
+        if (status > worst) {
+            worst = status;
+            message = why;
+        }
+    }
+};
+
+void takeRow(const records::Record& record, const CellQuery& query, int unit,
+             std::map<int, std::vector<double>>& process, Gathered& gathered) {
+    if (isTimeMetric(query.metric) && record.lane == "quality") {
+        if (gathered.worst < records::Status::Ambiguous) gathered.isUntimed = true;
+        gathered.note(records::Status::Ambiguous,
+                      "measured in the quality lane, where cases run side "
+                      "by side; a time needs the timing lane");
+        return;
+    }
+    if (record.status != records::Status::Ok) gathered.note(record.status, record.message);
+    if (record.status != records::Status::Ok && record.status != records::Status::Flaky) return;
+    if (std::isnan(record.value)) {
+        gathered.note(records::Status::Error, "case " + record.caseId + " recorded not-a-number");
+        return;
+    }
+    gathered.units.insert(record.unit);
+    const double value = query.isRateOfTime ? 1000.0 / record.value : record.value;
+    process[unit].push_back(value * query.scale);
+}
+
+void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
+              int& unitCount, Gathered& gathered) {
+    for (const auto& [number, attempt] : run.processes) {
+        if (attempt.failure) {
+            gathered.note(attempt.failure->status, attempt.failure->message);
+            continue;
+        }
+        std::map<int, std::vector<double>> process;
+        for (const records::Record* record : attempt.values(query.metric, query.pass)) {
+            if (!matchesFrame(query.where, record->frame)) continue;
+            const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
+            if (isNew) ++unitCount;
+            takeRow(*record, query, unit->second, process, gathered);
+        }
+        for (const records::Record* count :
+             attempt.values(query.metric + std::string(kShareOf), query.pass)) {
+            if (matchesFrame(query.where, count->frame))
+                gathered.shareCounts.push_back(count->value);
+        }
+        // Process k of all cases is one round: what a cell of several cases shows is of rounds.
+        if (!process.empty()) gathered.samples.processes[number].merge(process);
+    }
+}
+
+/// The passes for which the matching cases recorded the metric: for the message when the one that
+/// was asked for is not among them.
+std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
+    std::set<std::string> passes;
+    for (const CaseRecords* run : casesAt(query.where, cases)) {
+        for (const auto& [number, attempt] : run->processes) {
+            for (const auto& [place, record] : attempt.rows) {
+                if (place.metric == query.metric) {
+                    passes.insert(place.pass.empty() ? "none" : std::string(place.pass));
+                }
+            }
+        }
+    }
+    return joined(std::vector<std::string>(passes.begin(), passes.end()));
+}
+
+std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
+    const std::string wanted =
+        "'" + query.metric + "'" + (query.pass.empty() ? "" : " of pass '" + query.pass + "'");
+    const std::string passes = passesWith(query, cases);
+    return "no " + wanted + " was recorded" +
+           (passes.empty() ? "" : "; it is there for pass: " + passes);
+}
+
+Gathered gather(const CellQuery& query, const LayoutCases& cases) {
+    Gathered gathered;
+    int unitCount = 0;
+    for (const CaseRecords* run : casesAt(query.where, cases)) {
+        if (run->processes.empty()) {
+            ++gathered.notRun;
+            continue;
+        }
+        gathered.caseIds.push_back(run->id);
+        std::map<int, int> unitOfFrame;
+        takeCase(*run, query, unitOfFrame, unitCount, gathered);
+    }
+    if (const std::optional<CellQuery> whole = wholeOf(query)) {
+        Gathered all = gather(*whole, cases);
+        if (gathered.worst < all.worst) gathered.isUntimed = all.isUntimed;
+        gathered.note(all.worst, all.message);
+        if (all.samples.processes.empty()) {
+            if (!gathered.samples.processes.empty()) {
+                gathered.note(records::Status::Missing, whyNothing(*whole, cases));
+            }
+            gathered.samples = {};
+        }
+        gathered.whole = std::move(all.samples);
+    }
+    return gathered;
+}
+
+std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathered) {
+    std::vector<Measured> values;
+    for (const auto& placeholder : query.format.placeholders()) {
+        Summary summary = summarize(gathered.samples, placeholder.statistic);
+        if (gathered.whole) {
+            summary = shareOf(summary, summarize(*gathered.whole, placeholder.statistic));
+        }
+        Measured& measured = values.emplace_back();
+        static_cast<Summary&>(measured) = std::move(summary);
+        measured.statistic = placeholder.name;
+    }
+    return values;
+}
+
+/// A share that was counted once, in one case: its bounds are those of the count.
+void boundShare(const CellQuery& query, const Gathered& gathered, Measured& measured) {
+    const auto& processes = gathered.samples.processes;
+    const bool isCountedOnce = gathered.shareCounts.size() == 1 && processes.size() == 1 &&
+                               processes.begin()->second.size() == 1 &&
+                               processes.begin()->second.begin()->second.size() == 1;
+    if (!isCountedOnce || query.shareOf) return;
+    boundByDraws(measured, query.scale, gathered.shareCounts[0],
+                 gathered.caseIds[0] + query.metric + query.pass);
+}
+
+void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
+    cell.values = measuredOf(query, gathered);
+    std::vector<double> values, lows, highs;
+    for (std::size_t i = 0; i < cell.values.size(); ++i) {
+        Measured& measured = cell.values[i];
+        boundShare(query, gathered, measured);
+        measured.text = query.format.formatOne(i, measured.value);
+        if (measured.bounds != Bounds::None) {
+            measured.low = query.format.formatOne(i, measured.interval.low);
+            measured.high = query.format.formatOne(i, measured.interval.high);
+        }
+        values.push_back(measured.value);
+        lows.push_back(measured.interval.low);
+        highs.push_back(measured.interval.high);
+    }
+    cell.measured = query.format.format(values);
+    if (cell.bounds() != Bounds::None) {
+        cell.low = query.format.format(lows);
+        cell.high = query.format.format(highs);
+    }
+}
+
+/// Only where every measurement has its CPU time beside it.
+void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Samples& samples,
+                      Cell& cell) {
+    const std::optional<CellQuery> other = byProcessTime(query);
+    if (!other) return;
+    const Gathered gathered = gather(*other, cases);
+    if (gathered.samples.processes.size() != samples.processes.size()) return;
+    for (const auto& [number, units] : samples.processes) {
+        const auto own = gathered.samples.processes.find(number);
+        if (own == gathered.samples.processes.end() || own->second.size() != units.size()) return;
+    }
+    cell.byProcess = measuredOf(*other, gathered);
+}
+
+}  // namespace
+
+int timePower(std::string_view metric) {
+    if (metric.ends_with("frame_rate") || metric.ends_with("_per_second")) return -1;
+    const bool isTime =
+        metric.ends_with("_ms") || metric.find("_us_per_") != std::string_view::npos;
+    return isTime ? 1 : 0;
+}
+
+bool isTimeMetric(std::string_view metric) {
+    return timePower(metric) != 0;
+}
+
+Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
+    return partsOver(layout, row, column).where;
+}
+
+CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {
+    auto [selection, where] = partsOver(layout, row, column);
+    if (!selection.metric) {
+        throw Error(selection.location, "no metric is given for the cell of row '" +
+                                            joined(row, "_") + "', column '" + joined(column, "_") +
+                                            "'; add `metric:` to its column, its row or `cell`");
+    }
+    return {*selection.metric,
+            selection.pass.value_or(""),
+            CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
+            selection.scale.value_or(1.0),
+            selection.scale.has_value(),
+            selection.shareOf,
+            false,
+            std::move(where)};
+}
+
+Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
+    Cell cell;
+    cell.isTime =
+        isTimeMetric(query.metric) || (query.shareOf && isTimeMetric(query.shareOf->metric));
+    cell.timePower =
+        timePower(query.metric) - (query.shareOf ? timePower(query.shareOf->metric) : 0);
+    Gathered gathered = gather(query, cases);
+    const bool hasSamples = !gathered.samples.processes.empty();
+    const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;
+    if (notRun == planned) {
+        cell.isPlanned = planned > 0;
+        gathered.note(records::Status::Missing, "not run");
+    } else if (notRun > 0) {
+        gathered.note(
+            records::Status::Missing,
+            std::to_string(notRun) + " of " + std::to_string(planned) + " cases were not run");
+    }
+    if (!hasSamples && gathered.worst == records::Status::Ok) {
+        gathered.note(records::Status::Missing, whyNothing(query, cases));
+    }
+    cell.status = gathered.worst;
+    cell.message = gathered.message;
+    cell.caseIds = gathered.caseIds;
+    if (query.shareOf) {
+        cell.unit = "%";
+    } else if (!query.isScaled) {
+        cell.metric = query.metric;
+        if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
+    }
+    if (hasSamples) {
+        fillValues(query, gathered, cell);
+        fillProcessTimes(query, cases, gathered.samples, cell);
+    }
+    const bool isTimed = !gathered.isUntimed || cell.status != records::Status::Ambiguous;
+    const std::string word(isTimed ? records::statusName(cell.status) : "not timed");
+    const bool isFlaky = hasSamples && cell.status == records::Status::Flaky;
+    cell.isPartial = hasSamples && cell.status != records::Status::Ok && !isFlaky;
+    if (isFlaky) cell.measured += " (flaky)";
+    if (cell.isPartial) cell.measured += " (partial: " + word + ")";
+    if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
+    return cell;
+}
+
+SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases) {
+    config::Selection selection;
+    Where where;
+    layKeyOver(layout.rows, row, selection, where);
+    SceneSource source = SceneSource::Unknown;
+    for (const CaseRecords* run : casesAt(where, cases)) {
+        for (const auto& [number, attempt] : run->processes) {
+            const CaseRecords::Place first{"scene_source", "", INT_MIN, INT_MIN};
+            const auto found = attempt.rows.lower_bound(first);
+            if (found == attempt.rows.end() || found->first.metric != "scene_source") continue;
+            const double value = found->second->value;
+            const SceneSource here = value == 1.0   ? SceneSource::StandIn
+                                     : value == 2.0 ? SceneSource::Generated
+                                                    : SceneSource::Real;
+            source = std::max(source, here);
+        }
+    }
+    return source;
+}
+
+}  // namespace gfxrepro::tables

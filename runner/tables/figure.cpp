@@ -1,0 +1,400 @@
+#include "runner/tables/figure.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "runner/core/text.h"
+#include "runner/tables/case_records.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+struct Suffix {
+    std::string_view name;
+    std::string_view unit;
+    std::string_view quantity;  // that is measured in it; empty where it may be anything
+};
+/// The units that names of configs end with.
+constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
+                                {"_us", "µs", "time"},
+                                {"_pct", "%", ""},
+                                {"_px", "px", ""},
+                                {"_db", "dB", ""},
+                                {"_mb", "MB", "memory"},
+                                {"_bytes", "bytes", "memory"},
+                                {"_fps", "fps", "frame rate"},
+                                {"_deg", "°", "angle"}};
+
+const Suffix* suffixOf(std::string_view name) {
+    for (const Suffix& suffix : kSuffixes) {
+        if (name.size() > suffix.name.size() && name.ends_with(suffix.name)) return &suffix;
+    }
+    return nullptr;
+}
+
+std::string words(std::string_view name) {
+    std::string text(name);
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return text;
+}
+
+std::string withoutSuffix(std::string_view name) {
+    const Suffix* suffix = suffixOf(name);
+    return words(name.substr(0, name.size() - (suffix ? suffix->name.size() : 0)));
+}
+
+/// What all names begin with, up to a blank: "intensity mean ".
+std::string sharedHead(const std::vector<std::string>& names) {
+    std::string head = names[0].substr(0, names[0].rfind(' ') + 1);
+    while (!head.empty()) {
+        const bool isShared = std::all_of(names.begin(), names.end(), [&](const auto& name) {
+            return name.starts_with(head) && name.size() > head.size() &&
+                   !parseDouble(name.substr(head.size()));
+        });
+        if (isShared) return head;
+        head.pop_back();
+        head.erase(head.rfind(' ') + 1);
+    }
+    return head;
+}
+
+/// Without what they share: the unit that all end with stands at the axis, and words that all
+/// begin with tell none from another.
+std::vector<std::string> columnNames(const std::vector<std::string>& columns) {
+    std::set<const Suffix*> suffixes;
+    for (const std::string& column : columns) suffixes.insert(suffixOf(column));
+    std::vector<std::string> names;
+    for (const std::string& column : columns) {
+        names.push_back(suffixes.size() == 1 ? withoutSuffix(column) : words(column));
+    }
+    const std::string head = names.size() > 1 ? sharedHead(names) : "";
+    for (std::string& name : names) name.erase(0, head.size());
+    return names;
+}
+
+/// "outdoor/bird_nest", "near mirror", "reference size 512": a number alone would not say of what.
+std::string valueName(const std::string& axis, const std::string& value) {
+    if (parseDouble(value)) return words(axis) + " " + value;
+    return value.find('/') == std::string::npos ? words(value) : value;
+}
+
+/// Makes the figure of one table row by row.
+class FigureMaker {
+  public:
+    FigureMaker(const config::PlotSpec& plot, const Table& table) : plot_(plot), table_(table) {
+        xAxis_ = axisOf(plot.x);
+        if (!xAxis_) xColumn_ = columnOf(plot.x);
+        for (const std::string& name : plot.y) columns_.push_back(columnOf(name));
+        if (plot.by) byAxis_ = axisOf(*plot.by);
+    }
+
+    Figure make() {
+        figure_.isLogX = plot_.isLogX;
+        figure_.isLogY = plot_.isLogY;
+        const std::vector<const TableRow*> rows = readRows(table_.rows);
+        nameCurves(rows);
+        for (const TableRow* row : rows) addRow(*row);
+        for (const TableRow* row : readRows(table_.printedRows)) addPrintedRow(*row);
+        finish();
+        return std::move(figure_);
+    }
+
+  private:
+    std::optional<std::size_t> axisOf(const std::string& name) const {
+        const auto found = std::find(table_.rowAxes.begin(), table_.rowAxes.end(), name);
+        if (found == table_.rowAxes.end()) return std::nullopt;
+        return static_cast<std::size_t>(found - table_.rowAxes.begin());
+    }
+
+    std::size_t columnOf(const std::string& name) const {
+        std::vector<std::string> known;
+        for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+            if (table_.columns[i].label == name) return i;
+            known.push_back(table_.columns[i].label);
+        }
+        throw Error(plot_.location,
+                    fmt::format("plot: unknown column '{}'; allowed: {}", name, joined(known)));
+    }
+
+    std::vector<const TableRow*> readRows(const std::vector<TableRow>& all) const {
+        std::vector<const TableRow*> rows;
+        for (const TableRow& row : all) {
+            bool isRead = true;
+            for (const auto& [name, values] : plot_.at) {
+                const auto axis = axisOf(name);
+                isRead = isRead && axis &&
+                         std::any_of(values.begin(), values.end(), [&](const auto& value) {
+                             return canonicalText(value) == row.labels[*axis];
+                         });
+            }
+            if (isRead) rows.push_back(&row);
+        }
+        return rows;
+    }
+
+    /// The curves are the columns, of each value of `by` in turn.
+    void nameCurves(const std::vector<const TableRow*>& rows) {
+        const std::vector<std::string> names = columnNames(plot_.y);
+        if (!byAxis_) {
+            figure_.curveNames = names;
+            return;
+        }
+        for (const TableRow* row : rows) {
+            const std::string& value = row->labels[*byAxis_];
+            const auto [place, isNew] = firstCurve_.try_emplace(value, figure_.curveNames.size());
+            if (!isNew) continue;
+            for (const std::string& name : names) {
+                const std::string group = valueName(*plot_.by, value);
+                figure_.curveNames.push_back(
+                    names.size() == 1 ? group : fmt::format("{}, {}", group, name));
+            }
+        }
+    }
+
+    std::string panelTitle(const TableRow& row) const {
+        std::vector<std::string> parts;
+        for (const std::string& axis : plot_.panels) {
+            if (const auto at = axisOf(axis)) parts.push_back(valueName(axis, row.labels[*at]));
+        }
+        return joined(parts);
+    }
+
+    /// The place of the panel of that title; one past the last if there is none.
+    std::size_t findPanel(const std::string& title) const {
+        const auto found = std::find_if(figure_.panels.begin(), figure_.panels.end(),
+                                        [&](const auto& panel) { return panel.title == title; });
+        return static_cast<std::size_t>(found - figure_.panels.begin());
+    }
+
+    std::size_t panelOf(const TableRow& row) {
+        const std::string title = panelTitle(row);
+        const std::size_t place = findPanel(title);
+        if (place < figure_.panels.size()) return place;
+        FigurePanel panel;
+        panel.title = title;
+        for (const std::string& name : figure_.curveNames) panel.curves.push_back({name, {}, {}});
+        figure_.panels.push_back(std::move(panel));
+        quantities_.emplace_back();
+        return place;
+    }
+
+    /// The x of a row as measured; of a cell that is not ok, none.
+    std::optional<double> abscissa(const TableRow& row) const {
+        if (xAxis_) return parseDouble(row.labels[*xAxis_]);
+        const Cell& cell = row.cells[xColumn_];
+        return cell.isOk() ? std::optional(cell.values[0].value) : std::nullopt;
+    }
+
+    /// The x that the paper printed in this row, else ours.
+    std::optional<double> printedAbscissa(const TableRow& row) const {
+        if (!xAxis_ && !row.cells[xColumn_].printedValues.empty()) {
+            if (const auto x = row.cells[xColumn_].printedValues[0]) return x;
+        }
+        return abscissa(row);
+    }
+
+    bool isDrawable(double x, double y) {
+        if (!std::isfinite(x) || !std::isfinite(y)) {
+            ++notFinite_;
+            return false;
+        }
+        if ((plot_.isLogX && x <= 0.0) || (plot_.isLogY && y <= 0.0)) {
+            ++notPositive_;
+            return false;
+        }
+        return true;
+    }
+
+    void addRow(const TableRow& row) {
+        const std::size_t panel = panelOf(row);
+        const std::size_t first = byAxis_ ? firstCurve_.at(row.labels[*byAxis_]) : 0;
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const Cell& cell = row.cells[columns_[i]];
+            FigureCurve& curve = figure_.panels[panel].curves[first + i];
+            addMeasured(row, cell, curve);
+            addPrinted(row, cell, curve);
+            if (cell.isPlanned) quantities_[panel].insert({cell.metric, cell.unit});
+        }
+    }
+
+    /// What was printed beyond this run is drawn beside what was measured, not apart from it.
+    void addPrintedRow(const TableRow& row) {
+        const std::size_t panel = findPanel(panelTitle(row));
+        const auto first = byAxis_ ? firstCurve_.find(row.labels[*byAxis_]) : firstCurve_.end();
+        if (panel == figure_.panels.size() || (byAxis_ && first == firstCurve_.end())) return;
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const std::size_t curve = (byAxis_ ? first->second : 0) + i;
+            addPrinted(row, row.cells[columns_[i]], figure_.panels[panel].curves[curve]);
+        }
+    }
+
+    void addMeasured(const TableRow& row, const Cell& cell, FigureCurve& curve) {
+        if (!cell.isPlanned) return;
+        ++planned_;
+        const std::optional<double> x = abscissa(row);
+        FigurePoint point;
+        if (x) point.x = *x;
+        if (!cell.isOk()) {
+            point.remark = records::statusName(cell.status);
+            ++notOk_[point.remark];
+        } else if (!x) {
+            ++withoutX_;
+        } else if (isDrawable(*x, cell.values[0].value)) {
+            point.y = cell.values[0].value;
+            point.interval = cell.values[0].interval;
+            point.bounds = cell.bounds();
+        } else {
+            point.remark = "cannot be drawn";
+        }
+        if (x && std::isfinite(*x) && !(plot_.isLogX && *x <= 0.0)) curve.points.push_back(point);
+    }
+
+    void addPrinted(const TableRow& row, const Cell& cell, FigureCurve& curve) {
+        if (cell.printedValues.empty() || !cell.printedValues[0]) return;
+        const std::optional<double> x = printedAbscissa(row);
+        if (!x || !isDrawable(*x, *cell.printedValues[0])) return;
+        FigurePoint point;
+        point.x = *x;
+        point.y = cell.printedValues[0];
+        curve.printed.push_back(point);
+    }
+
+    /// What a panel's y axis stands for: the metric if there is one for all, else a unit.
+    std::string yLabel(const std::set<std::pair<std::string, std::string>>& quantities) const {
+        if (plot_.y.size() == 1) {
+            const std::string unit = quantities.size() == 1 ? quantities.begin()->second : "";
+            return quantityLabel(plot_.y[0], unit);
+        }
+        if (quantities.size() == 1 && !quantities.begin()->first.empty()) {
+            return quantityLabel(quantities.begin()->first, quantities.begin()->second);
+        }
+        std::set<const Suffix*> suffixes;
+        for (const std::string& column : plot_.y) suffixes.insert(suffixOf(column));
+        const Suffix* suffix = *suffixes.begin();
+        if (suffixes.size() > 1 || !suffix) return "";
+        return suffix->quantity.empty() ? std::string(suffix->unit)
+                                        : fmt::format("{} ({})", suffix->quantity, suffix->unit);
+    }
+
+    void finish() {
+        const std::string xUnit = xAxis_ ? "" : table_.columns[xColumn_].unit;
+        figure_.xLabel = quantityLabel(plot_.x, xUnit);
+        const auto byX = [](const FigurePoint& a, const FigurePoint& b) { return a.x < b.x; };
+        for (std::size_t i = 0; i < figure_.panels.size(); ++i) {
+            FigurePanel& panel = figure_.panels[i];
+            panel.yLabel = yLabel(quantities_[i]);
+            for (FigureCurve& curve : panel.curves) {
+                std::stable_sort(curve.points.begin(), curve.points.end(), byX);
+                std::stable_sort(curve.printed.begin(), curve.printed.end(), byX);
+            }
+        }
+        std::erase_if(figure_.panels, [](const FigurePanel& panel) { return !panel.hasPoints(); });
+        addNotes();
+    }
+
+    void addNotes() {
+        int count = 0;
+        std::vector<std::string> parts;
+        for (const auto& [status, times] : notOk_) {
+            count += times;
+            parts.push_back(fmt::format("{} {}", times, status));
+        }
+        if (count > 0) {
+            figure_.notes.push_back(
+                fmt::format("left out: {} of {} values ({})", count, planned_, joined(parts)));
+        }
+        if (notPositive_ > 0) {
+            figure_.notes.push_back(
+                fmt::format("left out: {} {} not positive on a logarithmic axis", notPositive_,
+                            notPositive_ == 1 ? "value" : "values"));
+        }
+        if (withoutX_ > 0) {
+            figure_.notes.push_back(fmt::format("left out: {} without {}", withoutX_, plot_.x));
+        }
+        if (notFinite_ > 0) {
+            figure_.notes.push_back(fmt::format("left out: {} not finite", notFinite_));
+        }
+    }
+
+    const config::PlotSpec& plot_;
+    const Table& table_;
+    std::optional<std::size_t> xAxis_;
+    std::size_t xColumn_ = 0;  // where x is no row axis
+    std::vector<std::size_t> columns_;
+    std::optional<std::size_t> byAxis_;
+    std::map<std::string, std::size_t> firstCurve_;  // by value of `by`
+    /// Beside the panels: the metrics and units of their cells.
+    std::vector<std::set<std::pair<std::string, std::string>>> quantities_;
+    std::map<std::string, int> notOk_;
+    int planned_ = 0;
+    int notPositive_ = 0;
+    int notFinite_ = 0;
+    int withoutX_ = 0;
+    Figure figure_;
+};
+
+/// "bird nest" for "outdoor/bird_nest", where the panels are told apart by that, too.
+void leaveFoldersAway(std::vector<FigurePanel>& panels) {
+    static const std::regex kFolder(R"((^|, )[A-Za-z][\w.-]*/([\w.-]+)(?=$|, ))");
+    std::vector<std::string> titles;
+    for (const FigurePanel& panel : panels) {
+        titles.push_back(words(std::regex_replace(panel.title, kFolder, "$1$2")));
+    }
+    if (std::set(titles.begin(), titles.end()).size() != panels.size()) return;
+    for (std::size_t i = 0; i < panels.size(); ++i) panels[i].title = titles[i];
+}
+
+}  // namespace
+
+bool FigurePanel::hasPoints() const {
+    return std::any_of(curves.begin(), curves.end(), [](const FigureCurve& curve) {
+        return !curve.printed.empty() ||
+               std::any_of(curve.points.begin(), curve.points.end(),
+                           [](const FigurePoint& point) { return point.y.has_value(); });
+    });
+}
+
+std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table) {
+    std::vector<std::string> wanted = plot.y, known;
+    if (std::ranges::find(table.rowAxes, plot.x) == table.rowAxes.end()) wanted.push_back(plot.x);
+    for (const TableColumn& column : table.columns) known.push_back(column.label);
+    for (const std::string& name : wanted) {
+        if (std::ranges::find(known, name) != known.end()) continue;
+        return fmt::format("'{}' is no column (columns: {})", name, joined(known));
+    }
+    return "";
+}
+
+Figure makeFigure(const config::PlotSpec& plot, const Table& table) {
+    Figure figure = FigureMaker(plot, table).make();
+    leaveFoldersAway(figure.panels);
+    return figure;
+}
+
+std::string quantityLabel(const std::string& name, const std::string& unit) {
+    // The two axes that the runner itself has.
+    if (name == "output.width") return "width of the image (px)";
+    if (name == "output.height") return "height of the image (px)";
+    for (const Suffix& suffix : kSuffixes) {
+        if (suffix.quantity.empty()) continue;
+        if (name == suffix.name.substr(1)) {
+            return fmt::format("{} ({})", suffix.quantity, suffix.unit);
+        }
+    }
+    if (const Suffix* suffix = suffixOf(name)) {
+        return fmt::format("{} ({})", withoutSuffix(name), suffix->unit);
+    }
+    // "clusters (cluster)" would say nothing more; 1 and enum are no units to read.
+    const std::string text = words(name);
+    if (unit.empty() || unit == "1" || unit == "enum" || text.find(unit) != std::string::npos) {
+        return text;
+    }
+    return fmt::format("{} ({})", text, unit);
+}
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,61 @@
+// What a plot shows, as numbers: the panels, curves and points that a table and a plot's
+// specification come to. Knows nothing of how it is drawn.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::tables {
+
+/// A measured value with its bounds. Without `y` there is a gap in the curve.
+struct FigurePoint {
+    double x = 0.0;
+    std::optional<double> y;
+    metrics::Interval interval;
+    Bounds bounds = Bounds::None;
+    std::string remark;  // why there is a gap
+};
+
+struct FigureCurve {
+    std::string name;                  // in the legend
+    std::vector<FigurePoint> points;   // by x
+    std::vector<FigurePoint> printed;  // by x; each has its y
+};
+
+/// `curves` lies beside those of the other panels: the same place is the same curve.
+struct FigurePanel {
+    std::string title;
+    std::string yLabel;
+    std::vector<FigureCurve> curves;
+    bool hasPoints() const;
+};
+
+struct Figure {
+    std::string xLabel;
+    bool isLogX = false;
+    bool isLogY = false;
+    std::vector<std::string> curveNames;
+    std::vector<FigurePanel> panels;  // those that have a point
+    std::vector<std::string> notes;   // what was left out and why, a sentence each
+};
+
+/// Values that are not ok, and on logarithmic axes those that are not positive, are left out and
+/// counted in the notes. Printed values stand over the printed x where there is one, and beside the
+/// curves of this run also those that were not measured. Throws Error at the plot's place for
+/// columns that the table has not.
+Figure makeFigure(const config::PlotSpec& plot, const Table& table);
+
+/// The column that the plot names and the table does not have, as one whose profile or override
+/// took it away: "'y' is no column (columns: x)"; empty where it has all. The table may have been
+/// built from no records.
+std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table);
+
+/// A name of a config, as an axis is labelled: "gpu_time_ms" → "gpu time (ms)". `unit` is used
+/// where the name does not carry its own.
+std::string quantityLabel(const std::string& name, const std::string& unit);
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,188 @@
+#include "runner/tables/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runner/core/files.h"
+#include "runner/core/text.h"
+#include "runner/records/csv.h"
+
+namespace gfxrepro::tables {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const Cell* cellOf(const TableRow& row, const Table& table, const std::string& column) {
+    const auto at = std::ranges::find(table.columns, column, &TableColumn::label);
+    return at == table.columns.end()
+               ? nullptr
+               : &row.cells[static_cast<std::size_t>(at - table.columns.begin())];
+}
+
+std::string unitOf(const Fit& fit, const Table& table) {
+    const auto at =
+        std::ranges::find(table.columns, fit.targets.front().column, &TableColumn::label);
+    const std::string unit = at == table.columns.end() ? "" : at->unit;
+    return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
+}
+
+}  // namespace
+
+Fit fitOf(const config::Experiment& experiment, const Table& table) {
+    Fit fit{.targets = config::fitTargets(experiment), .rows = {}};
+    if (fit.targets.empty()) return fit;
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        FitRow row{.row = i, .residuals = {}};
+        double squares = 0.0;
+        for (const config::FitTarget& target : fit.targets) {
+            const Cell* cell = cellOf(table.rows[i], table, target.column);
+            if (!cell || !cell->isOk() || cell->isPartial) break;
+            row.residuals.push_back(cell->values.front().value - target.printed);
+            squares += row.residuals.back() * row.residuals.back();
+        }
+        if (row.residuals.size() < fit.targets.size()) {
+            ++fit.unmeasured;
+            continue;
+        }
+        row.rms = std::sqrt(squares / static_cast<double>(fit.targets.size()));
+        fit.rows.push_back(std::move(row));
+    }
+    std::ranges::stable_sort(fit.rows, {}, &FitRow::rms);
+    return fit;
+}
+
+std::vector<std::string> fitNotes(const Fit& fit, const Table& table) {
+    if (fit.targets.empty()) return {};
+    std::vector<std::string> notes;
+    if (fit.unmeasured > 0) {
+        notes.push_back(fmt::format("rows of the fit that are not measured: {}", fit.unmeasured));
+    }
+    if (fit.rows.empty()) return notes;
+    const FitRow& best = fit.rows.front();
+    std::vector<std::string> cells;
+    for (std::size_t i = 0; i < fit.targets.size(); ++i) {
+        const config::FitTarget& target = fit.targets[i];
+        cells.push_back(fmt::format("{} of {} {:g} → {:.2f} ({:+.2f})", target.column, target.table,
+                                    target.printed, target.printed + best.residuals[i],
+                                    best.residuals[i]));
+    }
+    notes.push_back(fmt::format(
+        "Fitted to {} printed cells, none of which compares methods: {}. Root mean square of the "
+        "residuals {:.2f}{}; printed → measured: {}",
+        fit.targets.size(), table.rowName(best.row), best.rms, unitOf(fit, table), joined(cells)));
+    if (fit.rows.size() > 1) {
+        notes.push_back(fmt::format("Second best of {} rows: {}, {:.2f}{}", fit.rows.size(),
+                                    table.rowName(fit.rows[1].row), fit.rows[1].rms,
+                                    unitOf(fit, table)));
+    }
+    return notes;
+}
+
+std::string fitCsv(const Fit& fit, const Table& table) {
+    if (fit.rows.empty()) return "";
+    const FitRow& best = fit.rows.front();
+    std::string text;
+    records::CsvRow header(text);
+    for (const std::string& axis : table.rowAxes) header.text(axis);
+    for (const char* name : {"column", "table", "printed", "measured", "residual", "rms"}) {
+        header.text(name);
+    }
+    header.end();
+    for (std::size_t i = 0; i < fit.targets.size(); ++i) {
+        const config::FitTarget& target = fit.targets[i];
+        records::CsvRow line(text);
+        for (const std::string& label : table.rows[best.row].labels) line.text(label);
+        line.text(target.column).text(target.table).number(target.printed);
+        line.number(target.printed + best.residuals[i]).number(best.residuals[i]);
+        line.number(best.rms).end();
+    }
+    return text;
+}
+
+namespace {
+
+/// A line of a kept fit, by the names of its columns.
+using FitLine = std::map<std::string, std::string>;
+
+double numberOf(const FitLine& line, const std::string& name, const SourceLocation& where) {
+    const auto value = parseDouble(line.at(name));
+    if (!value) throw Error(where, fmt::format("{} '{}' is no number", name, line.at(name)));
+    return *value;
+}
+
+/// Adds what one calibration says of the tables that it read.
+void addCalibration(const fs::path& file, TableNotes& kept) {
+    const std::string text = readFile(file);
+    records::CsvReader reader(text, file.string());
+    std::vector<std::string> header, row, fitted;
+    reader.next(header);
+    const auto first = std::ranges::find(header, "column");
+    if (header.end() - first != 6) {
+        throw Error(reader.location(),
+                    "is no fit, whose columns end in column, table, printed, measured, residual, "
+                    "rms");
+    }
+    std::map<std::string, std::vector<std::string>> cells;  // by table
+    std::size_t count = 0;
+    double rms = 0.0;
+    for (; reader.next(row); ++count) {
+        if (row.size() != header.size()) {
+            throw Error(reader.location(),
+                        fmt::format("{} fields; the head has {}", row.size(), header.size()));
+        }
+        FitLine line;
+        for (std::size_t i = 0; i < row.size(); ++i) line[header[i]] = row[i];
+        cells[line["table"]].push_back(fmt::format("{} {:g} → {:.2f}", line["column"],
+                                                   numberOf(line, "printed", reader.location()),
+                                                   numberOf(line, "measured", reader.location())));
+        rms = numberOf(line, "rms", reader.location());
+        if (count > 0) continue;
+        for (auto name = header.begin(); name != first; ++name) {
+            fitted.push_back(*name + " " + line[*name]);
+        }
+    }
+    for (const auto& [table, ofTable] : cells) {
+        kept[table].push_back(fmt::format(
+            "Calibrated blind, {}: {} fitted to {} printed cells that compare no methods; of this "
+            "table {} (root mean square of all residuals {:.2f})",
+            file.stem().string(), joined(fitted), count, joined(ofTable), rms));
+    }
+}
+
+}  // namespace
+
+TableNotes keptCalibrations(const fs::path& folder) {
+    TableNotes kept;
+    if (!fs::is_directory(folder)) return kept;
+    std::set<fs::path> files;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+        if (file.path().extension() == ".csv") files.insert(file.path());
+    }
+    for (const fs::path& file : files) addCalibration(file, kept);
+    return kept;
+}
+
+void addNotes(const TableNotes& about, std::vector<Table>& tables) {
+    for (Table& table : tables) {
+        const auto notes = about.find(table.id);
+        if (notes == about.end()) continue;
+        table.notes.insert(table.notes.end(), notes->second.begin(), notes->second.end());
+    }
+}
+
+void writeFits(const std::filesystem::path& runDir,
+               const std::vector<config::Experiment>& experiments,
+               const std::vector<Table>& tables) {
+    for (std::size_t i = 0; i < experiments.size(); ++i) {
+        const std::string text = fitCsv(fitOf(experiments[i], tables[i]), tables[i]);
+        if (text.empty()) continue;
+        writeFileAtomic(runDir / "tables" / (tables[i].slug + ".fit.csv"), text);
+    }
+}
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,49 @@
+// A calibration's outcome: which row of a table comes nearest to the printed cells that its columns
+// are held against (`fit:`).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/config/fit.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::tables {
+
+/// A row of the grid, by how far its cells are from the printed ones.
+struct FitRow {
+    std::size_t row = 0;            // of the table
+    std::vector<double> residuals;  // measured − printed, beside the targets; in the cells' unit
+    double rms = 0.0;               // root mean square of them
+};
+
+struct Fit {
+    std::vector<config::FitTarget> targets;
+    std::vector<FitRow> rows;    // of those whose cells are all measured; best first
+    std::size_t unmeasured = 0;  // rows without one of the cells
+};
+
+/// Of the table of `experiment`; without targets where it has no `fit`.
+Fit fitOf(const config::Experiment& experiment, const Table& table);
+
+/// What a page says of it: the best row, printed beside measured, and the second best.
+std::vector<std::string> fitNotes(const Fit& fit, const Table& table);
+
+/// The best row, a line a target: row axes, column, table, printed, measured, residual, rms.
+/// Empty without a best row.
+std::string fitCsv(const Fit& fit, const Table& table);
+
+/// What kept calibrations (`folder`/<scene>.csv, as `fitCsv` writes them) say on the page of each
+/// table whose printed cells they read: what was fitted, and printed beside measured. Empty where
+/// there is no folder. Throws Error for a file of another kind.
+TableNotes keptCalibrations(const std::filesystem::path& folder);
+/// Puts notes below the tables that they are about.
+void addNotes(const TableNotes& about, std::vector<Table>& tables);
+
+/// tables/<slug>.fit.csv of each experiment with a fit; `tables` lies beside `experiments`.
+void writeFits(const std::filesystem::path& runDir,
+               const std::vector<config::Experiment>& experiments,
+               const std::vector<Table>& tables);
+
+}  // namespace gfxrepro::tables

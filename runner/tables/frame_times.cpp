@@ -1,0 +1,288 @@
+#include "runner/tables/frame_times.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "runner/core/text.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+static_assert(config::kFewestRounds == metrics::kFewestForInterval);
+
+using metrics::Statistic;
+
+/// Values that an interval has beyond those by which it was found to be narrow.
+constexpr std::size_t kNewRounds = 2;
+/// Fewer rounds do not end by a relative error.
+constexpr std::size_t kFewestByError = 14;
+
+double medianOf(const std::vector<double>& values) {
+    return metrics::summarize(values, Statistic::Median);
+}
+
+std::vector<double> valuesOf(const std::map<int, double>& rounds) {
+    std::vector<double> values;
+    for (const auto& [process, value] : rounds) values.push_back(value);
+    return values;
+}
+
+/// log(b / a) in each round that has both.
+std::vector<double> logRatios(const std::map<int, double>& a, const std::map<int, double>& b) {
+    std::vector<double> ratios;
+    for (const auto& [process, value] : a) {
+        const auto other = b.find(process);
+        if (other != b.end()) ratios.push_back(std::log(other->second / value));
+    }
+    return ratios;
+}
+
+double halfWidth(const metrics::Interval& interval) {
+    return 0.5 * (interval.high - interval.low);
+}
+
+std::string percentText(double share) {
+    return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+}  // namespace
+
+std::vector<double> FrameTimes::CaseTimes::fellowsOf(int frame) const {
+    std::vector<double> same, others;
+    for (const auto& [process, frames] : wall) {
+        for (const auto& [one, repeats] : frames) {
+            for (const auto& [repeat, value] : repeats) {
+                (one == frame ? same : others).push_back(value);
+            }
+        }
+    }
+    return same.size() > kFewestFellows ? same : others;
+}
+
+FrameTimes::CaseTimes& FrameTimes::caseOf(const records::Record& record) {
+    const auto [found, isNew] = indices_.try_emplace(record.caseId, cases_.size());
+    if (isNew) {
+        std::vector<std::string> parts;
+        for (const std::string* part : {&record.scene, &record.method}) {
+            if (!part->empty()) parts.push_back(*part);
+        }
+        cases_.push_back({parts.empty() ? record.caseId : joined(parts, " "), {}, {}});
+    }
+    return cases_[found->second];
+}
+
+void FrameTimes::add(const records::Record& record) {
+    const bool isWall = record.metric == "wall_time_ms";
+    if (!isWall && record.metric != "process_time_ms") return;
+    if (!record.pass.empty() || record.lane != "timing") return;
+    if (record.status != records::Status::Ok && record.status != records::Status::Flaky) return;
+    if (!(record.value > 0.0)) return;
+    CaseTimes& times = caseOf(record);
+    (isWall ? times.wall : times.cpu)[record.process][record.frame][record.repeat] = record.value;
+}
+
+std::vector<std::map<int, double>> FrameTimes::times(Clock clock) const {
+    std::vector<std::map<int, double>> result;
+    for (const CaseTimes& times : cases_) {
+        const auto& processes = clock == Clock::Wall ? times.wall : times.cpu;
+        std::size_t frameCount = 0;
+        for (const auto& [process, frames] : processes) {
+            frameCount = std::max(frameCount, frames.size());
+        }
+        std::map<int, double>& sums = result.emplace_back();
+        for (const auto& [process, frames] : processes) {
+            if (frames.size() < frameCount) continue;
+            for (const auto& [frame, repeats] : frames) {
+                sums[process] += medianOf(valuesOf(repeats));
+            }
+        }
+    }
+    return result;
+}
+
+std::size_t FrameTimes::roundCount() const {
+    std::size_t count = 0;
+    for (const CaseTimes& times : cases_) count = std::max(count, times.wall.size());
+    return count;
+}
+
+bool FrameTimes::hasRounds(const std::string& caseId, int rounds) const {
+    const auto found = indices_.find(caseId);
+    if (found == indices_.end()) return false;
+    const auto& processes = cases_[found->second].wall;
+    for (int process = 0; process < rounds; ++process) {
+        if (!processes.contains(process)) return false;
+    }
+    return true;
+}
+
+Clock FrameTimes::judgedClock() const {
+    const bool hasAll = std::ranges::all_of(
+        cases_, [](const CaseTimes& times) { return times.cpu.size() == times.wall.size(); });
+    return hasAll ? Clock::Process : Clock::Wall;
+}
+
+std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
+    std::optional<double> largest;
+    for (const std::map<int, double>& processes : times(judgedClock())) {
+        std::vector<double> values = valuesOf(processes);
+        if (values.size() < rounds) continue;
+        values.resize(rounds);
+        const auto interval = metrics::medianInterval(values);
+        if (!interval) continue;
+        largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
+    }
+    return largest;
+}
+
+bool FrameTimes::isKnownTo(double relativeError, int asked) const {
+    const std::size_t rounds = roundCount();
+    if (rounds < kFewestByError) return false;
+    const std::size_t first = std::max<std::size_t>(asked, metrics::kFewestForInterval);
+    if (metrics::medianIntervalDepth(rounds + 1) == metrics::medianIntervalDepth(rounds)) {
+        return false;
+    }
+    for (std::size_t look = first; look + kNewRounds <= rounds; ++look) {
+        const std::optional<double> measured = relativeErrorOf(look);
+        if (measured && *measured <= relativeError) return true;
+    }
+    return false;
+}
+
+std::optional<double> FrameTimes::noise(Clock clock) const {
+    const std::vector<std::map<int, double>> cases = times(clock);
+    std::vector<double> widths;
+    for (std::size_t i = 1; i < cases.size(); ++i) {
+        const auto interval = metrics::centreInterval(logRatios(cases[i - 1], cases[i]));
+        if (interval) widths.push_back(halfWidth(*interval));
+    }
+    if (cases.size() == 1) {
+        std::vector<double> logs = valuesOf(cases[0]);
+        for (double& value : logs) value = std::log(value);
+        const auto interval = metrics::centreInterval(logs);
+        if (interval) widths.push_back(std::numbers::sqrt2 * halfWidth(*interval));
+    }
+    if (widths.empty()) return std::nullopt;
+    return std::expm1(medianOf(widths));
+}
+
+std::vector<std::size_t> FrameTimes::repeatCounts() const {
+    std::vector<std::size_t> counts;
+    for (const CaseTimes& times : cases_) {
+        for (const auto& [process, frames] : times.wall) {
+            for (const auto& [frame, repeats] : frames) counts.push_back(repeats.size());
+        }
+    }
+    std::ranges::sort(counts);
+    return counts;
+}
+
+std::vector<Outlier> FrameTimes::outliers() const {
+    std::vector<Outlier> outliers;
+    for (const CaseTimes& times : cases_) {
+        for (const auto& [process, frames] : times.wall) {
+            for (const auto& [frame, repeats] : frames) {
+                const std::vector<double> fellows = times.fellowsOf(frame);
+                if (fellows.size() < kFewestFellows) continue;
+                const double usual = medianOf(fellows);
+                for (const auto& [repeat, value] : repeats) {
+                    if (value < kOutlierFactor * usual) continue;
+                    outliers.push_back({times.name, frame, process, repeat, value, value / usual});
+                }
+            }
+        }
+    }
+    return outliers;
+}
+
+std::vector<std::string> outlierTexts(const FrameTimes& times) {
+    constexpr std::size_t kMostNamed = 5;
+    const std::vector<Outlier> outliers = times.outliers();
+    std::vector<std::string> texts;
+    for (const Outlier& outlier : outliers) {
+        if (texts.size() == kMostNamed) {
+            texts.push_back(fmt::format("{} more such frames.", outliers.size() - kMostNamed));
+            break;
+        }
+        texts.push_back(fmt::format(
+            "Outlier: frame {} of {} took {:.4g} ms in process {}, {:.3g} times its fellows.",
+            outlier.frame, outlier.caseName, outlier.timeMs, outlier.process, outlier.factor));
+    }
+    return texts;
+}
+
+bool isRepeated(const config::Measure& measure, std::span<const double> timesMs) {
+    const auto count = static_cast<int>(timesMs.size());
+    if (count < measure.repeats) return true;
+    if (!measure.mayRepeat() || count >= measure.repeatsAtMost) return false;
+    const std::optional<double> error = metrics::relativeErrorOfMedian(timesMs);
+    return !error || *error > measure.relativeError;
+}
+
+namespace {
+
+/// How often frames were repeated, and what ended that.
+std::string repeatsNote(const FrameTimes& times, const config::Measure& measure) {
+    const std::vector<std::size_t> counts = times.repeatCounts();
+    const auto isMost = [&](std::size_t count) {
+        return count >= static_cast<std::size_t>(measure.repeatsAtMost);
+    };
+    const auto most = std::ranges::count_if(counts, isMost);
+    return fmt::format(
+        "Frames were repeated {} … {} times in a process: {} of {} ended by relative_error ({}), "
+        "{} "
+        "by repeats_at_most.",
+        counts.front(), counts.back(), static_cast<std::ptrdiff_t>(counts.size()) - most,
+        counts.size(), percentText(measure.relativeError), most);
+}
+
+}  // namespace
+
+std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times) {
+    const bool hasAsked = times.roundCount() >= static_cast<std::size_t>(measure.processes);
+    if (!hasAsked && measure.certainRounds() < measure.processes) return "time_budget_s";
+    if (!measure.mayContinue()) return "processes";
+    if (times.isKnownTo(measure.relativeError, measure.processes)) return "relative_error";
+    const bool isMost = times.roundCount() >= static_cast<std::size_t>(measure.processesAtMost);
+    return isMost ? "processes_at_most" : "time_budget_s";
+}
+
+std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure) {
+    const std::size_t rounds = times.roundCount();
+    if (rounds == 0) return {};
+    std::vector<std::string> notes;
+    const std::optional<double> error = times.relativeError();
+    if (rounds < metrics::kFewestForInterval) {
+        notes.push_back(fmt::format(
+            "Times of {} process{}: bounds are a range, no interval (which takes {}), and no claim "
+            "about a time is decided.",
+            rounds, rounds == 1 ? "" : "es", metrics::kFewestForInterval));
+    } else if (error) {
+        const std::string target =
+            measure.mayContinue()
+                ? fmt::format(" (asked for: {})", percentText(measure.relativeError))
+                : "";
+        notes.push_back(fmt::format(
+            "Times of {} alternating rounds, ended by {}; the {}time of a frame is known to ±{} or "
+            "better{}.",
+            rounds, endOfRounds(measure, times),
+            times.judgedClock() == Clock::Process ? "CPU " : "", percentText(*error), target));
+    }
+    if (measure.mayRepeat()) notes.push_back(repeatsNote(times, measure));
+    if (const auto noise = times.noise(Clock::Wall)) {
+        const auto own = times.noise(Clock::Process);
+        notes.push_back(fmt::format(
+            "Noise of this table: two equal cases would differ by up to {}{}. Claims about a "
+            "difference below it are not decided.",
+            percentText(*noise), own ? fmt::format(", by CPU time {}", percentText(*own)) : ""));
+    }
+    const std::vector<std::string> outliers = outlierTexts(times);
+    notes.insert(notes.end(), outliers.begin(), outliers.end());
+    return notes;
+}
+
+}  // namespace gfxrepro::tables

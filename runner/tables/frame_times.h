@@ -1,0 +1,102 @@
+// The times of whole frames of a table, round by round: how sure they are, and what stands out.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/records/records.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::tables {
+
+/// A frame that took far longer than its fellows.
+struct Outlier {
+    std::string caseName;  // "models/duck slices"
+    int frame = 0;
+    int process = 0;
+    int repeat = 0;
+    double timeMs = 0.0;
+    double factor = 1.0;  // of the median of its fellows
+};
+
+class FrameTimes {
+  public:
+    /// Takes wall and process times of whole frames; other records, void times and the quality
+    /// lane's are passed over.
+    void add(const records::Record& record);
+
+    /// In each process that measured all of a case's frames, the sum over frames of the median of
+    /// their repeats in ms: of each case in the order of its first record.
+    std::vector<std::map<int, double>> times(Clock clock) const;
+    /// Processes of the case that has most.
+    std::size_t roundCount() const;
+    /// Whether the case has a time in each of the first `rounds` processes.
+    bool hasRounds(const std::string& caseId, int rounds) const;
+
+    /// The process's, where it was recorded of all cases.
+    Clock judgedClock() const;
+    /// By the judged clock, the largest of all cases: half the 95 % interval of the time of its
+    /// frames (medianInterval) ÷ the time. Cases that miss a round are left out; none where there
+    /// are too few rounds for an interval.
+    std::optional<double> relativeError() const { return relativeErrorOf(roundCount()); }
+    /// Whether rounds that go on until that error may end here. `asked` is how many were asked for.
+    ///
+    /// To look after each round and to end at the first narrow interval picks the narrow ones: of
+    /// times that scatter twice as much as is asked for, 82 % of such intervals hold the truth. So
+    /// where some look found the error small enough, rounds go on to the last number of them at
+    /// which the interval ends as far from the ends of the sorted values (14, 16, 19: there it is
+    /// sure by 97.9 to 98.7 %), with two new values in it. Of those that so would end with 8 or 11
+    /// rounds, 91 % hold the truth. tests/unit/report/coverage_test.cpp has what this comes to.
+    bool isKnownTo(double relativeError, int asked) const;
+    /// By how much two equal cases of the table would differ, as a share: the half width of the
+    /// 95 % interval (centreInterval) of the log ratio of two neighbouring cases, measured in pairs
+    /// by turns, the median over all such neighbours. Of one case alone √2 of its own. None with
+    /// too few rounds.
+    std::optional<double> noise(Clock clock) const;
+
+    /// How often each frame was repeated in each process, in ascending order.
+    std::vector<std::size_t> repeatCounts() const;
+    /// Frames whose time on the wall is kOutlierFactor times the median of the same frame in other
+    /// repeats and rounds, or, where these are fewer than three, of the other frames of their case.
+    std::vector<Outlier> outliers() const;
+
+    static constexpr double kOutlierFactor = 5.0;
+
+  private:
+    using Repeats = std::map<int, double>;
+    using Frames = std::map<int, Repeats>;
+    struct CaseTimes {
+        std::string name;
+        std::map<int, Frames> wall, cpu;  // by process
+        std::vector<double> fellowsOf(int frame) const;
+    };
+    static constexpr std::size_t kFewestFellows = 3;
+
+    CaseTimes& caseOf(const records::Record& record);
+    /// Of the first `rounds`.
+    std::optional<double> relativeErrorOf(std::size_t rounds) const;
+    std::vector<CaseTimes> cases_;
+    std::map<std::string, std::size_t> indices_;
+};
+
+/// Whether another repeat follows where a frame took these times in a process so far: while there
+/// are fewer than `repeats`, and, where more may follow, while their median is not known to
+/// `relative_error`. That the narrow intervals end them is no harm: what a process came to is one
+/// value of the interval over processes, which covers what it says (coverage_test.cpp).
+bool isRepeated(const config::Measure& measure, std::span<const double> timesMs);
+
+/// Which condition of `measure` ended the rounds: "processes" (as many as asked for, no more),
+/// "relative_error", "processes_at_most", or "time_budget_s".
+std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times);
+
+/// A sentence an outlier, of the first few.
+std::vector<std::string> outlierTexts(const FrameTimes& times);
+
+/// Sentences below a table of times: its rounds and what ended them, its noise, its outliers.
+std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure);
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,370 @@
+#include "runner/tables/printed_parameters.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "runner/config/scene_reference.h"
+#include "runner/core/text.h"
+#include "runner/records/csv.h"
+#include "runner/tables/cell_builder.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What techniques call the parameter that saves pictures and changes no number.
+constexpr const char* kPictures = "pictures";
+/// More values of a parameter than these are cut short in a sentence.
+constexpr std::size_t kSaidValues = 4;
+
+/// At what a case was measured: name and value as text, in an order that reads well.
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+std::string settingText(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number()) return records::shortestText(value.get<double>());
+    if (!value.is_array()) return value.dump();
+    std::vector<std::string> items;
+    for (const Json& item : value) items.push_back(settingText(item));
+    return fmt::format("[{}]", joined(items));
+}
+
+/// Under which name settings have what `printed.at` names.
+std::string settingNameOf(const std::string& name) {
+    if (name == "measure.frames") return "frames";
+    return name.starts_with("output.") ? "output" : name;
+}
+
+/// Lays what `printed.at` says over a case.
+void layOver(const config::Printed& printed, std::string& scene, Json& params, Json& frames) {
+    for (const auto& [name, value] : printed.at) {
+        if (name == "scene") {
+            scene = value.text();
+        } else if (name == "measure.frames") {
+            frames = value.toJson();
+        } else if (name == "output.width" || name == "output.height") {
+            params["output"][name.substr(name.find('.') + 1)] = value.toJson();
+        } else {
+            params[name] = value.toJson();
+        }
+    }
+}
+
+/// What records say of a case beside its parameters.
+bool isNoParameter(const std::string& name) {
+    return name == "output" || name == kPictures || name == kStandsFor || name == kSceneSample;
+}
+
+/// A parameter that is null or empty is one that a case has not got: the tables of a run that was
+/// exported, which tells these apart no more, and imported again say the same.
+bool isNothing(const Json& value) {
+    const bool isEmptyText = value.is_string() && value.get<std::string>().empty();
+    return isEmptyText || (!value.is_string() && value.empty());
+}
+
+/// Of a generated scene at another seed ("outdoor/city@3") the name in the table: another sample of
+/// it, not another parameter. Its generator's parameters are among the case's.
+std::string sceneNameOf(const CaseRecords& item, const Json& params) {
+    const auto named = params.find(kStandsFor);
+    if (named == params.end()) return item.scene;
+    const std::string name = settingText(*named);
+    return config::sceneName(item.scene) == name ? name : item.scene;
+}
+
+Settings settingsOf(const CaseRecords& item, int frameCount, const config::Printed& printed) {
+    Json params = item.params;
+    std::string scene = sceneNameOf(item, params);
+    Json frames = frameCount;
+    layOver(printed, scene, params, frames);
+    Settings settings;
+    if (!scene.empty()) settings.emplace_back("scene", scene);
+    if (const auto output = params.find("output"); output != params.end()) {
+        settings.emplace_back("output", fmt::format("{}×{}", settingText((*output)["width"]),
+                                                    settingText((*output)["height"])));
+    }
+    for (const auto& [name, value] : params.items()) {
+        if (isNoParameter(name) || isNothing(value)) continue;
+        settings.emplace_back(name, settingText(value));
+    }
+    settings.emplace_back("frames", settingText(frames));
+    return settings;
+}
+
+/// Each once, in the order of the cases.
+template <class T>
+void addOnce(T value, std::vector<T>& values) {
+    if (std::ranges::find(values, value) == values.end()) values.push_back(std::move(value));
+}
+
+std::vector<Settings> settingsOf(const std::vector<const CaseRecords*>& cases, int frameCount,
+                                 const config::Printed& printed) {
+    std::vector<Settings> settings;
+    for (const CaseRecords* item : cases) addOnce(settingsOf(*item, frameCount, printed), settings);
+    return settings;
+}
+
+/// The values of a parameter in several cases.
+std::vector<std::string> valuesOf(const std::string& name, const std::vector<Settings>& cases) {
+    std::vector<std::string> values;
+    for (const Settings& settings : cases) {
+        for (const auto& [known, value] : settings) {
+            if (known == name) addOnce(value, values);
+        }
+    }
+    return values;
+}
+
+template <class T>
+bool isSameSet(std::vector<T> a, std::vector<T> b) {
+    std::ranges::sort(a);
+    std::ranges::sort(b);
+    return a == b;
+}
+
+/// Whatever the order of their parameters.
+bool areSameCases(std::vector<Settings> a, std::vector<Settings> b) {
+    for (auto* cases : {&a, &b}) {
+        for (Settings& settings : *cases) std::ranges::sort(settings);
+    }
+    return isSameSet(std::move(a), std::move(b));
+}
+
+std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
+                                    const std::vector<Settings>& printed,
+                                    const std::set<std::string>& open) {
+    std::vector<std::string> names;
+    for (const auto* cases : {&printed, &measured}) {
+        for (const Settings& settings : *cases) {
+            for (const auto& [name, value] : settings) addOnce(name, names);
+        }
+    }
+    std::vector<Departure> departures;
+    for (const std::string& name : names) {
+        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed),
+                            open.contains(name)};
+        if (!isSameSet(departure.measured, departure.printed)) {
+            departures.push_back(std::move(departure));
+        }
+    }
+    if (departures.empty()) {
+        departures.push_back({"cases",
+                              {std::to_string(measured.size())},
+                              {std::to_string(printed.size())},
+                              !open.empty()});
+    }
+    return departures;
+}
+
+/// Whether a layout has such a row or column at all; values of swept axes may still be others.
+bool hasKey(const std::vector<config::LayoutAxis>& axes,
+            const std::vector<config::LayoutAxis>& asked, const Key& key) {
+    if (axes.size() != asked.size()) return false;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (axes[i].name != asked[i].name || axes[i].isSweepAxis() != asked[i].isSweepAxis()) {
+            return false;
+        }
+        if (axes[i].isSweepAxis()) continue;
+        const auto isLabel = [&](const auto& label) { return label.first == key[i]; };
+        if (std::ranges::none_of(axes[i].labels, isLabel)) return false;
+    }
+    return true;
+}
+
+bool hasRun(const CaseRecords& item) {
+    return std::ranges::any_of(item.processes,
+                               [](const auto& process) { return !process.second.failure; });
+}
+
+/// What a sentence about cells is made from.
+struct Tally {
+    int same = 0;
+    int asGiven = 0;  // likewise, but for what the document does not give
+    int different = 0;
+    int alone = 0;  // without a counterpart in the profile `paper`
+    std::vector<std::string> open;
+    std::vector<Departure> departures;
+
+    int count() const { return same + asGiven + different + alone; }
+    void add(const Cell& cell) {
+        for (const std::string& name : cell.openParameters) addOnce(name, open);
+        if (cell.isAtPrintedParameters) {
+            ++(cell.openParameters.empty() ? same : asGiven);
+        } else if (cell.departures.empty()) {
+            ++alone;
+        } else {
+            ++different;
+        }
+        for (const Departure& departure : cell.departures) {
+            const auto known =
+                std::ranges::find(departures, departure.parameter, &Departure::parameter);
+            Departure& all = known == departures.end()
+                                 ? departures.emplace_back(
+                                       Departure{departure.parameter, {}, {}, departure.isOpen})
+                                 : *known;
+            for (const std::string& value : departure.measured) addOnce(value, all.measured);
+            for (const std::string& value : departure.printed) addOnce(value, all.printed);
+        }
+    }
+};
+
+/// Of the cells beside a printed value; of all where there are none.
+Tally tallyOf(std::span<const TableRow> rows) {
+    Tally all, besidePrinted;
+    for (const TableRow& row : rows) {
+        for (const Cell& cell : row.cells) {
+            if (cell.values.empty()) continue;
+            all.add(cell);
+            if (cell.printed) besidePrinted.add(cell);
+        }
+    }
+    return besidePrinted.count() > 0 ? besidePrinted : all;
+}
+
+std::string valuesText(const std::vector<std::string>& values) {
+    if (values.empty()) return "none";
+    if (values.size() <= kSaidValues) return joined(values, " / ");
+    return fmt::format("{} / {} / … / {}", values[0], values[1], values.back());
+}
+
+std::string sentence(const Tally& tally) {
+    if (tally.alone == tally.count()) {
+        return "Measured where the profile paper has no case";
+    }
+    std::string text = "Measured at ";
+    const auto add = [&](int cells, const std::string& at) {
+        if (cells == 0) return;
+        text += at;
+        if (cells < tally.count()) text += fmt::format(" in {} of {} cells", cells, tally.count());
+    };
+    add(tally.same, "the printed parameters");
+    if (tally.same > 0 && tally.asGiven > 0) text += ", ";
+    add(tally.asGiven, fmt::format("the printed parameters as far as they are given (not: {})",
+                                   openText(tally.open)));
+    if (tally.different > 0) {
+        text += (tally.same + tally.asGiven > 0 ? ", in the others at " : "") +
+                departuresText(tally.departures);
+    }
+    if (tally.alone > 0) {
+        text += fmt::format("; {} cell{} where the profile paper has no case", tally.alone,
+                            tally.alone == 1 ? "" : "s");
+    }
+    return text;
+}
+
+std::string line(const Table& table, std::span<const TableRow> rows) {
+    if (!table.isPublished) return "";
+    const Tally tally = tallyOf(rows);
+    if (tally.count() == 0) return "";
+    if (!table.knowsPrintedParameters) {
+        return "Whether it was measured at the printed parameters is not known: the run's plan "
+               "does not have them";
+    }
+    return sentence(tally);
+}
+
+}  // namespace
+
+std::string openText(const std::vector<std::string>& parameters) {
+    if (parameters.size() <= kSaidValues + 1) return joined(parameters);
+    const std::vector<std::string> said(parameters.begin(), parameters.begin() + kSaidValues);
+    return fmt::format("{} and {} more", joined(said), parameters.size() - kSaidValues);
+}
+
+std::string departuresText(const std::vector<Departure>& departures) {
+    std::vector<std::string> parts;
+    std::string_view said;  // holds for what follows
+    for (const Departure& departure : departures) {
+        const std::string_view whose = departure.isOpen ? "paper profile " : "printed ";
+        parts.push_back(fmt::format("{} {} ({}{})", departure.parameter,
+                                    valuesText(departure.measured), whose == said ? "" : whose,
+                                    valuesText(departure.printed)));
+        said = whose;
+    }
+    return joined(parts);
+}
+
+PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
+    if (experiment.paperCases.empty()) return;
+    config::Experiment paper =
+        config::experimentFromDocument(experiment.paperDocument, experiment.file);
+    std::vector<PlannedCase> cases;
+    for (const config::PaperCase& item : experiment.paperCases) {
+        cases.push_back({"", paper.id, item.scene, item.params.toJson(), {}});
+    }
+    cases_ = gatherCases(paper, cases, {});
+    layout_ = std::move(paper.layout);
+    printed_ = std::move(paper.printed);
+    for (const config::Assumption& assumption : paper.assumptions) open_.insert(assumption.name);
+    for (const auto& [name, value] : printed_.at) open_.erase(settingNameOf(name));
+}
+
+void PrintedParameters::compare(const config::Layout& layout, const Key& row, const Key& column,
+                                const LayoutCases& cases, Cell& cell) const {
+    if (!isKnown() || cell.values.empty()) return;
+    if (!hasKey(layout_.rows, layout.rows, row) || !hasKey(layout_.columns, layout.columns, column))
+        return;
+    std::vector<const CaseRecords*> run = casesAt(whereOf(layout, row, column), cases);
+    std::erase_if(run, [](const CaseRecords* item) { return !hasRun(*item); });
+    const std::vector<Settings> measured = settingsOf(run, cases.frameCount, {});
+    const std::vector<Settings> printed =
+        settingsOf(casesAt(whereOf(layout_, row, column), cases_), cases_.frameCount, printed_);
+    if (printed.empty()) return;
+    cell.isAtPrintedParameters = areSameCases(measured, printed);
+    if (!cell.isAtPrintedParameters) {
+        cell.departures = departuresOf(measured, printed, open_);
+        return;
+    }
+    for (const Settings& settings : printed) {
+        for (const auto& [name, value] : settings) {
+            if (name != "scene" && open_.contains(name)) addOnce(name, cell.openParameters);
+        }
+    }
+}
+
+void PrintedCells::add(const config::Experiment& experiment, const Table& table) {
+    if (experiment.kind != config::Experiment::Kind::Table) return;
+    for (const auto* rows : {&table.rows, &table.printedRows}) {
+        for (const TableRow& row : *rows) {
+            for (const Cell& cell : row.cells) {
+                if (!cell.printed) continue;
+                ++printed;
+                if (!cell.values.empty()) ++measured;
+                if (cell.isAtPrintedParameters) {
+                    ++(cell.openParameters.empty() ? atPrinted : asGiven);
+                }
+            }
+        }
+    }
+}
+
+PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
+                               std::span<const Table> tables) {
+    GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
+    PrintedCells count;
+    for (std::size_t i = 0; i < tables.size(); ++i) count.add(experiments[i], tables[i]);
+    return count;
+}
+
+std::string printedCellsLine(const PrintedCells& count) {
+    if (count.printed == 0) return "";
+    const auto of = [&](int cells) { return fmt::format("{} of {}", cells, count.printed); };
+    return fmt::format(
+        "cells measured at the printed parameters: {}, as far as they are given: {}, beside a "
+        "measurement: {}",
+        of(count.atPrinted), of(count.asGiven), of(count.measured));
+}
+
+std::string parametersLine(const Table& table) {
+    if (table.isPublished && tallyOf(table.rows).count() == 0) return "Nothing of it is measured.";
+    const std::string text = line(table, table.rows);
+    return text.empty() ? "" : text + '.';
+}
+
+std::string parametersLine(const Table& table, const TableRow& row) {
+    return line(table, {&row, 1});
+}
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,74 @@
+// At which parameters cells were measured, beside those that the paper measured at.
+//
+// What is printed stands for the cases of the profile `paper`, with `printed.at` laid over them. A
+// cell is at the printed parameters where the cases behind it are these cases: the same parameters
+// of the technique (defaults resolved), size of the output, frames and scene. Not compared: how
+// often and where a case runs, and the parameter `pictures`, by which techniques save pictures
+// beside their numbers. What an assumption names and `printed.at` does not say is open in the
+// document: a departure from the profile's value is said to be just that, and a cell without one is
+// at the printed parameters as far as they are given. A stand-in in place of a real model is no
+// other scene: it goes by its name, and Table marks its source, as that of a generated one.
+#pragma once
+
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/tables/table.h"
+#include "runner/tables/table_axes.h"
+
+namespace gfxrepro::tables {
+
+/// What the paper measured behind each cell.
+class PrintedParameters {
+  public:
+    /// `experiment.paperCases` are its cases; without any, nothing is known.
+    explicit PrintedParameters(const config::Experiment& experiment);
+
+    bool isKnown() const { return !cases_.cases.empty(); }
+    /// Sets what the cell says of its parameters. `layout` and `cases` are this run's. Does nothing
+    /// for a cell without a measurement, or where nothing is known.
+    void compare(const config::Layout& layout, const Key& row, const Key& column,
+                 const LayoutCases& cases, Cell& cell) const;
+
+  private:
+    // Under the profile `paper`.
+    config::Layout layout_;
+    config::Printed printed_;
+    std::set<std::string> open_;
+    LayoutCases cases_;
+};
+
+/// Cells with a printed value in tables (those of figures and sections are not counted). A cell is
+/// one, however many statistics are printed in it.
+struct PrintedCells {
+    int printed = 0;
+    int measured = 0;   // those beside a measurement
+    int atPrinted = 0;  // those of them that were measured at the printed parameters
+    int asGiven = 0;    // likewise, as far as these are given
+
+    void add(const config::Experiment& experiment, const Table& table);
+};
+PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
+                               std::span<const Table> tables);
+/// "cells measured at the printed parameters: 120 of 897, as far as they are given: 300 of 897,
+/// beside a measurement: 691 of 897"; empty when nothing is printed.
+std::string printedCellsLine(const PrintedCells& count);
+
+/// "output 128×128 (printed 512×512), light_grid 4 (16), frames 3 (paper profile 50)".
+std::string departuresText(const std::vector<Departure>& departures);
+
+/// "output, view_spread, view_distance, frame_size and 3 more": Cell::openParameters.
+std::string openText(const std::vector<std::string>& parameters);
+
+/// At which parameters the table was measured, and which of them differ from the printed ones:
+/// "Measured at output 128×128 (printed 512×512), light_grid 4 (16)." Of the cells beside a printed
+/// value or, where there are none, of all that were measured. Empty for what is not published.
+std::string parametersLine(const Table& table);
+/// The same of one row, without the full stop; empty where nothing of it is measured.
+std::string parametersLine(const Table& table, const TableRow& row);
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,847 @@
+#include "runner/claims/claims.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "runner/core/random.h"
+#include "tests/support/support.h"
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::claims {
+namespace {
+
+using test::errorText;
+
+const ReportContext kSoftware{"llvmpipe", "software", "quick", "abc", ""};
+const ReportContext kGpu{"GeForce", "gpu", "paper", "abc", ""};
+
+/// Rows n = 1, 2, 4, 8 with columns a, b, c; one claim.
+std::string powersBody(const std::string& claim, const std::string& printed = "") {
+    return R"(
+sweep: {n: [1, 2, 4, 8]}
+layout:
+  rows: n
+  columns:
+    a: {metric: a}
+    b: {metric: b}
+    c-c: {metric: c}
+  cell: "{median:.1f}"
+)" + printed +
+           "claims:\n  X: {says: as claimed, " + claim + "}\n";
+}
+
+using Function = double (*)(double);
+constexpr Function kZero = [](double) { return 1.0; };
+
+tables::Recorded powers(Function a, Function b = kZero, Function c = kZero) {
+    tables::RecordMaker maker;
+    for (const int n : {1, 2, 4, 8}) {
+        maker.beginCase("", "{\"n\":" + std::to_string(n) + "}");
+        maker.add("a", {a(n)}).add("b", {b(n)}).add("c", {c(n)});
+    }
+    return maker.records();
+}
+
+ClaimResult judgeOne(const std::string& body, const tables::Recorded& records,
+                     const ReportContext& context = kSoftware) {
+    const config::Experiment experiment = tables::experimentFrom(body);
+    const auto results =
+        evaluateClaims(experiment, tables::buildTable(experiment, records), context);
+    GFXREPRO_ASSERT_EQ(results.size(), 1u);
+    return results[0];
+}
+
+ClaimResult judgePowers(const std::string& claim, const tables::Recorded& records) {
+    return judgeOne(powersBody(claim), records);
+}
+
+double infinite(double) {
+    return std::numeric_limits<double>::infinity();
+}
+
+TEST(Claims, APerfectPictureIsBetterThanAnyOther) {
+    const auto forty = [](double) { return 40.0; };
+    const ClaimResult bound = judgePowers("bound: a, above: 30", powers(infinite));
+    EXPECT_EQ(bound.verdict, Verdict::Holds);
+    EXPECT_NE(bound.measured.find("∞"), std::string::npos) << bound.measured;
+    EXPECT_EQ(bound.reason.find("crossing"), std::string::npos) << bound.reason;
+    EXPECT_EQ(judgePowers("bound: a, below: 30", powers(infinite)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("order: a < b", powers(forty, infinite)).verdict, Verdict::Holds);
+    EXPECT_EQ(judgePowers("order: a < b", powers(infinite, forty)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("exact: a, equals: 40", powers(infinite)).verdict, Verdict::Fails);
+}
+
+TEST(Claims, InfinityByInfinityIsNoNumber) {
+    for (const char* claim : {"ratio: a / b, at_least: 1", "bound: a / b, above: 1",
+                              "order: c-c < a / b", "trend: a, over: n, exponent: [0, 1]"}) {
+        const ClaimResult result = judgePowers(claim, powers(infinite, infinite));
+        EXPECT_EQ(result.verdict, Verdict::Unmeasured) << claim << ": " << result.measured;
+    }
+}
+
+TEST(Claims, Order) {
+    const auto records = powers([](double n) { return n; }, [](double n) { return 2.0 * n; },
+                                [](double n) { return n == 4.0 ? 8.0 : 4.0 * n; });
+    ClaimResult result = judgePowers("order: a < b", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.required, "a < b");
+    EXPECT_EQ(result.measured, "smallest gap 50 %");
+    EXPECT_EQ(result.margin, "50 %");
+    result = judgePowers("order: a < b < c-c", records);  // b = c at n = 4
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "smallest gap 0 %");
+    EXPECT_EQ(result.reason, "worst at n=4; one sample");
+    EXPECT_EQ(judgePowers("order: b < a", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("order: a < b < c-c, at: {n: [1, 2]}", records).verdict, Verdict::Holds);
+}
+
+TEST(Claims, Ratio) {
+    const auto records = powers([](double n) { return 3.0 * n; }, [](double n) { return n; });
+    ClaimResult result = judgePowers("ratio: a / b, between: [2.5, 4]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "3");
+    EXPECT_EQ(result.required, "a / b in [2.5, 4]");
+    EXPECT_EQ(result.margin, "0.5");
+    EXPECT_EQ(judgePowers("ratio: a / b, at_least: 3", records).verdict, Verdict::Holds);
+    result = judgePowers("ratio: a / b, at_least: 3.01", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.required, "a / b ≥ 3.01");
+    EXPECT_EQ(result.margin, "-0.01");
+    EXPECT_EQ(judgePowers("ratio: (a + b) / b, between: [4, 4]", records).verdict, Verdict::Holds);
+}
+
+TEST(Claims, TrendExponentOverAxisAndColumn) {
+    const auto records =
+        powers([](double n) { return 5.0 * std::pow(n, 1.5); }, [](double n) { return n * n; });
+    ClaimResult result = judgePowers("trend: a, over: n, exponent: [1.4, 1.6]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent 1.5");
+    result = judgePowers("trend: a, over: b, exponent: [0.7, 0.8]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent 0.75");
+    EXPECT_EQ(judgePowers("trend: a, over: n, exponent: [1.6, 2]", records).verdict,
+              Verdict::Fails);
+}
+
+TEST(Claims, TrendDirection) {
+    const auto rising = powers([](double n) { return n; });
+    const auto stepped = powers([](double n) { return n == 4.0 ? 2.0 : n; });
+    EXPECT_EQ(
+        judgePowers("trend: a, over: n, direction: increasing, strictly: true", rising).verdict,
+        Verdict::Holds);
+    EXPECT_EQ(judgePowers("trend: a, over: n, direction: increasing", stepped).verdict,
+              Verdict::Holds);
+    const ClaimResult result =
+        judgePowers("trend: a, over: n, direction: increasing, strictly: true", stepped);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.required, "strictly increasing with n");
+    EXPECT_EQ(judgePowers("trend: a, over: n, direction: decreasing", rising).verdict,
+              Verdict::Fails);
+    // Both: rising as asked, but not with that exponent.
+    const ClaimResult both =
+        judgePowers("trend: a, over: n, direction: increasing, exponent: [2, 3]", rising);
+    EXPECT_EQ(both.verdict, Verdict::Fails);
+    EXPECT_EQ(both.measured, "smallest step 50 %; exponent 1");
+    EXPECT_EQ(both.required, "increasing with n; exponent in [2, 3]");
+}
+
+TEST(Claims, Independent) {
+    const auto records =
+        powers([](double n) { return n == 8.0 ? 11.0 : 10.0; }, [](double n) { return n; });
+    ClaimResult result = judgePowers("independent: a, of: n, within: 10%", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "spread 10 %");
+    EXPECT_EQ(result.required, "spread of a ≤ 10 %");
+    result = judgePowers("independent: [a, b], of: n, within: 10%", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "spread 10 %; spread 233.3 %");  // 7 / median 3
+}
+
+TEST(Claims, Bound) {
+    const auto records = powers([](double n) { return n; }, [](double) { return 0.5; });
+    EXPECT_EQ(judgePowers("bound: a + b, above: 1.5, below: 8.5", records).verdict, Verdict::Holds);
+    const ClaimResult result = judgePowers("bound: a + b, below: 8", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "8.5");
+    EXPECT_EQ(result.required, "a + b ≤ 8");
+    EXPECT_EQ(result.reason, "worst at n=8; one sample");
+}
+
+TEST(Claims, StrictBoundsExcludeTheBound) {
+    const auto records = powers([](double) { return 0.0; });
+    EXPECT_EQ(judgePowers("bound: a, above: 0", records).verdict, Verdict::Holds);
+    const ClaimResult result = judgePowers("bound: a, more_than: 0, less_than: 1", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.required, "a in (0, 1)");
+    EXPECT_EQ(judgePowers("bound: a, less_than: 0", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("bound: a, less_than: 0.1", records).required, "a < 0.1");
+}
+
+TEST(Claims, KnownVerdictsAndNews) {
+    const auto records = powers([](double n) { return n; });
+    const std::string fails =
+        "because: {verdict: fails, profile: quick, reason: the scene, shown_by: two others}";
+    ClaimResult result = judgePowers("bound: a, below: 1, " + fails, records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.known, Verdict::Fails);
+    EXPECT_EQ(result.because, "the scene");
+    EXPECT_EQ(result.shownBy, "two others");
+    EXPECT_FALSE(result.isNews());
+    EXPECT_EQ(whyText(result), "the scene (worst at n=8; one sample)") << "the cause comes first";
+    result = judgePowers("bound: a, below: 8, " + fails, records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_TRUE(result.isNews());
+    EXPECT_EQ(whyText(result), "worst at n=8; one sample. Where it is fails: the scene");
+    result = judgePowers("bound: a, below: 1, because: {verdict: fails, device: gpu, reason: r}",
+                         records);
+    EXPECT_EQ(result.known, Verdict::Holds);
+    EXPECT_TRUE(result.isNews());
+    const std::string ambiguous = "because: {verdict: ambiguous, reason: at the bound}";
+    EXPECT_FALSE(judgePowers("bound: a, below: 8, " + ambiguous, records).isNews());
+    EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
+}
+
+std::string provenanceError(const std::string& claim, bool isSweep = false, int processes = 6) {
+    config::Experiment experiment = tables::experimentFrom(
+        "measure: {lane: timing, processes: " + std::to_string(processes) +
+        "}\nsweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: "
+        "{metric: "
+        "bytes}, often: {metric: frame_rate}}}, rows: [scene, e], columns: {a: {pass: p}, n: "
+        "{metric: bytes}}}\nclaims:\n  C: {says: s, " +
+        claim + "}\n");
+    if (isSweep) experiment.kind = config::Experiment::Kind::Sweep;
+    try {
+        requireProvenance(experiment, tables::buildTable(experiment, {}));
+        return "no error";
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        return text.substr(text.find("claim"));
+    }
+}
+
+TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}"),
+              "claim 'C' needs 'origin': document | derived | ours | definition | calibrated");
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}, origin: document"),
+              "claim 'C' requires a number and needs 'bound_from': print | text | ours");
+    EXPECT_EQ(
+        provenanceError("bound: a, below: 1, at: {e: much}, origin: document, bound_from: text"),
+        "no error");
+    EXPECT_EQ(
+        provenanceError("bound: a, below: 1, at: {e: much}, origin: document, bound_from: print"),
+        "claim 'C' has its bound from print, and the table has no printed values: text | ours");
+    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document"),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
+    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document, kind: "
+                              "algorithmic"),
+              "no error");
+    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: much}, origin: document, kind: "
+                              "algorithmic"),
+              "claim 'C' has a 'kind' and reads no time");
+    const std::string isAbsolute =
+        "claim 'C' holds a time against a number, which neither a count of work nor another "
+        "machine decides; its 'kind' is absolute";
+    const std::string ofTime = ", at: {e: slow}, origin: document, kind: algorithmic";
+    EXPECT_EQ(provenanceError("bound: a, below: 100, bound_from: text" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}, origin: document, "
+                              "kind: architectural"),
+              isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}, origin: document, kind: absolute"),
+              "no error");
+    EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime), "no error");
+    EXPECT_EQ(provenanceError("bound: a / a, below: 100, bound_from: text" + ofTime, false, 5),
+              "claim 'C' is of a time: the paper profile needs processes: 6 or more, has 5");
+    // What would come out otherwise if all times were twice as long.
+    EXPECT_EQ(provenanceError("bound: a / n, below: 100, bound_from: text" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < n" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a < a + 5" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("order: a / n < 2 * a / n" + ofTime), "no error");
+    EXPECT_EQ(provenanceError("order: 0 < a - a / 2" + ofTime), "no error");
+    EXPECT_EQ(provenanceError("trend: a - 5, over: n, direction: increasing" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("bound: a > 20, below: 1, bound_from: text" + ofTime), isAbsolute);
+    EXPECT_EQ(provenanceError("trend: n, over: a, direction: increasing, at: {e: slow}, origin: "
+                              "document"),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
+    EXPECT_EQ(
+        provenanceError("across: e, order: slow < often, origin: document, kind: algorithmic"),
+        isAbsolute);
+    // A reason for where it is not judged is of an earlier claim.
+    const std::string ofGpu =
+        "order: a < 2 * a, at: {e: slow}, origin: document, kind: architectural, because: "
+        "{verdict: "
+        "fails, reason: r";
+    EXPECT_EQ(provenanceError(ofGpu + ", device: software}"),
+              "claim 'C' has a reason for software ('because'), and a GPU alone judges it");
+    EXPECT_EQ(provenanceError(ofGpu + ", device: gpu}"), "no error");
+    EXPECT_EQ(provenanceError(ofGpu + "}"), "no error");
+    EXPECT_EQ(provenanceError("profile: paper, " + ofGpu + ", profile: quick}"),
+              "claim 'C' has a reason in the profile quick, and is judged in paper alone");
+    EXPECT_EQ(provenanceError("profile: paper, " + ofGpu + ", profile: paper}"), "no error");
+    EXPECT_EQ(provenanceError("order: n < 2 * n, origin: calibrated"),
+              "claim 'C' is of a calibrated input, and reads cells that 'printed.calibrated' does "
+              "not mark");
+    // A sweep's are ours, and its times no others.
+    EXPECT_EQ(provenanceError("bound: a, below: 1, at: {e: much}", true), "no error");
+    EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}", true),
+              "claim 'C' reads a time and needs 'kind': algorithmic | architectural | absolute");
+    EXPECT_EQ(provenanceError("bound: a, below: 100, at: {e: slow}, kind: algorithmic", true),
+              isAbsolute);
+    EXPECT_EQ(
+        provenanceError("across: scene, order: s < t, at: {e: slow}, kind: algorithmic", true),
+        "no error");
+}
+
+/// What has no interval is never told from its bound.
+TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
+    const auto errorOf = [](const std::string& measure, const std::string& claim) {
+        const config::Experiment experiment = tables::experimentFrom(
+            measure +
+            "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {time: {metric: gpu_time_ms}, "
+            "much: {metric: bytes}, part: {metric: drawn_pct}}}\nclaims:\n  C: {says: s, origin: "
+            "document, " +
+            claim + "}\n");
+        try {
+            requireProvenance(experiment, tables::buildTable(experiment, {}));
+            return std::string("no error");
+        } catch (const Error& error) {
+            const std::string text = error.what();
+            return text.substr(text.find("claim"));
+        }
+    };
+    const std::string count = "measure: {scene_seeds: 1}\n", five = "measure: {scene_seeds: 5}\n";
+    const std::string times = "measure: {lane: timing, processes: 6}\n";
+    const std::string known = ", because: {verdict: ambiguous, reason: r}";
+    const std::string refused =
+        "claim 'C' is known as ambiguous, and reads neither a time nor a share, of one scene: a "
+        "number without an interval holds or fails";
+    EXPECT_EQ(errorOf(count, "order: much < 2 * much" + known), refused);
+    EXPECT_EQ(errorOf(count, "order: part < much" + known), "no error");
+    EXPECT_EQ(errorOf(five, "order: much < 2 * much" + known), "no error");
+    EXPECT_EQ(errorOf(count, "order: much < 2 * much, because: {verdict: fails, reason: r}"),
+              "no error");
+    EXPECT_EQ(errorOf(times, "order: time < 2 * time, kind: algorithmic" + known), "no error");
+}
+
+TEST(Claims, ATimeAsSuchIsJudgedAtThePrintedParametersAlone) {
+    tables::RecordMaker maker;
+    maker.beginCase("models/duck", R"({"size": 64})");
+    for (int process = 0; process < 6; ++process) maker.process(process).add("gpu_time_ms", {8.0});
+    const config::Experiment experiment = tables::experimentFrom(R"(
+sweep: {scene: [models/duck]}
+layout: {rows: scene, columns: {draw_ms: {metric: gpu_time_ms}}}
+printed: {values: "scene,draw_ms\nmodels/duck,8"}
+claims:
+  V: {says: s, bound: draw_ms, below: 10, origin: document, bound_from: print, kind: absolute}
+)");
+    const auto judgeBeside = [&](const char* printedAt) {
+        const config::Experiment known =
+            tables::withPaperCases(experiment, {{"models/duck", printedAt}});
+        return evaluateClaims(known, tables::buildTable(known, maker.records()), kGpu).at(0);
+    };
+    EXPECT_EQ(judgeBeside(R"({"size": 64})").verdict, Verdict::Holds);
+    const ClaimResult result = judgeBeside(R"({"size": 256})");
+    EXPECT_EQ(result.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(result.reason, "a time as such is judged at the printed parameters only");
+}
+
+TEST(Claims, ExactAndTolerance) {
+    const std::string printed = R"(
+printed:
+  values: |
+    n,a,b
+    1,16,10
+    2,4.0,
+    4,,20
+)";
+    const auto records = powers([](double n) { return n == 1.0 ? 16.0 : 4.0; },
+                                [](double n) { return n == 1.0 ? 11.0 : 19.0; });
+    const auto judgePrinted = [&](const std::string& claim) {
+        return judgeOne(powersBody(claim, printed), records);
+    };
+    EXPECT_EQ(judgePrinted("exact: a, equals: printed").verdict, Verdict::Holds);
+    ClaimResult result = judgePrinted("exact: b, equals: printed");
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "largest difference 1");
+    EXPECT_EQ(result.required, "b = printed");
+    EXPECT_EQ(judgePrinted("exact: a, equals: 4, at: {n: [2, 4]}").verdict, Verdict::Holds);
+    EXPECT_EQ(judgePrinted("exact: a, equals: 4").verdict, Verdict::Fails);
+    result = judgePrinted("tolerance: b, within: 10%");
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "largest deviation 10 %");
+    EXPECT_EQ(judgePrinted("tolerance: b, within: 9%").verdict, Verdict::Fails);
+    result = judgePrinted("tolerance: b, within: 9%, at: {n: 8}");
+    EXPECT_EQ(result.verdict, Verdict::Unmeasured);
+    EXPECT_EQ(result.reason, "no printed number to compare with");
+}
+
+TEST(Claims, Crossover) {
+    const auto records = powers([](double n) { return n * n; }, [](double n) { return 3.0 * n; },
+                                [](double n) { return 100.0 * n; });
+    ClaimResult result = judgePowers("crossover: [a, b], over: n, between: [2.9, 3.1]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "crossing at 3");
+    EXPECT_EQ(judgePowers("crossover: [a, b], over: n, between: [4, 5]", records).verdict,
+              Verdict::Fails);
+    result = judgePowers("crossover: [a, c-c], over: n, between: [1, 1000]", records);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.reason, "there is no crossing within the rows; one sample");
+}
+
+TEST(Claims, NotApplicable) {
+    const auto records = powers([](double n) { return n; });
+    ClaimResult result = judgePowers("bound: a, below: 1, device: gpu", records);
+    EXPECT_EQ(result.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(result.reason, "claims about a GPU are not judged on a software device");
+    result = judgePowers("bound: a, below: 1, profile: paper", records);
+    EXPECT_EQ(result.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(result.reason, "judged in the profile 'paper' only");
+    EXPECT_EQ(judgeOne(powersBody("bound: a, below: 8, device: gpu, profile: paper"), records, kGpu)
+                  .verdict,
+              Verdict::Holds);
+}
+
+TEST(Claims, UnmeasuredNamesTheCell) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").add("a", {1.0}).add("b", {1.0});
+    maker.beginCase("", R"({"n":2})").fail(records::Status::Oom, "killed at 2 GiB");
+    const ClaimResult result = judgePowers("trend: a, over: n, exponent: [0, 9]", maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Unmeasured);
+    EXPECT_EQ(result.reason, "a at n=2: oom (killed at 2 GiB)");
+    EXPECT_EQ(judgePowers("bound: a, below: 2, at: {n: 1}", maker.records()).verdict,
+              Verdict::Holds);
+    EXPECT_EQ(
+        judgePowers("trend: a, over: n, exponent: [0, 9], at: {n: 1}", maker.records()).reason,
+        "needs at least 2 rows, found 1");
+    const ClaimResult zero = judgePowers("trend: a, over: n, exponent: [0, 9]",
+                                         powers([](double n) { return n - 1.0; }));
+    EXPECT_EQ(zero.verdict, Verdict::Unmeasured);
+}
+
+/// A failing row counts even where another row could not be measured.
+TEST(Claims, FailureOutweighsAMissingRow) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").add("a", {5.0});
+    EXPECT_EQ(judgePowers("bound: a, below: 2", maker.records()).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("bound: a, below: 6", maker.records()).verdict, Verdict::Unmeasured);
+}
+
+/// Over a column, rows are grouped by the axes that the column does not depend on.
+TEST(Claims, GroupsByTheOtherAxes) {
+    const std::string body = R"(
+sweep: {scene: [s, m, l], method: [slow, fast]}
+layout:
+  rows: [scene, method]
+  columns: {triangles: {metric: triangles}, time: {metric: t}}
+  cell: "{median:.1f}"
+claims:
+  X: {says: time grows linearly, trend: time, over: triangles, exponent: [0.9, 1.1]}
+)";
+    tables::RecordMaker maker;
+    double triangles = 100.0;
+    for (const std::string scene : {"s", "m", "l"}) {
+        maker.beginCase(scene, R"({"method":"slow"})").add("triangles", {triangles});
+        maker.add("t", {triangles * 9.0});
+        maker.beginCase(scene, R"({"method":"fast"})").add("triangles", {triangles});
+        maker.add("t", {std::pow(triangles, 0.5)});
+        triangles *= 10.0;
+    }
+    const ClaimResult result = judgeOne(body, maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "exponent 0.5");
+    EXPECT_EQ(result.reason, "worst at method=fast; one sample");
+}
+
+std::string ratioBody(const std::string& between) {
+    return R"(
+sweep: {method: [ours, theirs]}
+scene: models/duck
+layout:
+  rows: scene
+  columns: method
+  cell: {metric: gpu_time_ms, format: "{median:.1f}"}
+claims:
+  X: {says: twice as fast, ratio: theirs / ours, between: )" +
+           between + "}\n";
+}
+
+/// Sum of twelve uniform numbers: near enough to a normal distribution of deviation 1.
+double normal(Random& random) {
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i) sum += double{random.uniform()};
+    return sum;
+}
+
+tables::Recorded noisyPair(double ratio, double noise, std::uint64_t seed) {
+    Random random(seed);
+    tables::RecordMaker maker;
+    for (const auto& [method, mean] :
+         {std::pair("ours", 10.0), std::pair("theirs", 10.0 * ratio)}) {
+        maker.beginCase("models/duck", std::string("{\"method\":\"") + method + "\"}");
+        for (int i = 0; i < 7; ++i) {
+            maker.process(i).add("gpu_time_ms", {mean * (1.0 + noise * normal(random))});
+        }
+    }
+    return maker.records();
+}
+
+TEST(Claims, NoiseDoesNotUpsetAClearVerdict) {
+    std::map<Verdict, int> inside, outside, onTheEdge;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        ++inside[judgeOne(ratioBody("[1.5, 2.7]"), noisyPair(2.0, 0.05, seed)).verdict];
+        ++outside[judgeOne(ratioBody("[1.5, 2.7]"), noisyPair(1.2, 0.05, seed)).verdict];
+        ++onTheEdge[judgeOne(ratioBody("[2, 2.5]"), noisyPair(2.0, 0.05, seed)).verdict];
+    }
+    EXPECT_GE(inside[Verdict::Holds], 95);
+    EXPECT_EQ(inside[Verdict::Fails], 0);
+    EXPECT_GE(outside[Verdict::Fails], 95);
+    EXPECT_EQ(outside[Verdict::Holds], 0);
+    EXPECT_GE(onTheEdge[Verdict::Ambiguous], 80);
+}
+
+/// What the reason ends with where no CPU time was recorded.
+const std::string kByTheClock = "; by the clock: no CPU time was recorded of these";
+
+TEST(Claims, AmbiguousSaysSo) {
+    const ClaimResult result = judgeOne(ratioBody("[2, 2.5]"), noisyPair(2.0, 0.05, 3));
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_EQ(result.reason, "the interval straddles the bound" + kByTheClock);
+    EXPECT_THAT(result.measured, testing::MatchesRegex("[0-9.]+ \\[[0-9.]+, [0-9.]+\\]"));
+}
+
+/// Rows n = 1, 2, 4, 8; wall and CPU time in each of `rounds` processes: a function of n and round.
+using Timed = std::function<double(double n, int round)>;
+
+tables::Recorded timedRows(int rounds, const Timed& wallMs, const Timed& processMs = {}) {
+    tables::RecordMaker maker;
+    for (const int n : {1, 2, 4, 8}) {
+        maker.beginCase("", "{\"n\":" + std::to_string(n) + "}");
+        for (int round = 0; round < rounds; ++round) {
+            maker.process(round).add("wall_time_ms", {wallMs(n, round)});
+            maker.add("frame_rate", {1000.0 / wallMs(n, round)}, "", "1/s");
+            if (processMs) maker.add("process_time_ms", {processMs(n, round)});
+        }
+    }
+    return maker.records();
+}
+
+std::string timedBody(const std::string& claim) {
+    return R"(
+sweep: {n: [1, 2, 4, 8]}
+measure: {lane: timing, processes: 6}
+layout:
+  rows: n
+  columns: {ms: {metric: wall_time_ms}, fps: {metric: frame_rate}}
+  cell: "{median:.1f}"
+claims:
+  X: {says: as claimed, )" +
+           claim + "}\n";
+}
+
+ClaimResult judgeTimed(const std::string& claim, const tables::Recorded& records,
+                       const ReportContext& context = kSoftware) {
+    return judgeOne(timedBody(claim), records, context);
+}
+
+/// What slows a round, slows all of its cases alike; and ± 1 % in turn.
+double drift(int round) {
+    constexpr double kDrift[] = {1.0, 1.6, 0.8, 2.0, 1.3, 1.1, 1.0, 0.7};
+    return kDrift[round] * (round % 2 == 0 ? 1.01 : 0.99);
+}
+
+TEST(Claims, OneSampleOfATimeDecidesNothing) {
+    const auto records = timedRows(1, [](double n, int) { return 100.0 * n; });
+    ClaimResult result = judgeTimed("bound: ms, above: 1", records);
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_EQ(result.measured, "100");
+    EXPECT_EQ(result.reason, "worst at n=1; one sample of a time decides nothing" + kByTheClock);
+    result = judgeTimed("bound: fps, below: 1000", records);
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous) << "a rate is a time";
+}
+
+TEST(Claims, ARangeDecidesNothing) {
+    const auto records = timedRows(5, [](double n, int round) { return n * (100.0 + round); });
+    const ClaimResult result = judgeTimed("bound: ms, above: 1, at: {n: 1}", records);
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_EQ(result.measured, "102 (100 … 104)");
+    EXPECT_EQ(result.reason, "a range of 5 processes; an interval needs 6" + kByTheClock);
+    const auto six = timedRows(6, [](double n, int round) { return n * (100.0 + round); });
+    EXPECT_EQ(judgeTimed("bound: ms, above: 1, at: {n: 1}", six).verdict, Verdict::Holds);
+    EXPECT_EQ(judgeTimed("bound: ms, below: 1, at: {n: 1}", six).verdict, Verdict::Fails);
+}
+
+/// The clock differs by 2.5 between rounds; what is compared was measured in the same round.
+TEST(Claims, TimesAreComparedWithinTheirRound) {
+    const auto records = timedRows(6, [](double n, int round) { return n * drift(round); });
+    const ClaimResult result = judgeTimed("trend: ms, over: n, exponent: [0.99, 1.01]", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent 1 [1, 1]");
+    EXPECT_EQ(judgeTimed("trend: ms, over: n, exponent: [1.02, 2]", records).verdict,
+              Verdict::Fails);
+    // Alone the clock could not tell.
+    EXPECT_EQ(judgeTimed("bound: ms, below: 1.2, at: {n: 1}", records).verdict, Verdict::Ambiguous);
+}
+
+/// A chip for computing draws with a small part of itself.
+TEST(Claims, OfAGpusUnitsOneThatIsNoGraphicsCardSaysSo) {
+    const auto records = timedRows(6, [](double n, int round) { return n * drift(round); });
+    const std::string claim = "trend: ms, over: n, direction: increasing, kind: ";
+    ReportContext context = kGpu;
+    EXPECT_EQ(judgeTimed(claim + "architectural", records, context).reason, "");
+    context.fragmentShare = 0.9;
+    EXPECT_EQ(judgeTimed(claim + "architectural", records, context).reason, "");
+    context.fragmentShare = 0.04;
+    const ClaimResult result = judgeTimed(claim + "architectural", records, context);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.reason,
+              "this device does the same arithmetic 25.0 times as fast in compute shaders as in "
+              "fragment shaders, a graphics card about as fast: what it says of drawing against "
+              "computing is of this device");
+    EXPECT_EQ(judgeTimed(claim + "algorithmic", records, context).reason, "");
+}
+
+TEST(Claims, TimesRiseOnTheWhole) {
+    const std::string rising = "trend: ms, over: n, direction: increasing";
+    ClaimResult result =
+        judgeTimed(rising, timedRows(6, [](double n, int round) { return n * drift(round); }));
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "rank correlation 1 [1, 1]");
+    // The last two are equal but for noise: a smallest step would fall below 0 in every other run.
+    const Timed plateau = [](double n, int round) {
+        const double noise = (round + static_cast<int>(n)) % 3 == 0 ? 1.02 : 0.98;
+        return std::min(n, 4.0) * drift(round) * noise;
+    };
+    EXPECT_EQ(judgeTimed(rising, timedRows(6, plateau)).verdict, Verdict::Holds);
+    EXPECT_EQ(
+        judgeTimed("trend: ms, over: n, direction: decreasing", timedRows(6, plateau)).verdict,
+        Verdict::Fails);
+    // A step back that is beyond all noise.
+    result = judgeTimed(rising, timedRows(6, [](double n, int round) {
+                            return (n == 8.0 ? 2.5 : n) * drift(round);
+                        }));
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_THAT(result.measured, testing::StartsWith("step -37.5 %"));
+    // Nothing but noise.
+    result = judgeTimed(rising, timedRows(6, [](double n, int round) {
+                            return 10.0 + (static_cast<int>(n) * 7 + round * 5) % 3;
+                        }));
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+}
+
+TEST(Claims, TimesThatAreAlike) {
+    const Timed alike = [](double n, int round) { return drift(round) * (n == 8.0 ? 1.05 : 1.0); };
+    const std::string within = "independent: ms, of: n, within: ";
+    ClaimResult result = judgeTimed(within + "10%", timedRows(6, alike));
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "ratio of two rows 1.05 [1.05, 1.05]");
+    EXPECT_EQ(judgeTimed(within + "3%", timedRows(6, alike)).verdict, Verdict::Fails);
+    // Equal on average, but not known well enough to say so.
+    const Timed noisy = [](double n, int round) {
+        return (round + static_cast<int>(n)) % 2 == 0 ? 10.0 : 11.5;
+    };
+    EXPECT_EQ(judgeTimed(within + "10%", timedRows(6, noisy)).verdict, Verdict::Ambiguous);
+}
+
+/// The intervals of 1 and 2 are narrow by luck; others of the table are not.
+TEST(Claims, ADifferenceBelowTheNoiseOfTheTableIsAmbiguous) {
+    const auto records = timedRows(6, [](double n, int round) {
+        return n <= 2.0 ? 100.0 + n + 0.02 * round : 500.0 + n * 20.0 * ((round * 5) % 3);
+    });
+    const ClaimResult result = judgeTimed("bound: ms, above: 100.5, at: {n: 2}", records);
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_THAT(result.measured, testing::HasSubstr("[102, 102.1]"));
+    EXPECT_THAT(result.reason,
+                testing::MatchesRegex(
+                    "nearer to the bound than the noise of this table, [0-9.]+ %" + kByTheClock));
+    EXPECT_EQ(judgeTimed("bound: ms, above: 50, at: {n: 2}", records).verdict, Verdict::Holds);
+}
+
+TEST(Claims, AlgorithmicOnesAreJudgedByProcessTimeOnASoftwareDevice) {
+    // By the clock a neighbour hides the slope; the work shows it.
+    const Timed wall = [](double n, int round) {
+        return 10.0 * ((round * 7 + int(n) * 3) % 5 + 1);
+    };
+    const Timed work = [](double n, int) { return 20.0 * n; };
+    const auto records = timedRows(6, wall, work);
+    const std::string claim = "trend: ms, over: n, exponent: [0.9, 1.1]";
+    ClaimResult result = judgeTimed(claim + ", kind: algorithmic", records);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent 1 [1, 1]");
+    EXPECT_EQ(result.reason, "by the CPU time of the process");
+    EXPECT_NE(judgeTimed(claim + ", kind: algorithmic", records, kGpu).verdict, Verdict::Holds);
+    // A rate of frames is the inverse of their time.
+    result = judgeTimed("bound: fps, below: 6.3, at: {n: 8}, kind: algorithmic", records);
+    EXPECT_EQ(result.measured, "6.25 [6.25, 6.25]");
+    // Where none was recorded, the clock judges and it is said.
+    result = judgeTimed(claim + ", kind: algorithmic", timedRows(6, work));
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.reason, "by the clock: no CPU time was recorded of these");
+}
+
+TEST(Claims, ARoundThatIsNotANumberIsNotPassedOver) {
+    const auto records = timedRows(6, [](double n, int round) { return round == 3 ? 0.0 : n; });
+    const ClaimResult result = judgeTimed("trend: ms, over: n, exponent: [0.9, 1.1]", records);
+    EXPECT_EQ(result.verdict, Verdict::Unmeasured);
+}
+
+/// Values that are no times, and differ between processes all the same.
+TEST(Claims, OtherValuesAreJudgedByTheirRounds) {
+    const auto judge = [](std::initializer_list<double> values, const std::string& claim) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        int process = 0;
+        for (const double value : values) maker.process(process++).add("a", {value}, "", "byte");
+        return judgePowers(claim + ", at: {n: 1}", maker.records());
+    };
+    EXPECT_EQ(judge({5, 5}, "bound: a, below: 6").measured, "5");
+    EXPECT_EQ(judge({5, 5}, "bound: a, below: 6").reason, "") << "not one sample";
+    EXPECT_EQ(judge({5, 7, 6}, "bound: a, below: 7").measured, "6 (5 … 7)");
+    EXPECT_EQ(judge({5, 7, 6}, "bound: a, below: 7").verdict, Verdict::Holds);
+    EXPECT_EQ(judge({5, 7, 6}, "bound: a, below: 6").verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judge({5, 7, 6, 6, 6, 6}, "bound: a, below: 6").measured, "6 [5, 7]");
+}
+
+TEST(Claims, StatisticOfACell) {
+    const std::string body = R"(
+scene: a
+layout:
+  rows: scene
+  columns: {e: {metric: e}}
+  cell: "{mean:.1f}/{max:.1f}"
+claims:
+  X: {says: no error is large, bound: e, below: 5, statistic: )";
+    tables::RecordMaker maker;
+    maker.beginCase("a").add("e", {1.0, 2.0, 9.0});
+    EXPECT_EQ(judgeOne(body + "mean}", maker.records()).measured.substr(0, 1), "4");
+    EXPECT_EQ(judgeOne(body + "max}", maker.records()).measured.substr(0, 1), "9");
+    EXPECT_THAT(errorText([&] { judgeOne(body + "min}", maker.records()); }),
+                testing::EndsWith("claim 'X': statistic 'min' is not in the format of column 'e'"));
+}
+
+/// Shown with one digit, a and b are the same number, and a is 2 as asked; as measured they are
+/// not.
+TEST(Claims, AreJudgedOnWhatWasMeasuredNotOnWhatIsShown) {
+    const auto records = powers([](double) { return 2.04; }, [](double) { return 1.96; });
+    EXPECT_EQ(judgePowers("order: b < a", records).verdict, Verdict::Holds);
+    EXPECT_EQ(judgePowers("ratio: a / b, at_least: 1.04", records).verdict, Verdict::Holds);
+    EXPECT_EQ(judgePowers("ratio: a / b, at_least: 1.0409", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("bound: a, below: 2.03", records).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers("exact: a, equals: 2", records).verdict, Verdict::Fails);
+}
+
+/// Rows `method` × `scene`, columns a and b; one claim that compares methods.
+std::string acrossBody(const std::string& claim) {
+    return R"(
+sweep: {method: [old, new], scene: [s, t]}
+layout:
+  rows: [method, scene]
+  columns: {a: {metric: a}, b: {metric: b}}
+printed:
+  values: |
+    method,scene,a,b
+    old,s,1,2
+    new,s,10,4
+claims:
+  X: {says: as claimed, across: method, )" +
+           claim + "}\n";
+}
+
+TEST(Claims, AcrossComparesRows) {
+    tables::RecordMaker maker;
+    maker.beginCase("s", R"({"method":"old"})").add("a", {1.0}).add("b", {2.0});
+    maker.beginCase("s", R"({"method":"new"})").add("a", {10.0}).add("b", {3.0});
+    maker.beginCase("t", R"({"method":"old"})").add("a", {1.0}).add("b", {2.0});
+    maker.beginCase("t", R"({"method":"new"})").add("a", {20.0}).add("b", {1.0});
+    const auto judge = [&](const std::string& claim) {
+        return judgeOne(acrossBody(claim), maker.records());
+    };
+    ClaimResult result = judge("order: old < new");
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "smallest gap -50 %");
+    EXPECT_EQ(result.reason, "worst at scene=t, column=b; one sample");
+    EXPECT_EQ(judge("order: old < new, at: {column: a}").verdict, Verdict::Holds);
+    EXPECT_EQ(judge("order: old < new, at: {scene: s}").verdict, Verdict::Holds);
+    result = judge("ratio: new / old, at_least: 20, at: {scene: t, column: a}");
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "20");
+    // The printed numbers have moved along.
+    EXPECT_EQ(judge("exact: new, equals: printed, at: {column: a}").verdict, Verdict::Holds);
+    result = judge("exact: new, equals: printed");
+    EXPECT_EQ(result.measured, "largest difference 1");
+}
+
+TEST(Claims, BadOperandsAreErrors) {
+    // A swept column is known to the config only by its values, so this is checked here again.
+    config::Experiment experiment = tables::experimentFrom(powersBody("bound: a, below: 5"));
+    const tables::Table table = tables::buildTable(experiment, {});
+    const auto error = [&](const std::string& operand) {
+        experiment.claims[0].operands[0] = operand;
+        experiment.claims[0].location = {"t.yaml", 4, 2};
+        return errorText([&] { evaluateClaims(experiment, table, kSoftware); });
+    };
+    EXPECT_EQ(error("a + time"), "no error") << "a profile may have taken it away";
+    const ClaimResult absent = evaluateClaims(experiment, table, kSoftware)[0];
+    EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
+    EXPECT_EQ(absent.reason,
+              "not among what was measured: 'time' is no column (columns: a, b, c-c)");
+    EXPECT_EQ(whatIsAbsent(experiment.claims[0], table),
+              "'time' is no column (columns: a, b, c-c)");
+    EXPECT_THAT(error("a +"),
+                testing::StartsWith("t.yaml:4:2: claim 'X': 'a +' is no expression: "));
+    EXPECT_EQ(error("max(a, c-c) * 2"), "no error");
+    experiment.claims[0].at = {{"m", {config::Node::number(1.0)}}};
+    EXPECT_EQ(error("a"),
+              "t.yaml:4:2: claim 'X': at: 'm' is no row axis; did you mean 'n'? (row "
+              "axes: n)");
+}
+
+TEST(Claims, ANumberThatIsAColumnIsNoNumber) {
+    const auto table = [](const char* sizes) {
+        return std::string("sweep: {size: ") + sizes +
+               "}\nlayout: {columns: size, cell: {metric: triangles}}\n";
+    };
+    tables::RecordMaker maker;
+    maker.beginCase("s", R"({"size":8})").add("triangles", {3.0});
+    maker.beginCase("s", R"({"size":16})").add("triangles", {2.0});
+    const auto judged = [&](const char* sizes, const std::string& operand) {
+        config::Experiment experiment = tables::experimentFrom(
+            table(sizes) + "claims: {X: {says: so, bound: 1 + 1, below: 5}}\n");
+        experiment.claims[0].operands = {operand};
+        return evaluateClaims(experiment, tables::buildTable(experiment, maker.records()),
+                              kSoftware)[0];
+    };
+    EXPECT_EQ(judged("[8, 16]", "8").measured, "3");
+    EXPECT_EQ(judged("[8, 16]", "'8' + 8.0").measured, "11");
+    EXPECT_EQ(judged("[8, 16]", "8 + 1").reason,
+              "not among what was measured: '8' may be the column or the number (quoted it is the "
+              "column; written otherwise, as 8.0, the number)");
+    // A sweep took the columns away for which the numbers stood.
+    maker.beginCase("s", R"({"size":32})").add("triangles", {2.0});
+    const ClaimResult absent = judged("[32, 64]", "4");
+    EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
+    EXPECT_THAT(absent.reason,
+                testing::StartsWith("not among what was measured: '4' is no column"));
+}
+
+TEST(Claims, Summary) {
+    EXPECT_EQ(claimSummaryLine({}), "no claims");
+    std::vector<ClaimResult> results(4);
+    results[0].verdict = results[1].verdict = Verdict::Holds;
+    results[2].verdict = Verdict::Fails;
+    results[3].verdict = Verdict::NotApplicable;
+    EXPECT_EQ(claimSummaryLine(results), "2 hold, 1 fails, 1 not-applicable");
+    results[0].origin = results[2].origin = config::ClaimSpec::Origin::Document;
+    results[3].origin = config::ClaimSpec::Origin::Definition;
+    EXPECT_EQ(originSummaryLine(results),
+              "of the documents' own claims 1 holds, 1 fails; our aims 1 holds; definitions 1 "
+              "not-applicable");
+}
+
+}  // namespace
+}  // namespace gfxrepro::claims

@@ -1,0 +1,70 @@
+// Verdicts on generated scenes that were taken at several seeds.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::claims {
+namespace {
+
+constexpr const char* kBody = R"(
+sweep: {scene: [grass, scan]}
+layout:
+  rows: scene
+  columns: {share: {metric: share}}
+  cell: "{median:.1f}"
+claims:
+  bound: {says: the meadow has many, bound: share, above: 5, at: {scene: grass}}
+  order: {says: and more than the scan, across: scene, order: scan < grass}
+)";
+
+/// The meadow's share at each seed; the scan, which has none, has 6.
+tables::Recorded records(const std::vector<double>& shares) {
+    tables::RecordMaker maker;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const std::string sample = "\"scene_sample\":" + std::to_string(i);
+        if (i == 0) {
+            maker.beginCase("grass", "{" + sample + "}");
+        } else {
+            maker.beginCase("grass@" + std::to_string(i + 1),
+                            "{" + sample + ",\"stands_for\":\"grass\"}");
+        }
+        maker.lane("quality").add("share", {shares[i]}, "", "%");
+    }
+    maker.beginCase("scan").lane("quality").add("share", {6.0}, "", "%");
+    return maker.records();
+}
+
+Verdict verdictOn(const std::string& claim, const std::vector<double>& shares) {
+    const config::Experiment experiment = tables::experimentFrom(kBody);
+    for (const ClaimResult& result :
+         evaluateClaims(experiment, tables::buildTable(experiment, records(shares)),
+                        {"llvmpipe", "software", "paper", "abc", ""})) {
+        if (result.id == claim) return result.verdict;
+    }
+    return Verdict::Unmeasured;
+}
+
+TEST(SceneSeeds, AreOneCellWithTheRange) {
+    const config::Experiment experiment = tables::experimentFrom(kBody);
+    const tables::Table table = tables::buildTable(experiment, records({9, 8, 7, 10, 11}));
+    ASSERT_EQ(table.rows.size(), 2U);
+    const tables::Cell& grass = table.rows[0].cells[0];
+    EXPECT_TRUE(grass.isOk()) << grass.message;
+    EXPECT_EQ(grass.measured, "9.0");
+    EXPECT_EQ(grass.low, "7.0");
+    EXPECT_EQ(grass.high, "11.0");
+    EXPECT_EQ(table.rows[1].cells[0].measured, "6.0");
+}
+
+TEST(SceneSeeds, AVerdictTakesAllOfThem) {
+    EXPECT_EQ(verdictOn("bound", {9, 8, 7, 10, 11}), Verdict::Holds);
+    EXPECT_EQ(verdictOn("bound", {9, 8, 3, 10, 11}), Verdict::Ambiguous);
+    EXPECT_EQ(verdictOn("bound", {1, 2, 3, 4, 4.5}), Verdict::Fails);
+    EXPECT_EQ(verdictOn("order", {9, 8, 7, 10, 11}), Verdict::Holds);
+    EXPECT_EQ(verdictOn("order", {9, 8, 5.5, 10, 11}), Verdict::Ambiguous);
+    EXPECT_EQ(verdictOn("order", {1, 2, 3, 4, 5.5}), Verdict::Fails);
+}
+
+}  // namespace
+}  // namespace gfxrepro::claims

@@ -1,0 +1,107 @@
+#include "runner/records/images.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+
+#include "runner/core/files.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::records {
+namespace {
+
+TEST(Images, AppendedAndRead) {
+    const test::TemporaryFolder folder;
+    EXPECT_TRUE(readImages(folder.path()).empty());
+    const ImageEntry first{"abc", "zju2005/2.1", 0, "surface", "images/a.png", "", "a, \"b\""};
+    const ImageEntry second{"abc",          "zju2005/2.1",  1,  "truth",
+                            "images/b.png", "images/b.exr", "", "surface"};
+    ImageWriter(folder.path()).append({first});
+    ImageWriter(folder.path()).append({second});
+    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(first, second));
+    ImageEntry again = first;
+    again.png = "images/c.png";
+    ImageWriter(folder.path()).append({again});
+    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(again, second));
+}
+
+TEST(Images, TornLineIsPassedOver) {
+    const test::TemporaryFolder folder;
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
+    ImageWriter(folder.path()).append({entry});
+    std::ofstream(folder.path() / "images/index.csv", std::ios::app) << "def,t,0,\"to";
+    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
+    ImageWriter(folder.path()).append({{"def", "t", 0, "n", "images/p", "images/e", "title"}});
+    EXPECT_EQ(readImages(folder.path()).size(), 2u);
+}
+
+TEST(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
+    const test::TemporaryFolder folder;
+    const auto index = folder.path() / "images/index.csv";
+    const auto disturbed = [&](const std::function<void(const std::string& whole)>& disturb) {
+        std::filesystem::remove(index);
+        ImageWriter writer(folder.path());
+        writer.append({entry});
+        writer.requireOurs();
+        disturb(readFile(index));
+        EXPECT_EQ(test::errorText([&] { writer.append({}); }, folder.path()),
+                  test::errorText([&] { writer.append({entry}); }, folder.path()));
+        return test::errorText([&] { writer.requireOurs(); }, folder.path());
+    };
+    const std::string lost =
+        "DIR/images/index.csv: was removed, replaced or changed while a run wrote to it: rows are "
+        "lost; nothing more is measured into it";
+    EXPECT_EQ(disturbed([&](const std::string&) { std::filesystem::remove(index); }), lost);
+    EXPECT_EQ(disturbed([&](const std::string& whole) { writeFileAtomic(index, whole); }), lost);
+    EXPECT_EQ(
+        disturbed([&](const std::string& whole) { folder.write("images/index.csv", whole + "x"); }),
+        lost);
+    EXPECT_EQ(disturbed([&](const std::string&) { folder.write("images/index.csv", ""); }), lost);
+
+    std::filesystem::remove(index);
+    ImageWriter none(folder.path());
+    none.append({});
+    EXPECT_FALSE(std::filesystem::exists(index));
+    folder.write("images/index.csv", "");
+    EXPECT_EQ(test::errorText([&] { none.append({entry}); }, folder.path()),
+              "DIR/images/index.csv: was made by another while a run had no images; nothing more "
+              "is measured into its folder");
+}
+
+TEST(Images, ACutHeadIsWrittenAgain) {
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
+    const test::TemporaryFolder folder;
+    for (const char* head : {"", "case,tab"}) {
+        folder.write("images/index.csv", head);
+        ImageWriter(folder.path()).append({entry});
+        EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
+    }
+}
+
+TEST(Images, OlderListsNameNoTruths) {
+    const test::TemporaryFolder folder;
+    folder.write("images/index.csv",
+                 "case,table,frame,name,png,exr,title\na,b,2,n,images/p,images/e,t\n");
+    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(ImageEntry{
+                                               "a", "b", 2, "n", "images/p", "images/e", "t", ""}));
+    folder.write("images/index.csv", "case,table\na,b\n");
+    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
+              "DIR/images/index.csv:1: expected the columns "
+              "case,table,frame,name,png,exr,title,truth_of, found case,table");
+}
+
+TEST(Images, MalformedRowIsAnError) {
+    const test::TemporaryFolder folder;
+    folder.write("images/index.csv", "case,table,frame,name,png,exr,title\na,b,x,n,p,e,t\n");
+    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
+              "DIR/images/index.csv:2: column 'frame': expected an integer, found 'x'");
+    folder.write("images/index.csv", "case,table,frame,name,png,exr,title,truth_of\na,b\n");
+    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
+              "DIR/images/index.csv:2: expected 8 columns, found 2");
+}
+
+}  // namespace
+}  // namespace gfxrepro::records

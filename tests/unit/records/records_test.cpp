@@ -1,0 +1,261 @@
+#include "runner/records/records.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "runner/core/files.h"
+#include "runner/records/csv.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::records {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+constexpr const char* kHeader =
+    "schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,unit,value,"
+    "status,message,rows\n";
+
+TEST(Csv, RowsAndColumnsHaveTheirLimits) {
+    std::vector<std::string> fields;
+    CsvReader rows("a\nb\nc\n", "f.csv", 2);
+    EXPECT_TRUE(rows.next(fields) && rows.next(fields));
+    EXPECT_EQ(errorText([&] { rows.next(fields); }),
+              "f.csv:3: more than 2 rows, which are not read");
+    const std::string commas = "a\n" + std::string(CsvReader::kMostColumns, ',') + "\n";
+    CsvReader columns(commas, "f.csv");
+    EXPECT_TRUE(columns.next(fields));
+    EXPECT_EQ(errorText([&] { columns.next(fields); }), "f.csv:2: more than 4096 columns");
+}
+
+Record sample(const std::string& caseId, double value) {
+    Record record;
+    record.caseId = caseId;
+    record.table = "zju2005/2.1";
+    record.technique = "voxelization";
+    record.method = "worksheet";
+    record.scene = "models/duck";
+    record.frame = 1;
+    record.repeat = 2;
+    record.process = 3;
+    record.lane = "timing";
+    record.pass = "rasterization";
+    record.metric = "gpu_time_ms";
+    record.unit = "ms";
+    record.value = value;
+    return record;
+}
+
+TEST(Records, WriteTheDocumentedColumns) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    RecordWriter(path).append({sample("abc", 0.1)});
+    EXPECT_EQ(readFile(path),
+              std::string(kHeader) +
+                  "3,abc,zju2005/2.1,voxelization,worksheet,models/duck,1,2,3,timing,"
+                  "rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
+}
+
+TEST(Records, ReadBackAsWritten) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    std::vector<Record> rows;
+    for (const double value : {0.0, -0.0, 1.0 / 3.0, 1e-300, 6.02214076e23, 5e-324,
+                               std::numeric_limits<double>::infinity(), 123456789.0}) {
+        rows.push_back(sample("abc", value));
+        rows.back().repeat = static_cast<int>(rows.size());
+    }
+    for (const std::string text : {"", ",", "\"", "a\nb", "a\r\nb", "\"\"", " lead", "ü,\"ß\"\n"}) {
+        rows.push_back(sample("abc", 1.0));
+        rows.back().repeat = static_cast<int>(rows.size());
+        rows.back().message = text;
+        rows.back().scene = text + "x";
+    }
+    {
+        RecordWriter writer(path);
+        writer.append(rows);
+        writer.append({sample("def", 2.0)});
+    }
+    rows.push_back(sample("def", 2.0));
+    EXPECT_EQ(readRecords(path), rows);
+}
+
+TEST(Records, FailedCaseHasAnEmptyValue) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    Record row = sample("abc", std::numeric_limits<double>::quiet_NaN());
+    row.status = Status::DeviceLost;
+    row.message = "the context was reset";
+    RecordWriter(path).append({row});
+    EXPECT_THAT(readFile(path), testing::EndsWith(",ms,,device-lost,the context was reset,1\n"));
+    const std::vector<Record> read = readRecords(path);
+    ASSERT_EQ(read.size(), 1u);
+    EXPECT_TRUE(std::isnan(read[0].value));
+    EXPECT_EQ(read[0].status, Status::DeviceLost);
+}
+
+/// Whatever the byte at which a write was cut: what is read, and what is there after reopening, are
+/// the cases before it; also behind a row's end.
+TEST(Records, CutAtAnyByteLosesOnlyTheLastCase) {
+    const TemporaryFolder folder;
+    const auto whole = folder.path() / "whole.csv";
+    std::vector<Record> first = {sample("aaa", 1.0), sample("aaa", 2.0)};
+    first[1].message = "two\nlines";
+    first[1].repeat = 3;
+    RecordWriter(whole).append(first);
+    const std::size_t firstEnd = readFile(whole).size();
+    std::vector<Record> second = {sample("bbb", 3.0), sample("bbb", 4.0)};
+    second[0].message = "a \"quoted\"\nnewline";
+    second[0].repeat = 3;
+    RecordWriter(whole).append(second);
+    const std::string text = readFile(whole);
+
+    for (std::size_t length = firstEnd + 3; length < text.size(); ++length) {
+        const auto path = folder.write("cut.csv", text.substr(0, length));
+        EXPECT_EQ(readRecords(path), first) << "cut at " << length;
+        RecordWriter(path).append(second);
+        EXPECT_EQ(readFile(path), text) << "cut at " << length;
+    }
+}
+
+TEST(Records, CutHeaderIsWrittenAgain) {
+    const TemporaryFolder folder;
+    const std::string header = kHeader;
+    for (std::size_t length = 0; length <= header.size(); ++length) {
+        const auto path = folder.write("cut.csv", header.substr(0, length));
+        { const RecordWriter writer(path); }
+        EXPECT_EQ(readFile(path), header);
+    }
+}
+
+TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
+    const TemporaryFolder folder;
+    const auto error = [&](const std::string& content) {
+        const auto path = folder.write("records.csv", content);
+        return errorText([&] { readRecords(path); }, folder.path());
+    };
+    const std::string good = "3,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n";
+    EXPECT_EQ(error("a,b\n"),
+              "DIR/records.csv:1: expected the header "
+              "'schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,"
+              "unit,value,status,message,rows', found 'a,b'");
+    for (const std::size_t length : {0U, 10U}) {  // the write of the header was cut
+        EXPECT_EQ(error(std::string(kHeader).substr(0, length)), "no error");
+    }
+    EXPECT_EQ(error(kHeader + good + "3,c,t\n"), "DIR/records.csv:3: expected 17 columns, found 3");
+    EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n"),
+              "DIR/records.csv:3: expected records of schema 3, found 2");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0.5,0,0,timing,p,x,ms,1,ok,,1\n"),
+              "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,-2,timing,p,x,ms,1,ok,,1\n"),
+              "DIR/records.csv:2: column 'process': expected 0 to 999999, found '-2'");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,0,timing,p,x,ms,fast,ok,,1\n"),
+              "DIR/records.csv:2: column 'value': expected a number or nothing, found 'fast'");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,0,timing,p,x,ms,1,fine,,1\n"),
+              "DIR/records.csv:2: column 'status': found 'fine'; allowed: ok, ambiguous, flaky, "
+              "unsupported, timeout, oom, crash, device-lost, missing, error");
+    EXPECT_EQ(error(std::string(kHeader) + "3,\"two\nlines\",t\n" + good),
+              "DIR/records.csv:2: expected 17 columns, found 3");
+    EXPECT_EQ(error(std::string(kHeader) + "3,c\"d,t\n"),
+              "DIR/records.csv:2: expected a comma or the end of the line after 'c', found '\"'");
+    EXPECT_EQ(error(std::string(kHeader) + "3,\"c\"d,t\n"),
+              "DIR/records.csv:2: expected a comma or the end of the line after 'c', found 'd'");
+    EXPECT_EQ(errorText([&] { readRecords(folder.path() / "none.csv"); }, folder.path()),
+              "cannot read DIR/none.csv: No such file or directory");
+    EXPECT_EQ(errorText([] { statusFromName("fine"); }),
+              "unknown status 'fine'; allowed: ok, ambiguous, flaky, unsupported, timeout, oom, "
+              "crash, device-lost, missing, error");
+}
+
+/// A row of case `caseId` as written, which says that its unit has `rows` rows.
+std::string rowText(const std::string& caseId, int frame, int process, int rows) {
+    return "3," + caseId + ",t,q,m,s," + std::to_string(frame) + ",0," + std::to_string(process) +
+           ",timing,p,x,ms,1,ok,," + std::to_string(rows) + "\n";
+}
+
+TEST(Records, AValueGivenTwiceIsAnError) {
+    const TemporaryFolder folder;
+    const auto error = [&](const std::string& rows) {
+        const auto path = folder.write("records.csv", kHeader + rows);
+        return errorText([&] { readRecords(path); }, folder.path());
+    };
+    const std::string other = rowText("c", 0, 1, 1);
+    EXPECT_EQ(error(rowText("c", 0, 0, 2) + rowText("c", 1, 0, 2) + other), "no error");
+    EXPECT_EQ(error(rowText("c", 1, 0, 2) + other + rowText("c", 1, 0, 2)),
+              "DIR/records.csv:4: 'x' of case c, process 0, frame 1, repeat 0 was given in line 2 "
+              "already; a value is recorded once");
+}
+
+TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
+    const TemporaryFolder folder;
+    const std::string whole = rowText("c", 0, 0, 2) + rowText("c", 1, 0, 2);
+    const std::string cut = rowText("c", 0, 1, 3) + rowText("c", 1, 1, 3);
+    EXPECT_EQ(readRecords(folder.write("records.csv", kHeader + whole + cut)).size(), 2u);
+    const auto path = folder.write("records.csv", kHeader + cut + whole);
+    EXPECT_EQ(errorText([&] { readRecords(path); }, folder.path()),
+              "DIR/records.csv:3: case c, process 1 has 2 of 3 rows");
+}
+
+/// Rows of schema 2 had the parameters of their case.
+TEST(Records, ThoseOfBeforeAreReadAndNotGoneOnWith) {
+    const TemporaryFolder folder;
+    const std::string header =
+        "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,"
+        "unit,value,status,message,rows\n";
+    const std::string row =
+        "2,abc,zju2005/2.1,voxelization,worksheet,models/duck,\"{\"\"resolution\"\":256}\",1,2,3,"
+        "timing,rasterization,gpu_time_ms,ms,0.5,ok,,";
+    const auto path = folder.write("records.csv", header + row + "1\n");
+    EXPECT_EQ(readRecords(path), std::vector{sample("abc", 0.5)});
+    EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
+                testing::StartsWith("DIR/records.csv:1: expected the header 'schema,case,"));
+    EXPECT_EQ(readFile(path), header + row + "1\n");
+    const auto error = [&](const std::string& rows) {
+        folder.write("records.csv", header + rows);
+        return errorText([&] { readRecords(path); }, folder.path());
+    };
+    EXPECT_TRUE((folder.write("records.csv", header + row + "2\n"), readRecords(path)).empty())
+        << "a unit that was cut";
+    EXPECT_EQ(error("3" + row.substr(1) + "1\n"),
+              "DIR/records.csv:2: expected records of schema 2, found 3");
+    EXPECT_EQ(error("2,c,t\n"), "DIR/records.csv:2: expected 18 columns, found 3");
+}
+
+TEST(Records, WriterRefusesAnotherFile) {
+    const TemporaryFolder folder;
+    const auto path = folder.write("notes.txt", "my notes\n");
+    EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
+                testing::EndsWith("found 'my notes'"));
+    EXPECT_EQ(readFile(path), "my notes\n");
+}
+
+TEST(Records, StatusNamesRoundTrip) {
+    for (int i = 0; i <= static_cast<int>(Status::Error); ++i) {
+        const auto status = static_cast<Status>(i);
+        EXPECT_EQ(statusFromName(statusName(status)), status);
+    }
+}
+
+TEST(Records, HundredThousandRows) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    std::vector<Record> rows(100'000, sample("0123456789ab", 1.25));
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].frame = static_cast<int>(i);
+    RecordWriter(path).append(rows);
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Record> read = readRecords(path);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(read.size(), rows.size());
+    RecordProperty("seconds", std::to_string(elapsed.count()));
+    std::cout << "read in " << elapsed.count() << " s\n";
+}
+
+}  // namespace
+}  // namespace gfxrepro::records

@@ -1,0 +1,517 @@
+#include "runner/report/report.h"
+#include "runner/report/gnuplot.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "runner/claims/claims.h"
+#include "runner/claims/kept_claims.h"
+#include "runner/core/files.h"
+#include "runner/image/png_io.h"
+#include "runner/records/images.h"
+#include "tests/support/support.h"
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::report {
+namespace {
+
+using records::Status;
+using testing::HasSubstr;
+using testing::Not;
+
+const claims::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
+                                     "gfxrepro reproduce"};
+
+config::Experiment experiment() {
+    return tables::withPaperCases(tables::experimentFrom(R"(
+sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
+layout:
+  rows: scene
+  columns:
+    error: {metric: error, format: "{mean:.2f}/{max:.0f}"}
+    draw_ms: {metric: gpu_time_ms, format: "{median:.1f}"}
+printed:
+  hardware: "Radeon <9800> & co"
+  values: |
+    scene,error,draw_ms
+    models/duck,3.00/106,16.0
+claims:
+  A: {says: "a < b & \"c\"", bound: draw_ms, below: 10, at: {scene: models/duck}}
+  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}}
+  C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
+assumptions:
+  padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
+)"),
+                                  {{"models/duck", "{}"}, {"<b>&|_%", "{}"}});
+}
+
+tables::Recorded records(double drawMs = 8.0) {
+    tables::RecordMaker maker;
+    maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {drawMs});
+    maker.add("scene_source", {1.0}, "", "enum");
+    for (int process = 1; process < 6; ++process) {
+        maker.process(process).add("gpu_time_ms", {drawMs});
+    }
+    maker.beginCase("<b>&|_%").add("error", {2.5}).add("gpu_time_ms", {1.0 / 3.0});
+    maker.beginCase("models/lost").fail(Status::Crash, "signal <11>");
+    return maker.records();
+}
+
+/// What the run came to with these records.
+void judge(ReportRun& run, const tables::Recorded& recorded) {
+    run.records = recorded;
+    run.tables = tables::buildTables(run.experiments, recorded);
+    run.claims = claims::evaluateClaims(run.experiments, run.tables, run.context);
+    std::chrono::milliseconds patience = kGnuplotPatience;
+    run.curves = drawCurves(run.folder, run.tables, run.experiments, patience);
+}
+
+ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
+    ReportRun run;
+    run.folder = folder;
+    run.context = kContext;
+    run.manifest = {{"cpu", "Xeon <script>"},
+                    {"scenes", {{"models/duck", {{"kind", "stand-in"}}}}}};
+    run.experiments = {experiment()};
+    run.cases = {{records()[0].caseId,
+                  "zju2005/9.9",
+                  "zju2005/9.9 scene=models/duck",
+                  "gfxrepro run 'a<b'",
+                  {"ok"}}};
+    run.commands = {{"zju2005/9.9", "gfxrepro reproduce zju2005/9.9 --profile quick"}};
+    judge(run, records(drawMs));
+    return run;
+}
+
+/// A grey picture, `differing` in one pixel.
+image::Image8 picture(std::uint8_t differing) {
+    image::Image8 result(8, 8, 3, std::uint8_t{128});
+    result.at(0, 0, 0) = differing;
+    return result;
+}
+
+TEST(Report, IsOneSafeFile) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    image::writePng(folder.path() / "images/a.png", picture(128));
+    records::ImageWriter(folder.path())
+        .append({{"case", "zju2005/9.9", 0, "surface", "images/a.png", "",
+                  "zju2005/9.9 scene=<img onerror=x>"}});
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    for (const char* part : {
+             "src=\"data:image/png;base64,iVBORw0KGgo",
+             "alt=\"scene=&lt;img onerror=x&gt; · surface\"",
+             "<td>Xeon &lt;script&gt;</td>",
+             "<td>1 stand-in <span class=\"soft\">(models/duck)</span></td>",
+             "title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>",
+             "title=\"models/duck\">duck <abbr title=\"stand-in\">†</abbr>",
+             "<span class=\"badge fails\"><span aria-hidden=\"true\">✗</span> fails</span>",
+             "<td class=\"id\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
+             "<td>not &lt;said&gt;</td>",
+             "<span class=\"status\">crash</span> — signal &lt;11&gt;",
+             "cells without a value: 2 crash; 1 of its cases failed",
+             "gfxrepro reproduce zju2005/9.9 --profile quick",
+             "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
+             "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
+             "<p class=\"parameters\">cells measured at the printed parameters: 2 of 2, as far as "
+             "they are given: 0 of 2, beside a "
+             "measurement: 2 of 2</p>",
+             "<p class=\"parameters\">Measured at the printed parameters.</p>\n<div",
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    for (const char* forbidden : {"<script>alert", "<b>&|", "onerror=x>", "src=\"http",
+                                  "href=\"http", "url(http", "@import", "<link rel=\"style"}) {
+        EXPECT_THAT(html, Not(HasSubstr(forbidden)));
+    }
+}
+
+/// What an input was fitted to is no finding.
+TEST(Report, MarksWhatIsCalibrated) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    const std::string legend = "‡ calibrated: an input of ours was fitted";
+    writeReport(folder.path() / "report.html", {&run, 1});
+    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr(legend)));
+    run.experiments[0] = tables::withPaperCases(tables::experimentFrom(R"(
+sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
+layout:
+  rows: scene
+  columns: {draw_ms: {metric: gpu_time_ms, format: "{median:.1f}"}}
+printed: {calibrated: [{scene: models/duck}], values: "scene,draw_ms\nmodels/duck,16.0"}
+)"),
+                                                {{"models/duck", "{}"}});
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr(">8.0 <abbr title=\"calibrated\">‡</abbr>"));
+    EXPECT_THAT(html, Not(HasSubstr(">0.3 <abbr")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">" + legend));
+}
+
+/// A number of other parameters is no multiple of what is printed.
+TEST(Report, NoRatioAtOtherParameters) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light_grid none (printed "
+                                "16).</p>\n<div"));
+    EXPECT_THAT(html, HasSubstr(" title=\"at light_grid none (printed 16)\">8.0"));
+    EXPECT_THAT(
+        html,
+        HasSubstr(
+            "printed parameters: 0 of 2, as far as they are given: 0 of 2, beside a measurement: "
+            "2 of 2</p>"));
+
+    run.experiments[0].paperCases.clear();  // of a plan of before they were kept
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Whether it was measured at the printed "
+                                "parameters is not known: the run&#39;s plan does not have "
+                                "them.</p>"));
+}
+
+TEST(Report, CellsNameTheirCases) {
+    const test::TemporaryFolder folder;
+    const ReportRun run = runIn(folder.path());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    const std::string anchor = "A-" + run.cases[0].id;
+    EXPECT_THAT(html, HasSubstr("data-cases=\"" + anchor.substr(0, anchor.find('{'))));
+    EXPECT_THAT(html, HasSubstr("<article class=\"case\" id=\"A-case:models/duck"));
+}
+
+TEST(Report, ImagesWithATruthGetAFlipMap) {
+    const test::TemporaryFolder folder;
+    const ReportRun run = runIn(folder.path());
+    std::filesystem::create_directories(folder.path() / "images/x");
+    image::writePng(folder.path() / "images/x/result.png", picture(255));
+    image::writePng(folder.path() / "images/x/truth.png", picture(128));
+    records::ImageWriter(folder.path())
+        .append({{"c", "zju2005/9.9", 0, "result", "images/x/result.png", "", "t"},
+                 {"c", "zju2005/9.9", 0, "truth", "images/x/truth.png", "", "t", "result"}});
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"A-zju2005-9.9-1\""));
+    EXPECT_THAT(html, HasSubstr("class=\"error\" data-of=\"A-zju2005-9.9-0\"><img src=\"data:"));
+    EXPECT_THAT(html, testing::ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
+    EXPECT_THAT(html, Not(HasSubstr("FLIP 0.0000")));
+    const image::Image8 map = image::readPng8(folder.path() / "images/x/result-flip.png");
+    EXPECT_EQ(map.width(), 8);
+    EXPECT_GT(int{map.at(0, 0, 0)}, 40) << "the pixel that differs";
+    EXPECT_LT(int{map.at(7, 7, 0)}, int{map.at(0, 0, 0)});
+}
+
+TEST(Report, LargeGalleriesLieBesideThePage) {
+    const test::TemporaryFolder folder;
+    const ReportRun run = runIn(folder.path());
+    image::Image8 noise(600, 620, 3);  // a megabyte, taken 20 times
+    std::uint32_t state = 1;
+    for (std::uint8_t& value : noise.values()) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<std::uint8_t>(state >> 24U);
+    }
+    std::filesystem::create_directories(folder.path() / "images");
+    image::writePng(folder.path() / "images/a b#1.png", noise);
+    for (int i = 1; i <= 20; ++i) {
+        const std::string name = fmt::format("images/a b#{}.png", i);
+        if (i > 1) {
+            std::filesystem::create_hard_link(folder.path() / "images/a b#1.png",
+                                              folder.path() / name);
+        }
+        records::ImageWriter(folder.path())
+            .append({{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t"}});
+    }
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("<img src=\"thumbnails/a%20b%231.png\""));
+    EXPECT_THAT(html, HasSubstr("data-full=\"images/a%20b%231.png\""));
+    EXPECT_LT(html.size(), 150'000U);
+    const image::Image8 thumbnail = image::readPng8(folder.path() / "thumbnails/a b#1.png");
+    EXPECT_EQ(thumbnail.width(), 495);
+    EXPECT_EQ(thumbnail.height(), 512);
+    EXPECT_NEAR(thumbnail.at(80, 80, 0), 150, 100) << "the mean light of some random values";
+}
+
+TEST(Report, EmbedsEveryPictureWhereItIsAsked) {
+    const test::TemporaryFolder folder, out;
+    const ReportRun run = runIn(folder.path());
+    image::Image8 noise(600, 620, 3);
+    std::uint32_t state = 1;
+    for (std::uint8_t& value : noise.values()) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<std::uint8_t>(state >> 24U);
+    }
+    for (int i = 1; i <= 20; ++i) {  // a megabyte each: more than a page takes unasked
+        const std::string name = fmt::format("images/{}.png", i);
+        std::filesystem::create_directories(folder.path() / "images");
+        image::writePng(folder.path() / name, noise);
+        records::ImageWriter(folder.path())
+            .append(
+                {{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t", i == 1 ? "2" : ""}});
+    }
+    writeReport(out.path() / "one.html", {&run, 1}, {{}, true});
+    const std::string html = readFile(out.path() / "one.html");
+    std::size_t images = 0;
+    for (std::size_t at = html.find("<img src=\""); at != html.npos;
+         at = html.find("<img src=\"", at + 1)) {
+        EXPECT_EQ(html.compare(at, 32, "<img src=\"data:image/png;base64,"), 0);
+        ++images;
+    }
+    EXPECT_EQ(images, 21U) << "with the error map of the second";
+    EXPECT_THAT(html, Not(HasSubstr("data-full=")));
+    EXPECT_THAT(html, HasSubstr("width=\"495\" height=\"512\""));
+    int files = 0;
+    for (const auto& file : std::filesystem::directory_iterator(out.path())) {
+        EXPECT_EQ(file.path().filename(), "one.html");
+        ++files;
+    }
+    EXPECT_EQ(files, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "thumbnails"));
+}
+
+/// A picture of its own brightness.
+image::Image8 grey(std::uint8_t value) {
+    return image::Image8(8, 8, 3, value);
+}
+
+/// Two scenes by two methods, one truth a scene, two measures of each picture.
+TEST(Report, PicturesLieAsTheTable) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments = {tables::experimentFrom(R"(
+sweep: {scene: [models/duck, models/hugo], method: [coarse, fine]}
+layout:
+  axes: {measure: {error: {metric: error}, voxels: {metric: voxels}}}
+  rows: [scene, measure]
+  columns: method
+)")};
+    tables::RecordMaker maker;
+    std::vector<records::ImageEntry> images;
+    for (const char* scene : {"models/duck", "models/hugo"}) {
+        for (const char* method : {"coarse", "fine"}) {
+            maker.beginCase(scene, fmt::format(R"({{"method":"{}"}})", method)).add("error", {1.0});
+            const std::string id = maker.records().back().caseId;
+            for (const bool isTruth : {false, true}) {
+                const std::string file = fmt::format("images/{}.png", images.size());
+                std::filesystem::create_directories(folder.path() / "images");
+                const auto value = static_cast<std::uint8_t>(isTruth ? scene[7] : images.size());
+                image::writePng(folder.path() / file, grey(value));
+                images.push_back({id, "zju2005/9.9", 0, isTruth ? "truth" : "result", file, "",
+                                  fmt::format("zju2005/9.9 {} {}", scene, method),
+                                  isTruth ? "result" : ""});
+            }
+        }
+    }
+    judge(run, maker.records());
+    records::ImageWriter(folder.path()).append(images);
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("<th scope=\"col\">truth</th><th scope=\"col\">coarse</th>"
+                                "<th scope=\"col\">fine</th></tr></thead>"));
+    std::vector<std::string> order;
+    for (const char* part :
+         {">duck</th></tr>", "data-title=\"models/duck coarse\" data-name=\"truth\"",
+          "data-title=\"models/duck coarse\" data-name=\"result\"",
+          "data-title=\"models/duck fine\" data-name=\"result\"", ">hugo</th></tr>",
+          "data-title=\"models/hugo coarse\" data-name=\"truth\"",
+          "data-title=\"models/hugo fine\" data-name=\"result\""}) {
+        ASSERT_THAT(html, HasSubstr(part));
+        order.push_back(fmt::format("{:09}", html.find(part)));
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(order)) << testing::PrintToString(order);
+    EXPECT_THAT(html, Not(HasSubstr("data-title=\"models/duck fine\" data-name=\"truth\"")))
+        << "the truth of both stands once";
+}
+
+/// What the document shows comes first; the other pictures of the cases are folded.
+TEST(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    const std::string id = run.records[0].caseId;
+    std::filesystem::create_directories(folder.path() / "images");
+    std::vector<records::ImageEntry> images;
+    for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
+        const std::string file = fmt::format("images/{}.png", name);
+        image::writePng(folder.path() / file, grey(static_cast<std::uint8_t>(40 + images.size())));
+        images.push_back({id, "zju2005/9.9", 0, name, file, "", "t",
+                          std::string(name) == "truth" ? "result" : ""});
+    }
+    records::ImageWriter(folder.path()).append(images);
+    const auto orderOf = [&](const std::vector<std::string>& shows) {
+        run.experiments[0].shows = shows;
+        writeReport(folder.path() / "report.html", {&run, 1});
+        const std::string html = readFile(folder.path() / "report.html");
+        std::map<std::size_t, std::string> order;
+        for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
+            order[html.find(fmt::format("data-name=\"{}\"", name))] = name;
+        }
+        order[html.find("<summary>Further pictures")] = "|";
+        std::string text;
+        for (const auto& [at, name] : order) text += name + ' ';
+        return text;
+    };
+    EXPECT_EQ(orderOf({}), "truth result | classes_0 reflection ");
+    EXPECT_EQ(orderOf({"classes"}), "classes_0 | truth result reflection ");
+    EXPECT_EQ(orderOf({"no_such"}), "truth result | classes_0 reflection ");
+}
+
+TEST(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments = {tables::experimentFrom(R"(
+sweep: {scene: [outdoor/bird_nest], padding: [1, 2], method: [one_layer, two_layers]}
+layout:
+  axes: {measure: {mean: {metric: error}, draw_ms: {metric: gpu_time_ms}}}
+  rows: [scene, padding]
+  columns: [method, measure]
+)")};
+    tables::RecordMaker maker;
+    for (const int padding : {1, 2}) {
+        for (const char* method : {"one_layer", "two_layers"}) {
+            maker
+                .beginCase("outdoor/bird_nest",
+                           fmt::format(R"({{"padding":{},"method":"{}"}})", padding, method))
+                .add("error", {1.0})
+                .add("gpu_time_ms", {2.0});
+        }
+    }
+    judge(run, maker.records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    for (const char* part : {
+             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">one layer</th>"
+             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">two layers</th>",
+             "title=\"one_layer_draw_ms\">draw <span class=\"sub\">ms</span>",
+             "<th scope=\"rowgroup\" class=\"first\" rowspan=\"2\" "
+             "title=\"outdoor/bird_nest\">bird "
+             "nest</th>",
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    EXPECT_EQ(html.find(">bird nest</th>"), html.rfind(">bird nest</th>"));
+}
+
+/// What a chapter holds and what it does not, in words, with the pictures that show it.
+TEST(Report, FirstScreenSaysWhatReproduced) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments.push_back(run.experiments[0]);
+    run.experiments[1].id = "zju2005/figure-1";
+    for (config::Experiment& one : run.experiments) {
+        for (config::ClaimSpec& claim : one.claims) {
+            claim.origin = config::ClaimSpec::Origin::Document;
+        }
+    }
+    run.experiments[0].claims[1].because = {
+        {"fails", std::nullopt, std::nullopt, "the time is of another machine", "two machines"}};
+    std::filesystem::create_directories(folder.path() / "images");
+    image::writePng(folder.path() / "images/a.png", grey(100));
+    records::ImageWriter(folder.path())
+        .append({{"case", "zju2005/9.9", 0, "surface_0", "images/a.png", "", "t"}});
+    const config::Document document{
+        "zju2005", "Thesis on <models>", {{"Later", {"9.9"}}, {"Earlier", {"figure-1"}}}};
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("<figcaption>surface 0 · t</figcaption>"));
+    std::size_t at = 0;
+    for (const char* part : {
+             "llvmpipe on Xeon &lt;script&gt; · quick profile · commit abc123 · 2 experiments",
+             "<h2>zju2005. Thesis on &lt;models&gt;</h2>",
+             "<span class=\"holds\"",
+             "<span class=\"fails\"",
+             "could be judged here",
+             "Not reproduced: “no” (<a href=\"#zju2005-9.9\">",
+             "<span>Later</span>",
+             "<span>Earlier</span>",
+             "<div class=\"highlights\">",
+             "<h3>What the verdicts mean</h3>",
+             "<h2>Every claim, in words</h2>",
+             "<h3>Later</h3>",
+             "<span class=\"says\">no</span> <span class=\"soft code\"><a "
+             "href=\"#zju2005-9.9\">B</a>, document</span>\n<p><span class=\"soft\">why: </span>",
+             "the time is of another machine (",
+             "<h3>Earlier</h3>",
+             "<p><span class=\"soft\">shown by </span>two machines</p>",
+         }) {
+        const std::size_t next = html.find(part, at);
+        ASSERT_NE(next, html.npos) << part;
+        at = next;
+    }
+}
+
+TEST(Report, RunsStandSideBySide) {
+    const test::TemporaryFolder a, b, out;
+    std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
+    runs[1].experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
+    judge(runs[1], records(12.0));
+    writeReport(out.path() / "both.html", runs);
+    const std::string html = readFile(out.path() / "both.html");
+    EXPECT_THAT(html, HasSubstr("<th class=\"sub\">printed</th><th class=\"sub\">A</th>"
+                                "<th class=\"sub\">B</th>"));
+    EXPECT_THAT(html,
+                HasSubstr("<li class=\"claim uncounted differs\" data-verdict=\"holds fails\""))
+        << "claim A, 8 against 12";
+    for (const char* part : {
+             "<p class=\"parameters\"><b>A</b> cells measured at the printed parameters: 2 of 2",
+             "<p class=\"parameters\"><b>B</b> cells measured at the printed parameters: 0 of 2",
+             "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
+             "<p class=\"parameters\"><b>B</b> Measured at light_grid none (printed 16).</p>",
+             "×0.5</span>",  // 8 of 16
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    EXPECT_THAT(html, Not(HasSubstr("×0.75</span>"))) << "12 of 16, at other parameters";
+    EXPECT_THAT(html, HasSubstr("<b>A</b> quick, llvmpipe"));
+    EXPECT_LT(html.find("<section class=\"page\" id=\"zju2005-9.9\">"),
+              html.find("<section class=\"page\" id=\"overview\">"))
+        << "runs of one table open on its numbers";
+}
+
+TEST(Report, KeptVerdictsStandBesideARun) {
+    const test::TemporaryFolder a, kept;
+    const auto file =
+        kept.write("claims.csv",
+                   "claim,table,device,profile,verdict,measured,required,margin,reason,rests_on\n"
+                   "A,zju2005/9.9,gpu,quick,fails,12,draw_ms ≤ 10,-2,,bias (of 3 tried)\n"
+                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,,\n");
+    ReportRun other;
+    other.folder = kept.path();
+    other.context = kContext;
+    other.manifest = nlohmann::ordered_json::object();
+    other.claims = claims::readClaims(file);
+    const std::vector<ReportRun> runs = {other, runIn(a.path())};
+    writeReport(a.path() / "both.html", runs);
+    const std::string html = readFile(a.path() / "both.html");
+    EXPECT_THAT(html, HasSubstr("<span class=\"says\">a &lt; b &amp; &quot;c&quot;</span>"));
+    EXPECT_THAT(html, HasSubstr("<section class=\"page\" id=\"zju2005-1.1\">"));
+    EXPECT_THAT(html, HasSubstr("<span class=\"soft\">rests on </span>bias (of 3 tried)</p>"));
+}
+
+TEST(Report, RefusesVerdictsThatAreNone) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("claims.csv", "claim,table,verdict\nA,t,perhaps\n");
+    try {
+        claims::readClaims(file);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  file.string() +
+                      ":2: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
+                      "unmeasured)");
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::report

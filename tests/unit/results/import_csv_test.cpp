@@ -1,0 +1,168 @@
+#include "runner/results/import_csv.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/support.h"
+
+namespace gfxrepro::results {
+namespace {
+
+using gfxrepro::test::errorText;
+using gfxrepro::test::TemporaryFolder;
+
+class ImportCsv : public testing::Test {
+  protected:
+    ImportedNumbers read(const std::string& text) const {
+        return readImport({folder_.write("a.csv", text)});
+    }
+    std::string refusal(const std::string& text) const {
+        return errorText([&] { read(text); }, folder_.path());
+    }
+    /// With columns of numbers.
+    std::string wideRefusal(const std::string& text) const {
+        const ImportFiles files{folder_.write("a.csv", text), {}, {{"ms", "ms"}, {"mse", "1"}}};
+        return errorText([&] { readImport(files); }, folder_.path());
+    }
+    std::string casesRefusal(const std::string& text, const std::string& cases) const {
+        const ImportFiles files{folder_.write("a.csv", text), folder_.write("cases.csv", cases)};
+        return errorText([&] { readImport(files); }, folder_.path());
+    }
+
+    const TemporaryFolder folder_;
+};
+
+TEST_F(ImportCsv, ANumberARow) {
+    const ImportedNumbers numbers = read(
+        "samples,metric,value,unit,pass,frame,repeat,process,lane,status,message,scene\n"
+        "4,mse,0.5,1,,,,,,,,kitchen\n"
+        "4,ms,1e2,ms,trace,2,1,3,,,,kitchen\n"
+        "16,mse,inf,1,,,,,quality,,,kitchen\n"
+        "64,,,,,-1,-1,,,crash,\"two\nlines\",\n");
+    ASSERT_EQ(numbers.cases.size(), 3U);
+    EXPECT_EQ(numbers.columns, (std::vector<std::string>{"samples", "scene"}));
+    EXPECT_EQ(numbers.cases[0].cell("samples"), "4");
+    EXPECT_EQ(numbers.cases[0].cell("scene"), "kitchen");
+    EXPECT_EQ(numbers.cases[2].cells.size(), 1U);
+    ASSERT_EQ(numbers.rows.size(), 4U);
+    EXPECT_EQ(numbers.rows[1].caseIndex, 0U);
+    const records::Record& timed = numbers.rows[1].record;
+    EXPECT_EQ(timed.value, 100.0);
+    EXPECT_EQ(timed.pass, "trace");
+    EXPECT_EQ(timed.frame, 2);
+    EXPECT_EQ(timed.repeat, 1);
+    EXPECT_EQ(timed.process, 3);
+    EXPECT_EQ(timed.lane, "timing");
+    EXPECT_EQ(numbers.rows[2].record.lane, "quality");
+    EXPECT_TRUE(std::isinf(numbers.rows[2].record.value));
+    EXPECT_EQ(numbers.rows[3].record.status, records::Status::Crash);
+    EXPECT_EQ(numbers.rows[3].record.message, "two\nlines");
+    EXPECT_TRUE(std::isnan(numbers.rows[3].record.value));
+}
+
+TEST_F(ImportCsv, AsOtherProgramsWriteIt) {
+    const ImportedNumbers numbers = read(
+        "\xEF\xBB\xBF"
+        "samples ,\"metric\",value\r\n 4,\"mse\", 0.5 \r\n\r\n8,mse,0.25");
+    ASSERT_EQ(numbers.rows.size(), 2U);
+    EXPECT_EQ(numbers.cases[1].cell("samples"), "8");
+    EXPECT_EQ(numbers.rows[1].record.value, 0.25);
+}
+
+TEST_F(ImportCsv, AColumnForEachMetric) {
+    const ImportFiles files{
+        folder_.write("a.csv", "samples,process,ms,mse\n4,0,10,0.5\n4,1,11,\n16,0,40,0.1\n"),
+        {},
+        {{"ms", "ms"}, {"mse", "1"}}};
+    const ImportedNumbers numbers = readImport(files);
+    EXPECT_EQ(numbers.columns, std::vector<std::string>{"samples"});
+    EXPECT_EQ(numbers.cases.size(), 2U);
+    ASSERT_EQ(numbers.rows.size(), 5U);
+    EXPECT_EQ(numbers.rows[0].record.metric, "ms");
+    EXPECT_EQ(numbers.rows[0].record.unit, "ms");
+    EXPECT_EQ(numbers.rows[4].record.value, 0.1);
+    EXPECT_EQ(wideRefusal("samples,ms\n4,1\n"),
+              "DIR/a.csv:1: no column 'mse' (columns: samples, ms); needed: what --metric names");
+    EXPECT_EQ(wideRefusal("ms,mse,value\n1,2,3\n"),
+              "DIR/a.csv:1: column 'value' beside --metric; allowed: one of the two forms");
+    EXPECT_EQ(wideRefusal("ms,mse\n1,2\n,\n"),
+              "DIR/a.csv:3: no number; allowed: none only in a row whose status is not ok");
+}
+
+TEST_F(ImportCsv, CasesInAFileOfTheirOwn) {
+    const ImportFiles files{folder_.write("a.csv", "case_id,metric,value\nb,mse,1\na,mse,2\n"),
+                            folder_.write("cases.csv", "case_id,samples\na,4\nb,16\nc,64\n")};
+    const ImportedNumbers numbers = readImport(files);
+    EXPECT_EQ(numbers.cases.size(), 3U);
+    EXPECT_EQ(numbers.rows[0].caseIndex, 1U);
+    const std::string rows = "case_id,metric,value\na,mse,1\n";
+    EXPECT_EQ(casesRefusal(rows, "id,samples\na,4\n"),
+              "DIR/cases.csv:1: no column 'case_id' (columns: id, samples); needed: case_id");
+    EXPECT_EQ(casesRefusal(rows, "case_id,samples\nb,4\n"),
+              "DIR/a.csv:2: column 'case_id': 'a' is not in DIR/cases.csv");
+    EXPECT_EQ(casesRefusal(rows, "case_id,samples\na,4\na,5\n"),
+              "DIR/cases.csv:3: column 'case_id': 'a' stands in line 2 already");
+    EXPECT_EQ(casesRefusal("metric,value\nmse,1\n", "case_id\na\n"),
+              "DIR/a.csv:1: no column 'case_id' (columns: metric, value); needed: case_id, as "
+              "--cases is given");
+    EXPECT_EQ(casesRefusal("case_id,metric,value,bias\na,mse,1,2\n", "case_id\na\n"),
+              "DIR/a.csv:1: column 'bias' beside case_id; what a case is stands in DIR/cases.csv");
+    EXPECT_EQ(refusal(rows),
+              "DIR/a.csv:1: column 'case_id' without --cases FILE, which says what the cases are");
+}
+
+TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
+    const std::string head = "n,metric,value,unit,frame,process,lane,status\n";
+    EXPECT_EQ(refusal(""), "DIR/a.csv:1: is empty; expected a header");
+    EXPECT_EQ(refusal(head), "DIR/a.csv: has a header and no row");
+    EXPECT_EQ(refusal("n,value\n1,2\n"),
+              "DIR/a.csv:1: no column 'metric' (columns: n, value); needed: metric, value; or "
+              "--metric COLUMN=UNIT for each column of numbers");
+    EXPECT_EQ(
+        refusal("n;metric;value\n"),
+        "DIR/a.csv:1: no column 'metric' (columns: n;metric;value); needed: metric, value; or "
+        "--metric COLUMN=UNIT for each column of numbers");
+    EXPECT_EQ(refusal("n,metric,value,n\n"), "DIR/a.csv:1: two columns 'n'");
+    EXPECT_EQ(refusal("n,,metric,value\n"), "DIR/a.csv:1: column 2 has no name");
+    EXPECT_EQ(refusal("a,a.b,metric,value\n"),
+              "DIR/a.csv:1: columns 'a' and 'a.b': the second is a part of the first");
+    EXPECT_EQ(refusal(head + "1,a,2\n"), "DIR/a.csv:2: 3 columns; the header has 8");
+    EXPECT_EQ(refusal(head + "1,a,fast,ms,,,,\n"),
+              "DIR/a.csv:2: column 'value': 'fast'; allowed: a number, inf, or nothing in a row "
+              "whose status is not ok");
+    EXPECT_EQ(refusal(head + "1,a,nan,ms,,,,\n").substr(0, 41),
+              "DIR/a.csv:2: column 'value': 'nan'; allow");
+    EXPECT_EQ(refusal(head + "1,a,\"1,5\",ms,,,,\n").substr(0, 41),
+              "DIR/a.csv:2: column 'value': '1,5'; allow");
+    EXPECT_EQ(refusal(head + "1,,2,ms,,,,\n"),
+              "DIR/a.csv:2: column 'metric' is empty; allowed: nothing only in a row whose status "
+              "is not ok");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,-2,,,\n").substr(0, 60),
+              "DIR/a.csv:2: column 'frame': '-2'; allowed: a whole number f");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,,1000000,,\n"),
+              "DIR/a.csv:2: column 'process': '1000000'; allowed: a whole number from 0 to 999999");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,,,slow,\n"),
+              "DIR/a.csv:2: column 'lane': 'slow'; allowed: timing (the default), quality");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,,,,fine\n"),
+              "DIR/a.csv:2: column 'status': unknown status 'fine'; allowed: ok, ambiguous, flaky, "
+              "unsupported, timeout, oom, crash, device-lost, missing, error");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,,,,\n2,a,2,s,,,,\n"),
+              "DIR/a.csv:3: 'a' has the unit 's'; in line 2 it has 'ms'");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,,,timing,\n1,b,2,ms,,,quality,\n"),
+              "DIR/a.csv:3: column 'lane': 'quality'; the same case has 'timing' in line 2");
+    EXPECT_EQ(refusal(head + "1,a,2,ms,,,,\n1,a,3,ms,,,,\n"),
+              "DIR/a.csv:3: 'a' of this case stands in line 2 already; columns process, frame and "
+              "repeat tell measurements apart");
+    EXPECT_EQ(refusal(head + "1,\"a,2,ms,,,,\n"), "DIR/a.csv:2: a quote that is not closed");
+    EXPECT_EQ(refusal(head + "\x01,a,2,ms,,,,\n"),
+              "DIR/a.csv:2: column 'n': a control character; allowed: text of one line");
+    EXPECT_EQ(refusal(head + "\xff,a,2,ms,,,,\n"), "DIR/a.csv:2: column 'n': is not UTF-8");
+    EXPECT_EQ(refusal(head + std::string(1025, 'x') + ",a,2,ms,,,,\n"),
+              "DIR/a.csv:2: column 'n': 1025 bytes; at most 1024 are allowed");
+    EXPECT_EQ(errorText([&] { readImport({folder_.path() / "none.csv"}); }, folder_.path()),
+              "cannot read DIR/none.csv: No such file or directory");
+}
+
+}  // namespace
+}  // namespace gfxrepro::results

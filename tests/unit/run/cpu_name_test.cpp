@@ -1,0 +1,27 @@
+#include "runner/run/cpu_name.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace gfxrepro::run {
+namespace {
+
+std::string nameIn(const std::string& cpuinfo) {
+    std::istringstream stream(cpuinfo);
+    return cpuName(stream);
+}
+
+TEST(CpuName, IsTheModelOrThePartOfAnArm) {
+    EXPECT_EQ(nameIn("processor\t: 0\nmodel\t\t: 1\nmodel name\t: AMD EPYC Processor\n"),
+              "AMD EPYC Processor");
+    EXPECT_EQ(
+        nameIn("processor\t: 0\nBogoMIPS\t: 50.00\nCPU implementer\t: 0x41\n"
+               "CPU architecture: 8\nCPU variant\t: 0x3\nCPU part\t: 0xd0c\n\nprocessor : 1\n"),
+        "ARM 0x41 0xd0c");
+    EXPECT_EQ(nameIn("processor\t: 0\nuarch : x\n"), "unknown");
+    EXPECT_EQ(nameIn(""), "unknown");
+}
+
+}  // namespace
+}  // namespace gfxrepro::run

@@ -1,0 +1,156 @@
+#include "runner/run/image_attributes.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "runner/config/node.h"
+#include "runner/run/manifest.h"
+#include "runner/run/recorder.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::run {
+namespace {
+
+Case someCase() {
+    Case item;
+    item.id = "0123456789ab";
+    item.experiment = "xie2017/8";
+    item.technique = "clustered_reflections";
+    item.scene = config::parseYaml("office", "test");
+    item.params = config::parseYaml("{method: clustered, supersampling: 2}", "test");
+    item.axes = config::parseYaml("{frames: 3}", "test");
+    item.outputWidthPx = 64;
+    item.outputHeightPx = 32;
+    item.measure.frames = 1;
+    return item;
+}
+
+/// A row vector times the matrix, as OpenEXR and Imath have it.
+glm::vec4 times(const glm::vec4& v, const std::array<float, 16>& m) {
+    glm::vec4 result(0.0F);
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            result[column] += v[row] * m[static_cast<std::size_t>(4 * row + column)];
+        }
+    }
+    return result;
+}
+
+void expectNear(const glm::vec3& a, const glm::vec3& b) {
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-5) << i;
+}
+
+TEST(ImageAttributes, SayWhatMadeAnImage) {
+    image::ExrImage exr;
+    describeImage(exr, someCase(), 4, "gfxrepro run x.yaml --profile quick", {});
+    const std::map<std::string, std::string> expected{
+        {"case", "0123456789ab"},
+        {"command", "gfxrepro run x.yaml --profile quick"},
+        {"commit", programCommit()},
+        {"frame", "4"},
+        {"method", "clustered"},
+        {"params",
+         R"({"method":"clustered","supersampling":2,"output":{"width":64,"height":32},"scene":"office"})"},
+        {"table", "xie2017/8"},
+        {"technique", "clustered_reflections"},
+        {"title", "xie2017/8 frames=3"}};
+    EXPECT_EQ(exr.attributes, expected);
+    EXPECT_TRUE(exr.matrices.empty());
+}
+
+/// From (1, 2, 3) along +x, 90 degrees high, twice as wide: corners and distances are known without
+/// any matrix.
+TEST(ImageAttributes, CameraIsAsOpenExrDefinesIt) {
+    const glm::vec3 eye(1.0F, 2.0F, 3.0F);
+    technique::ImageOptions options;
+    options.camera = {glm::lookAt(eye, eye + glm::vec3(5.0F, 0.0F, 0.0F), glm::vec3(0, 1, 0)),
+                      glm::perspective(glm::radians(90.0F), 2.0F, 0.5F, 100.0F), 0.5F, 100.0F};
+    image::ExrImage exr;
+    describeImage(exr, someCase(), 0, "", options);
+    EXPECT_NE(exr.attributes.at("camera").find(R"("eye":[1.0,2.0,3.0])"), std::string::npos)
+        << exr.attributes.at("camera");
+    EXPECT_NE(exr.attributes.at("camera").find(R"("forward":[1.0,)"), std::string::npos);
+    EXPECT_NE(exr.attributes.at("camera").find(R"("near_m":0.5,"far_m":100.0)"), std::string::npos);
+
+    // Seen along +x with y up, right is +z: left-handed with z forward.
+    const std::array<float, 16>& camera = exr.matrices.at("worldToCamera");
+    expectNear(times({1.0F, 2.0F, 3.0F, 1.0F}, camera), {0.0F, 0.0F, 0.0F});
+    expectNear(times({5.0F, 3.0F, 5.0F, 1.0F}, camera), {2.0F, 1.0F, 4.0F});
+    // Four metres away the image reaches 4 m up and down, 8 m to the left and right.
+    const auto ndc = [&](const glm::vec3& point) {
+        const glm::vec4 p = times({point, 1.0F}, exr.matrices.at("worldToNDC"));
+        return glm::vec3(p.x / p.w, p.y / p.w, 0.0F);
+    };
+    expectNear(ndc({5.0F, 2.0F, 3.0F}), {0.5F, 0.5F, 0.0F});
+    expectNear(ndc({5.0F, 6.0F, -5.0F}), {0.0F, 0.0F, 0.0F});  // upper left
+    expectNear(ndc({5.0F, -2.0F, 11.0F}), {1.0F, 1.0F, 0.0F});
+}
+
+TEST(RunRecorder, KeepsLayersTruthsAndAttributes) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    const Case item = someCase();
+    RunRecorder recorder(folder.path(), "gfxrepro run x.yaml", item, {}, result);
+    technique::ImageOptions options;
+    options.layers.add(image::ImageF(4, 2, 1, 7.0F), {"id"}, image::ExrPixelType::Uint);
+    options.layers.attributes["about_id"] = "reflector";
+    recorder.image("result", image::ImageF(4, 2, 3, 0.5F), options);
+    recorder.image("truth", image::ImageF(4, 2, 3, 0.25F), {.truthOf = "result"});
+    recorder.checkTruths();
+    ASSERT_EQ(result.images.size(), 2U);
+    EXPECT_EQ(result.images[0].truthOf, "");
+    EXPECT_EQ(result.images[1].truthOf, "result");
+    const image::ExrImage exr = image::readExr(folder.path() / result.images[0].exr);
+    ASSERT_NE(exr.find("id"), nullptr);
+    EXPECT_EQ(exr.find("id")->at(3, 1), 7.0F);
+    EXPECT_EQ(exr.colour().at(3, 1, 2), 0.5F);
+    EXPECT_EQ(exr.attributes.at("about_id"), "reflector");
+    EXPECT_EQ(exr.attributes.at("command"), "gfxrepro run x.yaml");
+    // As the runner gets it from the worker.
+    EXPECT_EQ(caseResultFromJson(toJson(result)).images, result.images);
+}
+
+TEST(RunRecorder, TruthsNeedTheirImage) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    const Case item = someCase();
+    RunRecorder recorder(folder.path(), "", item, {}, result);
+    recorder.setIteration(0, 0);
+    recorder.image("result", image::ImageF(1, 1, 1), {});
+    recorder.checkTruths();
+    recorder.setIteration(1, 0);
+    recorder.image("truth", image::ImageF(1, 1, 1), {.truthOf = "result"});
+    EXPECT_EQ(test::errorText([&] { recorder.checkTruths(); }),
+              "image 'truth' is the truth of 'result', which is not among the frame's images");
+}
+
+TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    Case item = someCase();
+    item.technique = "dots";
+    const config::Outputs outputs{{{"voxels", "voxel", "full ones"}, {"useful_pct", "%", "useful"}},
+                                  {{"draw", "the picture"}, {"image_*", "an image"}}};
+    RunRecorder recorder(folder.path(), "", item, outputs, result);
+    recorder.metric("voxels", 7, "voxel", "draw");
+    recorder.metric("voxels", 8, "voxel", "image_12");
+    recorder.share("useful_pct", 1, 4, "sample", "");
+    const auto refused = [&](const char* metric, const char* unit, const char* pass) {
+        return test::errorText([&] { recorder.metric(metric, 1, unit, pass); });
+    };
+    EXPECT_EQ(refused("voxel", "voxel", ""),
+              "technique 'dots' has no metric 'voxel'; did you mean 'voxels'?");
+    EXPECT_EQ(refused("voxels", "byte", ""),
+              "metric 'voxels' is recorded in 'byte', but declared in 'voxel'");
+    EXPECT_EQ(refused("voxels", "voxel", "drew"),
+              "technique 'dots' has no pass 'drew'; did you mean 'draw'?");
+    EXPECT_EQ(refused("voxels", "voxel", "image_"),
+              "technique 'dots' has no pass 'image_'; did you mean 'image_*'?");
+    EXPECT_EQ(refused("voxels_of", "voxel", ""),
+              "technique 'dots' has no metric 'voxels_of'; did you mean 'voxels'?");
+    EXPECT_EQ(result.samples.size(), 4U);
+}
+
+}  // namespace
+}  // namespace gfxrepro::run

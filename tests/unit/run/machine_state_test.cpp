@@ -1,0 +1,256 @@
+// What is read of the machine in a folder that stands for /, and what is said of it.
+#include "runner/run/machine_state.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "tests/support/support.h"
+#include "tests/unit/run/plan_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using run::Json;
+using run::MachineReading;
+using run::MachineState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A machine of two processors, as its kernel tells of it; seconds since it began to count.
+class Machine {
+  public:
+    double busyS = 100.0, idleS = 900.0, stolenS = 0.0, ownS = 10.0, workerS = 2.0;
+
+    const fs::path& root() const { return folder_.path(); }
+    void write(const std::string& file, const std::string& text) const {
+        folder_.write(file, text);
+    }
+
+    /// Writes what changes, and reads all.
+    MachineReading read() const {
+        const double ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
+        const auto ticksOf = [&](double timeS) { return fmt::format("{:.0f}", timeS * ticks); };
+        const std::string line =
+            fmt::format("{} 0 0 {} 0 0 0 {} 0 0", ticksOf(busyS), ticksOf(idleS), ticksOf(stolenS));
+        write("proc/stat", fmt::format("cpu  {0}\ncpu0 {0}\ncpu1 {0}\nintr 5 1 2\n", line));
+        // The name may hold anything; its own time and that of the children that ended.
+        write("proc/self/stat", fmt::format("7 (a) b (c) R 1 1 1 0 -1 4194304 0 0 0 0 {} 0 {} 0 20",
+                                            ticksOf(0.5 * ownS), ticksOf(0.5 * ownS)));
+        write("proc/self/task/7/children", "8 ");
+        write("proc/8/stat",
+              fmt::format("8 (worker) S 7 1 1 0 -1 4194304 0 0 0 0 0 {} 0 0 20", ticksOf(workerS)));
+        return run::readMachine(root());
+    }
+
+  private:
+    TemporaryFolder folder_;
+};
+
+MachineState stateOf(const MachineReading& before, const MachineReading& after) {
+    MachineState state;
+    state.add(before, after);
+    return state;
+}
+
+TEST(MachineState, KnowsNothingWhereNothingIsTold) {
+    const TemporaryFolder folder;
+    const MachineReading reading = run::readMachine(folder.path());
+    const MachineState state = stateOf(reading, reading);
+    EXPECT_FALSE(state.isKnown());
+    EXPECT_EQ(state.json(), Json::object());
+    EXPECT_THAT(state.problems(), IsEmpty());
+    EXPECT_EQ(state.sentence(), "");
+}
+
+TEST(MachineState, DoesNotCountOurOwnWorkAsThatOfOthers) {
+    Machine machine;
+    const MachineReading before = machine.read();
+    machine.busyS += 20.0;  // both processors, for ten seconds
+    machine.ownS += 4.0;
+    machine.workerS += 15.9;
+    const MachineState state = stateOf(before, machine.read());
+    EXPECT_THAT(state.problems(), IsEmpty());
+    EXPECT_EQ(state.sentence(),
+              "The machine was quiet while this was timed: other processes took 0.5 % of 2 "
+              "processors, the host 0 %.");
+}
+
+TEST(MachineState, SaysNothingOfARemainder) {
+    Machine machine;
+    const MachineReading before = machine.read();
+    machine.busyS += 3.0;
+    machine.workerS += 2.9999;  // of twenty seconds of two processors
+    machine.idleS += 17.0;
+    EXPECT_EQ(stateOf(before, machine.read()).sentence(),
+              "The machine was quiet while this was timed: other processes took 0 % of 2 "
+              "processors, the host 0 %.");
+}
+
+TEST(MachineState, IsLoadedByTheWorkOfOthers) {
+    Machine machine;
+    const MachineReading before = machine.read();
+    machine.busyS += 15.6;
+    machine.idleS += 4.4;
+    machine.workerS += 8.0;
+    const MachineState state = stateOf(before, machine.read());
+    EXPECT_THAT(state.problems(), ElementsAre("other processes took 38 % of 2 processors"));
+    EXPECT_EQ(state.sentence(),
+              "The machine was not quiet while this was timed: other processes took 38 % of 2 "
+              "processors.");
+}
+
+/// What any system does of itself, and what is less than the kernel's ticks tell.
+TEST(MachineState, IsNotLoadedByALittle) {
+    Machine machine;
+    const MachineReading before = machine.read();
+    machine.busyS += 0.9;
+    machine.stolenS += 0.15;
+    machine.idleS += 18.95;
+    EXPECT_THAT(stateOf(before, machine.read()).problems(), IsEmpty());
+    const MachineReading shortly = machine.read();
+    machine.busyS += 0.1;
+    EXPECT_THAT(stateOf(shortly, machine.read()).problems(), IsEmpty());
+}
+
+TEST(MachineState, IsStolenFromByItsHost) {
+    Machine machine;
+    const MachineReading before = machine.read();
+    machine.stolenS += 0.6;
+    machine.workerS += 10.0;
+    machine.busyS += 10.0;
+    machine.idleS += 9.4;
+    EXPECT_THAT(stateOf(before, machine.read()).problems(),
+                ElementsAre("the host took 3 % of the processors' time"));
+}
+
+TEST(MachineState, IsThrottledForHeatOrByALimit) {
+    const Machine machine;
+    const std::string core = "sys/devices/system/cpu/cpu{}/thermal_throttle/";
+    const auto throttle = [&](int first, int second, int package) {
+        for (const int cpu : {0, 1}) {
+            const std::string folder = fmt::format(fmt::runtime(core), cpu);
+            machine.write(folder + "core_throttle_count",
+                          std::to_string(cpu == 0 ? first : second) + "\n");
+            machine.write(folder + "package_throttle_count", std::to_string(package) + "\n");
+        }
+    };
+    // What is no processor's folder counts nothing.
+    machine.write("sys/devices/system/cpu/cpufreq/thermal_throttle/core_throttle_count", "99\n");
+    machine.write("proc/self/cgroup", "0::/job\n");
+    machine.write("sys/fs/cgroup/job/cpu.stat", "nr_throttled 3\nthrottled_usec 1000000\n");
+    throttle(5, 7, 2);
+    const MachineReading before = machine.read();
+    EXPECT_THAT(stateOf(before, machine.read()).problems(), IsEmpty());
+    throttle(6, 7, 4);
+    EXPECT_THAT(stateOf(before, machine.read()).problems(),
+                ElementsAre("cores were throttled for heat 3 times"));
+    throttle(5, 7, 2);
+    machine.write("sys/fs/cgroup/job/cpu.stat", "nr_throttled 9\nthrottled_usec 3500000\n");
+    EXPECT_THAT(stateOf(before, machine.read()).problems(),
+                ElementsAre("the CPU limit of its control group held it for 2.5 s"));
+}
+
+TEST(MachineState, IsHotFromItsFirstTripPointOn) {
+    const Machine machine;
+    const std::string zone = "sys/class/thermal/thermal_zone0/";
+    machine.write(zone + "temp", "84000\n");
+    machine.write(zone + "trip_point_0_type", "critical\n");
+    machine.write(zone + "trip_point_0_temp", "100000\n");
+    machine.write(zone + "trip_point_1_type", "passive\n");
+    machine.write(zone + "trip_point_1_temp", "85000\n");
+    machine.write(zone + "trip_point_2_type", "passive\n");
+    machine.write(zone + "trip_point_2_temp", "0\n");  // none
+    machine.write("sys/class/thermal/thermal_zone1/temp", "40000\n");
+    const MachineReading before = machine.read();
+    EXPECT_THAT(stateOf(before, before).problems(), IsEmpty());
+    machine.write(zone + "temp", "86000\n");
+    const MachineReading after = machine.read();
+    EXPECT_THAT(stateOf(before, after).problems(),
+                ElementsAre("it was hot, 86 °C of 85 °C at which it is slowed"));
+    // Before, too: it cooled down while it was timed.
+    EXPECT_THAT(stateOf(after, before).problems(), testing::SizeIs(1));
+}
+
+TEST(MachineState, IsTheSameReadFromWhatItWrote) {
+    Machine machine;
+    machine.write("proc/pressure/cpu", "some avg10=1.00 avg60=1.00 avg300=1.00 total=2500000\n");
+    machine.write("proc/loadavg", "1.57 1.80 1.28 3/106 19655\n");
+    machine.write("sys/devices/system/cpu/cpu0/cpufreq/scaling_cur_freq", "2600000\n");
+    machine.write("sys/class/thermal/thermal_zone0/temp", "50000\n");
+    const MachineReading before = machine.read();
+    machine.busyS += 3.0;
+    machine.write("proc/pressure/cpu", "some avg10=1.00 avg60=1.00 avg300=1.00 total=3000000\n");
+    const Json json = stateOf(before, machine.read()).json();
+    EXPECT_EQ(json, (Json{{"processors", 2},
+                          {"processor_s", 3.0},
+                          {"busy_s", 3.0},
+                          {"own_s", 0.0},
+                          {"stolen_s", 0.0},
+                          {"waited_s", 0.5},
+                          {"load_before", 1.57},
+                          {"hottest_c", 50.0},
+                          {"hot_from_c", 95.0},
+                          {"lowest_clock_hz", 2.6e9},
+                          {"highest_clock_hz", 2.6e9}}));
+    EXPECT_EQ(MachineState::fromJson(json).json(), json);
+}
+
+/// Told of units as a scheduler does.
+class Told : public run::Observer {
+  public:
+    int began = 0, ended = 0;
+    void unitBegan(const run::Unit&) override { ++began; }
+    void unitEnded(const run::Unit&, records::Status, const std::string&) override { ++ended; }
+    void tick() override {}
+};
+
+TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
+    using Lane = config::Measure::Lane;
+    const TemporaryFolder runs;
+    const auto directory = run::RunDirectory::create(runs.path() / "run");
+    Machine machine;
+    machine.read();
+    Told told;
+    run::MachineWatch watch(told, directory, {}, machine.root());
+    const auto run = [&](const run::Case& item, double othersS) {
+        const run::Unit unit{&item, 0, {}};
+        watch.unitBegan(unit);
+        machine.busyS += 10.0 + othersS;
+        machine.workerS += 10.0;
+        machine.idleS += 10.0 - othersS;
+        machine.read();
+        watch.unitEnded(unit, records::Status::Ok, "");
+    };
+    const run::Case loaded = makeCase("t/1", "a", 1, Lane::Timing);
+    const run::Case quiet = makeCase("t/2", "a", 1, Lane::Timing);
+    const run::Case untimed = makeCase("t/3", "a", 1);
+    run(loaded, 2.0);
+    run(loaded, 6.0);
+    run(quiet, 0.1);
+    run(untimed, 9.0);
+    EXPECT_EQ(told.began, 4);
+    EXPECT_EQ(told.ended, 4);
+    EXPECT_EQ(watch.warning(),
+              "the machine was not quiet: while t/1 was timed other processes took 20 % of 2 "
+              "processors");
+    const Json manifest = {{"machine_states", watch.states()}};
+    EXPECT_THAT(run::machineStateNote(manifest, "t/1"), HasSubstr("took 20 % of 2 processors"));
+    EXPECT_THAT(run::machineStateNote(manifest, "t/2"), HasSubstr("was quiet"));
+    EXPECT_EQ(run::machineStateNote(manifest, "t/3"), "");
+    EXPECT_EQ(run::machineStateNote(Json::object(), "t/1"), "");
+
+    // A run that goes on knows what was before, but for times that are measured again.
+    std::vector<Json> log = run::readLog(directory.path() / "log.jsonl");
+    EXPECT_EQ(run::machineStatesIn(log).at("t/1").json(), watch.states().at("t/1"));
+    log.push_back({{"event", "machine"}, {"table", "t/1"}});
+    EXPECT_FALSE(run::machineStatesIn(log).contains("t/1"));
+    EXPECT_TRUE(run::machineStatesIn(log).contains("t/2"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

@@ -1,0 +1,180 @@
+#include "runner/run/rounds.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/run/plan_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Lane = config::Measure::Lane;
+using TimePoint = run::Rounds::TimePoint;
+
+/// q/1 with two cases, t/1 with three that are timed in six rounds or more.
+run::Plan timedPlan() {
+    run::Plan plan;
+    plan.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1),
+                  makeCase("t/1", "a", 1, Lane::Timing), makeCase("t/1", "b", 1, Lane::Timing),
+                  makeCase("t/1", "c", 1, Lane::Timing)};
+    for (run::Case& item : plan.cases) {
+        if (item.measure.lane == Lane::Quality) continue;
+        item.measure.processes = 6;
+        item.measure.relativeError = 0.05;
+        item.measure.processesAtMost = 8;
+        item.measure.timeBudgetS = 100.0;
+    }
+    return plan;
+}
+
+records::Record timeRow(const run::Case& item, double timeMs, int process) {
+    records::Record row = makeRow(item, timeMs, process);
+    row.metric = "wall_time_ms";
+    return row;
+}
+
+/// Rounds 0 … `count` − 1 of t/1; `noise` is the last one's, as a share.
+std::vector<records::Record> rows(const run::Plan& plan, int count, double noise) {
+    std::vector<records::Record> rows;
+    for (int process = 0; process < count; ++process) {
+        for (std::size_t i = 2; i < plan.cases.size(); ++i) {
+            const double factor = process == count - 1 ? 1.0 + noise : 1.0;
+            rows.push_back(timeRow(plan.cases[i], 10.0 * factor, process));
+        }
+    }
+    return rows;
+}
+
+std::vector<std::string> namesOf(const std::vector<run::Unit>& units) {
+    std::vector<std::string> names;
+    for (const run::Unit& unit : units) {
+        names.push_back(unit.item->id + " #" + std::to_string(unit.process));
+    }
+    return names;
+}
+
+TimePoint after(double seconds) {
+    return TimePoint() + std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
+}
+
+TEST(Units, GoForthAndBackByRounds) {
+    run::Plan plan = timedPlan();
+    for (run::Case& item : plan.cases) item.measure.processes = 3;
+    EXPECT_THAT(namesOf(run::unitsOf(plan)),
+                ElementsAre("q/1 a 1 #0", "q/1 b 1 #0", "q/1 a 1 #1", "q/1 b 1 #1", "q/1 a 1 #2",
+                            "q/1 b 1 #2", "t/1 a 1 #0", "t/1 b 1 #0", "t/1 c 1 #0", "t/1 c 1 #1",
+                            "t/1 b 1 #1", "t/1 a 1 #1", "t/1 a 1 #2", "t/1 b 1 #2", "t/1 c 1 #2"));
+}
+
+TEST(Units, OfARoundThatWasBegun) {
+    const run::Plan plan = timedPlan();
+    std::vector<records::Record> records = rows(plan, 6, 0.0);
+    EXPECT_EQ(run::unitsOf(plan, records).size(), 2U + 18U);
+    records.push_back(timeRow(plan.cases[2], 10.0, 6));
+    EXPECT_EQ(run::unitsOf(plan, records).size(), 2U + 21U);
+    // A case that failed in an earlier round takes no part in further ones.
+    records[1].status = records::Status::Crash;
+    EXPECT_EQ(run::unitsOf(plan, records).size(), 2U + 20U);
+}
+
+TEST(Rounds, EndAtTheRelativeError) {
+    const run::Plan plan = timedPlan();
+    run::Rounds rounds(plan, {}, {});
+    EXPECT_THAT(rounds.undecided(), ElementsAre("t/1"));
+    rounds.begin("t/1", after(0));
+    rounds.add(rows(plan, 14, 0.04));
+    EXPECT_THAT(rounds.next("t/1", after(6)), IsEmpty());
+    EXPECT_THAT(rounds.undecided(), IsEmpty());
+    const run::Json ending = rounds.ending("t/1");
+    EXPECT_EQ(ending["ended_by"], "relative_error");
+    EXPECT_EQ(ending["rounds"], 14);
+    EXPECT_NEAR(ending["relative_error"].get<double>(), 0.0, 1e-9) << "of 14 the outermost is out";
+    EXPECT_EQ(ending["seconds"], 6.0);
+    EXPECT_EQ(rounds.endings()["t/1"]["ended_by"], "relative_error");
+}
+
+/// It is small enough at once, and rounds follow (FrameTimes::isKnownTo).
+TEST(Rounds, GoOnToTheLastOfEqualDepth) {
+    run::Plan plan = timedPlan();
+    for (run::Case& item : plan.cases) item.measure.processesAtMost = 20;
+    run::Rounds rounds(plan, rows(plan, 6, 0.08), {});
+    rounds.begin("t/1", after(0));
+    for (int process = 6; process < 14; ++process) {
+        EXPECT_EQ(rounds.next("t/1", after(process)).size(), 3U);
+        for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 10.0, process)});
+    }
+    EXPECT_THAT(rounds.next("t/1", after(14)), IsEmpty());
+    EXPECT_EQ(rounds.ending("t/1")["ended_by"], "relative_error");
+    EXPECT_EQ(rounds.ending("t/1")["rounds"], 14);
+}
+
+TEST(Rounds, GoOnWhileTheErrorIsLarge) {
+    const run::Plan plan = timedPlan();
+    run::Rounds rounds(plan, rows(plan, 6, 0.5), {});
+    rounds.begin("t/1", after(0));
+    EXPECT_THAT(namesOf(rounds.next("t/1", after(6))),
+                ElementsAre("t/1 a 1 #6", "t/1 b 1 #6", "t/1 c 1 #6"));
+    for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 15.0, 6)});
+    EXPECT_THAT(namesOf(rounds.next("t/1", after(7))),
+                ElementsAre("t/1 c 1 #7", "t/1 b 1 #7", "t/1 a 1 #7"));
+    for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 15.0, 7)});
+    EXPECT_THAT(rounds.next("t/1", after(8)), IsEmpty());
+    EXPECT_EQ(rounds.ending("t/1")["ended_by"], "processes_at_most");
+}
+
+TEST(Rounds, EndBeforeTheBudgetIsOverdrawn) {
+    const run::Plan plan = timedPlan();
+    run::Rounds rounds(plan, {}, {});
+    rounds.begin("t/1", after(0));
+    rounds.add(rows(plan, 6, 0.5));
+    EXPECT_THAT(rounds.next("t/1", after(90)), IsEmpty()) << "a round takes 15 s";
+    EXPECT_EQ(rounds.ending("t/1")["ended_by"], "time_budget_s");
+}
+
+TEST(Rounds, ACaseThatFailedTakesNoPartInFurtherOnes) {
+    const run::Plan plan = timedPlan();
+    std::vector<records::Record> records = rows(plan, 6, 0.5);
+    std::erase_if(records, [&](const records::Record& row) {
+        return row.caseId == plan.cases[3].id && row.process == 2;
+    });
+    run::Rounds rounds(plan, records, {});
+    EXPECT_THAT(namesOf(rounds.next("t/1", after(0))), ElementsAre("t/1 a 1 #6", "t/1 c 1 #6"));
+}
+
+TEST(Rounds, AreAsManyAsAskedForWithoutATarget) {
+    run::Plan plan = timedPlan();
+    for (run::Case& item : plan.cases) item.measure.processes = 5;  // too few for an interval
+    run::Rounds rounds(plan, rows(plan, 5, 0.5), {});
+    EXPECT_THAT(rounds.next("t/1", after(1)), IsEmpty());
+    EXPECT_EQ(rounds.ending("t/1")["ended_by"], "processes");
+    EXPECT_TRUE(rounds.ending("t/1")["relative_error"].is_null());
+    EXPECT_FALSE(rounds.isUndecided("q/1")) << "the quality lane has no rounds";
+}
+
+TEST(Rounds, WhatWasDecidedStays) {
+    const run::Plan plan = timedPlan();
+    const run::Json ended = {{"time", "t"},
+                             {"event", "rounds"},
+                             {"table", "t/1"},
+                             {"rounds", 6},
+                             {"ended_by", "time_budget_s"}};
+    run::Rounds resumed(plan, rows(plan, 6, 0.5), {ended});
+    EXPECT_THAT(resumed.undecided(), IsEmpty());
+    EXPECT_EQ(resumed.endings().dump(), R"({"t/1":{"rounds":6,"ended_by":"time_budget_s"}})");
+    // But for a run whose times are measured again on another machine.
+    const run::Json moved = {{"event", "machine"}, {"table", "t/1"}};
+    EXPECT_THAT(run::Rounds(plan, {}, {ended, moved}).undecided(), ElementsAre("t/1"));
+}
+
+TEST(Rounds, WarnOfOutliers) {
+    const run::Plan plan = timedPlan();
+    const run::Rounds rounds(plan, rows(plan, 6, 9.0), {});
+    EXPECT_EQ(rounds.warnings().size(), 3U);
+    EXPECT_EQ(rounds.warnings()[0],
+              "t/1: Outlier: frame 0 of t/1 a 1 took 100 ms in process 5, 10 times its fellows.");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

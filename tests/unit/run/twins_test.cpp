@@ -1,0 +1,170 @@
+// Which cases are measured once, and what the others get.
+#include "runner/run/twins.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "runner/cluster/shards.h"
+#include "runner/core/files.h"
+#include "runner/core/hash.h"
+#include "runner/run/rounds.h"
+#include "tests/support/support.h"
+#include "tests/unit/run/plan_fixture.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Node;
+using run::Case;
+using Lane = config::Measure::Lane;
+using ::testing::ElementsAre;
+
+TEST(Twins, AreOfOneWorkWhateverTheyAreCalled) {
+    const Case item = makeCase("t/1", "a", 64);
+    Case twin = makeCase("t/2", "a", 64);
+    twin.axes = Node::map({});
+    twin.given = Node::map({});
+    twin.given.set("size", Node::number(64));
+    twin.standsFor = Node::scalar("models/duck");
+    twin.sceneSample = 1;
+    twin.params.set("size", Node::scalar("64.0"));
+    // Of rounds, which the timing lane alone has.
+    twin.measure.relativeError = 0.05;
+    twin.measure.processesAtMost = 20;
+    twin.measure.timeBudgetS = 7.0;
+    EXPECT_EQ(run::workKey(item), run::workKey(twin));
+}
+
+TEST(Twins, MayDifferByWhetherTheySavePictures) {
+    Case item = makeCase("t/1", "a", 64);
+    Case twin = makeCase("t/2", "a", 64);
+    EXPECT_FALSE(run::savesPictures(twin));
+    item.params.set("pictures", Node::scalar("false"));
+    twin.params.set("pictures", Node::scalar("true"));
+    EXPECT_EQ(run::workKey(item), run::workKey(twin));
+    EXPECT_FALSE(run::savesPictures(item));
+    EXPECT_TRUE(run::savesPictures(twin));
+}
+
+TEST(Twins, TheKeyIsTheHashOfATextThatLasts) {
+    Case item = makeCase("t/1", "a", 64);
+    item.seed = 18446744073709551615U;
+    item.measure.warmup = 1;
+    item.measure.repeats = 2;
+    item.measure.processes = 3;
+    item.measure.frames = 4;
+    item.measure.timeLimitS = 5.5;
+    item.measure.memoryLimitBytes = 6;
+    EXPECT_EQ(run::workKey(item),
+              sha256(R"({"technique":"mock","scene":null,"params":{"method":"a","size":64.0},)"
+                     R"("output":[8.0,8.0],"measure":[1.0,2.0,3.0,4.0,5.5,6.0],)"
+                     R"("seed":"18446744073709551615"})"));
+}
+
+TEST(Twins, DifferByAnythingThatIsMeasured) {
+    const Case item = makeCase("t/1", "a", 64);
+    const std::vector<std::pair<const char*, std::function<void(Case&)>>> changes = {
+        {"technique", [](Case& c) { c.technique = "other"; }},
+        {"scene", [](Case& c) { c.scene = Node::scalar("models/duck"); }},
+        {"a parameter", [](Case& c) { c.params.set("size", Node::number(65)); }},
+        {"one parameter more", [](Case& c) { c.params.set("bias", Node::number(0)); }},
+        {"text and number", [](Case& c) { c.params.set("size", Node::scalar("64 m")); }},
+        {"width", [](Case& c) { c.outputWidthPx = 9; }},
+        {"height", [](Case& c) { c.outputHeightPx = 9; }},
+        {"seed", [](Case& c) { ++c.seed; }},
+        {"warm-up", [](Case& c) { ++c.measure.warmup; }},
+        {"repeats", [](Case& c) { ++c.measure.repeats; }},
+        {"processes", [](Case& c) { ++c.measure.processes; }},
+        {"frames", [](Case& c) { ++c.measure.frames; }},
+        {"time limit", [](Case& c) { c.measure.timeLimitS += 1.0; }},
+        {"memory limit", [](Case& c) { c.measure.memoryLimitBytes += 1; }},
+    };
+    for (const auto& [what, change] : changes) {
+        Case other = item;
+        change(other);
+        EXPECT_NE(run::workKey(other), run::workKey(item)) << what;
+    }
+}
+
+TEST(Twins, NoneInTheTimingLane) {
+    const std::vector<Case> cases = {
+        makeCase("t/1", "a", 1, Lane::Timing),
+        makeCase("t/2", "a", 1, Lane::Timing),
+        makeCase("q/1", "a", 1),
+        makeCase("q/1", "b", 1),
+        makeCase("q/2", "b", 1),
+        makeCase("q/2", "a", 1),
+        makeCase("q/3", "b", 1),
+    };
+    EXPECT_EQ(run::workKey(cases[0]), "");
+    EXPECT_THAT(run::firstTwins(cases), ElementsAre(0, 1, 2, 3, 3, 2, 3));
+    EXPECT_THAT(run::withoutTwins(cases, {1, 2, 3, 4, 5, 6, 7}), ElementsAre(1, 2, 3, 4, 0, 0, 0));
+}
+
+TEST(Twins, GoToOneShardAndStayUnitsOfTheirTables) {
+    run::Plan plan;
+    plan.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1), makeCase("q/2", "b", 1),
+                  makeCase("q/2", "a", 1), makeCase("q/2", "c", 1)};
+    EXPECT_THAT(cluster::indivisibleGroups(plan.cases),
+                ElementsAre(ElementsAre(0, 3), ElementsAre(1, 2), ElementsAre(4)));
+    EXPECT_EQ(run::unitsOf(plan).size(), 5U);
+    const std::vector<double> timesS =
+        run::withoutTwins(plan.cases, std::vector<double>{3, 4, 4, 3, 6});
+    // 6 → 0, 4 → 1, 3 → 1: twins weigh nothing.
+    EXPECT_THAT(cluster::cutShards(plan.cases, timesS, 2), ElementsAre(1, 1, 1, 1, 0));
+}
+
+TEST(Twins, FilesAreSharedUnderTheTwinsNames) {
+    const TemporaryFolder folder;
+    Case measured = makeCase("t/1", "a", 1);
+    measured.id = "111111111111";
+    Case twin = makeCase("t/1", "a", 1);
+    twin.id = "222222222222";
+    twin.axes = Node::map({});
+    const fs::path run = folder.path();
+    writeFileAtomic(run / "images/t-1/111111111111-result-f0002.png", "png");
+    writeFileAtomic(run / "images/t-1/111111111111-result-f0002.exr", "exr");
+    writeFileAtomic(run / "artifacts/t-1/111111111111-mesh.ply", "ply");
+    writeFileAtomic(run / "artifacts/t-1/333333333333-mesh.ply", "another's");
+    // Of a try that ended before it was recorded.
+    writeFileAtomic(run / "images/t-1/222222222222-result-f0002.png", "old");
+
+    const records::ImageEntry image{"111111111111",
+                                    "t/1",
+                                    2,
+                                    "result",
+                                    "images/t-1/111111111111-result-f0002.png",
+                                    "images/t-1/111111111111-result-f0002.exr",
+                                    measured.title(),
+                                    "truth"};
+    records::ImageEntry expected = image;
+    expected.caseId = "222222222222";
+    expected.title = "t/1";
+    expected.png = "images/t-1/222222222222-result-f0002.png";
+    expected.exr = "images/t-1/222222222222-result-f0002.exr";
+    EXPECT_THAT(run::shareFiles(run, measured, twin, {image}), ElementsAre(expected));
+    EXPECT_EQ(readFile(run / expected.png), "png");
+    EXPECT_EQ(readFile(run / expected.exr), "exr");
+    EXPECT_EQ(readFile(run / "artifacts/t-1/222222222222-mesh.ply"), "ply");
+    EXPECT_EQ(std::distance(fs::directory_iterator(run / "artifacts/t-1"), {}), 3);
+
+    twin.experiment = "t/2";
+    EXPECT_EQ(run::shareFiles(run, measured, twin, {image}).front().png,
+              "images/t-2/222222222222-result-f0002.png");
+    EXPECT_EQ(readFile(run / "images/t-2/222222222222-result-f0002.png"), "png");
+    EXPECT_EQ(readFile(run / "artifacts/t-2/222222222222-mesh.ply"), "ply");
+
+    measured.params.set("pictures", Node::scalar("true"));
+    EXPECT_THAT(run::shareFiles(run, measured, twin, {image}), testing::IsEmpty());
+    twin.params.set("pictures", Node::scalar("true"));
+
+    fs::remove(run / image.png);
+    EXPECT_EQ(errorText([&] { run::shareFiles(run, measured, twin, {image}); }),
+              "cannot write " + (run / "images/t-2/222222222222-result-f0002.png").string() +
+                  ": No such file or directory");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test

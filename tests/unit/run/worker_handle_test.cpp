@@ -1,0 +1,168 @@
+// A worker seen from the runner: shells that speak its protocol stand for workers, and time is
+// given.
+#include "runner/run/worker_handle.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <thread>
+
+#include "tests/unit/run/held_at_its_end.h"
+#include "tests/unit/run/plan_fixture.h"
+
+namespace gfxrepro::run {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = WorkerHandle::Clock;
+
+constexpr const char* kReady =
+    R"({"ready": {"index": 0, "platform": "p", "vendor": "v", "renderer": "r", "version": "4.5",
+"mesa_version": "", "uuid": "", "is_software": true, "timer_resolution_ns": 1.0}})";
+
+class Worker : public testing::Test {
+  protected:
+    Worker() { item.measure.timeLimitS = 5.0; }
+
+    /// Says that it is ready, and runs `script` when it has its case.
+    std::vector<std::string> command(const std::string& script) const {
+        std::string ready = kReady;
+        std::ranges::replace(ready, '\n', ' ');
+        return {"/bin/sh", "-c", "echo \"$0\" >&3; read -r line; " + script, ready};
+    }
+    static std::optional<CaseResult> receive(WorkerHandle& worker) {
+        for (int i = 0; i < 1000; ++i, std::this_thread::sleep_for(10ms)) {
+            if (auto result = worker.receive()) return result;
+            if (worker.isGone()) break;
+        }
+        return std::nullopt;
+    }
+    static void waitUntilReady(WorkerHandle& worker) {
+        for (int i = 0; i < 1000 && !worker.device(); ++i, std::this_thread::sleep_for(10ms)) {
+            worker.receive();
+        }
+        ASSERT_TRUE(worker.device());
+    }
+    static void signal(const WorkerHandle& worker, int number) {
+        ::kill(worker.process().pid(), number);
+        for (int i = 0; i < 1000 && worker.process().isSuspended() != (number == SIGSTOP); ++i) {
+            std::this_thread::sleep_for(10ms);
+        }
+        ASSERT_EQ(worker.process().isSuspended(), number == SIGSTOP);
+    }
+
+    PhaseClock phases;
+    Case item = test::makeCase("t/1", "a", 1);
+};
+
+TEST_F(Worker, SuspendedAloneItsLimitMovesBySixtySecondsAtMost) {
+    WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const Clock::time_point begin = Clock::now();
+    signal(worker, SIGSTOP);
+    for (const auto at : {1s, 30s, 59s, 61s, 64s}) {
+        EXPECT_FALSE(worker.checkLimits(begin + at)) << at.count();
+    }
+    const auto result = worker.checkLimits(begin + 66s);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, records::Status::Timeout);
+    EXPECT_EQ(result->message, "suspended from outside for more than 60 s");
+    EXPECT_TRUE(result->isOutsideKill) << "the case is measured again, and not marked";
+    EXPECT_TRUE(worker.isGone());
+}
+
+TEST_F(Worker, AfterASuspensionItHasItsOwnTime) {
+    WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const Clock::time_point begin = Clock::now();
+    signal(worker, SIGSTOP);
+    EXPECT_FALSE(worker.checkLimits(begin + 1s));
+    EXPECT_FALSE(worker.checkLimits(begin + 20s));
+    signal(worker, SIGCONT);
+    EXPECT_FALSE(worker.checkLimits(begin + 21s));
+    EXPECT_FALSE(worker.checkLimits(begin + 25s));
+    const auto result = worker.checkLimits(begin + 27s);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->message, "not finished after 5 s");
+    EXPECT_FALSE(result->isOutsideKill);
+}
+
+TEST_F(Worker, OneThatCannotBeKilledIsLeftBehindAndTheRowSaysSo) {
+    for (const bool isEndless : {false, true}) {
+        WorkerHandle worker(command(isEndless ? "cat /dev/zero >&3" : "sleep 1000"),
+                            config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        const test::HeldAtItsEnd hold(worker.process().pid());
+        if (!hold.isHeld()) GTEST_SKIP() << "processes cannot be traced here";
+        worker.assign({&item, 0});
+        const auto result = isEndless ? receive(worker) : worker.checkLimits(Clock::now() + 6s);
+        ASSERT_TRUE(result);
+        EXPECT_EQ(result->message,
+                  std::string(isEndless ? "the worker's answer had 64 MiB and no end"
+                                        : "not finished after 5 s") +
+                      "; its process could not be killed and was left behind");
+        EXPECT_FALSE(worker.release(*result));
+    }
+}
+
+TEST_F(Worker, AnAnswerOfAnotherShapeIsAnErrorOfTheCase) {
+    const auto messageOf = [&](const std::string& done) {
+        WorkerHandle worker(
+            command(
+                "echo a library >&3; echo '[1]' >&3; echo '{\"begin\": 3}' >&3; echo '{\"done\": " +
+                done + "}' >&3; sleep 1000"),
+            config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        worker.assign({&item, 0});
+        const auto result = receive(worker);
+        EXPECT_TRUE(result && result->status == records::Status::Error);
+        return result ? result->message : "";
+    };
+    const auto done = [](const std::string& status, const std::string& samples) {
+        return "{\"status\": " + status +
+               ", \"message\": \"\", \"void\": \"\", \"cost\": {\"load_s\": 0, \"setup_s\": 0, "
+               "\"render_s\": 0, \"record_s\": 0, \"peak_bytes\": 1}, \"images\": [], \"scenes\": "
+               "[], \"samples\": " +
+               samples + "}";
+    };
+    EXPECT_EQ(messageOf(done("3", "[]")),
+              "the worker's answer: '/status' is number; expected text");
+    EXPECT_EQ(
+        messageOf(done("\"ok\"", "[[0, 0, \"\", \"m\", \"ms\", null, false]]")),
+        "the worker's answer: '/samples/0/5' is null; expected a number, \"inf\" or \"-inf\"");
+    EXPECT_EQ(messageOf(done("\"ok\"", "[[0, 0]]")),
+              "the worker's answer: '/samples/0' has 2 values; expected 7");
+    EXPECT_EQ(messageOf("{}"), "the worker's answer: '/status' is missing");
+}
+
+TEST_F(Worker, AnAnswerWithoutEndIsACrashOfTheCase) {
+    for (const char* script : {"cat /dev/zero >&3", "head -c 70000000 /dev/zero >&3; sleep 1000"}) {
+        WorkerHandle worker(command(script), config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        worker.assign({&item, 0});
+        const auto result = receive(worker);
+        ASSERT_TRUE(result) << script;
+        EXPECT_EQ(result->status, records::Status::Crash);
+        EXPECT_EQ(result->message, "the worker's answer had 64 MiB and no end");
+        EXPECT_TRUE(worker.isGone());
+        EXPECT_FALSE(worker.release(*result)) << "the next case has another worker";
+    }
+}
+
+TEST_F(Worker, ALongAnswerIsReadWhole) {
+    WorkerHandle worker(
+        command("printf '{\"unavailable\": \"' >&3; head -c 60000000 /dev/zero | tr "
+                "'\\0' x >&3; echo '\"}' >&3"),
+        config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const auto result = receive(worker);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, records::Status::Unsupported);
+    EXPECT_EQ(result->message, std::string(60'000'000, 'x'));
+}
+
+}  // namespace
+}  // namespace gfxrepro::run

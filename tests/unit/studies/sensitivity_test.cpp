@@ -1,0 +1,218 @@
+#include "runner/studies/sensitivity.h"
+
+#include <gmock/gmock.h>
+
+#include "runner/config/node.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::studies {
+namespace {
+
+using claims::ClaimResult;
+using claims::Verdict;
+using testing::ElementsAre;
+using testing::Pair;
+
+config::Node node(const std::string& yaml) {
+    return config::parseYaml(yaml, "t.yaml");
+}
+
+/// One that is bound to cases which take `value`; an empty one is free text.
+config::Assumption assumption(const std::string& name, const std::string& value,
+                              const std::string& range) {
+    config::Assumption result;
+    result.name = name;
+    result.value = config::Node::scalar(value);
+    result.range = node(range);
+    result.isBound = !value.empty();
+    return result;
+}
+
+run::Case caseWith(const std::string& params, const std::string& axes = "{}") {
+    run::Case item;
+    item.params = node(params);
+    item.axes = node(axes);
+    item.outputWidthPx = 512;
+    return item;
+}
+
+std::vector<std::string> titles(const Variations& variations) {
+    std::vector<std::string> all;
+    for (const Variation& run : variations.runs) all.push_back(run.title());
+    return all;
+}
+
+TEST(Sensitivity, VariesWhatIsBoundByTurns) {
+    config::Experiment experiment;
+    experiment.assumptions = {
+        assumption("bias", "0.02", "[0, 0.04]"),       assumption("size", "1024", "[16, 4096]"),
+        assumption("gain", "1", "[0.5, 1.7]"),         assumption("kind", "spot", "[spot, point]"),
+        assumption("output", "512", "[256, 512]"),     assumption("place", "", "[1, 2]"),
+        assumption("method", "a", "[a, b]"),           assumption("view", "top", ""),
+        assumption("box", "[1,2]", "[[1, 2], [3, 4]]")};
+    const Variations variations = variationsOf(
+        experiment,
+        {caseWith(
+             "{bias: 0.02, size: 1024, gain: 1, kind: spot, method: a, view: top, box: [1, 2]}"),
+         caseWith("{method: a}", "{method: a}")},
+        3);
+    EXPECT_THAT(titles(variations),
+                ElementsAre("as configured", "bias = 0", "size = 16", "gain = 0.5", "kind = point",
+                            "output = 256", "box = [3,4]", "bias = 0.04", "size = 256",
+                            "gain = 1.1", "output = 384", "size = 4096", "gain = 1.7"));
+    EXPECT_THAT(variations.runs[5].sets, ElementsAre("output.width=256", "output.height=256"));
+    EXPECT_THAT(variations.runs[1].sets, ElementsAre("params_instead.bias=0"));
+    EXPECT_THAT(variations.runs[6].sets, ElementsAre("params_instead.box=[3,4]"));
+    EXPECT_THAT(variations.fixed,
+                ElementsAre(Pair("place", "no parameter of the technique"),
+                            Pair("method", "an axis of the table: it is varied there"),
+                            Pair("view", "it has no range")));
+}
+
+TEST(Sensitivity, VariesScenesBySeedAndByAlternatives) {
+    run::Case city = caseWith("{}"), tree = caseWith("{}");
+    city.scene = node("city");
+    tree.scene = node("tree@2");
+    tree.standsFor = node("tree");
+    config::Experiment experiment;
+    experiment.assumptions = {assumption("scene", "city, tree@2", "{city: [deep], nest: [straw]}"),
+                              assumption("scene_seed", "1, 2", "[4, 9]")};
+    const Variations variations = variationsOf(experiment, {city, tree}, 2);
+    EXPECT_THAT(titles(variations), ElementsAre("as configured", "scene = deep for city",
+                                                "scene_seed = 4", "scene_seed = 9"));
+    EXPECT_THAT(variations.runs[1].sets, ElementsAre("scene_instead={city: deep}"));
+    EXPECT_THAT(variations.runs[2].sets, ElementsAre("scene_seed=4"));
+
+    experiment.assumptions = {assumption("scene", "city", "{nest: [straw]}"),
+                              assumption("scene_seed", "none", "[4, 9]")};
+    EXPECT_THAT(variationsOf(experiment, {city}, 2).fixed,
+                ElementsAre(Pair("scene", "no other scene for those of the table"),
+                            Pair("scene_seed", "no scene of the table is generated")));
+}
+
+Outcome outcome(const std::string& name, const std::string& value, Verdict verdict,
+                std::optional<double> margin = {}) {
+    ClaimResult claim;
+    claim.id = "C";
+    claim.text = "a < b";
+    claim.verdict = verdict;
+    claim.distance = margin;
+    Variation variation{name, value, std::nullopt, {}};
+    if (margin) variation.number = std::stod(value);
+    return {variation, {claim}};
+}
+
+TEST(Sensitivity, SaysUnderWhatAClaimHolds) {
+    const Outcome base = outcome("", "", Verdict::Holds);
+    EXPECT_EQ(dependence({base, outcome("bias", "0", Verdict::Holds, 1.0)}, 0),
+              "holds under all 2");
+    EXPECT_EQ(
+        dependence({outcome("", "", Verdict::Fails), outcome("bias", "0", Verdict::Ambiguous)}, 0),
+        "holds under none of 2");
+    // Margins 3 at 1 and −1 at 5: 0 at 4.
+    EXPECT_EQ(dependence({base, outcome("bias", "1", Verdict::Holds, 3.0),
+                          outcome("bias", "5", Verdict::Fails, -1.0),
+                          outcome("kind", "spot", Verdict::Holds)},
+                         0),
+              "holds unless bias is 5 (flips between 1 and 5, near 4)");
+    EXPECT_EQ(dependence({outcome("", "", Verdict::Fails), outcome("kind", "a", Verdict::Fails),
+                          outcome("kind", "b", Verdict::Holds)},
+                         0),
+              "holds only if kind is b");
+}
+
+Outcome failed(const std::string& name, const std::string& value) {
+    return {{name, value, std::nullopt, {}}, {}, "exit code 2: bias is 5"};
+}
+
+TEST(Sensitivity, LeavesOutWhatCouldNotBeMeasured) {
+    const std::vector<Outcome> outcomes{outcome("", "", Verdict::Holds), failed("bias", "5"),
+                                        outcome("kind", "b", Verdict::Holds),
+                                        outcome("kind", "c", Verdict::Unmeasured)};
+    EXPECT_EQ(dependence(outcomes, 0), "holds under all 2");
+    EXPECT_EQ(restsOn(outcomes, 0), "none of the 1 tried");
+    EXPECT_EQ(dependence({outcome("", "", Verdict::NotApplicable)}, 0), "not judged as configured");
+}
+
+TEST(Sensitivity, SaysWhatAVerdictRestsOn) {
+    const Outcome base = outcome("", "", Verdict::Fails);
+    EXPECT_EQ(restsOn({base}, 0), "not tried");
+    EXPECT_EQ(
+        restsOn(
+            {base, outcome("bias", "1", Verdict::Fails), outcome("kind", "b", Verdict::Holds),
+             outcome("scene_seed", "2", Verdict::Ambiguous), outcome("kind", "c", Verdict::Holds)},
+            0),
+        "kind, scene_seed (of 3 tried)");
+}
+
+TEST(Sensitivity, WritesTablesAndReadsThemAgain) {
+    config::Experiment experiment;
+    experiment.id = "p/1";
+    experiment.title = "T";
+    std::vector<Outcome> outcomes{outcome("", "", Verdict::Holds),
+                                  outcome("kind", "b", Verdict::Fails), failed("bias", "5")};
+    outcomes[1].claims[0].distance = -0.25;
+    const std::string csv = sensitivityCsv(outcomes, "abc");
+    EXPECT_EQ(
+        csv,
+        "basis,assumption,value,claim,verdict,measured,required,margin,error\n"
+        "abc,,,C,holds,,,,\nabc,kind,b,C,fails,,,-0.25,\nabc,bias,5,,,,,,exit code 2: bias is 5\n");
+    const std::string text =
+        sensitivityMarkdown(experiment, outcomes, {{}, {{"view", "it has no range"}}}, 2);
+    for (const char* line :
+         {"runs, 2 more were not made.",
+          "| C | a \\< b | holds | kind (of 1 tried) | holds unless kind is b |\n",
+          "| kind = b | fails:  |\n", "| bias = 5 | exit code 2: bias is 5 |\n",
+          "- view: it has no range\n"}) {
+        EXPECT_NE(text.find(line), std::string::npos) << line << '\n' << text;
+    }
+
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("p-1.csv", csv);
+    const std::vector<Outcome> read = readSensitivity(file, "abc");
+    ASSERT_EQ(read.size(), 3U);
+    EXPECT_EQ(sensitivityCsv(read, "abc"), csv);
+    EXPECT_EQ(restsOn(read, 0), "kind (of 1 tried)");
+    EXPECT_TRUE(readSensitivity(file, "of another config").empty());
+    folder.write("p-1.csv", csv + "abc,kind,c,C,perhaps,,,,\n");
+    EXPECT_EQ(test::errorText([&] { readSensitivity(file, "abc"); }, folder.path()),
+              "DIR/p-1.csv:5: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
+              "unmeasured)");
+}
+
+/// An experiment of one claim, and its plan of one case.
+run::Plan planWith(const std::string& claim, int number) {
+    run::Plan plan;
+    plan.deviceClass = "software";
+    plan.profile = "quick";
+    config::Experiment experiment;
+    experiment.id = "p/1";
+    experiment.document = node("{claims: {C: " + claim + "}}");
+    plan.experiments.push_back(experiment);
+    plan.cases.push_back(caseWith("{number: " + std::to_string(number) + "}"));
+    plan.cases.back().experiment = "p/1";
+    return plan;
+}
+
+TEST(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
+    const run::Plan plan = planWith("{says: a, bound: n, above: 1}", 3);
+    const test::TemporaryFolder folder;
+    folder.write("software/quick/p-1.csv", sensitivityCsv({outcome("", "", Verdict::Holds),
+                                                           outcome("bias", "5", Verdict::Fails)},
+                                                          basisOf(plan, plan.experiments.front())));
+    const claims::KeptSensitivity kept = keptSensitivity(plan, folder.path());
+    ASSERT_EQ(kept.size(), 1U);
+    EXPECT_EQ(kept.at({"p/1", "C"}).restsOn, "bias (of 1 tried)");
+    EXPECT_EQ(kept.at({"p/1", "C"}).verdict, Verdict::Holds);
+    // What is said of a claim does not matter.
+    const run::Plan reworded =
+        planWith("{says: b, bound: n, above: 1, because: {verdict: fails}}", 3);
+    EXPECT_EQ(keptSensitivity(reworded, folder.path()).size(), 1U);
+    EXPECT_TRUE(
+        keptSensitivity(planWith("{says: a, bound: n, above: 2}", 3), folder.path()).empty());
+    EXPECT_TRUE(
+        keptSensitivity(planWith("{says: a, bound: n, above: 1}", 4), folder.path()).empty());
+}
+
+}  // namespace
+}  // namespace gfxrepro::studies

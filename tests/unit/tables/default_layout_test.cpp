@@ -1,0 +1,112 @@
+// The table and the curves of who laid out none.
+#include "runner/tables/default_layout.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/support.h"
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::tables {
+namespace {
+
+using config::Better;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A sweep of one's own whose technique declares a digest, voxels and an error.
+config::Experiment sweepOf(const std::string& sweep) {
+    const test::TemporaryFolder folder;
+    const auto file =
+        folder.write("s.yaml", "sweep_of: s\ntitle: Mine\ntechnique: x\nsweep: " + sweep + "\n");
+    config::Experiment experiment = config::loadExperiment(file, {}, folder.path());
+    experiment.outputs = {{{"wall_time_ms", "ms", "a frame", Better::Lower},
+                           {"gpu_time_ms", "ms", "a pass", Better::Lower},
+                           {"error_pct", "%", "wrong", Better::Lower},
+                           {"voxels", "voxel", "full ones"},
+                           {"triangles", "triangle", "of the mesh"},
+                           {"memory_bytes", "byte", "held", Better::Lower},
+                           {"digest", "1", "of all", Better::Neither, true}},
+                          {{"draw", "the picture"}}};
+    return experiment;
+}
+
+/// Cases at these resolutions, each recorded as techniques do.
+Recorded recordedAt(std::initializer_list<int> resolutions) {
+    RecordMaker maker;
+    for (const int n : resolutions) {
+        maker.beginCase("", "{\"resolution\": " + std::to_string(n) + "}").lane("timing");
+        maker.add("digest", {double(n)}, "", "1").add("memory_bytes", {n * 1048576.0}, "", "byte");
+        maker.add("triangles", {69451}, "", "triangle").add("voxels", {n * 10.0}, "", "voxel");
+        maker.add("gpu_time_ms", {0.25 * n}, "draw").add("wall_time_ms", {0.5 * n});
+        maker.add("error_pct", {100.0 / n}, "", "%").add("baseline_memory_bytes", {5}, "", "byte");
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (PlannedCase& item : records.cases) item.table = "sweep/s";
+    return records;
+}
+
+std::vector<std::string> labelsOf(const Table& table) {
+    std::vector<std::string> labels;
+    for (const TableColumn& column : table.columns) labels.push_back(column.label);
+    return labels;
+}
+
+TEST(DefaultLayout, ShowsTimesThenMetricsAndTellsWhatIsAlikeOnce) {
+    const Table table = buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}));
+    EXPECT_THAT(table.rowAxes, ElementsAre("resolution"));
+    EXPECT_THAT(labelsOf(table),
+                ElementsAre("frame_ms", "draw_ms", "error_pct", "voxels", "memory_mib"));
+    EXPECT_THAT(table.constants, ElementsAre("triangles 69451"));
+    EXPECT_EQ(table.rows[1].cells[0].measured, "32");
+    EXPECT_EQ(table.rows[1].cells[3].measured, "640");
+    EXPECT_EQ(table.rows[1].cells[4].measured, "64");
+    EXPECT_EQ(table.columns[2].better, Better::Lower);
+    EXPECT_EQ(table.columns[2].doc, "wrong");
+}
+
+TEST(DefaultLayout, WhatACaseDoesNotRecordIsBlank) {
+    Recorded records = recordedAt({32, 64});
+    std::erase_if(records, [](const records::Record& record) {
+        return record.metric == "error_pct" && record.caseId.find("32") != std::string::npos;
+    });
+    const Table table = buildTable(sweepOf("{resolution: [32, 64]}"), records);
+    ASSERT_EQ(table.columns[2].label, "error_pct");
+    EXPECT_FALSE(table.rows[0].cells[2].isPlanned);
+    EXPECT_EQ(table.rows[0].cells[2].measured, "");
+    EXPECT_EQ(table.rows[1].cells[2].measured, "1.562");
+}
+
+TEST(DefaultLayout, OfOneCaseNothingIsFolded) {
+    const Table table = buildTable(sweepOf("{resolution: [32]}"), recordedAt({32}));
+    EXPECT_THAT(table.constants, IsEmpty());
+    EXPECT_EQ(table.columns.size(), 6U);
+}
+
+TEST(DefaultLayout, WhatWasNotDeclaredInOlderPlansIsShownAsRecorded) {
+    config::Experiment experiment = sweepOf("{resolution: [32, 64]}");
+    experiment.outputs = {};
+    EXPECT_EQ(labelsOf(buildTable(experiment, recordedAt({32, 64}))).size(), 6U);
+}
+
+TEST(DefaultPlots, AreOverTheSweptNumber) {
+    const config::Experiment experiment = sweepOf("{resolution: [32, 64, 128]}");
+    const auto plots = defaultPlots(buildTable(experiment, recordedAt({32, 64, 128})));
+    ASSERT_EQ(plots.size(), 2U);
+    EXPECT_EQ(plots[0].x, "resolution");
+    EXPECT_THAT(plots[0].y, ElementsAre("frame_ms", "draw_ms"));
+    EXPECT_EQ(plots[0].title, "Times over resolution (lower is better)");
+    EXPECT_TRUE(plots[0].isLogX);
+    EXPECT_FALSE(plots[0].isLogY);
+    EXPECT_THAT(plots[1].y, ElementsAre("error_pct"));
+}
+
+TEST(DefaultPlots, NeedAnAxisOfNumbers) {
+    Table table = buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}));
+    table.rows[0].labels[0] = "coarse";
+    EXPECT_THAT(defaultPlots(table), IsEmpty());
+}
+
+}  // namespace
+}  // namespace gfxrepro::tables

@@ -1,0 +1,104 @@
+#include "runner/tables/fit.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/support/support.h"
+
+namespace gfxrepro::tables {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A grid of `spread` with one measured value a column; none where it is negative.
+Table tableOf(const std::vector<std::vector<double>>& rows) {
+    Table table;
+    table.rowAxes = {"spread"};
+    table.columns = {{"a", "%"}, {"b", "%"}};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        TableRow row{.labels = {std::to_string(i + 1)}, .cells = {}};
+        for (const double value : rows[i]) {
+            Cell& cell = row.cells.emplace_back();
+            if (value < 0) continue;
+            cell.status = records::Status::Ok;
+            cell.values.emplace_back().value = value;
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+config::Experiment experimentOf() {
+    config::Experiment experiment;
+    experiment.document =
+        config::parseYaml("fit: {a: {id: p/1, printed: 70}, b: {id: p/2, printed: 50}}", "t.yaml");
+    return experiment;
+}
+
+TEST(Fit, TakesTheRowWithTheLeastSquares) {
+    const Table table = tableOf({{60, 50}, {73, 46}, {-1, 50}, {77, 57}});
+    const Fit fit = fitOf(experimentOf(), table);
+    ASSERT_EQ(fit.rows.size(), 3U);
+    EXPECT_EQ(fit.unmeasured, 1U);
+    EXPECT_EQ(fit.rows[0].row, 1U);
+    EXPECT_THAT(fit.rows[0].residuals, ElementsAre(3.0, -4.0));
+    EXPECT_DOUBLE_EQ(fit.rows[0].rms, std::sqrt(12.5));
+    EXPECT_EQ(fit.rows[1].row, 3U);
+    EXPECT_THAT(
+        fitNotes(fit, table),
+        ElementsAre("rows of the fit that are not measured: 1",
+                    "Fitted to 2 printed cells, none of which compares methods: spread=2. Root "
+                    "mean square of the residuals 3.54 percentage points; printed → measured: a of "
+                    "p/1 70 → 73.00 (+3.00), b of p/2 50 → 46.00 (-4.00)",
+                    "Second best of 3 rows: spread=4, 7.00 percentage points"));
+    EXPECT_EQ(fitCsv(fit, table),
+              "spread,column,table,printed,measured,residual,rms\n"
+              "2,a,p/1,70,73,3,3.5355339059327378\n2,b,p/2,50,46,-4,3.5355339059327378\n");
+}
+
+TEST(Fit, SaysNothingWithoutOne) {
+    config::Experiment none;
+    none.document = config::parseYaml("title: t", "t.yaml");
+    EXPECT_THAT(fitNotes(fitOf(none, tableOf({{1, 2}})), tableOf({{1, 2}})), IsEmpty());
+    const Table table = tableOf({{-1, 2}});
+    EXPECT_THAT(fitNotes(fitOf(experimentOf(), table), table),
+                ElementsAre("rows of the fit that are not measured: 1"));
+    EXPECT_EQ(fitCsv(fitOf(experimentOf(), table), table), "");
+}
+
+TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
+    const test::TemporaryFolder folder;
+    const Table grid = tableOf({{60, 50}, {73, 46}});
+    folder.write("nest.csv", fitCsv(fitOf(experimentOf(), grid), grid));
+    folder.write("nest.md", "not read");
+    std::vector<Table> tables(2);
+    tables[0].id = "p/1";
+    tables[1].id = "p/3";
+    addNotes(keptCalibrations(folder.path()), tables);
+    EXPECT_THAT(tables[0].notes,
+                ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
+                            "compare no methods; of this table a 70 → 73.00 (root mean square of "
+                            "all residuals 3.54)"));
+    EXPECT_THAT(tables[1].notes, IsEmpty());
+    EXPECT_THAT(keptCalibrations(folder.path() / "none"), IsEmpty());
+}
+
+TEST(Fit, RefusesKeptFilesOfAnotherKind) {
+    const test::TemporaryFolder folder;
+    const auto errorOf = [&](const std::string& text) {
+        folder.write("nest.csv", text);
+        return test::errorText([&] { keptCalibrations(folder.path()); }, folder.path());
+    };
+    EXPECT_EQ(errorOf("spread,column\n1,a\n"),
+              "DIR/nest.csv:1: is no fit, whose columns end in column, table, printed, measured, "
+              "residual, rms");
+    const std::string head = "spread,column,table,printed,measured,residual,rms\n";
+    EXPECT_EQ(errorOf(head + "1,a,p/1,70\n"), "DIR/nest.csv:2: 4 fields; the head has 7");
+    EXPECT_EQ(errorOf(head + "1,a,p/1,many,73,3,3\n"),
+              "DIR/nest.csv:2: printed 'many' is no number");
+}
+
+}  // namespace
+}  // namespace gfxrepro::tables

@@ -1,0 +1,60 @@
+// Experiments from YAML text and records from a few words, for the tests of tables and claims.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/claims/claims.h"
+#include "runner/config/experiment.h"
+#include "runner/records/records.h"
+#include "runner/tables/case_records.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::tables {
+
+/// The experiment "zju2005/9.9" of technique `voxelization` with `body` below these keys.
+config::Experiment experimentFrom(const std::string& body);
+
+/// The same with these cases under the profile `paper`, as a plan finds them: scene, parameters as
+/// JSON.
+config::Experiment withPaperCases(config::Experiment experiment,
+                                  std::initializer_list<std::pair<const char*, const char*>> cases);
+
+/// Records with the cases that they are of.
+struct Recorded : std::vector<records::Record> {
+    std::vector<PlannedCase> cases;
+};
+
+/// The cases of the experiment's sweep, those that are recorded in the place of those that they
+/// are; behind them the other recorded ones.
+std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Recorded& records);
+/// The table of a run with that plan.
+Table buildTable(const config::Experiment& experiment, const Recorded& records);
+std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
+                               const Recorded& records);
+
+/// Makes records of "zju2005/9.9"; a case is known by its scene and params.
+class RecordMaker {
+  public:
+    /// `params` is JSON. What follows is recorded for this case.
+    RecordMaker& beginCase(const std::string& scene, const std::string& params = "{}");
+    RecordMaker& process(int process);
+    RecordMaker& frame(int frame);
+    RecordMaker& lane(const std::string& lane);
+    /// One value a repeat.
+    RecordMaker& add(const std::string& metric, std::initializer_list<double> repeats,
+                     const std::string& pass = "", const std::string& unit = "ms");
+    RecordMaker& add(const std::string& metric, const std::vector<double>& repeats,
+                     const std::string& pass = "", const std::string& unit = "ms");
+    RecordMaker& fail(records::Status status, const std::string& message);
+
+    const Recorded& records() const { return records_; }
+
+  private:
+    records::Record current_;
+    Recorded records_;
+};
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,369 @@
+#include "runner/tables/printed_parameters.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::tables {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr const char* kDuck = R"(
+scene: models/duck
+layout: {rows: scene, columns: {ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
+printed: {values: "scene,ms\nmodels/duck,16.0"}
+)";
+constexpr const char* kPrinted = R"({"light_grid": 16, "output": {"width": 512, "height": 512}})";
+
+/// The one cell of a table of the duck, measured at `measured`; the paper's at `printed`.
+Cell cellAt(const char* measured, const char* printed, const std::string& more = "") {
+    RecordMaker maker;
+    maker.beginCase("models/duck", measured).add("gpu_time_ms", {8.0});
+    const Table table = buildTable(
+        withPaperCases(experimentFrom(kDuck + more), {{"models/duck", printed}}), maker.records());
+    return table.rows.at(0).cells.at(0);
+}
+
+TEST(PrintedParameters, AreTheSame) {
+    EXPECT_TRUE(cellAt(kPrinted, kPrinted).isAtPrintedParameters);
+    EXPECT_THAT(cellAt(kPrinted, kPrinted).departures, IsEmpty());
+    EXPECT_TRUE(cellAt(R"({"bias": 1.0, "p": [1, 2.0]})", R"({"p": [1.0, 2], "bias": 1})")
+                    .isAtPrintedParameters)
+        << "numbers compare as numbers, names in any order";
+    EXPECT_TRUE(cellAt(R"({"pictures": true})", R"({"pictures": false})").isAtPrintedParameters)
+        << "more is recorded, nothing else";
+    const char* empty = R"({"bias": 1, "cut": null, "name": "", "list": [], "map": {}})";
+    EXPECT_TRUE(cellAt(empty, R"({"bias": 1})").isAtPrintedParameters) << "nothing is no value";
+    EXPECT_TRUE(cellAt(R"({"bias": 1})", empty).isAtPrintedParameters);
+    EXPECT_THAT(cellAt(R"({"cut": null})", R"({"cut": 5})").departures,
+                ElementsAre(Departure{"cut", {}, {"5"}}));
+}
+
+TEST(PrintedParameters, Differ) {
+    const Cell cell =
+        cellAt(R"({"light_grid": 4, "output": {"width": 128, "height": 512}})", kPrinted);
+    EXPECT_FALSE(cell.isAtPrintedParameters);
+    EXPECT_THAT(cell.departures, ElementsAre(Departure{"output", {"128×512"}, {"512×512"}},
+                                             Departure{"light_grid", {"4"}, {"16"}}));
+    EXPECT_THAT(cellAt("{}", R"({"light_grid": 16})").departures,
+                ElementsAre(Departure{"light_grid", {}, {"16"}}));
+}
+
+TEST(PrintedParameters, FramesAreThoseOfTheProfiles) {
+    const std::string frames =
+        "measure: {frames: 10}\nprofiles: {paper: {measure: {frames: 1000}}}\n";
+    EXPECT_THAT(cellAt(kPrinted, kPrinted, frames).departures,
+                ElementsAre(Departure{"frames", {"10"}, {"1000"}}));
+    const std::string repeats =
+        "measure: {repeats: 1}\n"
+        "profiles: {paper: {measure: {repeats: 20, warmup: 3, processes: 6, lane: timing}}}\n";
+    EXPECT_TRUE(cellAt(kPrinted, kPrinted, repeats).isAtPrintedParameters)
+        << "how often something is measured does not make it something else";
+}
+
+/// What the profile `paper` itself departs from.
+TEST(PrintedParameters, WhatIsPrintedLiesOverTheProfile) {
+    const auto departuresAt = [](const std::string& at) {
+        std::string body = kDuck;
+        body.replace(body.find("values"), 0, "at: {" + at + "}, ");
+        RecordMaker maker;
+        maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
+        return buildTable(withPaperCases(experimentFrom(body), {{"models/duck", kPrinted}}),
+                          maker.records())
+            .rows.at(0)
+            .cells.at(0)
+            .departures;
+    };
+    EXPECT_THAT(departuresAt("light_grid: 16, output.width: 512, measure.frames: 1"), IsEmpty());
+    EXPECT_THAT(
+        departuresAt("light_grid: 32, output.width: 640, measure.frames: 500, "
+                     "scene: models/swan"),
+        ElementsAre(Departure{"scene", {"models/duck"}, {"models/swan"}},
+                    Departure{"output", {"512×512"}, {"640×512"}},
+                    Departure{"light_grid", {"16"}, {"32"}}, Departure{"frames", {"1"}, {"500"}}));
+}
+
+/// What the document leaves open is the profile's, not printed; unless `printed.at` says so.
+TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
+    const auto lineAt = [](const std::string& at, const std::string& assumptions) {
+        std::string body = std::string(kDuck) +
+                           "measure: {frames: 3}\nprofiles: {paper: {measure: {frames: 50}}}\n" +
+                           "assumptions: {" + assumptions + "}\n";
+        body.replace(body.find("values"), 0, "at: {" + at + "}, ");
+        RecordMaker maker;
+        maker.beginCase("models/duck", R"({"light_grid": 4, "output": {"width": 8, "height": 8}})");
+        maker.add("gpu_time_ms", {8.0});
+        return parametersLine(buildTable(
+            withPaperCases(experimentFrom(body), {{"models/duck", kPrinted}}), maker.records()));
+    };
+    const std::string frames = "frames: {value: some, why: not said}";
+    EXPECT_EQ(
+        lineAt("", frames),
+        "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (paper profile "
+        "50).");
+    EXPECT_EQ(lineAt("measure.frames: 60", frames),
+              "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (60).");
+    EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"),
+              "Measured at output 8×8 (paper profile 512×512), light_grid 4 (printed 16), frames 3 "
+              "(50).");
+    EXPECT_EQ(lineAt("output.width: 512", "output: {range: [8, 512], why: not said}"),
+              "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (50).");
+}
+
+/// What the document does not give is the paper profile's, and no printed parameter.
+TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
+    const std::string open =
+        "assumptions: {bias: {why: not given}, scene: {why: ours}, output: {why: not given}}\n";
+    const char* params = R"({"bias": 1, "n": 2, "output": {"width": 8, "height": 8}})";
+    const Cell cell = cellAt(params, params, open);
+    EXPECT_TRUE(cell.isAtPrintedParameters);
+    EXPECT_THAT(cell.openParameters, ElementsAre("output", "bias")) << "its source tells the scene";
+    EXPECT_THAT(cellAt(R"({"n": 2})", R"({"n": 2})", open).openParameters, IsEmpty());
+    EXPECT_THAT(cellAt(R"({"n": 1})", params, open).openParameters, IsEmpty()) << "departs";
+
+    RecordMaker maker;
+    maker.beginCase("models/duck", params).add("gpu_time_ms", {8.0});
+    const config::Experiment experiment =
+        withPaperCases(experimentFrom(kDuck + open), {{"models/duck", params}});
+    const Table table = buildTable(experiment, maker.records());
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters as far as they are given (not: output, bias).");
+    EXPECT_EQ(printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
+              "cells measured at the printed parameters: 0 of 1, as far as they are given: 1 of 1, "
+              "beside a measurement: 1 of 1");
+}
+
+constexpr const char* kGrid = R"(
+sweep: {scene: [models/duck], light_grid: [4, 16]}
+layout: {rows: light_grid, columns: {ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
+printed: {values: "light_grid,ms\n4,1\n16,2\n32,3"}
+)";
+
+Table gridTable(const char* four, const char* sixteen) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", four).add("gpu_time_ms", {1.0});
+    maker.beginCase("models/duck", sixteen).add("gpu_time_ms", {2.0});
+    return buildTable(withPaperCases(experimentFrom(kGrid),
+                                     {{"models/duck", R"({"light_grid": 16, "bias": 1})"},
+                                      {"models/duck", R"({"light_grid": 32, "bias": 1})"}}),
+                      maker.records());
+}
+
+TEST(PrintedParameters, RowsAreComparedWithTheSameRow) {
+    const Table table =
+        gridTable(R"({"light_grid": 4, "bias": 1})", R"({"light_grid": 16, "bias": 1})");
+    ASSERT_EQ(table.rows.size(), 2U);
+    EXPECT_FALSE(table.rows[0].cells[0].isAtPrintedParameters) << "the paper has no such row";
+    EXPECT_THAT(table.rows[0].cells[0].departures, IsEmpty());
+    EXPECT_TRUE(table.rows[1].cells[0].isAtPrintedParameters);
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters in 1 of 2 cells; 1 cell where the profile paper "
+              "has no case.");
+    EXPECT_EQ(parametersLine(table, table.rows[0]), "Measured where the profile paper has no case");
+    EXPECT_EQ(parametersLine(table, table.rows[1]), "Measured at the printed parameters");
+    PrintedCells count;
+    count.add(experimentFrom(kGrid), table);
+    EXPECT_EQ(printedCellsLine(count),
+              "cells measured at the printed parameters: 1 of 3, as far as they are given: 0 of 3, "
+              "beside a measurement: 2 of 3");
+}
+
+/// A table of one row of measured cells beside printed values, which depart so.
+std::string lineOf(const std::vector<std::vector<Departure>>& cells) {
+    Table table;
+    table.isPublished = table.knowsPrintedParameters = true;
+    table.rows.resize(1);
+    for (const std::vector<Departure>& departures : cells) {
+        Cell& cell = table.rows[0].cells.emplace_back();
+        cell.values.resize(1);
+        cell.printed = "1";
+        cell.departures = departures;
+        cell.isAtPrintedParameters = departures.empty();
+    }
+    return parametersLine(table);
+}
+
+TEST(PrintedParameters, LinesCountWhatIsGiven) {
+    Table table;
+    table.isPublished = table.knowsPrintedParameters = true;
+    table.rows.resize(1);
+    const auto add = [&](const std::vector<std::string>& open) {
+        Cell& cell = table.rows[0].cells.emplace_back();
+        cell.values.resize(1);
+        cell.isAtPrintedParameters = true;
+        cell.openParameters = open;
+    };
+    add({});
+    add({"bias"});
+    add({"bias", "view"});
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters in 1 of 3 cells, the printed parameters as far "
+              "as they are given (not: bias, view) in 2 of 3 cells.");
+    table.rows[0].cells.emplace_back().values.resize(1);
+    table.rows[0].cells.back().departures = {{"n", {"1"}, {"2"}}};
+    EXPECT_EQ(parametersLine(table),
+              "Measured at the printed parameters in 1 of 4 cells, the printed parameters as far "
+              "as they are given (not: bias, view) in 2 of 4 cells, in the others at n 1 (printed "
+              "2).");
+}
+
+TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
+    const Departure output{"output", {"128×128"}, {"512×512"}}, grid{"light_grid", {"4"}, {"16"}},
+        frames{"frames", {"10"}, {"1000"}};
+    EXPECT_EQ(lineOf({{}, {}}), "Measured at the printed parameters.");
+    EXPECT_EQ(lineOf({{output, grid, frames}}),
+              "Measured at output 128×128 (printed 512×512), light_grid 4 (16), frames 10 (1000).");
+    EXPECT_EQ(lineOf({{}, {grid}, {}, {frames}}),
+              "Measured at the printed parameters in 2 of 4 cells, in the others at light_grid 4 "
+              "(printed 16), frames 10 (1000).");
+    EXPECT_EQ(lineOf({{grid}, {{"light_grid", {"8"}, {"16"}}}}),
+              "Measured at light_grid 4 / 8 (printed 16).");
+    EXPECT_EQ(lineOf({{{"n", {"1", "2", "3", "4", "5"}, {}}}}),
+              "Measured at n 1 / 2 / … / 5 (printed none).");
+    EXPECT_EQ(openText({"a", "b", "c", "d", "e"}), "a, b, c, d, e");
+    EXPECT_EQ(openText({"a", "b", "c", "d", "e", "f"}), "a, b, c, d and 2 more");
+    const Departure open{"frames", {"3"}, {"50"}, true}, view{"view", {"a"}, {"b"}, true};
+    EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (paper profile 50).");
+    EXPECT_EQ(lineOf({{output, grid, view, open}}),
+              "Measured at output 128×128 (printed 512×512), light_grid 4 (16), view a (paper "
+              "profile b), frames 3 (50).");
+    EXPECT_EQ(lineOf({{view, output}}),
+              "Measured at view a (paper profile b), output 128×128 (printed 512×512).");
+    EXPECT_EQ(
+        lineOf({{}, {open}}),
+        "Measured at the printed parameters in 1 of 2 cells, in the others at frames 3 (paper "
+        "profile 50).");
+}
+
+/// Behind a cell several cases, over which its mean is taken.
+TEST(PrintedParameters, SeveralCasesOfACell) {
+    const auto departuresOf = [](std::initializer_list<const char*> measured) {
+        RecordMaker maker;
+        for (const char* params : measured) {
+            maker.beginCase("models/duck", params).add("gpu_time_ms", {1.0});
+        }
+        const config::Experiment experiment =
+            withPaperCases(experimentFrom(kDuck), {{"models/duck", R"({"view": "a", "n": 1})"},
+                                                   {"models/duck", R"({"view": "b", "n": 1})"},
+                                                   {"models/duck", R"({"view": "a", "n": 2})"},
+                                                   {"models/duck", R"({"view": "b", "n": 2})"}});
+        return buildTable(experiment, maker.records()).rows.at(0).cells.at(0).departures;
+    };
+    const char *a1 = R"({"view": "a", "n": 1})", *a2 = R"({"view": "a", "n": 2})",
+               *b1 = R"({"view": "b", "n": 1})", *b2 = R"({"view": "b", "n": 2})";
+    EXPECT_THAT(departuresOf({b2, a1, a2, b1}), IsEmpty());
+    EXPECT_THAT(departuresOf({a1, a2}), ElementsAre(Departure{"view", {"a"}, {"a", "b"}}));
+    EXPECT_THAT(departuresOf({a1, b2}), ElementsAre(Departure{"cases", {"2"}, {"4"}}));
+}
+
+TEST(PrintedParameters, FailedCasesAreNotBehindACell) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", R"({"view": "a"})").add("gpu_time_ms", {1.0});
+    maker.beginCase("models/duck", R"({"view": "b"})").fail(records::Status::Crash, "signal 11");
+    const Table table = buildTable(
+        withPaperCases(experimentFrom(kDuck),
+                       {{"models/duck", R"({"view": "a"})"}, {"models/duck", R"({"view": "b"})"}}),
+        maker.records());
+    EXPECT_FALSE(table.rows[0].cells[0].isAtPrintedParameters);
+    EXPECT_EQ(parametersLine(table), "Measured at view a (printed a / b).");
+}
+
+/// Another seed of a generated scene is another sample of it; another scene is not.
+TEST(PrintedParameters, SeedsAreNoParameters) {
+    const auto isAtPrinted = [](const char* scene) {
+        RecordMaker maker;
+        maker.beginCase(scene, R"({"stands_for": "models/duck", "scene_sample": 1})");
+        maker.add("gpu_time_ms", {1.0});
+        const Table table = buildTable(withPaperCases(experimentFrom(R"(
+scene: models/duck
+layout: {columns: {ms: {metric: gpu_time_ms}}}
+)"),
+                                                      {{"models/duck", "{}"}}),
+                                       maker.records());
+        return table.rows.at(0).cells.at(0).isAtPrintedParameters;
+    };
+    EXPECT_TRUE(isAtPrinted("models/duck@2"));
+    EXPECT_FALSE(isAtPrinted("models/goose"));
+}
+
+/// A profile may lay the table out otherwise; a column goes by its name.
+TEST(PrintedParameters, TheLayoutOfTheProfileDecidesWhatIsPrinted) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", R"({"light_grid": 4})").add("gpu_time_ms", {1.0});
+    const Table table = buildTable(withPaperCases(experimentFrom(R"(
+sweep: {scene: [models/duck], light_grid: [4, 16]}
+layout:
+  rows: scene
+  columns: {small: {where: {light_grid: 4}}, ours: {where: {light_grid: 4}}}
+  cell: {metric: gpu_time_ms}
+profiles:
+  paper: {layout: {columns: {small: {where: {light_grid: 16}}, ours: null}}}
+)"),
+                                                  {{"models/duck", R"({"light_grid": 4})"},
+                                                   {"models/duck", R"({"light_grid": 16})"}}),
+                                   maker.records());
+    EXPECT_THAT(table.rows.at(0).cells.at(0).departures,
+                ElementsAre(Departure{"light_grid", {"4"}, {"16"}}));
+    EXPECT_FALSE(table.rows[0].cells.at(1).isAtPrintedParameters);
+    EXPECT_THAT(table.rows[0].cells[1].departures, IsEmpty()) << "the paper has no such column";
+}
+
+TEST(PrintedParameters, AreNotKnownOfOlderRuns) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
+    const config::Experiment experiment = experimentFrom(kDuck);
+    const Table table = buildTable(experiment, maker.records());
+    EXPECT_FALSE(table.knowsPrintedParameters);
+    EXPECT_FALSE(table.rows.at(0).cells.at(0).isAtPrintedParameters);
+    EXPECT_EQ(parametersLine(table),
+              "Whether it was measured at the printed parameters is not known: the run's plan does "
+              "not have them.");
+    PrintedCells count;
+    count.add(experiment, table);
+    EXPECT_EQ(count.atPrinted, 0);
+    EXPECT_EQ(count.measured, 1);
+}
+
+TEST(PrintedParameters, NothingIsSaidOfWhatIsNotPublished) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
+    config::Experiment own = experimentFrom(kDuck);
+    own.kind = config::Experiment::Kind::Sweep;
+    own.printed = {};
+    EXPECT_EQ(parametersLine(buildTable(own, maker.records())), "");
+    const Table unmeasured = buildTable(experimentFrom(kDuck), {});
+    EXPECT_EQ(parametersLine(unmeasured), "Nothing of it is measured.");
+    EXPECT_EQ(parametersLine(unmeasured, unmeasured.rows.at(0)), "");
+}
+
+TEST(PrintedParameters, CellsOfTablesAreCounted) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
+    config::Experiment experiment =
+        withPaperCases(experimentFrom(kDuck), {{"models/duck", kPrinted}});
+    const Table table = buildTable(experiment, maker.records());
+    PrintedCells count = countPrintedCells({{experiment, experiment}}, {{table, table}});
+    EXPECT_EQ(printedCellsLine(count),
+              "cells measured at the printed parameters: 2 of 2, as far as they are given: 0 of 2, "
+              "beside a measurement: 2 of 2");
+    experiment.kind = config::Experiment::Kind::Figure;
+    count.add(experiment, table);
+    EXPECT_EQ(count.printed, 2) << "a figure's";
+    EXPECT_EQ(printedCellsLine({}), "");
+
+    // What is only printed counts, too: it stands in the document.
+    config::Experiment alone;
+    alone.printed.header = {"a", "b", "c"};
+    alone.printed.rows = {{"x", "1", ""}, {"y", "2", "3"}};
+    count = {};
+    count.add(alone, buildTable(alone, {}));
+    EXPECT_EQ(printedCellsLine(count),
+              "cells measured at the printed parameters: 0 of 3, as far as they are given: 0 of 3, "
+              "beside a measurement: 0 of 3");
+}
+
+}  // namespace
+}  // namespace gfxrepro::tables
