@@ -19,6 +19,7 @@
 #include "runner/gl/egl_context.h"
 #include "runner/gl/gl.h"
 #include "runner/gl/gpu_nodes.h"
+#include "runner/gl/granted_gpus.h"
 #include "runner/gl/vendor_libraries.h"
 
 namespace gfxrepro::gl {
@@ -263,6 +264,8 @@ Device Device::open(const DeviceChoice& choice) {
                                        wanted.index, candidates.size()));
     }
 
+    const bool isAnyGpu = wanted.kind == Wanted::Kind::Auto || wanted.kind == Wanted::Kind::Gpu;
+    const GrantedGpus granted = GrantedGpus::fromEnvironment();
     std::optional<Device> software;  // what auto falls back on where there is no GPU
     bool isGpuThere = false;
     for (const egl::Candidate& candidate : candidates) {
@@ -271,16 +274,23 @@ Device Device::open(const DeviceChoice& choice) {
         if (software && candidate.platform == "surfaceless") continue;
         try {
             Device device = openCandidate(candidate, choice.debug);
-            const std::string why = wanted.whyNot(device.info());
+            std::string why = wanted.whyNot(device.info());
+            if (why.empty() && isAnyGpu) {
+                why = granted.whyNot(device.info().uuid);
+                if (!why.empty()) why = device.info().renderer + " " + why;
+                isGpuThere |= !why.empty();
+            }
             if (why.empty()) return device;
             problems.push_back(fmt::format("{}: {}", candidate.name(), why));
-            if (wanted.kind == Wanted::Kind::Auto && !software) software = std::move(device);
+            if (wanted.kind == Wanted::Kind::Auto && device.info().isSoftware && !software) {
+                software = std::move(device);
+            }
         } catch (const NoDeviceError& error) {
             problems.push_back(error.what());
             isGpuThere |= candidate.isGpu;
         }
     }
-    if (wanted.kind == Wanted::Kind::Auto || wanted.kind == Wanted::Kind::Gpu) {
+    if (isAnyGpu) {
         const std::vector<std::string> unused = unusedGpus();
         isGpuThere |= !unused.empty();
         if (isGpuThere) append(problems, vendorLibraryProblems());

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <unistd.h>
+
 #include "runner/core/text.h"
+#include "runner/run/process_memory.h"
 
 namespace gfxrepro::run {
 
@@ -78,6 +81,7 @@ void MachineState::add(const MachineState& other) {
     if (other.lowestHz_)
         lowestHz_ = std::min(lowestHz_.value_or(*other.lowestHz_), *other.lowestHz_);
     if (other.highestHz_) highestHz_ = std::max(highestHz_.value_or(0.0), *other.highestHz_);
+    gpu_.add(other.gpu_);
 }
 
 double MachineState::othersS() const {
@@ -106,6 +110,7 @@ Json MachineState::json() const {
     }
     put("lowest_clock_hz", lowestHz_);
     put("highest_clock_hz", highestHz_);
+    if (gpu_.isKnown()) json["gpu"] = gpu_.json();
     return json;
 }
 
@@ -125,6 +130,9 @@ MachineState MachineState::fromJson(const Json& json) {
     if (hottest && limit) state.heat_ = Heat{*hottest, *limit};
     state.lowestHz_ = valueOf<double>(json, "lowest_clock_hz");
     state.highestHz_ = valueOf<double>(json, "highest_clock_hz");
+    if (const auto gpu = json.find("gpu"); gpu != json.end() && gpu->is_object()) {
+        state.gpu_ = GpuState::fromJson(*gpu);
+    }
     return state;
 }
 
@@ -151,6 +159,7 @@ std::vector<std::string> MachineState::problems() const {
         problems.push_back(fmt::format("it was hot, {:.0f} °C of {:.0f} °C at which it is slowed",
                                        heat_->temperatureC, heat_->limitC));
     }
+    for (std::string& problem : gpu_.problems()) problems.push_back(std::move(problem));
     return problems;
 }
 
@@ -161,18 +170,33 @@ std::string MachineState::sentence() const {
         return fmt::format("The machine was not quiet while this was timed: {}.",
                            joined(wrong, "; "));
     }
-    if (processorS_ <= 0.0) return "The machine was quiet while this was timed.";
-    return fmt::format(
-        "The machine was quiet while this was timed: other processes took {} of {} processor{}, "
-        "the host {}.",
-        percentText(othersS() / processorS_), processorCount_, processorCount_ == 1 ? "" : "s",
-        percentText(stolenS_ / processorS_));
+    std::vector<std::string> parts;
+    if (processorS_ > 0.0) {
+        parts.push_back(fmt::format("other processes took {} of {} processor{}, the host {}",
+                                    percentText(othersS() / processorS_), processorCount_,
+                                    processorCount_ == 1 ? "" : "s",
+                                    percentText(stolenS_ / processorS_)));
+    }
+    if (const std::string gpu = gpu_.text(); !gpu.empty()) parts.push_back(gpu);
+    return fmt::format("The machine was quiet while this was timed{}{}.", parts.empty() ? "" : ": ",
+                       joined(parts, "; "));
 }
 
 void MachineWatch::unitBegan(const Unit& unit) {
     before_.reset();
+    gpuState_ = {};
     if (unit.item->measure.lane == config::Measure::Lane::Timing) before_ = readMachine(root_);
     next_.unitBegan(unit);
+}
+
+void MachineWatch::tick() {
+    if (before_ && !gpu_.empty()) {
+        if (const auto reading = gl::readGpu(gpu_)) {
+            const std::vector<int> own = processTree(::getpid());
+            gpuState_.add(*reading, {own.begin(), own.end()});
+        }
+    }
+    next_.tick();
 }
 
 void MachineWatch::unitEnded(const Unit& unit, records::Status status, const std::string& message) {
@@ -180,6 +204,7 @@ void MachineWatch::unitEnded(const Unit& unit, records::Status status, const std
     if (before_ && unit.item->measure.lane == config::Measure::Lane::Timing) {
         MachineState state;
         state.add(*before_, readMachine(root_));
+        state.add(gpuState_);
         before_.reset();
         if (state.isKnown()) {
             tables_[unit.item->experiment].add(state);

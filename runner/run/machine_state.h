@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "runner/run/gpu_state.h"
 #include "runner/run/machine_reading.h"
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
@@ -21,11 +22,14 @@ class MachineState {
   public:
     void add(const MachineReading& before, const MachineReading& after);
     void add(const MachineState& other);
+    void add(const GpuState& gpu) { gpu_.add(gpu); }
 
-    bool isKnown() const { return processorS_ > 0.0 || throttleCount_ || limitedS_ || heat_; }
+    bool isKnown() const {
+        return processorS_ > 0.0 || throttleCount_ || limitedS_ || heat_ || gpu_.isKnown();
+    }
     /// {"processors", "processor_s", "busy_s", "own_s", "stolen_s", "waited_s", "load_before",
     /// "throttle_count", "limited_s", "hottest_c", "hot_from_c", "lowest_clock_hz",
-    /// "highest_clock_hz"}: of these what is known.
+    /// "highest_clock_hz", "gpu"}: of these what is known.
     Json json() const;
     static MachineState fromJson(const Json& json);
 
@@ -44,6 +48,7 @@ class MachineState {
     std::optional<double> waitedS_, load_, limitedS_, lowestHz_, highestHz_;
     std::optional<long long> throttleCount_;
     std::optional<Heat> heat_;
+    GpuState gpu_;
 };
 
 /// Watches the machine around each unit of the timing lane, and passes on what a run tells. The
@@ -52,15 +57,21 @@ class MachineState {
 class MachineWatch : public Observer {
   public:
     /// Of a run with these states so far (machineStatesIn). `next` and the folder must outlive it;
-    /// `root` as readMachine's.
+    /// `root` as readMachine's; `gpu` is the UUID of the device, where it has one.
     MachineWatch(Observer& next, const RunDirectory& directory,
-                 std::map<std::string, MachineState> states, std::filesystem::path root)
-        : next_(next), directory_(directory), root_(std::move(root)), tables_(std::move(states)) {}
+                 std::map<std::string, MachineState> states, std::filesystem::path root,
+                 std::string gpu)
+        : next_(next),
+          directory_(directory),
+          root_(std::move(root)),
+          gpu_(std::move(gpu)),
+          tables_(std::move(states)) {}
 
     void unitsAdded(const std::vector<Unit>& units) override { next_.unitsAdded(units); }
     void unitBegan(const Unit& unit) override;
     void unitEnded(const Unit& unit, records::Status status, const std::string& message) override;
-    void tick() override { next_.tick(); }
+    /// The GPU is read while a unit runs: behind it, it rests.
+    void tick() override;
 
     /// By table, of those that are known: for the manifest.
     Json states() const;
@@ -71,7 +82,9 @@ class MachineWatch : public Observer {
     Observer& next_;
     const RunDirectory& directory_;
     std::filesystem::path root_;
+    std::string gpu_;
     std::optional<MachineReading> before_;
+    GpuState gpuState_;  // of the unit that runs
     std::map<std::string, MachineState> tables_;
 };
 

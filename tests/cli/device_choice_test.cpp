@@ -23,10 +23,14 @@ bool hasRealGpu() {
 class DeviceChoice : public testing::Test {
   protected:
     /// One case of the mock on `device`, with the software device as a GPU that serves or not.
-    ProcessResult onPretended(const std::string& device, const std::string& how = "serves") {
+    ProcessResult onPretended(const std::string& device, const std::string& how = "serves",
+                              const std::vector<std::string>& more = {}) {
+        std::vector<std::string> environment = {"LD_PRELOAD=" GFXREPRO_PRETENDED_GPU,
+                                                "PRETENDED_GPU=" + how};
+        environment.insert(environment.end(), more.begin(), more.end());
         return runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", device, "--quiet",
                            "--out", folder.path() / ("run-" + std::to_string(++count))},
-                          {"LD_PRELOAD=" GFXREPRO_PRETENDED_GPU, "PRETENDED_GPU=" + how});
+                          environment);
     }
     nlohmann::json lastManifest() const {
         return nlohmann::json::parse(
@@ -121,6 +125,56 @@ TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
     EXPECT_EQ(rows("number"), 1U);
     ASSERT_EQ(onPretended("software").exitCode, 0);
     EXPECT_EQ(rows("wall_time_ms"), 2U);
+}
+
+/// With it the pretended GPU is the second of two.
+constexpr const char* kNvml = "LD_LIBRARY_PATH=" GFXREPRO_PRETENDED_NVML;
+
+TEST_F(DeviceChoice, OfSeveralGpusThatOfTheClusterIsTaken) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
+    for (const std::string visible : {"1", "0,1", "GPU-0011", "GPU-00112233-4455"}) {
+        const ProcessResult run =
+            onPretended("gpu", "serves", {kNvml, "CUDA_VISIBLE_DEVICES=" + visible});
+        EXPECT_EQ(run.exitCode, 0) << visible << run.err;
+    }
+    for (const std::string visible : {"0", "", "-1", "GPU-ffffffff", "x,1"}) {
+        for (const std::string device : {"gpu", "auto"}) {
+            const ProcessResult run =
+                onPretended(device, "serves", {kNvml, "CUDA_VISIBLE_DEVICES=" + visible});
+            EXPECT_EQ(run.exitCode, 3) << device << visible;
+            EXPECT_THAT(run.err, HasSubstr("device 0 (device): Pretended GPU is not among those "
+                                           "that CUDA_VISIBLE_DEVICES gives: '" +
+                                           visible + "'\n"));
+        }
+    }
+    // Who names a device knows better, and where NVIDIA's library is not, it says nothing.
+    EXPECT_EQ(onPretended("0", "serves", {kNvml, "CUDA_VISIBLE_DEVICES=0"}).exitCode, 0);
+    EXPECT_EQ(onPretended("gpu", "serves", {"CUDA_VISIBLE_DEVICES=0"}).exitCode, 0);
+}
+
+TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
+    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
+    config = writeMockConfig(folder,
+                             "params: {pause_ms: 20}\n"
+                             "measure: {lane: timing, warmup: 0, repeats: 2, frames: 1}\n");
+    ASSERT_EQ(onPretended("gpu", "serves", {kNvml}).exitCode, 0);
+    const auto gpuOf = [&] { return lastManifest()["machine_states"].begin()->at("gpu"); };
+    EXPECT_EQ(gpuOf()["lowest_clock_hz"], 1.98e9);
+    EXPECT_EQ(gpuOf()["highest_clock_hz"], 1.98e9);
+    EXPECT_EQ(gpuOf()["max_clock_hz"], 2.1e9);
+    EXPECT_EQ(gpuOf()["highest_power_w"], 210.0);
+    EXPECT_EQ(gpuOf()["hottest_c"], 64.0);
+    EXPECT_EQ(gpuOf()["other_processes"], 0);
+
+    const ProcessResult run = onPretended(
+        "gpu", "serves",
+        {kNvml, "PRETENDED_CLOCKS_MHZ=1980 1410", "PRETENDED_THROTTLE=0x24", "PRETENDED_USERS=1"});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(gpuOf()["lowest_clock_hz"], 1.41e9);
+    EXPECT_EQ(gpuOf()["throttled_by"], nlohmann::json({"heat", "its power limit"}));
+    EXPECT_THAT(run.err, HasSubstr("the GPU's clock moved between 1.41 and 1.98 GHz; the GPU's "
+                                   "clock was held down by heat and its power limit; 1 other "
+                                   "process used the GPU"));
 }
 
 TEST_F(DeviceChoice, PlansForAGpuNeedNone) {
