@@ -29,4 +29,11 @@ LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, int resoluti
     return result;
 }
 
+bool isWide(const scene::Mesh& mesh, const scene::Box& box, int resolution) {
+    const glm::vec3 size = mesh.bounds().size();
+    const float voxels = static_cast<float>(resolution) / box.size().x;
+    const float margin = 1.0F;  // corners are rounded to the lattice
+    return voxels * std::max({size.x, size.y, size.z}) + margin > kIntegerExtentVoxels;
+}
+
 }  // namespace gfxrepro::voxelization

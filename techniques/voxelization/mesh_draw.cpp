@@ -1,6 +1,7 @@
 #include "techniques/voxelization/mesh_draw.h"
 
 #include "techniques/voxelization/bindings.h"
+#include "techniques/voxelization/lattice.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -13,6 +14,9 @@ gl::Defines drawDefines(const MeshRequest& request, DrawTarget target) {
         defines[request.fillsByCrossings()   ? "RULE_TOGGLE"
                 : request.rule == Rule::Thin ? "RULE_THIN"
                                              : "RULE_CONSERVATIVE"] = 1;
+        if (isWide(request.mesh, request.box, request.settings.layout.resolution())) {
+            defines["WIDE_LATTICE"] = 1;
+        }
     }
     if (target != DrawTarget::FragmentList) {
         defines["EMIT_INTO_GRID"] = 1;

@@ -266,6 +266,30 @@ TEST_F(RulesTest, AGivenBoxCutsTheMesh) {
     EXPECT_LE(reference::countMissing(rasterized, conservative), rasterized.countFull() / 1000);
 }
 
+/// A tilted triangle far larger than the grid: decided in integers, and in doubles where it is
+/// wider than these take.
+TEST_F(RulesTest, WideTrianglesAreDecidedAsOnTheCpu) {
+    for (const float reach :
+         {3.0F, 60.0F, 900.0F}) {  // of a box of 32 voxels: 200 to 60,000 voxels
+        scene::Mesh mesh;
+        for (const glm::vec3 corner : {glm::vec3(-1.0F, -0.7F, -0.5F), glm::vec3(1.0F, -0.1F, 0.8F),
+                                       glm::vec3(0.0F, 0.8F, -0.3F)}) {
+            mesh.positions.push_back(glm::vec3(0.5F) + reach * corner);
+        }
+        mesh.triangles = {{0, 1, 2}};
+        const scene::Box box{glm::vec3(0.0F), glm::vec3(1.0F)};
+        EXPECT_EQ(isWide(mesh, box, 32), reach > 100.0F) << reach;
+        for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
+            const DenseGrid grid = voxelize(mesh, settings(32, rule), box).grid;
+            const LatticeMesh snappedMesh = snapped(mesh, box, 32);
+            EXPECT_EQ(grid, rule == Rule::Thin ? reference::thin(snappedMesh, 32)
+                                               : reference::conservative(snappedMesh, 32))
+                << reach;
+            EXPECT_GT(grid.countFull(), 0U) << reach;
+        }
+    }
+}
+
 TEST_F(RulesTest, RefusesVerticesTooFarFromTheBox) {
     const scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(3000.0F));
     EXPECT_EQ(test::errorText([&] {
