@@ -187,6 +187,10 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 ? fmt::format(" (transmissive objects left out: {})", transmissiveCount_)
                 : std::string()));
     }
+    if (transmissiveCount_ > 0) {
+        warn(fmt::format("{} of {} objects let light through and are left out", transmissiveCount_,
+                         scene.instances.size()));
+    }
     std::vector<PartOrigin> parts;
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         parts.push_back({static_cast<int>(i), false});

@@ -81,7 +81,7 @@ struct ObjectGeometry {
 using TextureLevels = std::vector<std::vector<image::Image8>>;
 
 /// A scene prepared for reflections. Objects whose material lets light through (transmission above
-/// one half) are left out, and counted: nothing here refracts.
+/// one half) are left out, and a warning says how many: nothing here refracts.
 class ReflectiveScene {
   public:
     /// Texture layers are squares, all of an array of one size, a power of two that holds the

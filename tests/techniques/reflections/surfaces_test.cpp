@@ -115,6 +115,9 @@ TEST(ReflectiveSceneTest, LeavesOutWhatLetsLightThrough) {
                      {.instance = 2, .turnRad = 3.0F}};
     const ReflectiveScene prepared(scene);
     EXPECT_EQ(prepared.transmissiveCount(), 1);
+    EXPECT_EQ(
+        prepared.warnings(),
+        std::vector<std::string>{"scene '': 1 of 3 objects let light through and are left out"});
     EXPECT_EQ(prepared.reflectorCount(), 2);
     ASSERT_EQ(prepared.objects().size(), 2U);
     ASSERT_EQ(prepared.scene().instances.size(), 2U);
