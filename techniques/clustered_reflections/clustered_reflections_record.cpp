@@ -55,7 +55,9 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
         composite_->render(*gbuffer_, *target_, true);
         recorder.image("reflection", composite_->read(), seenFrom(gbuffer.view));
     }
-    if (params_.measuresErrors && hasReflections_) recordErrors(recorder, gbuffer, picture);
+    if (params_.measuresErrors && hasReflections_ && params_.drawsReflections()) {
+        recordErrors(recorder, gbuffer, picture);
+    }
     if (clusteredTracer_) recordClusters(recorder, gbuffer, picture);
 }
 
@@ -173,6 +175,9 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
     const auto fallen = static_cast<std::size_t>(
         std::ranges::count_if(environment, [](std::uint8_t mark) { return mark != 0; }));
     recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
+    if (params_.measuresErrors && hasReflections_)
+        recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
+    if (!params_.drawsReflections()) return;
     if (clustered > 0) recorder.metric("environment_pct", kit::percent(fallen, clustered), "%");
     const ClusteredTracer::Drawn drawn = clusteredTracer_->drawn();
     recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles), "triangle");
@@ -190,8 +195,6 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
             reflections::markedPicture(picture, environment, gbuffer, params_.supersampling),
             seenFrom(gbuffer.view));
     }
-    if (params_.measuresErrors && hasReflections_)
-        recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
 }
 
 /// By reflector id, 1 where its mesh has this name. Throws Error where none has.

@@ -42,7 +42,7 @@ struct ClusteredTracer::Impl {
         } else if (settings.drawing == ImageDrawing::Visible) {
             visible.emplace(shaders, scene, gpuObjects, settings.camera, settings.levelErrorPx);
         } else {
-            oneByOne.emplace(shaders, scene);
+            if (settings.drawing == ImageDrawing::OneByOne) oneByOne.emplace(shaders, scene);
             places = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
         }
         if (settings.ownReflector != OwnReflector::LeftOut) {
@@ -149,7 +149,10 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
         }
     }
     impl_->intersection.clearEnvironmentSamples();
-    if (impl_->oneByOne) {
+    if (impl_->settings.drawing == ImageDrawing::None) {
+        target.radiance.clearToZero();
+        target.distance.clearToZero();
+    } else if (impl_->oneByOne) {
         impl_->drawOneByOne(gbuffer, target, profiler);
     } else {
         impl_->drawAtlas(gbuffer, target, profiler);
@@ -192,7 +195,7 @@ ClusteredTracer::Drawn ClusteredTracer::drawn() const {
     Drawn drawn;
     std::vector<glm::ivec4> sizes = impl_->sizes;
     drawn.triangles = impl_->trianglesDrawn;
-    if (!impl_->oneByOne) {
+    if (impl_->atlas || impl_->visible) {
         const AtlasState state = impl_->atlas ? impl_->atlas->state() : impl_->visible->state();
         const gl::Buffer& places = impl_->atlas ? impl_->atlas->places() : impl_->visible->places();
         sizes = places.read<glm::ivec4>(static_cast<std::size_t>(clusterCount()));

@@ -17,6 +17,7 @@ enum class ImageDrawing {
     OneByOne,  // the thesis: a cluster's image is drawn, used and overwritten by the next
     Atlas,     // all at once side by side: one multi-draw indirect, culled on the device
     Visible,   // as that, of the triangles that may be seen; shaded where rays meet them
+    None,      // not at all: clusters and their cameras alone, nothing is reflected
 };
 
 /// What rays see of the reflector that they leave: [xie2017] Sec. 4.7.4. Planar ones have nothing
@@ -69,7 +70,8 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     const ClusterImages& images() const;
     /// By which the atlas scaled all images to fit them in; 1 one by one.
     float imageScale() const;
-    /// What the images of the last trace() were drawn with, all together.
+    /// What the images of the last trace() were drawn with, all together; nothing where there are
+    /// none.
     struct Drawn {
         std::uint64_t triangles = 0, texels = 0;
         std::uint64_t leftOut = 0;  // objects or triangles for which there was no room

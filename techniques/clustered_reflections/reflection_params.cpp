@@ -25,6 +25,8 @@ constexpr config::Choice<ImageDrawing> kDrawings[] = {
     {ImageDrawing::Atlas, "atlas", "all images side by side, by one multi-draw"},
     {ImageDrawing::Visible, "visible",
      "all images side by side, of the triangles that may be seen, shaded where rays meet them"},
+    {ImageDrawing::None, "none",
+     "nothing is drawn, clusters and their occlusion errors are counted"},
 };
 constexpr config::Choice<March> kMarches[] = {
     {March::Linear, "linear", "a texel a step (algorithm 7)"},
@@ -166,6 +168,12 @@ ReflectionParams::ReflectionParams(config::Params& params)
     if (!measuresErrors) params.refuseGiven({"converged_rays", "errors_of"}, "'errors: true'");
     if (clustered.clustering != Clustering::NormalBins) {
         params.refuseGiven({"least_samples"}, "'clustering: normal_bins'");
+    }
+    if (!drawsReflections()) {
+        params.refuseGiven(
+            {"march", "depth_image_scale", "texels_per_sample", "converged_rays", "pictures"},
+            "'depth_images' other than none");
+        showsPictures = false;  // nor where they are only offered
     }
     if (clustered.drawing != ImageDrawing::Visible) {
         params.refuseGiven({"level_error_px"}, "'depth_images: visible'");

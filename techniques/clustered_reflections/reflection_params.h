@@ -33,6 +33,11 @@ struct ReflectionParams {
     int convergedRays = 0;        // of a second truth of glossy samples; 0: there is none
     bool showsPictures = false;
 
+    /// Whether there are reflections to look at: not where clusters are only counted.
+    bool drawsReflections() const {
+        return method != Method::Clustered || clustered.drawing != ImageDrawing::None;
+    }
+
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit ReflectionParams(config::Params& params);
 };

@@ -58,6 +58,30 @@ TEST(ReflectionParamsTest, ErrorsOfBothWaysAreMeasuredOnAllCameraPaths) {
     }
 }
 
+// A table whose numbers do not depend on the depth images may have others than the thesis draws;
+// its page says so.
+TEST(ReflectionParamsTest, TablesNameTheirOwnDepthImages) {
+    const std::filesystem::path configs = GFXREPRO_CONFIGS;
+    int named = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(configs / "xie2017")) {
+        if (entry.path().extension() != ".yaml") continue;
+        for (const char* const profile : {"quick", "full", "paper"}) {
+            const config::Experiment table =
+                config::loadExperiment(entry.path(), {.profile = profile}, configs);
+            if (table.technique != kClusteredReflections.name) continue;
+            const nlohmann::ordered_json params = table.params.toJson();
+            for (const char* const name : {"depth_images", "depth_image_scale", "level_error_px",
+                                           "texels_per_sample", "least_samples"}) {
+                if (!params.contains(name)) continue;
+                EXPECT_TRUE(std::ranges::count(table.assumptions, name, &config::Assumption::name))
+                    << table.id << ' ' << name;
+                ++named;
+            }
+        }
+    }
+    EXPECT_GE(named, 3 * 3);  // tables 19 and 21, section 4.7.1
+}
+
 TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
@@ -81,6 +105,8 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:38: 'least_samples' needs 'clustering: normal_bins'");
     EXPECT_EQ(message("{depth_images: atlas, level_error_px: 0.5}"),
               "case.yaml:1:39: 'level_error_px' needs 'depth_images: visible'");
+    EXPECT_EQ(message("{depth_images: none, pictures: true}"),
+              "case.yaml:1:32: 'pictures' needs 'depth_images' other than none");
     EXPECT_EQ(message("{method: clustered, thickness: 0.1}"),
               "case.yaml:1:32: 'thickness' needs 'method: screen_space'");
     EXPECT_EQ(message("{method: screen_space, thickness: 0.1}"), "no error");
@@ -226,6 +252,24 @@ TEST_F(ClusteredReflectionsTest, ABowlsHitsOnItselfAreMissingWhereItIsLeftOut) {
                     shown.at("occlusion_hidden_pct") + shown.at("occlusion_near_pct") +
                         shown.at("occlusion_side_pct") + shown.at("occlusion_self_pct"),
                     1e-9);
+    }
+}
+
+TEST_F(ClusteredReflectionsTest, ClustersAndTheirOcclusionErrorsNeedNoDepthImages) {
+    const scene::Scene scene = roomWithMirrors();
+    for (const char* clustering : {"normal_bins", "kd_tree"}) {
+        const Metrics drawn = run(fmt::format("{{clustering: {}}}", clustering), scene);
+        const Metrics none =
+            run(fmt::format("{{clustering: {}, depth_images: none}}", clustering), scene);
+        EXPECT_EQ(passes_, (std::vector<std::string>{"first_pass_and_clustering", "cluster_cameras",
+                                                     "composite"}));
+        for (const auto& [name, value] : none) EXPECT_EQ(value, drawn.at(name)) << name;
+        EXPECT_GT(none.at("clusters"), 1.0);
+        EXPECT_GT(none.at("occlusion_error_pct"), 0.0);
+        for (const char* ofPictures : {"channel_error", "flip_mean", "psnr_db", "environment_pct",
+                                       "drawn_triangles", "texels_per_sample"}) {
+            EXPECT_FALSE(none.contains(ofPictures)) << ofPictures;
+        }
     }
 }
 
