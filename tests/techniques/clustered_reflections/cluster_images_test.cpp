@@ -148,15 +148,8 @@ TEST_F(ClusterImagesTest, WhatLiesBackToBackIsLeftOut) {
 }
 
 TEST_F(ClusterImagesTest, PartsOfOneObjectThatDoNotTouchSeeEachOther) {
-    // A pot and its knob, one mesh.
-    scene::Mesh pot = voxelization::shapes::sphere({0.0F, -0.4F, 0.0F}, 0.4F, 4);
-    const scene::Mesh knob = voxelization::shapes::sphere({0.0F, 0.3F, 0.0F}, 0.2F, 4);
-    const auto count = static_cast<unsigned>(pot.positions.size());
-    pot.positions.insert(pot.positions.end(), knob.positions.begin(), knob.positions.end());
-    for (const glm::uvec3& t : knob.triangles) pot.triangles.push_back(t + count);
-    pot.normals = scene::vertexNormals(pot);
     scene::Scene room = rooms::room();
-    rooms::add(room, pot, glm::vec3(1.0F), rooms::Surface::Mirror);
+    rooms::add(room, rooms::potAndKnob(), glm::vec3(1.0F), rooms::Surface::Mirror);
     // Of what comes behind the six walls.
     const auto seen = [&](const ReflectiveScene& scene, std::uint32_t reflector) {
         ClusterCamera camera = cameraLooking({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});

@@ -54,6 +54,16 @@ scene::Mesh bowl(const glm::vec3& centre, float radius) {
     return mesh;
 }
 
+scene::Mesh potAndKnob() {
+    scene::Mesh pot = shapes::sphere(kPot.centre, kPot.radius, 5);
+    const scene::Mesh knob = shapes::sphere(kKnob.centre, kKnob.radius, 5);
+    const auto count = static_cast<unsigned>(pot.positions.size());
+    pot.positions.insert(pot.positions.end(), knob.positions.begin(), knob.positions.end());
+    for (const glm::uvec3& t : knob.triangles) pot.triangles.push_back(t + count);
+    pot.normals = scene::vertexNormals(pot);
+    return pot;
+}
+
 scene::Scene room(bool hasWallAtMinusZ) {
     scene::Scene scene;
     scene.name = "room";

@@ -21,6 +21,14 @@ scene::Mesh rectangle(const glm::vec3& centre, const glm::vec3& u, const glm::ve
 /// A bowl: the lower part of a sphere, open upwards, with normals inwards.
 scene::Mesh bowl(const glm::vec3& centre, float radius);
 
+/// A pot and, above it, its knob: two balls that do not touch, one mesh.
+struct Ball {
+    glm::vec3 centre;
+    float radius;
+};
+constexpr Ball kPot{{0.0F, -0.4F, 0.0F}, 0.4F}, kKnob{{0.0F, 0.3F, 0.0F}, 0.2F};
+scene::Mesh potAndKnob();
+
 /// Walls with two lights.
 scene::Scene room(bool hasWallAtMinusZ = true);
 /// A block, a ball and a pole on the floor.

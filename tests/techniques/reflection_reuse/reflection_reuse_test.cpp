@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "runner/core/files.h"
+#include "techniques/clustered_reflections/clustered_reflections.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/clustered_reflections/room.h"
 #include "tests/techniques/technique_recorder.h"
@@ -59,10 +60,11 @@ TEST(ReuseParamsTest, MatchesLieBetweenPixelsAndAreResampledOnceByDefault) {
 class ReflectionReuseTest : public test::GlTest {
   protected:
     /// What is recorded of frames 0 … frameCount − 1, each rendered `repeats` times.
-    std::vector<test::MetricRecorder> recorded(const std::string& yaml, const scene::Scene* scene,
-                                               int frameCount, int repeats = 1) {
+    std::vector<test::MetricRecorder> recorded(
+        const std::string& yaml, const scene::Scene* scene, int frameCount, int repeats = 1,
+        const technique::TechniqueInfo& info = kReflectionReuse) {
         config::Params params = paramsOf(yaml);
-        const auto technique = kReflectionReuse.create(params);
+        const auto technique = info.create(params);
         test::NoScenes scenes;
         technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
         technique->setup(context);
@@ -265,6 +267,29 @@ TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
               0.0);
     // Rays along edges may go either way.
     EXPECT_LT(meanOf(recorded("{method: ray_traced}", &room_, 2), "channel_error"), 0.5);
+}
+
+// One tracer behind both chapters: what they ray trace of a frame is the same, each measured by its
+// own technique.
+TEST_F(ReflectionReuseTest, RayTracesAFrameAsClusteredReflectionsDoes) {
+    for (const bool byEmbree : {false, true}) {
+        const test::MetricRecorder here = recorded(
+            fmt::format("{{method: ray_traced, tracer: {}, blend: reflectivity, view: rest, "
+                        "pictures: true}}",
+                        byEmbree ? "embree" : "compute"),
+            &room_, 1)[0];
+        const test::MetricRecorder there =
+            recorded(fmt::format("{{method: {}, supersampling: 1, view: rest, pictures: true}}",
+                                 byEmbree ? "embree" : "ray_traced"),
+                     &room_, 1, 1, clustered_reflections::kClusteredReflections)[0];
+        for (const char* const picture : {"result", "truth"}) {
+            EXPECT_EQ(here.images.at(picture), there.images.at(picture)) << picture << byEmbree;
+        }
+        for (const char* const metric :
+             {"reflective_pct", "channel_error", "channel_error_image"}) {
+            EXPECT_EQ(here.metrics.at(metric), there.metrics.at(metric)) << metric << byEmbree;
+        }
+    }
 }
 
 TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
