@@ -36,7 +36,9 @@ struct CameraSettings {
     float diagonalM = 1.0F;  // of the scene's box: the far plane of mirrors
     reflections::LobeSettings lobe;
     float depthImageScale = 1.0F;  // of w and h (Table 17)
-    int maxSizePx = 2048;          // a side; larger images are scaled down to it
+    /// Departure [xie2017] Sec. 4.4, step 5: a side has no more, as all images share one texture;
+    /// larger ones are scaled down to it, most of all where w and h are doubled (Table 17).
+    int maxSizePx = 2048;
     /// Beyond the paper: images of more texels for each of their cluster's samples are scaled down
     /// to as many. 0: as many as the paper's w × h are.
     float texelsPerSample = 0.0F;

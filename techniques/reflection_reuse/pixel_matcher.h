@@ -21,7 +21,9 @@ enum class Matching {
 
 struct MatchingSettings {
     Matching matching = Matching::FirstOrder;
-    int maxSteps = 256;  // a search that is longer is invalid: no loop of the device is unbounded
+    /// Departure [xie2017] Algorithm 9: a search that is longer is invalid, where the printed one
+    /// has no end but the image's. No loop of the device is unbounded.
+    int maxSteps = 256;
     /// Neighbours whose eye depths differ by more than this share of the nearer one lie on two
     /// sides of a reflector's silhouette.
     float silhouette = 0.05F;

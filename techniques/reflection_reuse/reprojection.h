@@ -57,6 +57,8 @@ class Reprojection {
     /// `radiance` (RGBA16F; the shifted image, or, for the direct comparator, the key frame's own)
     /// forward to the view of `gbuffer`, into `target`; and, into `wanted` (R8UI), 1 where a
     /// reflective sample got nothing valid, else 0. Distances are not known: 0.
+    /// Departure [xie2017] Sec. 5.4.3: it projects by "the conventional method"; here a second
+    /// grid.
     void warp(const ReflectionDepthImage& key, const gl::Texture& radiance,
               const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
               gl::Texture& wanted);
