@@ -64,6 +64,7 @@ Buffer::Buffer(std::size_t sizeBytes) : sizeBytes_(sizeBytes) {
 
 void Buffer::writeBytes(std::size_t offsetBytes, const void* data, std::size_t sizeBytes) {
     GFXREPRO_ASSERT(offsetBytes <= sizeBytes_ && sizeBytes <= sizeBytes_ - offsetBytes);
+    awaitPasses(GL_BUFFER_UPDATE_BARRIER_BIT);
     glNamedBufferSubData(id(), bytes(offsetBytes), bytes(sizeBytes), data);
 }
 
@@ -75,6 +76,8 @@ void Buffer::readBytes(std::size_t offsetBytes, void* data, std::size_t sizeByte
 }
 
 void Buffer::clear(std::uint32_t value) {
+    awaitPasses(GL_BUFFER_UPDATE_BARRIER_BIT);
+    accesses_ = {};  // what follows sees the clear, which is after all that was
     glClearNamedBufferData(id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
@@ -216,6 +219,7 @@ std::size_t Texture::sizeBytes() const {
 }
 
 void Texture::upload(GLenum pixelFormat, GLenum pixelType, const void* data, int level) {
+    awaitPasses(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     const int width = std::max(size_.x >> level, 1), height = std::max(size_.y >> level, 1);
     if (target_ == GL_TEXTURE_2D) {
@@ -255,6 +259,7 @@ image::ImageF Texture::readImage(int channels) const {
 }
 
 void Texture::clearToZero() {
+    awaitPasses(GL_TEXTURE_UPDATE_BARRIER_BIT);
     const bool hasDepth = levelParameter(id(), GL_TEXTURE_DEPTH_SIZE) > 0;
     const bool hasStencil = levelParameter(id(), GL_TEXTURE_STENCIL_SIZE) > 0;
     if (hasDepth && hasStencil) {
@@ -281,6 +286,7 @@ void Texture::setWrap(GLenum mode) {
 }
 
 void Texture::generateMipmaps() {
+    awaitPasses(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGenerateTextureMipmap(id());
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "runner/gl/barrier.h"
 #include "runner/gl/gl.h"
 #include "runner/image/image.h"
 
@@ -81,6 +82,11 @@ class Buffer {
     void bindStorage(GLuint binding) const;
     /// GL_UNIFORM_BUFFER. Throws UnsupportedError beyond GL_MAX_UNIFORM_BLOCK_SIZE.
     void bindUniform(GLuint binding) const;
+    /// What passes did to it; kept by Pass.
+    ShaderAccesses& accesses() const { return accesses_; }
+    /// Commands see what passes wrote: `barrier` is the bit of glMemoryBarrier for their use of it
+    /// (GL_COMMAND_BARRIER_BIT of a draw's arguments, GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT, …).
+    void awaitPasses(GLbitfield barrier) const { accesses_.await(barrier); }
 
   private:
     void writeBytes(std::size_t offsetBytes, const void* data, std::size_t sizeBytes);
@@ -88,6 +94,7 @@ class Buffer {
 
     detail::Name<detail::deleteBuffer> name_;
     std::size_t sizeBytes_ = 0;
+    mutable ShaderAccesses accesses_;
 };
 
 class Texture {
@@ -139,6 +146,10 @@ class Texture {
     void bindImage(GLuint unit, GLenum access) const;
     /// One layer of level 0 of an array.
     void bindImageLayer(GLuint unit, int layer, GLenum access) const;
+    /// What passes did to it; kept by Pass. A view and its texture have one each.
+    ShaderAccesses& accesses() const { return accesses_; }
+    /// As Buffer's; GL_FRAMEBUFFER_BARRIER_BIT before it is drawn into.
+    void awaitPasses(GLbitfield barrier) const { accesses_.await(barrier); }
 
   private:
     void readBytes(GLenum pixelFormat, GLenum pixelType, void* data, std::size_t sizeBytes) const;
@@ -148,6 +159,7 @@ class Texture {
     GLenum target_ = 0;
     GLenum format_ = 0;
     glm::ivec3 size_{0};
+    mutable ShaderAccesses accesses_;
 };
 
 class Framebuffer {

@@ -10,6 +10,7 @@
 
 #include "runner/gl/device.h"
 #include "runner/gl/objects.h"
+#include "runner/gl/pass.h"
 #include "runner/gl/program.h"
 #include "tests/support/support.h"
 #include "tests/support/test_device.h"
@@ -27,17 +28,26 @@ class GlTest : public ::testing::Test {
     /// Writes the shaders (file name → text) and links them.
     gl::Program program(const std::map<std::string, std::string>& files,
                         const gl::Defines& defines = {}) const {
-        std::vector<std::string> names;
-        for (const auto& [name, text] : files) {
-            folder.write(name, text);
-            names.push_back(name);
-        }
-        return gl::Program(library, names, defines);
+        return gl::Program(library, written(files), defines);
+    }
+    gl::Pass pass(const std::map<std::string, std::string>& files,
+                  const gl::Defines& defines = {}) const {
+        return gl::Pass(library, written(files), defines);
     }
 
     gl::Device device = gl::Device::open({testDevice(), gl::DebugOutput::Fatal});
     TemporaryFolder folder;
     gl::ShaderLibrary library{folder.path()};
+
+  private:
+    std::vector<std::string> written(const std::map<std::string, std::string>& files) const {
+        std::vector<std::string> names;
+        for (const auto& [name, text] : files) {
+            folder.write(name, text);
+            names.push_back(name);
+        }
+        return names;
+    }
 };
 
 /// Covers the whole target with one triangle from gl_VertexID alone.
