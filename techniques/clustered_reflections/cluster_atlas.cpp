@@ -29,11 +29,11 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
     GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
     gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 1;
-    cull_ = gl::Program(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
-    draw_ = gl::Program(shaders,
-                        {"clustered_reflections/cluster_image.vert.glsl",
-                         "clustered_reflections/cluster_image.frag.glsl"},
-                        defines);
+    cull_ = gl::Pass(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
+    draw_ = gl::Pass(shaders,
+                     {"clustered_reflections/cluster_image.vert.glsl",
+                      "clustered_reflections/cluster_image.frag.glsl"},
+                     defines);
 
     const std::uint32_t most = objects.mostTrianglesPerDraw();
     std::vector<DrawCommand> commands;
@@ -57,17 +57,16 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
 void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
                         const Clusters& clusters, ClusterImages& target) {
     places_.place(cameras, clusters, settings_, target.sizePx());
-    commands_.bindStorage(kCommandsBinding);
-    pieces_.bindStorage(kPiecesBinding);
-    instances_.bindStorage(kInstancesBinding);
-    families_.bindStorage(kFamiliesBinding);
-    objects.bind();
-    cull_.use();
-    glDispatchCompute(objects.objectCount(), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                    GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    cull_.dispatch({objects.objectCount(), 1, 1}, gl::Resources{{"Commands", commands_},
+                                                                {"Pieces", pieces_},
+                                                                {"Instances", instances_},
+                                                                {"Families", families_}}
+                                                      .with(objects.resources())
+                                                      .with(places_.resources(cameras, clusters)));
 
-    drawInPlaces(target, draw_, vertexArray_, commands_, [&] {
+    instances_.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    const gl::Resources drawn = resources(cameras).with(objects.resources());
+    drawInPlaces(target, draw_, drawn, vertexArray_, commands_, [&] {
         glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
                                     sizeof(DrawCommand));
     });

@@ -12,9 +12,12 @@ class AtlasPainter {
   public:
     AtlasPainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                  const reflections::GpuObjects& objects, const CameraSettings& settings);
-    /// Leaves cameras and places bound for the intersection.
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
               const Clusters& clusters, ClusterImages& target);
+    /// For the intersection.
+    gl::Resources resources(const gl::Buffer& cameras) const {
+        return {{"Cameras", cameras}, {"Places", places()}};
+    }
     const gl::Buffer& places() const { return places_.places(); }
     std::size_t sizeBytes() const;
 
@@ -25,7 +28,7 @@ class AtlasPainter {
     CameraSettings settings_;
     gl::Buffer families_;
     ImagePlaces places_;
-    gl::Program cull_, draw_;
+    gl::Pass cull_, draw_;
     gl::Buffer commands_, instances_, pieces_;
     gl::VertexArray vertexArray_;
     int commandCount_ = 0;

@@ -5,49 +5,20 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-using reflections::kFirstFreeStorage;
-using reflections::kFirstFreeUnit;
-
-constexpr unsigned kGBufferUnit = kFirstFreeUnit;  // four
-constexpr unsigned kClusterUnit = kFirstFreeUnit + 4;
-
-enum Binding : unsigned {
-    kRangesBinding = kFirstFreeStorage,
-    kSamplesBinding,
-    kCountsBinding,
-    kChunksBinding,
-    kArgumentsBinding,
-    kPartialsBinding,
-    kFramesBinding,
-    kCamerasBinding,
-};
-
 /// Samples that one invocation goes through: 32 thousand invocations in a megapixel.
 constexpr int kChunkLength = 32;
 constexpr int kGroupSize = 64;
 constexpr int kScanGroupSize = 256;
-constexpr std::size_t kPartials = 3;            // vec4 a chunk
-constexpr std::size_t kFrameBytes = 5 * 16;     // ClusterFrame of cluster_chunks.glsl
-constexpr GLintptr kClustersArguments = 3 * 4;  // behind those of the passes over chunks
+constexpr std::size_t kPartials = 3;               // vec4 a chunk
+constexpr std::size_t kFrameBytes = 5 * 16;        // ClusterFrame of cluster_chunks.glsl
+constexpr std::size_t kClustersArguments = 3 * 4;  // behind those of the passes over chunks
 
-gl::Program pass(const gl::ShaderLibrary& shaders, const char* name, int groupSize,
-                 bool isWholeImage = false) {
-    const gl::Defines defines{{"GBUFFER_UNIT", kGBufferUnit},
-                              {"CLUSTER_UNIT", kClusterUnit},
-                              {"RANGES_BINDING", kRangesBinding},
-                              {"SAMPLES_BINDING", kSamplesBinding},
-                              {"COUNTS_BINDING", kCountsBinding},
-                              {"CHUNKS_BINDING", kChunksBinding},
-                              {"ARGUMENTS_BINDING", kArgumentsBinding},
-                              {"PARTIALS_BINDING", kPartialsBinding},
-                              {"FRAMES_BINDING", kFramesBinding},
-                              {"CAMERAS_BINDING", kCamerasBinding},
-                              {"CHUNK_LENGTH", kChunkLength},
-                              {"CHUNK_GROUP_SIZE", kGroupSize},
-                              {"GROUP_SIZE", groupSize},
-                              {"MAX_SHIFT", kMaxShift},
-                              {"MAX_SIZE_PX", kMaxCameraSizePx},
-                              {"WHOLE_IMAGE", isWholeImage ? 1 : 0}};
+gl::Pass pass(const gl::ShaderLibrary& shaders, const char* name, int groupSize,
+              bool isWholeImage = false) {
+    const gl::Defines defines{
+        {"CHUNK_LENGTH", kChunkLength},    {"CHUNK_GROUP_SIZE", kGroupSize},
+        {"GROUP_SIZE", groupSize},         {"MAX_SHIFT", kMaxShift},
+        {"MAX_SIZE_PX", kMaxCameraSizePx}, {"WHOLE_IMAGE", isWholeImage ? 1 : 0}};
     return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines};
 }
 
@@ -72,31 +43,38 @@ std::size_t ClusterCameras::sizeBytes() const {
            frames_.sizeBytes() + cameras_.sizeBytes();
 }
 
-void ClusterCameras::overChunks(const gl::Program& program, const reflections::GBuffer& gbuffer) {
-    program.use();
-    gbuffer.bind(program, kGBufferUnit);
-    reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
-    program.setIfActive("maxSlope", settings_.maxSlope);
-    glDispatchComputeIndirect(0);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+gl::Resources ClusterCameras::resources(const Clusters& clusters) const {
+    return {{"Ranges", clusters.ranges}, {"Samples", clusters.samples},
+            {"Counts", clusters.counts}, {"clusterOfSample", clusters.clusterOfSample},
+            {"Chunks", chunks_},         {"Arguments", arguments_},
+            {"Partials", partials_},     {"Frames", frames_},
+            {"Cameras", cameras_}};
 }
 
-void ClusterCameras::overClusters(const gl::Program& program, const reflections::GBuffer& gbuffer) {
-    program.use();
-    gbuffer.bind(program, kGBufferUnit);
-    reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
+void ClusterCameras::overChunks(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
+                                const Clusters& clusters) {
+    reflections::setLobe(pass, settings_.lobe, settings_.diagonalM);
+    pass.setIfActive("maxSlope", settings_.maxSlope);
+    pass.dispatchIndirect(
+        arguments_, 0, gl::Resources{}.with(resources(clusters)).with(gbuffer.resourcesFor(pass)));
+}
+
+void ClusterCameras::overClusters(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
+                                  const Clusters& clusters) {
+    reflections::setLobe(pass, settings_.lobe, settings_.diagonalM);
     const kit::View& view = gbuffer.view;
     const glm::mat3 eyeAxes = glm::transpose(glm::mat3(view.viewFromWorld));
-    program.setIfActive("eyeWorld", view.eyeWorld);
-    program.setIfActive("eyeRight", eyeAxes[0]);
-    program.setIfActive("eyeUp", eyeAxes[1]);
-    program.setIfActive("eyeForward", -eyeAxes[2]);
-    program.setIfActive("leastHeight", kLeastHeight * settings_.diagonalM);
-    program.setIfActive("leastRoom", kLeastRoom * settings_.diagonalM);
-    program.setIfActive("pixelPitch", glm::length(glm::vec3(worldFromPixels(view)[0])));
-    program.setIfActive("isNearAtFarthest", settings_.isNearAtFarthestSample ? 1 : 0);
-    glDispatchComputeIndirect(kClustersArguments);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    pass.setIfActive("eyeWorld", view.eyeWorld);
+    pass.setIfActive("eyeRight", eyeAxes[0]);
+    pass.setIfActive("eyeUp", eyeAxes[1]);
+    pass.setIfActive("eyeForward", -eyeAxes[2]);
+    pass.setIfActive("leastHeight", kLeastHeight * settings_.diagonalM);
+    pass.setIfActive("leastRoom", kLeastRoom * settings_.diagonalM);
+    pass.setIfActive("pixelPitch", glm::length(glm::vec3(worldFromPixels(view)[0])));
+    pass.setIfActive("isNearAtFarthest", settings_.isNearAtFarthestSample ? 1 : 0);
+    pass.dispatchIndirect(
+        arguments_, kClustersArguments,
+        gl::Resources{}.with(resources(clusters)).with(gbuffer.resourcesFor(pass)));
 }
 
 void ClusterCameras::build(const reflections::GBuffer& gbuffer, const Clusters& clusters) {
@@ -106,27 +84,13 @@ void ClusterCameras::build(const reflections::GBuffer& gbuffer, const Clusters& 
     const std::size_t partialsBytes = mostChunks * kPartials * sizeof(glm::vec4);
     if (partials_.sizeBytes() != partialsBytes) partials_ = gl::Buffer(partialsBytes);
 
-    clusters.ranges.bindStorage(kRangesBinding);
-    clusters.samples.bindStorage(kSamplesBinding);
-    clusters.counts.bindStorage(kCountsBinding);
-    chunks_.bindStorage(kChunksBinding);
-    arguments_.bindStorage(kArgumentsBinding);
-    partials_.bindStorage(kPartialsBinding);
-    frames_.bindStorage(kFramesBinding);
-    cameras_.bindStorage(kCamerasBinding);
-    clusters.clusterOfSample.bind(kClusterUnit);
-
-    chunksPass_.use();
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments_.id());
-    overChunks(sums_, gbuffer);
-    overClusters(centres_, gbuffer);
-    overChunks(boxes_, gbuffer);
-    overClusters(eyes_, gbuffer);
-    overChunks(wholeBoxes_, gbuffer);
-    overClusters(camerasPass_, gbuffer);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+    chunksPass_.dispatch({1, 1, 1}, gl::Resources{}.with(resources(clusters)));
+    overChunks(sums_, gbuffer, clusters);
+    overClusters(centres_, gbuffer, clusters);
+    overChunks(boxes_, gbuffer, clusters);
+    overClusters(eyes_, gbuffer, clusters);
+    overChunks(wholeBoxes_, gbuffer, clusters);
+    overClusters(camerasPass_, gbuffer, clusters);
 }
 
 }  // namespace gfxrepro::clustered_reflections

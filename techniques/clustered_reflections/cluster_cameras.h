@@ -82,11 +82,14 @@ class ClusterCameras {
     std::size_t sizeBytes() const;
 
   private:
-    void overChunks(const gl::Program& program, const reflections::GBuffer& gbuffer);
-    void overClusters(const gl::Program& program, const reflections::GBuffer& gbuffer);
+    gl::Resources resources(const Clusters& clusters) const;
+    void overChunks(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
+                    const Clusters& clusters);
+    void overClusters(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
+                      const Clusters& clusters);
 
     CameraSettings settings_;
-    gl::Program chunksPass_, sums_, centres_, boxes_, eyes_, wholeBoxes_, camerasPass_;
+    gl::Pass chunksPass_, sums_, centres_, boxes_, eyes_, wholeBoxes_, camerasPass_;
     gl::Buffer chunks_, arguments_, partials_, frames_, cameras_;
 };
 

@@ -6,19 +6,15 @@ ConcavityPass::ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex,
     gl::Defines defines = imageDefines();
     defines["MARKS_CONVEX"] = marksConvex ? 1 : 0;
     defines["SHOWS_BACK"] = showsBack ? 1 : 0;
-    program_ = gl::Program(shaders, {"clustered_reflections/concavity.comp.glsl"}, defines);
+    pass_ = gl::Pass(shaders, {"clustered_reflections/concavity.comp.glsl"}, defines);
 }
 
 void ConcavityPass::mark(const reflections::GBuffer& gbuffer, const Clusters& clusters,
                          const gl::Buffer& cameras) const {
-    program_.use();
-    gbuffer.bind(program_, kGBufferUnit);
-    cameras.bindStorage(kCamerasBinding);
-    clusters.samples.bindStorage(kSamplesBinding);
-    clusters.ranges.bindStorage(kRangesBinding);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    glDispatchCompute(kMaxClusters, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    pass_.dispatch({kMaxClusters, 1, 1}, gl::Resources{{"Cameras", cameras},
+                                                       {"Samples", clusters.samples},
+                                                       {"Ranges", clusters.ranges}}
+                                             .with(gbuffer.resourcesFor(pass_)));
 }
 
 }  // namespace gfxrepro::clustered_reflections

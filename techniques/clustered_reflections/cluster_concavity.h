@@ -17,7 +17,7 @@ class ConcavityPass {
               const gl::Buffer& cameras) const;
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 }  // namespace gfxrepro::clustered_reflections

@@ -14,33 +14,6 @@ gl::Defines imageDefines() {
     const auto define = [&](const char* name, unsigned value) {
         defines[name] = static_cast<int>(value);
     };
-    define("kCamerasBinding", kCamerasBinding);
-    define("kPlacesBinding", kPlacesBinding);
-    define("kImageCountsBinding", kImageCountsBinding);
-    define("kCommandsBinding", kCommandsBinding);
-    define("kInstancesBinding", kInstancesBinding);
-    define("kPiecesBinding", kPiecesBinding);
-    define("kOrderBinding", kOrderBinding);
-    define("kSamplesBinding", kSamplesBinding);
-    define("kRangesBinding", kRangesBinding);
-    define("kFamiliesBinding", kFamiliesBinding);
-    define("kPartsBinding", kPartsBinding);
-    define("kLevelsBinding", kLevelsBinding);
-    define("kChunksBinding", kChunksBinding);
-    define("kChunkBoxesBinding", kChunkBoxesBinding);
-    define("kTrianglesBinding", kTrianglesBinding);
-    define("kCornersBinding", kCornersBinding);
-    define("kVisibleCornersBinding", kVisibleCornersBinding);
-    define("kPositionsBinding", kPositionsBinding);
-    define("NORMALS_BINDING", kNormalsBinding);
-    define("TEXCOORDS_BINDING", kTexcoordsBinding);
-    define("COLORS_BINDING", kColorsBinding);
-    define("GBUFFER_UNIT", kGBufferUnit);
-    define("ENVIRONMENT_UNIT", kEnvironmentUnit);
-    define("kImageColourUnit", kImageColourUnit);
-    define("kImageDepthUnit", kImageDepthUnit);
-    define("kImageNearestUnit", kImageNearestUnit);
-    define("kClusterOfSampleUnit", kClusterOfSampleUnit);
     define("kMaxClusters", kMaxClusters);
     define("kShowsOwn", kShowsOwn);
     define("kShowsOwnBack", kShowsOwnBack);
@@ -74,7 +47,7 @@ ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx
         levels_.push_back({std::move(nearest), std::move(framebuffer)});
     }
     if (hasPyramid) {
-        pyramid_ = gl::Program(
+        pyramid_ = gl::Pass(
             shaders,
             {"kit/whole_image.vert.glsl", "clustered_reflections/nearest_depths.frag.glsl"},
             imageDefines());
@@ -106,11 +79,10 @@ void ClusterImages::endDrawing(glm::ivec2 sizePx) {
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
     if (!hasPyramid_) return;
-    pyramid_.use();
     none_.bind();
     for (std::size_t level = 0; level < levels_.size(); ++level) {
         levels_[level].framebuffer.bind();
-        (level == 0 ? depth_ : levels_[level - 1].nearest).bind(kImageDepthUnit);
+        pyramid_.use({{"below", level == 0 ? depth_ : levels_[level - 1].nearest}});
         const int tilePx = 4 << level;
         pyramid_.set("factor", level == 0 ? 4 : 2);
         glViewport(0, 0, (sizePx.x + tilePx - 1) / tilePx, (sizePx.y + tilePx - 1) / tilePx);
@@ -118,10 +90,10 @@ void ClusterImages::endDrawing(glm::ivec2 sizePx) {
     }
 }
 
-void ClusterImages::bind() const {
-    colour_.bind(kImageColourUnit);
-    depth_.bind(kImageDepthUnit);
-    nearest_.bind(kImageNearestUnit);
+gl::Resources ClusterImages::resources() const {
+    return {{content_ == TexelContent::Triangles ? "imageTriangles" : "imageColour", colour_},
+            {"imageDepth", depth_},
+            {"imageNearest", nearest_}};
 }
 
 std::size_t ClusterImages::sizeBytes() const {
@@ -166,10 +138,10 @@ OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
     }
     gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 0;
-    program_ = gl::Program(shaders,
-                           {"clustered_reflections/cluster_image.vert.glsl",
-                            "clustered_reflections/cluster_image.frag.glsl"},
-                           defines);
+    pass_ = gl::Pass(shaders,
+                     {"clustered_reflections/cluster_image.vert.glsl",
+                      "clustered_reflections/cluster_image.frag.glsl"},
+                     defines);
 }
 
 std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuObjects& objects,
@@ -201,15 +173,15 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
     return seen;
 }
 
-std::uint64_t OneByOnePainter::draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
+std::uint64_t OneByOnePainter::draw(const reflections::GpuObjects& objects,
+                                    const gl::Buffer& cameras, std::uint32_t cluster,
                                     const ClusterCamera& camera, glm::ivec2 sizePx,
                                     ClusterImages& target) {
     const std::vector<std::uint32_t> seen = objectsSeen(objects, camera);
     target.beginDrawing(sizePx);
     glViewport(0, 0, sizePx.x, sizePx.y);
-    program_.use();
-    program_.set("cluster", cluster);
-    objects.bind();
+    pass_.set("cluster", cluster);
+    pass_.use(gl::Resources{{"Cameras", cameras}}.with(objects.resources()));
     objects.draw(seen);
     target.endDrawing(sizePx);
     std::uint64_t triangles = 0;

@@ -5,45 +5,13 @@
 #include <vector>
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/reflections/gpu_objects.h"
 
 namespace gfxrepro::clustered_reflections {
 
-/// Where the passes of step 3 find what they share; injected by imageDefines().
-enum ImageBinding : unsigned {
-    kCamerasBinding = reflections::kFirstFreeStorage,  // ClusterCamera cameras[]
-    kPlacesBinding,                                    // ivec4 places[]: x, y, width, height
-    kImageCountsBinding,                               // Clusters::counts
-    kCommandsBinding,
-    kInstancesBinding,
-    kPiecesBinding,
-    kOrderBinding,
-    kSamplesBinding,
-    kRangesBinding,
-    // Of images of triangles (VisiblePainter).
-    kPartsBinding,
-    kLevelsBinding,
-    kChunksBinding,
-    kChunkBoxesBinding,
-    kTrianglesBinding,
-    kCornersBinding,
-    kVisibleCornersBinding,
-    kPositionsBinding,
-    kNormalsBinding,
-    kTexcoordsBinding,
-    kColorsBinding,
-    kFamiliesBinding = kSamplesBinding  // no pass reads both
-};
-enum ImageUnit : unsigned {
-    kGBufferUnit = reflections::kFirstFreeUnit,  // four
-    kEnvironmentUnit = kGBufferUnit + 4,
-    kImageColourUnit,
-    kImageDepthUnit,
-    kImageNearestUnit,
-    kClusterOfSampleUnit
-};
+/// What the passes of step 3 share.
 gl::Defines imageDefines();
 /// Those, and what passes that shade surfaces ask of the scene.
 gl::Defines shadedImageDefines(const reflections::ReflectiveScene& scene);
@@ -72,7 +40,7 @@ class ClusterImages {
     /// Back to the defaults that other passes take for granted; makes the pyramid of [0, sizePx).
     void endDrawing(glm::ivec2 sizePx);
     /// For shaders that include cluster_image.glsl.
-    void bind() const;
+    gl::Resources resources() const;
 
     glm::ivec2 sizePx() const { return glm::ivec2(colour_.size()); }
     const gl::Texture& colour() const { return colour_; }  // TexelContent
@@ -91,7 +59,7 @@ class ClusterImages {
     gl::Texture colour_, depth_, nearest_;
     gl::Framebuffer framebuffer_;
     std::vector<Level> levels_;  // of nearest_
-    gl::Program pyramid_;
+    gl::Pass pyramid_;
     gl::VertexArray none_;
 };
 
@@ -115,10 +83,10 @@ constexpr bool areBackToBack(std::uint32_t family, std::uint32_t other) {
 class OneByOnePainter {
   public:
     OneByOnePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene);
-    /// The cameras are bound to kCamerasBinding; `camera` is the cluster's. Returns how many
-    /// triangles were drawn.
-    std::uint64_t draw(const reflections::GpuObjects& objects, std::uint32_t cluster,
-                       const ClusterCamera& camera, glm::ivec2 sizePx, ClusterImages& target);
+    /// `camera` is the cluster's of `cameras`. Returns how many triangles were drawn.
+    std::uint64_t draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
+                       std::uint32_t cluster, const ClusterCamera& camera, glm::ivec2 sizePx,
+                       ClusterImages& target);
     /// Objects in the frustum, without the own reflector unless the camera shows it, and without
     /// what lies back to back with it.
     std::vector<std::uint32_t> objectsSeen(const reflections::GpuObjects& objects,
@@ -126,7 +94,7 @@ class OneByOnePainter {
 
   private:
     std::vector<std::uint32_t> reflectorOfObject_, trianglesOfObject_, families_;
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 }  // namespace gfxrepro::clustered_reflections

@@ -5,6 +5,16 @@
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::clustered_reflections {
+namespace {
+
+gl::Resources shared(const IntersectionInput& input) {
+    return input.gbuffer.resources()
+        .with(input.map.resources())
+        .with(input.images.resources())
+        .with(input.drawn);
+}
+
+}  // namespace
 
 ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
                                          const reflections::ReflectiveScene& scene,
@@ -15,64 +25,53 @@ ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
     defines["MARCH"] = march == March::Hierarchical ? 1 : 0;
     defines["SEES_OWN"] = mayShowOwn ? 1 : 0;
     defines["OF_TRIANGLES"] = content == TexelContent::Triangles ? 1 : 0;
-    all_ = gl::Program(shaders,
-                       {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
-                       defines);
-    one_ = gl::Program(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
+    all_ = gl::Pass(shaders,
+                    {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
+                    defines);
+    one_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
 }
 
-void ClusterIntersection::prepare(const gl::Program& program, const reflections::GBuffer& gbuffer,
-                                  const reflections::EnvironmentMap& map) const {
-    program.use();
-    gbuffer.bind(program, kGBufferUnit);
-    map.bind(kEnvironmentUnit);
-    reflections::setLobe(program, settings_.lobe, settings_.diagonalM);
+void ClusterIntersection::setUniforms(const gl::Pass& pass,
+                                      const reflections::GBuffer& gbuffer) const {
+    gbuffer.setUniforms(pass);
+    reflections::setLobe(pass, settings_.lobe, settings_.diagonalM);
 }
 
 void ClusterIntersection::clearEnvironmentSamples() {
     environmentSamples_.clearToZero();
 }
 
-void ClusterIntersection::intersectAll(const reflections::GBuffer& gbuffer,
-                                       const Clusters& clusters, const ClusterImages& images,
-                                       const reflections::EnvironmentMap& map,
+void ClusterIntersection::intersectAll(const IntersectionInput& input,
                                        reflections::ReflectionTarget& target) {
     const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
         &target.radiance, &target.distance, &environmentSamples_});
     framebuffer.bind();
-    prepare(all_, gbuffer, map);
-    images.bind();
-    clusters.clusterOfSample.bind(kClusterOfSampleUnit);
+    setUniforms(all_, input.gbuffer);
+    all_.use(
+        gl::Resources{{"clusterOfSample", input.clusters.clusterOfSample}}.with(shared(input)));
     wholeImage_.draw();
 }
 
-void ClusterIntersection::beginClusters(const reflections::GBuffer& gbuffer,
-                                        const Clusters& clusters,
-                                        const reflections::EnvironmentMap& map,
-                                        reflections::ReflectionTarget& target) const {
-    prepare(one_, gbuffer, map);
-    clusters.samples.bindStorage(kSamplesBinding);
-    target.radiance.bindImage(0, GL_WRITE_ONLY);
-    target.distance.bindImage(1, GL_WRITE_ONLY);
-    environmentSamples_.bindImage(2, GL_WRITE_ONLY);
+void ClusterIntersection::beginClusters(const reflections::GBuffer& gbuffer) const {
+    setUniforms(one_, gbuffer);
 }
 
 void ClusterIntersection::intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
-                                           const ClusterImages& images) const {
+                                           const IntersectionInput& input,
+                                           reflections::ReflectionTarget& target) const {
     constexpr std::uint32_t kGroupSize = 64;  // of the shader
     const std::uint32_t sampleCount = range.y;
     if (sampleCount == 0) return;
-    one_.use();
-    images.bind();
     one_.set("cluster", cluster);
     one_.set("firstSample", range.x);
     one_.set("sampleCount", sampleCount);
-    glDispatchCompute(kit::groupsFor(sampleCount, kGroupSize), 1, 1);
-}
-
-void ClusterIntersection::endClusters() {
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
-                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    // A sample is of one cluster.
+    one_.dispatch({kit::groupsFor(sampleCount, kGroupSize), 1, 1},
+                  gl::Resources{{"Samples", input.clusters.samples},
+                                gl::Resource("radiance", target.radiance).unordered(),
+                                gl::Resource("distanceM", target.distance).unordered(),
+                                gl::Resource("tookEnvironment", environmentSamples_).unordered()}
+                      .with(shared(input)));
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -13,7 +13,15 @@ enum class March {
                    // holds are stepped over, by a pyramid of nearest depths: the same hits
 };
 
-/// Cameras and places must be bound to kCamerasBinding and kPlacesBinding.
+/// What rays are intersected with; of one frame.
+struct IntersectionInput {
+    const reflections::GBuffer& gbuffer;
+    const Clusters& clusters;
+    const gl::Resources& drawn;  // Cameras, Places, and what else the images' painter hands on
+    const ClusterImages& images;
+    const reflections::EnvironmentMap& map;
+};
+
 class ClusterIntersection {
   public:
     ClusterIntersection(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
@@ -21,19 +29,14 @@ class ClusterIntersection {
                         TexelContent content, glm::ivec2 sizePx);
 
     /// Of all samples in a pass over the G-buffer: images in an atlas.
-    void intersectAll(const reflections::GBuffer& gbuffer, const Clusters& clusters,
-                      const ClusterImages& images, const reflections::EnvironmentMap& map,
-                      reflections::ReflectionTarget& target);
+    void intersectAll(const IntersectionInput& input, reflections::ReflectionTarget& target);
 
     /// Of one cluster's samples after the other, each between the drawing of its image and of the
-    /// next: `range` is its entry of Clusters::ranges. What they share is set up once a frame, and
-    /// what they write is awaited once.
-    void beginClusters(const reflections::GBuffer& gbuffer, const Clusters& clusters,
-                       const reflections::EnvironmentMap& map,
-                       reflections::ReflectionTarget& target) const;
+    /// next: `range` is its entry of Clusters::ranges. What they share is set once a frame.
+    void beginClusters(const reflections::GBuffer& gbuffer) const;
     void intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
-                          const ClusterImages& images) const;
-    static void endClusters();
+                          const IntersectionInput& input,
+                          reflections::ReflectionTarget& target) const;
 
     /// Once a frame, before either.
     void clearEnvironmentSamples();
@@ -41,11 +44,10 @@ class ClusterIntersection {
     std::size_t sizeBytes() const { return environmentSamples_.sizeBytes(); }
 
   private:
-    void prepare(const gl::Program& program, const reflections::GBuffer& gbuffer,
-                 const reflections::EnvironmentMap& map) const;
+    void setUniforms(const gl::Pass& pass, const reflections::GBuffer& gbuffer) const;
 
     CameraSettings settings_;
-    gl::Program all_, one_;
+    gl::Pass all_, one_;
     gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
     kit::WholeImage wholeImage_;
 };

@@ -69,7 +69,10 @@ struct ClusteredTracer::Impl {
             if (visible) visible->draw(*objects, cameraTable, builder.clusters(), images);
         }
         const gl::GpuScope scope(profiler, "intersection");
-        intersection.intersectAll(gbuffer, builder.clusters(), images, map, target);
+        const gl::Buffer& cameraTable = clusterCameras.cameras();
+        const gl::Resources drawn =
+            visible ? visible->resources(*objects, cameraTable) : atlas->resources(cameraTable);
+        intersection.intersectAll({gbuffer, builder.clusters(), drawn, images, map}, target);
     }
 
     /// Step 3 of Algorithm 6 as the thesis has it: "one cluster's images are freed before the
@@ -89,19 +92,22 @@ struct ClusteredTracer::Impl {
             }
             if (!sizes.empty()) places.write(std::span<const glm::ivec4>(sizes));
         }
-        clusterCameras.cameras().bindStorage(kCamerasBinding);
-        places.bindStorage(kPlacesBinding);
-        intersection.beginClusters(gbuffer, builder.clusters(), map, target);
+        const gl::Buffer& cameraTable = clusterCameras.cameras();
+        const gl::Resources drawn =
+            gl::Resources{{"Cameras", cameraTable}, {"Places", places}}.with(objects->resources());
+        intersection.beginClusters(gbuffer);
         for (std::uint32_t cluster = 0; cluster < table.size(); ++cluster) {
             const glm::ivec2 sizePx(sizes[cluster].z, sizes[cluster].w);
             if (sizePx.x > 0) {
                 const gl::GpuScope scope(profiler, "depth_images");
-                trianglesDrawn += oneByOne->draw(*objects, cluster, table[cluster], sizePx, images);
+                trianglesDrawn +=
+                    oneByOne->draw(*objects, cameraTable, cluster, table[cluster], sizePx, images);
             }
             const gl::GpuScope scope(profiler, "intersection");
-            intersection.intersectCluster(cluster, ranges[cluster], images);
+            intersection.intersectCluster(cluster, ranges[cluster],
+                                          {gbuffer, builder.clusters(), drawn, images, map},
+                                          target);
         }
-        ClusterIntersection::endClusters();
     }
 
     ClusteredSettings settings;

@@ -6,38 +6,13 @@
 #include <utility>
 
 #include "runner/core/error.h"
+#include "runner/gl/pass.h"
 #include "techniques/clustered_reflections/bin_tables.h"
 #include "techniques/clustered_reflections/kd_clustering.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
-
-using reflections::kFirstFreeStorage;
-using reflections::kFirstFreeUnit;
-
-enum TextureUnit : unsigned {
-    kSurfaceUnit = kFirstFreeUnit,
-    kNormalUnit,
-    kWantedUnit,
-    kBinUnit,
-};
-/// Storage. A pass binds what it uses; no more than eight bindings are free, so passes that never
-/// meet share them.
-enum Binding : unsigned {
-    kReflectorsBinding = kFirstFreeStorage,
-    kLayoutBinding,
-    kBinsBinding,
-    kCountsBinding,
-    kAreasBinding,
-    kThresholdsBinding,
-    kThetaBordersBinding = kAreasBinding,
-    kPhiBordersBinding = kThresholdsBinding,
-    kMatrixBinding = kAreasBinding,
-    kPiecesBinding = kThresholdsBinding,
-    kRangesBinding,
-    kSamplesBinding,
-};
 
 constexpr int kGroupSize = 64;
 constexpr int kScanGroupSize = 256;
@@ -51,35 +26,16 @@ constexpr int kPieceLength = kMatrixEntries / kScanGroupSize;
 static_assert(kMatrixEntries >= kMaxClusters);
 
 gl::Defines defines(int groupSize) {
-    return {{"SURFACE_UNIT", kSurfaceUnit},
-            {"NORMAL_UNIT", kNormalUnit},
-            {"WANTED_UNIT", kWantedUnit},
-            {"BIN_UNIT", kBinUnit},
-            {"REFLECTORS_BINDING", kReflectorsBinding},
-            {"LAYOUT_BINDING", kLayoutBinding},
-            {"BINS_BINDING", kBinsBinding},
-            {"COUNTS_BINDING", kCountsBinding},
-            {"AREAS_BINDING", kAreasBinding},
-            {"THRESHOLDS_BINDING", kThresholdsBinding},
-            {"THETA_BORDERS_BINDING", kThetaBordersBinding},
-            {"PHI_BORDERS_BINDING", kPhiBordersBinding},
-            {"MATRIX_BINDING", kMatrixBinding},
-            {"PIECES_BINDING", kPiecesBinding},
-            {"RANGES_BINDING", kRangesBinding},
-            {"SAMPLES_BINDING", kSamplesBinding},
-            {"GROUP_SIZE", groupSize},
-            {"STRIP_LENGTH", kStripLength},
-            {"MATRIX_ENTRIES", kMatrixEntries},
-            {"PIECE_LENGTH", kPieceLength},
-            {"MAX_BLOCKS", kMaxBlocks},
-            {"MAX_CLUSTERS", kMaxClusters}};
+    return {{"GROUP_SIZE", groupSize},          {"STRIP_LENGTH", kStripLength},
+            {"MATRIX_ENTRIES", kMatrixEntries}, {"PIECE_LENGTH", kPieceLength},
+            {"MAX_BLOCKS", kMaxBlocks},         {"MAX_CLUSTERS", kMaxClusters}};
 }
 
-gl::Program compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize) {
+gl::Pass compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize) {
     return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines(groupSize)};
 }
 
-gl::Program wholeImage(const gl::ShaderLibrary& shaders, const char* name) {
+gl::Pass wholeImage(const gl::ShaderLibrary& shaders, const char* name) {
     return {shaders,
             {"kit/whole_image.vert.glsl", fmt::format("clustered_reflections/{}.frag.glsl", name)},
             defines(kGroupSize)};
@@ -123,14 +79,15 @@ struct ClusterBuilder::NormalBinPasses {
                     const std::vector<std::uint32_t>& wholes, const Clusters& clusters);
     void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
                const Clusters& clusters);
-    void findBins(const reflections::GBuffer& gbuffer, const Clusters& clusters);
+    void findBins(const reflections::GBuffer& gbuffer, const gl::Texture& wanted,
+                  const Clusters& clusters);
     void sortSamples(const Clusters& clusters);
     std::size_t sizeBytes() const;
 
     glm::ivec2 sizePx, maxBins;
     int reflectorCount;
     std::uint32_t leastSamples;
-    gl::Program areas, bins, assign, count, scan, number, sort, label;
+    gl::Pass areas, bins, assign, count, scan, number, sort, label;
     gl::Buffer areaOfReflector, reflectors, layout, binRecords, matrix, pieces;
     gl::Buffer leastScale, thetaBorders, phiBorders;
     gl::Texture binOfSample;  // R16UI: 1 + bin; 0: not reflective
@@ -176,59 +133,61 @@ ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shader
 
 /// Areas, bins of each reflector, bin of each sample.
 void ClusterBuilder::NormalBinPasses::findBins(const reflections::GBuffer& gbuffer,
+                                               const gl::Texture& wanted,
                                                const Clusters& clusters) {
     areaOfReflector.clear();
-    areaOfReflector.bindStorage(kAreasBinding);
-    areas.use();
-    glDispatchCompute(kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kStripLength),
-                      1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    areas.dispatch(
+        {kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kStripLength), 1},
+        {{"surfaces", gbuffer.surface}, {"wanted", wanted}, {"Areas", areaOfReflector}});
 
-    leastScale.bindStorage(kThresholdsBinding);
-    reflectors.bindStorage(kReflectorsBinding);
-    layout.bindStorage(kLayoutBinding);
-    binRecords.bindStorage(kBinsBinding);
-    clusters.counts.bindStorage(kCountsBinding);
-    bins.use();
     bins.set("reflectorCount", reflectorCount);
     bins.set("maxThetaBins", maxBins.x);
     bins.set("maxPhiBins", maxBins.y);
     bins.set("pixelCount", sizePx.x * sizePx.y);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    bins.dispatch({1, 1, 1}, {{"Areas", areaOfReflector},
+                              {"Thresholds", leastScale},
+                              {"Reflectors", reflectors},
+                              {"SortLayout", layout},
+                              {"Bins", binRecords},
+                              {"Counts", clusters.counts}});
 
-    gbuffer.normal.bind(kNormalUnit);
-    thetaBorders.bindStorage(kThetaBordersBinding);
-    phiBorders.bindStorage(kPhiBordersBinding);
-    assign.use();
+    assign.use({{"surfaces", gbuffer.surface},
+                {"normals", gbuffer.normal},
+                {"wanted", wanted},
+                {"Reflectors", reflectors},
+                {"SortLayout", layout},
+                {"ThetaBorders", thetaBorders},
+                {"PhiBorders", phiBorders}});
     binTarget.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void ClusterBuilder::NormalBinPasses::sortSamples(const Clusters& clusters) {
-    binOfSample.bind(kBinUnit);
     matrix.clear();
-    matrix.bindStorage(kMatrixBinding);
-    pieces.bindStorage(kPiecesBinding);
-    clusters.ranges.bindStorage(kRangesBinding);
-    clusters.samples.bindStorage(kSamplesBinding);
-    count.use();
-    glDispatchCompute(kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    scan.use();
-    glDispatchCompute(kit::groupsFor(kMatrixEntries, kPieceLength), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    number.use();
+    count.dispatch({kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1}, {{"Reflectors", reflectors},
+                                                                    {"SortLayout", layout},
+                                                                    {"binOfSample", binOfSample},
+                                                                    {"Matrix", matrix}});
+    scan.dispatch({kit::groupsFor(kMatrixEntries, kPieceLength), 1, 1},
+                  {{"Matrix", matrix}, {"Pieces", pieces}});
     number.set("leastSamples", leastSamples);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    sort.use();
-    glDispatchCompute(kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1);
+    number.dispatch({1, 1, 1}, {{"Reflectors", reflectors},
+                                {"SortLayout", layout},
+                                {"Matrix", matrix},
+                                {"Pieces", pieces},
+                                {"Bins", binRecords},
+                                {"Ranges", clusters.ranges},
+                                {"Counts", clusters.counts}});
+    sort.dispatch({kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1}, {{"Reflectors", reflectors},
+                                                                   {"SortLayout", layout},
+                                                                   {"binOfSample", binOfSample},
+                                                                   {"Matrix", matrix},
+                                                                   {"Pieces", pieces},
+                                                                   {"Samples", clusters.samples}});
 
-    label.use();
+    label.use({{"binOfSample", binOfSample}, {"Bins", binRecords}});
     clusterTarget.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void ClusterBuilder::NormalBinPasses::build(const reflections::GBuffer& gbuffer,
@@ -239,10 +198,8 @@ void ClusterBuilder::NormalBinPasses::build(const reflections::GBuffer& gbuffer,
     glDisable(GL_SCISSOR_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     noAttributes.bind();
-    gbuffer.surface.bind(kSurfaceUnit);
     // Without a mask the surfaces stand in: they are not 0 where something reflects.
-    (wanted != nullptr ? *wanted : gbuffer.surface).bind(kWantedUnit);
-    findBins(gbuffer, clusters);
+    findBins(gbuffer, wanted != nullptr ? *wanted : gbuffer.surface, clusters);
     sortSamples(clusters);
 }
 

@@ -15,24 +15,22 @@ ImagePlaces::ImagePlaces(const gl::ShaderLibrary& shaders)
       order_(sizeof(AtlasHeader) + kMaxClusters * sizeof(std::uint32_t)) {
     gl::Defines defines = imageDefines();
     defines["PLACE_STEP_PX"] = kPlaceStepPx;
-    program_ = gl::Program(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
+    pass_ = gl::Pass(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
 }
 
 void ImagePlaces::place(const gl::Buffer& cameras, const Clusters& clusters,
                         const CameraSettings& settings, glm::ivec2 atlasSizePx) const {
-    cameras.bindStorage(kCamerasBinding);
-    clusters.counts.bindStorage(kImageCountsBinding);
-    clusters.ranges.bindStorage(kRangesBinding);
-    places_.bindStorage(kPlacesBinding);
-    order_.bindStorage(kOrderBinding);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    program_.use();
-    program_.set("atlasSizePx", atlasSizePx);
-    program_.set("depthImageScale", settings.depthImageScale);
-    program_.set("texelsPerSample", settings.texelsPerSample);
-    program_.set("maxSizePx", std::min(settings.maxSizePx, atlasSizePx.x));
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    pass_.set("atlasSizePx", atlasSizePx);
+    pass_.set("depthImageScale", settings.depthImageScale);
+    pass_.set("texelsPerSample", settings.texelsPerSample);
+    pass_.set("maxSizePx", std::min(settings.maxSizePx, atlasSizePx.x));
+    pass_.dispatch({1, 1, 1},
+                   gl::Resources{{"Ranges", clusters.ranges}}.with(resources(cameras, clusters)));
+}
+
+gl::Resources ImagePlaces::resources(const gl::Buffer& cameras, const Clusters& clusters) const {
+    return {
+        {"Cameras", cameras}, {"Counts", clusters.counts}, {"Places", places_}, {"Order", order_}};
 }
 
 }  // namespace gfxrepro::clustered_reflections

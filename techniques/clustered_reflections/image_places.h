@@ -28,11 +28,12 @@ static_assert(sizeof(AtlasHeader) == 32);
 /// Draws into the images by the commands in `commands`, which `issue` gives to the device;
 /// triangles are cut to their image by clip distances 1 to 4.
 template <class Issue>
-void drawInPlaces(ClusterImages& target, const gl::Program& program,
+void drawInPlaces(ClusterImages& target, const gl::Pass& pass, const gl::Resources& resources,
                   const gl::VertexArray& vertexArray, const gl::Buffer& commands, Issue&& issue) {
     target.beginDrawing(target.sizePx());
-    program.use();
-    program.set("atlasSizePx", glm::vec2(target.sizePx()));
+    pass.set("atlasSizePx", glm::vec2(target.sizePx()));
+    pass.use(resources);
+    commands.awaitPasses(GL_COMMAND_BARRIER_BIT);
     vertexArray.bind();
     for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.id());
@@ -45,10 +46,12 @@ void drawInPlaces(ClusterImages& target, const gl::Program& program,
 class ImagePlaces {
   public:
     explicit ImagePlaces(const gl::ShaderLibrary& shaders);
-    /// Places the images of all clusters in a texture of `atlasSizePx`; leaves cameras, counts,
-    /// places and order bound, and the header's counts 0.
+    /// Places the images of all clusters in a texture of `atlasSizePx`; leaves the header's counts
+    /// 0.
     void place(const gl::Buffer& cameras, const Clusters& clusters, const CameraSettings& settings,
                glm::ivec2 atlasSizePx) const;
+    /// For passes that include atlas.glsl.
+    gl::Resources resources(const gl::Buffer& cameras, const Clusters& clusters) const;
     /// ivec4 a cluster: x, y, width, height; width 0: no image.
     const gl::Buffer& places() const { return places_; }
     /// AtlasHeader, then the clusters in the order in which they are placed.
@@ -58,7 +61,7 @@ class ImagePlaces {
     std::size_t sizeBytes() const { return places_.sizeBytes() + order_.sizeBytes(); }
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Buffer places_, order_;
 };
 

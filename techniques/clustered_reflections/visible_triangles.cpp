@@ -47,15 +47,15 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
       visibleCorners_(std::size_t{kMostVisible} * 3 * sizeof(glm::vec3)),
       restPoses_(objects.poses().begin(), objects.poses().end()) {
     const auto compute = [&](const char* name) {
-        return gl::Program(shaders, {name}, visibleDefines(draws_));
+        return gl::Pass(shaders, {name}, visibleDefines(draws_));
     };
     placeChunks_ = compute("clustered_reflections/place_chunks.comp.glsl");
     list_ = compute("clustered_reflections/list_visible.comp.glsl");
     split_ = compute("clustered_reflections/split_visible.comp.glsl");
-    draw_ = gl::Program(shaders,
-                        {"clustered_reflections/visible_triangle.vert.glsl",
-                         "clustered_reflections/visible_triangle.frag.glsl"},
-                        visibleDefines(draws_));
+    draw_ = gl::Pass(shaders,
+                     {"clustered_reflections/visible_triangle.vert.glsl",
+                      "clustered_reflections/visible_triangle.frag.glsl"},
+                     visibleDefines(draws_));
     vertexArray_.setAttribute(0, visibleCorners_, 3);
     place(objects);
 }
@@ -63,14 +63,15 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
 /// Corners and boxes in the world; once all are there, of the objects that move. What a frame does
 /// must not depend on the one before, or times of its repeats would tell of different work.
 void VisiblePainter::place(const reflections::GpuObjects& objects) {
-    objects.bind();
-    bindSurfaces(objects);
-    chunks_.bindStorage(kChunksBinding);
-    chunkBoxes_.bindStorage(kChunkBoxesBinding);
-    placeChunks_.use();
-    objects.positions().bindStorage(kPositionsBinding);
     const bool isFirst = hasMoved_.empty();
     hasMoved_.resize(objects.objectCount(), 0);
+    placeChunks_.use(gl::Resources{
+        {"Triangles", triangles_},
+        {"Positions", objects.positions()},
+        {"Corners", cornersWorld_},
+        {"ChunkBoxes", chunkBoxes_},
+        {"Chunks",
+         chunks_}}.with(objects.resources()));
     for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
         if (objects.poses()[i] != restPoses_[i]) hasMoved_[i] = 1;
         if (!isFirst && hasMoved_[i] == 0) continue;
@@ -82,12 +83,13 @@ void VisiblePainter::place(const reflections::GpuObjects& objects) {
     }
 }
 
-void VisiblePainter::bindSurfaces(const reflections::GpuObjects& objects) const {
-    triangles_.bindStorage(kTrianglesBinding);
-    cornersWorld_.bindStorage(kCornersBinding);
-    objects.normals().bindStorage(kNormalsBinding);
-    objects.texcoords().bindStorage(kTexcoordsBinding);
-    objects.colors().bindStorage(kColorsBinding);
+gl::Resources VisiblePainter::resources(const reflections::GpuObjects& objects,
+                                        const gl::Buffer& cameras) const {
+    return gl::Resources{{"Cameras", cameras},           {"Places", places()},
+                         {"Triangles", triangles_},      {"Corners", cornersWorld_},
+                         {"Normals", objects.normals()}, {"Texcoords", objects.texcoords()},
+                         {"Colors", objects.colors()}}
+        .with(objects.resources());
 }
 
 void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
@@ -95,25 +97,25 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
     place(objects);
     places_.place(cameras, clusters, settings_, target.sizePx());
 
-    families_.bindStorage(kFamiliesBinding);
-    parts_.bindStorage(kPartsBinding);
-    levelRecords_.bindStorage(kLevelsBinding);
-    visible_.bindStorage(kInstancesBinding);
-    visibleCorners_.bindStorage(kVisibleCornersBinding);
-    list_.use();
+    const gl::Resources placed = places_.resources(cameras, clusters);
     list_.set("partCount", static_cast<std::uint32_t>(levels_.parts.size()));
     list_.set("levelErrorPx", levelErrorPx_);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, places_.order().id());
-    glDispatchComputeIndirect(offsetof(AtlasHeader, groups));
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    commands_.bindStorage(kCommandsBinding);
-    split_.use();
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                    GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    list_.dispatchIndirect(places_.order(), offsetof(AtlasHeader, groups),
+                           gl::Resources{{"Families", families_},
+                                         {"Parts", parts_},
+                                         {"Levels", levelRecords_},
+                                         {"Chunks", chunks_},
+                                         {"ChunkBoxes", chunkBoxes_},
+                                         {"Corners", cornersWorld_},
+                                         {"Visible", visible_},
+                                         {"VisibleCorners", visibleCorners_}}
+                               .with(objects.resources())
+                               .with(placed));
+    split_.dispatch({1, 1, 1}, gl::Resources{{"Commands", commands_}}.with(placed));
 
-    drawInPlaces(target, draw_, vertexArray_, commands_, [&] {
+    visibleCorners_.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    const gl::Resources drawn{{"Visible", visible_}, {"Cameras", cameras}, {"Places", places()}};
+    drawInPlaces(target, draw_, drawn, vertexArray_, commands_, [&] {
         glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<GLsizei>(draws_),
                                   sizeof(DrawCommand));
     });

@@ -18,7 +18,6 @@ class VisiblePainter {
     VisiblePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                    const reflections::GpuObjects& objects, const CameraSettings& settings,
                    float levelErrorPx);
-    /// Leaves cameras and places bound for the intersection, and what bindSurfaces() binds.
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
               const Clusters& clusters, ClusterImages& target);
     std::size_t sizeBytes() const;
@@ -26,17 +25,19 @@ class VisiblePainter {
     /// Of the last draw(); waits for the device.
     AtlasState state() const { return places_.state(); }
     const gl::Buffer& places() const { return places_.places(); }
+    /// For the intersection.
+    gl::Resources resources(const reflections::GpuObjects& objects,
+                            const gl::Buffer& cameras) const;
 
   private:
     void place(const reflections::GpuObjects& objects);
-    void bindSurfaces(const reflections::GpuObjects& objects) const;
 
     CameraSettings settings_;
     float levelErrorPx_;
     std::uint32_t draws_;  // of what is listed
     DetailLevels levels_;
     ImagePlaces places_;
-    gl::Program placeChunks_, list_, split_, draw_;
+    gl::Pass placeChunks_, list_, split_, draw_;
     gl::Buffer families_, parts_, levelRecords_, chunks_, chunkBoxes_;
     gl::Buffer triangles_, cornersWorld_;  // by triangle of all levels
     gl::Buffer commands_, visible_, visibleCorners_;

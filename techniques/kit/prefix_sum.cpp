@@ -4,21 +4,15 @@
 
 namespace gfxrepro::kit {
 
-PrefixSum::PrefixSum(const gl::ShaderLibrary& shaders, const char* type, unsigned binding,
-                     Total total)
-    : program_(shaders, {"kit/prefix_sum.comp.glsl"},
-               {{"GROUP_SIZE", 256U},
-                {"TYPE", std::string(type)},
-                {"VALUES_BINDING", binding},
-                {"TOTAL", total == Total::Behind ? 1 : 0}}),
-      binding_(binding) {}
+PrefixSum::PrefixSum(const gl::ShaderLibrary& shaders, const char* type, Total total)
+    : pass_(shaders, {"kit/prefix_sum.comp.glsl"},
+            {{"GROUP_SIZE", 256U},
+             {"TYPE", std::string(type)},
+             {"TOTAL", total == Total::Behind ? 1 : 0}}) {}
 
 void PrefixSum::run(const gl::Buffer& values, unsigned count) const {
-    values.bindStorage(binding_);
-    program_.use();
-    program_.set("count", count);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    pass_.set("count", count);
+    pass_.dispatch({1, 1, 1}, {{"Values", values}});
 }
 
 }  // namespace gfxrepro::kit

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 
 namespace gfxrepro::kit {
 
@@ -12,17 +12,14 @@ class PrefixSum {
   public:
     enum class Total { None, Behind };
 
-    /// Of values of the GLSL type `type` ("uint", "uvec4"); `binding` is the storage binding that
-    /// it takes.
-    PrefixSum(const gl::ShaderLibrary& shaders, const char* type, unsigned binding, Total total);
+    /// Of values of the GLSL type `type` ("uint", "uvec4").
+    PrefixSum(const gl::ShaderLibrary& shaders, const char* type, Total total);
     /// Of the first `count` values. With Total::Behind the sum of all follows them, for which the
-    /// buffer must have room. Ends with a barrier for storage and for
-    /// reading back.
+    /// buffer must have room.
     void run(const gl::Buffer& values, unsigned count) const;
 
   private:
-    gl::Program program_;
-    unsigned binding_;
+    gl::Pass pass_;
 };
 
 }  // namespace gfxrepro::kit

@@ -14,9 +14,6 @@ constexpr std::uint32_t kIndicesPerDraw = 3U << 16;
 constexpr int kTileWidth = 8, kTileHeight = 4;  // of list_cells.comp.glsl
 constexpr int kGroupSize = 64;
 
-enum Storage : unsigned { kTriangles = 0, kPoints = 1, kCommands = 2 };
-enum Unit : unsigned { kCellsUnit = 0, kSamplesUnit = 1, kGBufferUnit = 2 };
-
 /// As glDrawElementsIndirect has it: of triangles, and of points.
 struct Command {
     std::uint32_t count, instanceCount, firstIndex;
@@ -28,13 +25,7 @@ enum DrawCommand : std::size_t { kTriangleDraw = 0, kPointDraw = 1 };
 constexpr std::uint32_t kIndicesPerCell = 6;
 
 gl::Defines passDefines() {
-    return {{"CELLS_UNIT", static_cast<int>(kCellsUnit)},
-            {"SAMPLES_UNIT", static_cast<int>(kSamplesUnit)},
-            {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
-            {"TRIANGLES_BINDING", static_cast<int>(kTriangles)},
-            {"POINTS_BINDING", static_cast<int>(kPoints)},
-            {"COMMANDS_BINDING", static_cast<int>(kCommands)},
-            {"GROUP_SIZE", kGroupSize},
+    return {{"GROUP_SIZE", kGroupSize},
             {"INDICES_PER_CELL", kIndicesPerCell},
             {"INVALID_OFFSET", kInvalidOffset}};
 }
@@ -66,27 +57,26 @@ CellList::CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool spl
 }
 
 void CellList::classify(const reflections::GBuffer& key, float silhouette) {
-    classify_.use();
-    key.bind(classify_, kGBufferUnit);
     classify_.set("silhouette", silhouette);
+    classify_.use(key.resourcesFor(classify_));
     framebuffer_.bind();
     wholeImage_.draw();
 }
 
 void CellList::list(const gl::Texture& samples, Validity validity, bool onlyPoints) {
     commands_.clear();
-    cells_.bind(kCellsUnit);
-    samples.bind(kSamplesUnit);
-    triangles_.bindStorage(kTriangles);
-    points_.bindStorage(kPoints);
-    commands_.bindStorage(kCommands);
-    list_.use();
     list_.set("holdsOffsets", validity == Validity::Offset ? 1 : 0);
     list_.set("onlyPoints", onlyPoints ? 1 : 0);
     const int tiles = ceilDivided(sizePx_.x, kTileWidth) * ceilDivided(sizePx_.y, kTileHeight);
-    glDispatchCompute(static_cast<GLuint>(ceilDivided(tiles, kGroupSize)), 1, 1);
-    glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
-                    GL_BUFFER_UPDATE_BARRIER_BIT);
+    list_.dispatch({static_cast<GLuint>(ceilDivided(tiles, kGroupSize)), 1, 1},
+                   {{"cells", cells_},
+                    {"samples", samples},
+                    {"Triangles", triangles_},
+                    {"Points", points_},
+                    {"Commands", commands_}});
+    triangles_.awaitPasses(GL_ELEMENT_ARRAY_BARRIER_BIT);
+    points_.awaitPasses(GL_ELEMENT_ARRAY_BARRIER_BIT);
+    commands_.awaitPasses(GL_COMMAND_BARRIER_BIT);
     if (splitsDraws_) drawn_ = counts();
 }
 

@@ -44,7 +44,7 @@ class CellList {
 
     glm::ivec2 sizePx_;
     bool splitsDraws_;
-    gl::Program classify_, list_;
+    gl::Pass classify_, list_;
     gl::Texture cells_;  // R8UI: 1 a reflective sample, 2 the cell to its upper right
     gl::Framebuffer framebuffer_;
     gl::Buffer triangles_, points_, commands_;

@@ -9,9 +9,6 @@ namespace gfxrepro::reflection_reuse {
 
 namespace {
 
-enum Unit : unsigned { kDistanceUnit = 1, kGBufferUnit = 2 };
-enum Storage : unsigned { kMovedBinding = reflections::kFirstFreeStorage };
-
 /// Boxes grow by this share of the scene's diagonal on all sides: a ray ends on the surface, which
 /// often is the box's, give or take rounding.
 constexpr float kBoxMargin = 1e-3F;
@@ -26,21 +23,13 @@ struct Moved {
 static_assert(offsetof(Moved, object) == 32);
 static_assert(sizeof(Moved) == 48);
 
-gl::Defines passDefines() {
-    gl::Defines defines = reflections::objectDefines();
-    defines.merge(gl::Defines{{"DISTANCE_UNIT", static_cast<int>(kDistanceUnit)},
-                              {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
-                              {"MOVED_BINDING", static_cast<int>(kMovedBinding)}});
-    return defines;
-}
-
 }  // namespace
 
 MovedObjects::MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
     : then_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/doubt_moved.frag.glsl"},
-            passDefines()),
+            reflections::objectDefines()),
       now_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_moved.frag.glsl"},
-           passDefines()),
+           reflections::objectDefines()),
       doubtful_(gl::Texture::make2D(GL_R8UI, sizePx)),
       framebuffer_(std::array<const gl::Texture*, 1>{&doubtful_}) {}
 
@@ -66,28 +55,25 @@ bool MovedObjects::find(const reflections::GpuObjects& objects) {
 }
 
 const gl::Texture& MovedObjects::doubtful(const ReflectionDepthImage& key) {
-    moved_.bindStorage(kMovedBinding);
     framebuffer_.bind();
-    then_.use();
-    key.gbuffer.bind(then_, kGBufferUnit);
-    key.reflection.distance.bind(kDistanceUnit);
     then_.set("movedCount", movedCount_);
     then_.set("margin", kBoxMargin * key.diagonalM);
     then_.set("missDistance", key.diagonalM);
+    then_.use(gl::Resources{{"MovedObjects", moved_}, {"distanceM", key.reflection.distance}}.with(
+        key.gbuffer.resourcesFor(then_)));
     wholeImage_.draw();
     return doubtful_;
 }
 
 void MovedObjects::want(const reflections::GpuObjects& objects, const reflections::GBuffer& gbuffer,
                         float diagonalM, gl::Texture& wanted) {
-    objects.bind();
-    moved_.bindStorage(kMovedBinding);
     const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&wanted});
     framebuffer.bind();
-    now_.use();
-    gbuffer.bind(now_, kGBufferUnit);
     now_.set("movedCount", movedCount_);
     now_.set("margin", kBoxMargin * diagonalM);
+    now_.use(gl::Resources{{"MovedObjects", moved_}}
+                 .with(objects.resources())
+                 .with(gbuffer.resourcesFor(now_)));
     wholeImage_.draw();
 }
 

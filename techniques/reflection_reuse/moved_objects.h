@@ -34,7 +34,7 @@ class MovedObjects {
     std::size_t sizeBytes() const;
 
   private:
-    gl::Program then_, now_;
+    gl::Pass then_, now_;
     gl::Texture doubtful_;
     gl::Framebuffer framebuffer_;
     std::vector<glm::mat4> keyPoses_;

@@ -72,7 +72,7 @@ class PixelMatcher {
 
   private:
     MatchingSettings settings_;
-    gl::Program program_, countsProgram_;
+    gl::Pass pass_, countsPass_;
 };
 
 /// The reflection depth image on the host, for the reference and exhaustive searches.

@@ -8,15 +8,6 @@ namespace gfxrepro::reflection_reuse {
 
 namespace {
 
-enum Unit : unsigned {
-    kRadianceUnit = 0,
-    kDistanceUnit = 1,
-    kOffsetsUnit = 2,
-    kDoubtfulUnit = 3,
-    kKeyDepthUnit = 4,
-    kKeySurfaceUnit = 5,
-    kGBufferUnit = 6,  // … + 3
-};
 enum Target { kRadianceTarget = 0, kWantedTarget = 1 };
 
 /// Points mend the rim of the grid: they fall back by this share of their depth, so that they only
@@ -25,15 +16,15 @@ enum Target { kRadianceTarget = 0, kWantedTarget = 1 };
 constexpr float kPointBias = 0.01F;
 
 gl::Defines passDefines() {
-    return {{"RADIANCE_UNIT", static_cast<int>(kRadianceUnit)},
-            {"DISTANCE_UNIT", static_cast<int>(kDistanceUnit)},
-            {"OFFSETS_UNIT", static_cast<int>(kOffsetsUnit)},
-            {"DOUBTFUL_UNIT", static_cast<int>(kDoubtfulUnit)},
-            {"KEY_DEPTH_UNIT", static_cast<int>(kKeyDepthUnit)},
-            {"KEY_SURFACE_UNIT", static_cast<int>(kKeySurfaceUnit)},
-            {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
-            {"kRadianceTarget", static_cast<int>(kRadianceTarget)},
+    return {{"kRadianceTarget", static_cast<int>(kRadianceTarget)},
             {"kWantedTarget", static_cast<int>(kWantedTarget)}};
+}
+
+/// What vertices carry (grid_vertex.glsl).
+gl::Resources carried(const ReflectionDepthImage& key, const gl::Texture& radiance) {
+    return {{"radiance", radiance},
+            {"keyDepth", key.gbuffer.depth},
+            {"keySurface", key.gbuffer.surface}};
 }
 
 void setDrawState() {
@@ -90,32 +81,27 @@ void Reprojection::drawGrid(const gl::Program& program, float pointBias) {
 }
 
 /// Where vertices go in the key frame's image, and how long their paths are (grid_path.glsl).
-void Reprojection::bindPaths(const gl::Program& program, const ReflectionDepthImage& key,
-                             const Offsets& offsets, const gl::Texture* doubtful) const {
-    key.reflection.radiance.bind(kRadianceUnit);
-    key.reflection.distance.bind(kDistanceUnit);
-    offsets.offset.bind(kOffsetsUnit);
-    (doubtful != nullptr ? *doubtful : noDoubts_).bind(kDoubtfulUnit);
-    key.gbuffer.depth.bind(kKeyDepthUnit);
-    key.gbuffer.surface.bind(kKeySurfaceUnit);
+gl::Resources Reprojection::paths(const gl::Program& program, const ReflectionDepthImage& key,
+                                  const Offsets& offsets, const gl::Texture* doubtful) const {
     program.set("hasDoubts", doubtful != nullptr ? 1 : 0);
     program.set("missDistance", key.diagonalM);
     // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
     // at rest.
     program.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
     program.set("maxGrowth", settings_.maxGrowth);
+    return {{"distanceM", key.reflection.distance},
+            {"offsets", offsets.offset},
+            {"doubtful", doubtful != nullptr ? *doubtful : noDoubts_}};
 }
 
-void Reprojection::bindNewView(const gl::Program& program, const ReflectionDepthImage& key,
-                               const reflections::GBuffer& gbuffer) const {
-    key.gbuffer.depth.bind(kKeyDepthUnit);
-    key.gbuffer.surface.bind(kKeySurfaceUnit);
-    gbuffer.bind(program, kGBufferUnit);
+gl::Resources Reprojection::newViewOf(const gl::Program& program, const ReflectionDepthImage& key,
+                                      const reflections::GBuffer& gbuffer) const {
     program.set("clipFromKeyPixels", glm::mat4(glm::dmat4(gbuffer.view.clipFromView) *
                                                glm::dmat4(gbuffer.view.viewFromWorld) *
                                                glm::dmat4(kit::worldFromPixels(key.gbuffer.view))));
     program.set("maxGrowth", settings_.maxGrowth);
     program.set("depthTolerance", settings_.depthTolerance);
+    return gbuffer.resourcesFor(program);
 }
 
 gl::Framebuffer Reprojection::newView(const gl::Texture& radiance,
@@ -133,8 +119,7 @@ void Reprojection::shift(const ReflectionDepthImage& key, const Offsets& offsets
     result.framebuffer.clearColour(kRadianceTarget, glm::vec4(0.0F));
     result.framebuffer.clearDepth(1.0F);
     result.framebuffer.bind();
-    shift_.use();
-    bindPaths(shift_, key, offsets, doubtful);
+    shift_.use(carried(key, key.reflection.radiance).with(paths(shift_, key, offsets, doubtful)));
     drawGrid(shift_, kPointBias);
 }
 
@@ -145,9 +130,7 @@ void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radi
     wantAll(gbuffer, wanted);
     target.distance.clearToZero();
     const gl::Framebuffer framebuffer = newView(target.radiance, wanted);
-    warp_.use();
-    radiance.bind(kRadianceUnit);
-    bindNewView(warp_, key, gbuffer);
+    warp_.use(carried(key, radiance).with(newViewOf(warp_, key, gbuffer)));
     // z/w = a + b/w: what is kPointBias farther on the same ray has b / (1 + kPointBias).
     const float b = gbuffer.view.clipFromView[3].z;
     drawGrid(warp_, b / (1.0F + kPointBias) - b);
@@ -160,9 +143,9 @@ void Reprojection::project(const ReflectionDepthImage& key, const Offsets& offse
     wantAll(gbuffer, wanted);
     target.distance.clearToZero();
     const gl::Framebuffer framebuffer = newView(target.radiance, wanted);
-    project_.use();
-    bindPaths(project_, key, offsets, doubtful);
-    bindNewView(project_, key, gbuffer);
+    project_.use(carried(key, key.reflection.radiance)
+                     .with(paths(project_, key, offsets, doubtful))
+                     .with(newViewOf(project_, key, gbuffer)));
     project_.set("silhouette", settings_.silhouette);
     drawGrid(project_, kPointBias);
 }
@@ -171,8 +154,7 @@ void Reprojection::wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wan
     wanted.clearToZero();
     const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&wanted});
     framebuffer.bind();
-    wantAll_.use();
-    gbuffer.bind(wantAll_, kGBufferUnit);
+    wantAll_.use(gbuffer.resourcesFor(wantAll_));
     reflective_.begin();
     wholeImage_.draw();
     reflective_.end();

@@ -80,16 +80,17 @@ class Reprojection {
 
   private:
     void drawGrid(const gl::Program& program, float pointBias);
-    void bindPaths(const gl::Program& program, const ReflectionDepthImage& key,
-                   const Offsets& offsets, const gl::Texture* doubtful) const;
-    void bindNewView(const gl::Program& program, const ReflectionDepthImage& key,
-                     const reflections::GBuffer& gbuffer) const;
+    // Set uniforms of `program`, and return the rest of what it uses.
+    gl::Resources paths(const gl::Program& program, const ReflectionDepthImage& key,
+                        const Offsets& offsets, const gl::Texture* doubtful) const;
+    gl::Resources newViewOf(const gl::Program& program, const ReflectionDepthImage& key,
+                            const reflections::GBuffer& gbuffer) const;
     /// Cleared and bound.
     gl::Framebuffer newView(const gl::Texture& radiance, const gl::Texture& wanted) const;
 
     ReprojectionSettings settings_;
     CellList cells_;
-    gl::Program shift_, warp_, project_, wantAll_;
+    gl::Pass shift_, warp_, project_, wantAll_;
     gl::Texture depthBuffer_;  // of the warped image
     gl::Texture noDoubts_;     // one texel of 0
     gl::SampleQuery reflective_;

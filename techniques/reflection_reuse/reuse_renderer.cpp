@@ -11,22 +11,6 @@ namespace gfxrepro::reflection_reuse {
 
 namespace {
 
-enum Unit : unsigned {
-    kWantedUnit = 0,
-    kTracedUnit = 1,
-    kTracedDistanceUnit = 2,
-    kReusedUnit = 3,
-    kGBufferUnit = 4
-};
-
-gl::Defines mendDefines() {
-    return {{"WANTED_UNIT", static_cast<int>(kWantedUnit)},
-            {"TRACED_UNIT", static_cast<int>(kTracedUnit)},
-            {"TRACED_DISTANCE_UNIT", static_cast<int>(kTracedDistanceUnit)},
-            {"REUSED_UNIT", static_cast<int>(kReusedUnit)},
-            {"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)}};
-}
-
 kit::View emptyView(glm::ivec2 sizePx) {
     kit::View view;
     view.sizePx = sizePx;
@@ -43,7 +27,7 @@ struct ReuseRenderer::Impl {
     PixelMatcher matcher;
     Reprojection reprojection;
     MovedObjects movedObjects;
-    gl::Program mend;
+    gl::Pass mend;
     ReflectionDepthImage key;
     reflections::GBuffer gbuffer;              // of this frame; of a key frame, `key` has it
     reflections::ReflectionTarget reflection;  // of frames that are not key frames
@@ -69,8 +53,7 @@ struct ReuseRenderer::Impl {
           matcher(shaders, settings.matching),
           reprojection(shaders, settings.reprojection, sizePx),
           movedObjects(shaders, sizePx),
-          mend(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"},
-               mendDefines()),
+          mend(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"}),
           key(emptyView(sizePx), diagonalM),
           gbuffer(emptyView(sizePx)),
           reflection(sizePx),
@@ -153,16 +136,15 @@ struct ReuseRenderer::Impl {
     }
 
     void mendReflections() {
-        mend.use();
-        gbuffer.bind(mend, kGBufferUnit);
-        wanted.bind(kWantedUnit);
-        traced.radiance.bind(kTracedUnit);
-        traced.distance.bind(kTracedDistanceUnit);
         // Read while it is drawn to: OpenGL 4.5 (Sec. 9.3.1) allows it where the texels read and
         // those written are different ones, as reused and recomputed samples are.
-        reflection.radiance.bind(kReusedUnit);
         glTextureBarrier();
         mend.set("seamPx", settings.seamPx);
+        mend.use(gl::Resources{{"wanted", wanted},
+                               {"traced", traced.radiance},
+                               {"tracedDistance", traced.distance},
+                               {"reused", reflection.radiance}}
+                     .with(gbuffer.resourcesFor(mend)));
         reflection.framebuffer.bind();
         recomputed.begin();
         wholeImage.draw();

@@ -6,18 +6,9 @@
 
 namespace gfxrepro::reflections {
 
-namespace {
-
-constexpr unsigned kGBufferUnit = kFirstFreeUnit;
-constexpr unsigned kReflectedUnit = kGBufferUnit + 4;
-
-}  // namespace
-
 Composite::Composite(const gl::ShaderLibrary& shaders, glm::ivec2 outputSizePx, int supersampling,
                      Blend blend)
-    : program_(shaders, {"kit/whole_image.vert.glsl", "reflections/composite.frag.glsl"},
-               {{"GBUFFER_UNIT", static_cast<int>(kGBufferUnit)},
-                {"REFLECTED_UNIT", static_cast<int>(kReflectedUnit)}}),
+    : pass_(shaders, {"kit/whole_image.vert.glsl", "reflections/composite.frag.glsl"}),
       output_(gl::Texture::make2D(GL_RGBA16F, outputSizePx)),
       framebuffer_(std::array<const gl::Texture*, 1>{&output_}),
       supersampling_(supersampling),
@@ -30,12 +21,10 @@ void Composite::render(const GBuffer& gbuffer, const ReflectionTarget& reflectio
     const glm::ivec2 sizePx = glm::ivec2(output_.size()) * supersampling_;
     GFXREPRO_ASSERT(gbuffer.view.sizePx == sizePx);
     GFXREPRO_ASSERT(glm::ivec2(reflection.radiance.size()) == sizePx);
-    program_.use();
-    gbuffer.bind(program_, kGBufferUnit);
-    reflection.radiance.bind(kReflectedUnit);
-    program_.set("supersampling", supersampling_);
-    program_.set("showsReflectionOnly", showsReflectionOnly ? 1 : 0);
-    program_.set("hasFresnel", blend_ == Blend::Fresnel ? 1 : 0);
+    pass_.set("supersampling", supersampling_);
+    pass_.set("showsReflectionOnly", showsReflectionOnly ? 1 : 0);
+    pass_.set("hasFresnel", blend_ == Blend::Fresnel ? 1 : 0);
+    pass_.use(gl::Resources{{"reflected", reflection.radiance}}.with(gbuffer.resourcesFor(pass_)));
     framebuffer_.bind();
     wholeImage_.draw();
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "runner/image/image.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/reflections/reflection_tracer.h"
@@ -32,7 +32,7 @@ class Composite {
     std::size_t sizeBytes() const;
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Texture output_;
     gl::Framebuffer framebuffer_;
     kit::WholeImage wholeImage_;

@@ -60,12 +60,6 @@ float reachOf(std::span<const scene::Box> boxes, const glm::vec3& from) {
     return reach;
 }
 
-gl::Defines tracerDefines() {
-    return {{"ENVIRONMENT_UNIT", static_cast<int>(kFirstFreeUnit)},
-            {"GBUFFER_UNIT", static_cast<int>(kFirstFreeUnit + 1)},
-            {"WANTED_UNIT", static_cast<int>(kFirstFreeUnit + 5)}};
-}
-
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
@@ -77,8 +71,8 @@ EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const Reflectiv
     : centreWorld_(centreWorld),
       cube_(gl::Texture::makeCube(kKeptColourFormat, kFaceSizePx)),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(kFaceSizePx))),
-      program_(shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
-               surfaceDefines(scene)) {}
+      pass_(shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
+            surfaceDefines(scene)) {}
 
 void EnvironmentMap::render(const GpuObjects& objects) {
     ++version_;
@@ -92,17 +86,16 @@ void EnvironmentMap::render(const GpuObjects& objects) {
     glDepthFunc(GL_LESS);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
-    program_.use();
-    program_.set("eyeWorld", centreWorld_);
-    objects.bind();
+    pass_.set("eyeWorld", centreWorld_);
+    pass_.use(objects.resources());
     for (int i = 0; i < 6; ++i) {
         const gl::Framebuffer framebuffer = gl::Framebuffer::ofLayer(cube_, i, &depth_);
         framebuffer.clearColour(0, glm::vec4(keptColour(kBackground), 1.0F));
         framebuffer.clearDepth(1.0F);
         framebuffer.bind();
-        program_.set("clipFromWorld",
-                     clipFromView *
-                         glm::lookAt(centreWorld_, centreWorld_ + kFaces[i].forward, kFaces[i].up));
+        pass_.set("clipFromWorld",
+                  clipFromView *
+                      glm::lookAt(centreWorld_, centreWorld_ + kFaces[i].forward, kFaces[i].up));
         objects.drawAll();
     }
 }
@@ -139,8 +132,7 @@ EnvironmentTracer::EnvironmentTracer(const gl::ShaderLibrary& shaders, Environme
     : map_(map),
       lobe_(lobe),
       diagonalM_(diagonalM),
-      program_(shaders, {"kit/whole_image.vert.glsl", "reflections/environment_trace.frag.glsl"},
-               tracerDefines()) {}
+      pass_(shaders, {"kit/whole_image.vert.glsl", "reflections/environment_trace.frag.glsl"}) {}
 
 void EnvironmentTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
     if (std::equal(poses_.begin(), poses_.end(), objects.poses().begin(), objects.poses().end())) {
@@ -154,12 +146,11 @@ void EnvironmentTracer::update(const GpuObjects& objects, gl::Profiler& profiler
 void EnvironmentTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
                               ReflectionTarget& target, gl::Profiler& profiler) {
     const gl::GpuScope scope(profiler, "intersection");
-    program_.use();
-    setLobe(program_, lobe_, diagonalM_);
-    map_.bind(kFirstFreeUnit);
-    gbuffer.bind(program_, kFirstFreeUnit + 1);
-    program_.set("hasWanted", wanted != nullptr ? 1 : 0);
-    if (wanted != nullptr) wanted->bind(kFirstFreeUnit + 5);
+    setLobe(pass_, lobe_, diagonalM_);
+    pass_.set("hasWanted", wanted != nullptr ? 1 : 0);
+    pass_.use(gl::Resources{{"wanted", wanted != nullptr ? *wanted : gbuffer.surface}}
+                  .with(gbuffer.resourcesFor(pass_))
+                  .with(map_.resources()));
     target.framebuffer.bind();
     wholeImage_.draw();
 }

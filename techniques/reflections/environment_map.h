@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/reflections/reflection_tracer.h"
 
@@ -24,7 +24,8 @@ class EnvironmentMap {
     void render(const GpuObjects& objects);
     /// How often it was drawn: what was read of it is stale when this has grown.
     std::uint64_t version() const { return version_; }
-    void bind(unsigned unit) const { cube_.bind(unit); }
+    /// For passes that include environment.glsl.
+    gl::Resources resources() const { return {{"environmentMap", cube_}}; }
     const gl::Texture& cube() const { return cube_; }
     const glm::vec3& centreWorld() const { return centreWorld_; }
     std::size_t sizeBytes() const;
@@ -43,7 +44,7 @@ class EnvironmentMap {
     std::uint64_t version_ = 0;
     glm::vec3 centreWorld_;
     gl::Texture cube_, depth_;
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 /// Environment mapping: every ray takes the map in its direction, wherever it starts. All rays
@@ -63,7 +64,7 @@ class EnvironmentTracer final : public ReflectionTracer {
     EnvironmentMap& map_;
     LobeSettings lobe_;
     float diagonalM_;
-    gl::Program program_;
+    gl::Pass pass_;
     kit::WholeImage wholeImage_;
     std::vector<glm::mat4> poses_;  // in which the map was drawn
 };

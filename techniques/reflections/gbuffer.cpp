@@ -96,13 +96,16 @@ GBuffer::GBuffer(const kit::View& ofView)
       framebuffer(std::array<const gl::Texture*, 4>{&diffuse, &normal, &depth, &surface},
                   &depthBuffer) {}
 
-void GBuffer::bind(const gl::Program& program, unsigned firstUnit) const {
-    diffuse.bind(firstUnit);
-    normal.bind(firstUnit + 1);
-    depth.bind(firstUnit + 2);
-    surface.bind(firstUnit + 3);
+void GBuffer::setUniforms(const gl::Program& program) const {
     program.setIfActive("gbufferWorldFromPixels", kit::worldFromPixels(view));
     program.setIfActive("gbufferEyeWorld", view.eyeWorld);
+}
+
+gl::Resources GBuffer::resources() const {
+    return {{"gbufferDiffuse", diffuse},
+            {"gbufferNormal", normal},
+            {"gbufferDepth", depth},
+            {"gbufferSurface", surface}};
 }
 
 std::size_t GBuffer::sizeBytes() const {
@@ -111,8 +114,8 @@ std::size_t GBuffer::sizeBytes() const {
 }
 
 GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
-    : program_(shaders, {"reflections/surface.vert.glsl", "reflections/gbuffer.frag.glsl"},
-               gbufferDefines(scene)) {}
+    : pass_(shaders, {"reflections/surface.vert.glsl", "reflections/gbuffer.frag.glsl"},
+            gbufferDefines(scene)) {}
 
 void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
     clear(target);
@@ -121,10 +124,9 @@ void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
     glDepthFunc(GL_LESS);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
-    program_.use();
-    program_.set("clipFromWorld", target.view.clipFromWorld());
-    program_.set("eyeWorld", target.view.eyeWorld);
-    objects.bind();
+    pass_.set("clipFromWorld", target.view.clipFromWorld());
+    pass_.set("eyeWorld", target.view.eyeWorld);
+    pass_.use(objects.resources());
     objects.drawAll();
 }
 

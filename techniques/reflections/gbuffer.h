@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/kit/view.h"
 #include "techniques/reflections/gpu_objects.h"
 
@@ -23,9 +23,13 @@ struct GBuffer {
     gl::Framebuffer framebuffer;
 
     explicit GBuffer(const kit::View& view);
-    /// For shaders that include gbuffer.glsl with GBUFFER_UNIT = firstUnit: four textures, and the
-    /// uniforms of `program`, which is in use.
-    void bind(const gl::Program& program, unsigned firstUnit) const;
+    /// For passes that include gbuffer.glsl.
+    gl::Resources resources() const;
+    void setUniforms(const gl::Program& program) const;
+    gl::Resources resourcesFor(const gl::Program& program) const {
+        setUniforms(program);
+        return resources();
+    }
     std::size_t sizeBytes() const;
 };
 
@@ -37,7 +41,7 @@ class GBufferRenderer {
     void render(const GpuObjects& objects, GBuffer& target) const;
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 /// The same on the host, rows from the bottom. The shaders read it by shaders/gbuffer.glsl.

@@ -8,35 +8,13 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-/// Of the passes that build; kObjectsBinding is 0.
-enum Storage : unsigned {
-    kPositions = 1,
-    kIndices = 2,
-    kObjectOfTriangle = 3,
-    kPairs = 4,
-    kNodes = 5,
-    kTriangles = 6,
-};
-
 constexpr std::uint32_t kGroupSize = 256;
 constexpr std::uint32_t kAxisBits = 10;
 
-gl::Program pass(const gl::ShaderLibrary& shaders, const char* file) {
-    return {shaders,
-            {file},
-            {{"OBJECTS_BINDING", static_cast<unsigned>(kObjectsBinding)},
-             {"POSITIONS_BINDING", static_cast<unsigned>(kPositions)},
-             {"INDICES_BINDING", static_cast<unsigned>(kIndices)},
-             {"OBJECT_OF_TRIANGLE_BINDING", static_cast<unsigned>(kObjectOfTriangle)},
-             {"PAIRS_BINDING", static_cast<unsigned>(kPairs)},
-             {"NODES_BINDING", static_cast<unsigned>(kNodes)},
-             {"TRIANGLES_BINDING", static_cast<unsigned>(kTriangles)},
-             {"GROUP_SIZE", kGroupSize}}};
-}
-
-void dispatchOver(std::uint32_t count) {
-    glDispatchCompute(kit::groupsFor(count, kGroupSize), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
+    gl::Defines defines = objectDefines();
+    defines["GROUP_SIZE"] = kGroupSize;
+    return {shaders, {file}, defines};
 }
 
 }  // namespace
@@ -57,7 +35,6 @@ std::uint32_t GpuBvh::nodeCount() const {
 
 void GpuBvh::build(gl::Profiler& profiler) {
     const gl::GpuScope scope(profiler, "bvh_build");
-    bindForBuilding();
     {
         const gl::GpuScope part(profiler, "bvh_codes");
         writeCodes();
@@ -66,7 +43,6 @@ void GpuBvh::build(gl::Profiler& profiler) {
         const gl::GpuScope part(profiler, "bvh_sort");
         sort_.sort(pairs_, triangleCount(), 3 * kAxisBits);
     }
-    bindForBuilding();  // sorting has bindings of its own, and swaps the pairs
     {
         const gl::GpuScope part(profiler, "bvh_hierarchy");
         linkNodes();
@@ -77,14 +53,15 @@ void GpuBvh::build(gl::Profiler& profiler) {
     }
 }
 
-void GpuBvh::bindForBuilding() const {
-    objects_.records().bindStorage(kObjectsBinding);
-    objects_.positions().bindStorage(kPositions);
-    objects_.indices().bindStorage(kIndices);
-    objects_.objectOfTriangle().bindStorage(kObjectOfTriangle);
-    pairs_.bindStorage(kPairs);
-    nodes_.bindStorage(kNodes);
-    triangles_.bindStorage(kTriangles);
+void GpuBvh::dispatch(const gl::Pass& pass, std::uint32_t count) const {
+    pass.dispatch({kit::groupsFor(count, kGroupSize), 1, 1},
+                  gl::Resources{}.with({{"Objects", objects_.records()},
+                                        {"Positions", objects_.positions()},
+                                        {"Indices", objects_.indices()},
+                                        {"ObjectOfTriangle", objects_.objectOfTriangle()},
+                                        {"Pairs", pairs_},
+                                        {"Nodes", nodes_},
+                                        {"Triangles", triangles_}}));
 }
 
 void GpuBvh::writeCodes() {
@@ -96,33 +73,25 @@ void GpuBvh::writeCodes() {
     for (int axis = 0; axis < 3; ++axis) {
         if (size[axis] > 0.0F) cellsPerMetre[axis] = cells / size[axis];
     }
-    codes_.use();
     codes_.set("triangleCount", triangleCount());
     codes_.set("boundsMin", bounds.min);
     codes_.set("cellsPerMetre", cellsPerMetre);
-    dispatchOver(triangleCount());
+    dispatch(codes_, triangleCount());
 }
 
 void GpuBvh::linkNodes() {
     if (triangleCount() == 1) return;  // growBoxes() makes the root
-    hierarchy_.use();
     hierarchy_.set("triangleCount", static_cast<int>(triangleCount()));
-    dispatchOver(nodeCount());
+    dispatch(hierarchy_, nodeCount());
 }
 
 void GpuBvh::growBoxes() {
-    boxes_.use();
     boxes_.set("triangleCount", triangleCount());
-    dispatchOver(triangleCount());
+    dispatch(boxes_, triangleCount());
 }
 
-void GpuBvh::bind() const {
-    nodes_.bindStorage(kNodesBinding);
-    triangles_.bindStorage(kTrianglesBinding);
-}
-
-gl::Defines GpuBvh::defines() {
-    return {{"BVH_NODES_BINDING", kNodesBinding}, {"BVH_TRIANGLES_BINDING", kTrianglesBinding}};
+gl::Resources GpuBvh::resources() const {
+    return {{"BvhNodes", nodes_}, {"BvhTriangles", triangles_}};
 }
 
 std::size_t GpuBvh::sizeBytes() const {

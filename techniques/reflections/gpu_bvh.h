@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runner/gl/objects.h"
+#include "runner/gl/pass.h"
 #include "runner/gl/profiler.h"
-#include "runner/gl/program.h"
 #include "techniques/reflections/gpu_objects.h"
 #include "techniques/reflections/radix_sort.h"
 
@@ -16,8 +16,6 @@ namespace gfxrepro::reflections {
 /// `RayHit { float t; vec2 barycentric; uint triangle; }`.
 class GpuBvh {
   public:
-    /// Storage bindings that bind() fills.
-    static constexpr unsigned kNodesBinding = 1, kTrianglesBinding = 2;
     /// As bvh_layout.glsl has them (std430).
     struct Node {
         glm::vec3 leftMin;
@@ -44,9 +42,8 @@ class GpuBvh {
     GpuBvh(const gl::ShaderLibrary& shaders, const GpuObjects& objects);
     /// Scopes: `bvh_build` with its parts `bvh_codes`, `bvh_sort`, `bvh_hierarchy`, `bvh_boxes`.
     void build(gl::Profiler& profiler);
-    /// For shaders that include bvh.glsl and have defines().
-    void bind() const;
-    static gl::Defines defines();
+    /// For passes that include bvh.glsl.
+    gl::Resources resources() const;
     std::size_t sizeBytes() const;
 
     std::uint32_t triangleCount() const { return objects_.triangleCount(); }
@@ -57,13 +54,13 @@ class GpuBvh {
     const gl::Buffer& triangles() const { return triangles_; }
 
   private:
-    void bindForBuilding() const;
+    void dispatch(const gl::Pass& pass, std::uint32_t count) const;
     void writeCodes();
     void linkNodes();
     void growBoxes();
 
     const GpuObjects& objects_;
-    gl::Program codes_, hierarchy_, boxes_;
+    gl::Pass codes_, hierarchy_, boxes_;
     RadixSort sort_;
     gl::Buffer pairs_, nodes_, triangles_;
 };

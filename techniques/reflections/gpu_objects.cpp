@@ -145,11 +145,7 @@ gl::Texture layersTexture(const TextureLevels& levels, GLenum format) {
 
 gl::Defines objectDefines() {
     gl::Defines defines = gpu_scene::attributeDefines();
-    defines["LIGHTS_BINDING"] = static_cast<int>(kLightsBinding);
     defines["MAX_LIGHTS"] = kMaxLights;
-    defines["OBJECTS_BINDING"] = static_cast<int>(kObjectsBinding);
-    defines["TEXTURE_LAYERS_UNIT"] = static_cast<int>(kTextureLayersUnit);
-    defines["VALUE_LAYERS_UNIT"] = static_cast<int>(kValueLayersUnit);
     defines["kObjectIndex"] = static_cast<int>(kObjectIndexAttribute);
     return defines;
 }
@@ -211,11 +207,11 @@ void GpuObjects::setPoses(std::span<const glm::mat4> poses) {
     records_.write(std::span<const ObjectRecord>(records));
 }
 
-void GpuObjects::bind() const {
-    records_.bindStorage(kObjectsBinding);
-    lights_.bindUniform(kLightsBinding);
-    textureLayers_.bind(kTextureLayersUnit);
-    valueLayers_.bind(kValueLayersUnit);
+gl::Resources GpuObjects::resources() const {
+    return {{"Objects", records_},
+            {"Lights", lights_},
+            {"textureLayers", textureLayers_},
+            {"valueLayers", valueLayers_}};
 }
 
 std::uint32_t GpuObjects::mostTrianglesPerDraw() const {

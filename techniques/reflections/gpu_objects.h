@@ -6,27 +6,16 @@
 #include <span>
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::reflections {
-
-/// Where shaders find the scene; the names are injected as defines by objectDefines().
-enum Binding : unsigned {
-    kObjectsBinding = 0,     // storage: Object objects[] of shaders/objects.glsl
-    kLightsBinding = 0,      // uniform block of shaders/shading.glsl
-    kTextureLayersUnit = 0,  // sampler2DArray of base colours and emission, sRGB
-    kValueLayersUnit = 1     // sampler2DArray of roughness and metalness, and of normals, linear
-};
-/// Storage bindings and texture units below these belong to the scene and to traversal.
-constexpr unsigned kFirstFreeStorage = 8;
-constexpr unsigned kFirstFreeUnit = 2;
 
 /// Attribute location of the object's index: an instanced unsigned integer, so that one draw names
 /// its object by base instance, and a multi-draw gives each its own.
 constexpr unsigned kObjectIndexAttribute = 4;
 
-/// Defines of gpu_scene::attributeDefines() and of the bindings above.
+/// Defines of gpu_scene::attributeDefines() and of the attribute above.
 gl::Defines objectDefines();
 /// Those, and what shading.glsl asks of the scene.
 gl::Defines surfaceDefines(const ReflectiveScene& scene);
@@ -40,8 +29,9 @@ class GpuObjects {
     /// Puts the objects where they are now: one matrix an object, worldFromMesh.
     void setPoses(std::span<const glm::mat4> poses);
 
-    /// Binds objects, lights and textures for shaders that include objects.glsl and shading.glsl.
-    void bind() const;
+    /// Objects, lights and textures for passes that include objects.glsl and shading.glsl: base
+    /// colours and emission, sRGB, and roughness, metalness and normals, linear.
+    gl::Resources resources() const;
     /// Draws objects with the program in use, in pieces of mostTrianglesPerDraw(). Culling, depth
     /// test and target are the caller's.
     void draw(std::span<const std::uint32_t> objects) const;

@@ -7,23 +7,6 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-/// Storage of the traversal's passes, behind kObjectsBinding and GpuBvh's.
-enum Storage : unsigned {
-    kIndices = 3,
-    kNormals = 4,
-    kTexcoords = 5,
-    kColors = 6,
-    kObjectOfTriangle = 7,
-    kSamples = kFirstFreeStorage,
-    kArguments = kFirstFreeStorage + 1,
-};
-enum Unit : unsigned {
-    kEnvironmentUnit = kFirstFreeUnit,
-    kWantedUnit = kFirstFreeUnit + 1,
-    kGBufferUnit = kFirstFreeUnit + 2,  // … + 5
-};
-enum ImageUnit : unsigned { kRadianceImage = 0, kDistanceImage = 1 };
-
 constexpr int kTileWidth = 8, kTileHeight = 4;  // of ray_list.comp.glsl
 constexpr int kListGroupSize = 64;
 constexpr unsigned kTraceGroupSize = 64;
@@ -39,23 +22,9 @@ static_assert(sizeof(Arguments) == 20);
 
 gl::Defines passDefines(const ReflectiveScene& scene) {
     gl::Defines defines = surfaceDefines(scene);
-    defines.merge(GpuBvh::defines());
-    defines.merge(
-        gl::Defines{{"INDICES_BINDING", static_cast<unsigned>(kIndices)},
-                    {"NORMALS_BINDING", static_cast<unsigned>(kNormals)},
-                    {"TEXCOORDS_BINDING", static_cast<unsigned>(kTexcoords)},
-                    {"COLORS_BINDING", static_cast<unsigned>(kColors)},
-                    {"OBJECT_OF_TRIANGLE_BINDING", static_cast<unsigned>(kObjectOfTriangle)},
-                    {"SAMPLES_BINDING", static_cast<unsigned>(kSamples)},
-                    {"ARGUMENTS_BINDING", static_cast<unsigned>(kArguments)},
-                    {"ENVIRONMENT_UNIT", static_cast<unsigned>(kEnvironmentUnit)},
-                    {"WANTED_UNIT", static_cast<unsigned>(kWantedUnit)},
-                    {"GBUFFER_UNIT", static_cast<unsigned>(kGBufferUnit)},
-                    {"RADIANCE_IMAGE", static_cast<unsigned>(kRadianceImage)},
-                    {"DISTANCE_IMAGE", static_cast<unsigned>(kDistanceImage)},
-                    {"LIST_GROUP_SIZE", kListGroupSize},
-                    {"TRACE_GROUP_SIZE", kTraceGroupSize},
-                    {"MAX_GROUPS", kMaxGroups}});
+    defines.merge(gl::Defines{{"LIST_GROUP_SIZE", kListGroupSize},
+                              {"TRACE_GROUP_SIZE", kTraceGroupSize},
+                              {"MAX_GROUPS", kMaxGroups}});
     return defines;
 }
 
@@ -99,38 +68,33 @@ void GpuRayTracer::listSamples(const GBuffer& gbuffer, const gl::Texture* wanted
         static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(std::uint32_t);
     if (samples_.sizeBytes() != bytes) samples_ = gl::Buffer(bytes);
     arguments_.clear();  // on the device: a write would wait for the last frame's trace
-    samples_.bindStorage(kSamples);
-    arguments_.bindStorage(kArguments);
-    list_.use();
-    gbuffer.bind(list_, kGBufferUnit);
-    if (wanted) wanted->bind(kWantedUnit);
     list_.set("isChosen", wanted ? 1 : 0);
     setLobe(list_, lobe_, diagonalM_);
     const int tiles = ceilDivided(size.x, kTileWidth) * ceilDivided(size.y, kTileHeight);
-    glDispatchCompute(static_cast<GLuint>(ceilDivided(tiles, kListGroupSize)), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    list_.dispatch({static_cast<GLuint>(ceilDivided(tiles, kListGroupSize)), 1, 1},
+                   gl::Resources{{"Samples", samples_},
+                                 {"Arguments", arguments_},
+                                 {"wanted", wanted ? *wanted : gbuffer.surface}}
+                       .with(gbuffer.resourcesFor(list_)));
 }
 
 void GpuRayTracer::traceSamples(const GBuffer& gbuffer, ReflectionTarget& target) {
-    objects_.bind();
-    bvh_.bind();
-    objects_.indices().bindStorage(kIndices);
-    objects_.normals().bindStorage(kNormals);
-    objects_.texcoords().bindStorage(kTexcoords);
-    objects_.colors().bindStorage(kColors);
-    objects_.objectOfTriangle().bindStorage(kObjectOfTriangle);
-    map_.bind(kEnvironmentUnit);
-    target.radiance.bindImage(kRadianceImage, GL_WRITE_ONLY);
-    target.distance.bindImage(kDistanceImage, GL_WRITE_ONLY);
-    trace_.use();
-    gbuffer.bind(trace_, kGBufferUnit);
     setLobe(trace_, lobe_, diagonalM_);
     trace_.set("rayStart", EmbreeTracer::kStart * diagonalM_);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments_.id());
-    glDispatchComputeIndirect(0);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                    GL_SHADER_STORAGE_BARRIER_BIT);
+    trace_.dispatchIndirect(arguments_, 0,
+                            gl::Resources{{"Samples", samples_},
+                                          {"Arguments", arguments_},
+                                          {"Indices", objects_.indices()},
+                                          {"Normals", objects_.normals()},
+                                          {"Texcoords", objects_.texcoords()},
+                                          {"Colors", objects_.colors()},
+                                          {"ObjectOfTriangle", objects_.objectOfTriangle()},
+                                          {"radianceImage", target.radiance},
+                                          {"distanceImage", target.distance}}
+                                .with(objects_.resources())
+                                .with(bvh_.resources())
+                                .with(map_.resources())
+                                .with(gbuffer.resourcesFor(trace_)));
 }
 
 std::size_t GpuRayTracer::sizeBytes() const {

@@ -37,7 +37,7 @@ class GpuRayTracer final : public ReflectionTracer {
     LobeSettings lobe_;
     float diagonalM_;
     GpuBvh bvh_;
-    gl::Program list_, trace_;
+    gl::Pass list_, trace_;
     gl::Buffer samples_, arguments_;
 };
 

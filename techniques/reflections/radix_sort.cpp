@@ -10,8 +10,6 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-enum Storage : unsigned { kPairs = 0, kSortedPairs = 1, kCounts = 2 };
-
 constexpr std::uint32_t kDigits = 1U << RadixSort::kDigitBits;
 static_assert(kDigits == RadixSort::kGroupSize, "an invocation scans one digit of its tile");
 
@@ -19,13 +17,10 @@ std::uint32_t tilesOf(std::uint32_t count) {
     return kit::groupsFor(count, RadixSort::kTileSize);
 }
 
-gl::Program pass(const gl::ShaderLibrary& shaders, const char* file) {
+gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
     return {shaders,
             {file},
-            {{"PAIRS_BINDING", static_cast<unsigned>(kPairs)},
-             {"SORTED_PAIRS_BINDING", static_cast<unsigned>(kSortedPairs)},
-             {"COUNTS_BINDING", static_cast<unsigned>(kCounts)},
-             {"GROUP_SIZE", RadixSort::kGroupSize},
+            {{"GROUP_SIZE", RadixSort::kGroupSize},
              {"KEYS_PER_INVOCATION", RadixSort::kKeysPerInvocation},
              {"DIGITS", kDigits}}};
 }
@@ -34,7 +29,7 @@ gl::Program pass(const gl::ShaderLibrary& shaders, const char* file) {
 
 RadixSort::RadixSort(const gl::ShaderLibrary& shaders, std::uint32_t capacity)
     : count_(pass(shaders, "reflections/sort_count.comp.glsl")),
-      scan_(shaders, "uint", kCounts, kit::PrefixSum::Total::None),
+      scan_(shaders, "uint", kit::PrefixSum::Total::None),
       scatter_(pass(shaders, "reflections/sort_scatter.comp.glsl")),
       otherPairs_(std::max(capacity, 1U) * sizeof(glm::uvec2)),
       counts_(std::max(tilesOf(capacity), 1U) * kDigits * sizeof(std::uint32_t)) {}
@@ -44,21 +39,15 @@ void RadixSort::sort(gl::Buffer& pairs, std::uint32_t count, std::uint32_t keyBi
     GFXREPRO_ASSERT(count * sizeof(glm::uvec2) <= pairs.sizeBytes() && keyBits <= 32);
     if (count == 0) return;
     const std::uint32_t tiles = tilesOf(count);
-    counts_.bindStorage(kCounts);
     for (std::uint32_t shift = 0; shift < keyBits; shift += kDigitBits) {
-        pairs.bindStorage(kPairs);
-        otherPairs_.bindStorage(kSortedPairs);
-        count_.use();
         count_.set("pairCount", count);
         count_.set("shift", shift);
-        glDispatchCompute(tiles, 1, 1);
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        count_.dispatch({tiles, 1, 1}, {{"Pairs", pairs}, {"Counts", counts_}});
         scan_.run(counts_, tiles * kDigits);
-        scatter_.use();
         scatter_.set("pairCount", count);
         scatter_.set("shift", shift);
-        glDispatchCompute(tiles, 1, 1);
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        scatter_.dispatch({tiles, 1, 1},
+                          {{"Pairs", pairs}, {"SortedPairs", otherPairs_}, {"Counts", counts_}});
         std::swap(pairs, otherPairs_);
     }
 }

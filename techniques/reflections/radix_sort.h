@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/kit/prefix_sum.h"
 
 namespace gfxrepro::reflections {
@@ -29,9 +29,9 @@ class RadixSort {
     std::size_t sizeBytes() const;
 
   private:
-    gl::Program count_;
+    gl::Pass count_;
     kit::PrefixSum scan_;
-    gl::Program scatter_;
+    gl::Pass scatter_;
     gl::Buffer otherPairs_, counts_;
 };
 

@@ -24,7 +24,7 @@ class ScreenSpaceTracer final : public ReflectionTracer {
     const EnvironmentMap& map_;
     LobeSettings lobe_;
     float diagonalM_, thicknessM_;
-    gl::Program program_;
+    gl::Pass pass_;
     kit::WholeImage wholeImage_;
 };
 

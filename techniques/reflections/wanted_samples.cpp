@@ -9,10 +9,6 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-enum Storage : unsigned { kPlaces = 0, kSamples = 1 };
-enum ImageUnit : unsigned { kRadianceImage = 0, kDistanceImage = 1 };
-constexpr unsigned kGBufferUnit = 0;  // … 3
-
 constexpr std::size_t kGroupSize = 64;
 /// Work groups along one axis that every device takes; beyond, invocations take several samples.
 constexpr std::size_t kMostGroups = 65535;
@@ -26,19 +22,14 @@ struct ListedSample {
 };
 static_assert(sizeof(ListedSample) == 28);
 
-gl::Defines passDefines() {
-    return {{"PLACES_BINDING", static_cast<unsigned>(kPlaces)},
-            {"SAMPLES_BINDING", static_cast<unsigned>(kSamples)},
-            {"GBUFFER_UNIT", kGBufferUnit},
-            {"RADIANCE_IMAGE", static_cast<unsigned>(kRadianceImage)},
-            {"DISTANCE_IMAGE", static_cast<unsigned>(kDistanceImage)},
-            {"GROUP_SIZE", static_cast<unsigned>(kGroupSize)}};
+gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
+    return {shaders, {file}, {{"GROUP_SIZE", static_cast<unsigned>(kGroupSize)}}};
 }
 
-void dispatch(const gl::Program& program, std::size_t count) {
-    program.set("count", static_cast<std::uint32_t>(count));
+void dispatch(const gl::Pass& pass, std::size_t count, const gl::Resources& resources) {
+    pass.set("count", static_cast<std::uint32_t>(count));
     const std::size_t groups = std::min((count + kGroupSize - 1) / kGroupSize, kMostGroups);
-    glDispatchCompute(static_cast<GLuint>(groups), 1, 1);
+    pass.dispatch({groups, 1, 1}, resources);
 }
 
 /// The places whose mask is not 0 and their four neighbours, each once.
@@ -66,8 +57,8 @@ std::vector<std::uint32_t> withNeighbours(const std::vector<std::uint8_t>& mask,
 }  // namespace
 
 WantedSamples::WantedSamples(const gl::ShaderLibrary& shaders)
-    : read_(shaders, {"reflections/wanted_samples.comp.glsl"}, passDefines()),
-      write_(shaders, {"reflections/found_samples.comp.glsl"}, passDefines()) {}
+    : read_(pass(shaders, "reflections/wanted_samples.comp.glsl")),
+      write_(pass(shaders, "reflections/found_samples.comp.glsl")) {}
 
 std::vector<std::uint32_t> WantedSamples::read(const GBuffer& gbuffer, const gl::Texture& wanted,
                                                HostGBuffer& host) const {
@@ -86,12 +77,9 @@ std::vector<std::uint32_t> WantedSamples::read(const GBuffer& gbuffer, const gl:
 
     const gl::Buffer placesBuffer = gl::Buffer::of(places);
     const gl::Buffer samples(places.size() * sizeof(ListedSample));
-    placesBuffer.bindStorage(kPlaces);
-    samples.bindStorage(kSamples);
-    read_.use();
-    gbuffer.bind(read_, kGBufferUnit);
-    dispatch(read_, places.size());
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    dispatch(read_, places.size(),
+             gl::Resources{{"Places", placesBuffer}, {"Samples", samples}}.with(
+                 gbuffer.resourcesFor(read_)));
     const std::vector<ListedSample> listed = samples.read<ListedSample>(places.size());
     for (std::size_t k = 0; k < places.size(); ++k) {
         const std::size_t i = places[k];
@@ -115,12 +103,10 @@ void WantedSamples::write(std::span<const FoundSample> found, ReflectionTarget& 
         }
     }
     const gl::Buffer samples = gl::Buffer::of(rounded);
-    samples.bindStorage(kSamples);
-    target.radiance.bindImage(kRadianceImage, GL_WRITE_ONLY);
-    target.distance.bindImage(kDistanceImage, GL_WRITE_ONLY);
-    write_.use();
-    dispatch(write_, rounded.size());
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    dispatch(write_, rounded.size(),
+             {{"Samples", samples},
+              {"radianceImage", target.radiance},
+              {"distanceImage", target.distance}});
 }
 
 }  // namespace gfxrepro::reflections

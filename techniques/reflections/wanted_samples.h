@@ -34,7 +34,7 @@ class WantedSamples {
     void write(std::span<const FoundSample> found, ReflectionTarget& target) const;
 
   private:
-    gl::Program read_, write_;
+    gl::Pass read_, write_;
 };
 
 }  // namespace gfxrepro::reflections

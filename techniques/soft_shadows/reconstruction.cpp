@@ -88,7 +88,7 @@ Reconstructor::Reconstructor(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       classify_(pass(shaders, "classify", settings)),
       count_(pass(shaders, "count", settings)),
-      scan_(shaders, "uvec4", kRunBinding, kit::PrefixSum::Total::Behind),
+      scan_(shaders, "uvec4", kit::PrefixSum::Total::Behind),
       emit_(pass(shaders, "emit", settings)) {}
 
 void Reconstructor::resizeScratch(glm::ivec2 imageSizePx) {
@@ -131,6 +131,7 @@ glm::uvec4 Reconstructor::countElements(const kit::View& view) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 
     scan_.run(runs_, static_cast<unsigned>(runCount));
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     const std::size_t totalsAt = static_cast<std::size_t>(runCount) * sizeof(glm::uvec4);
     return runs_.read<glm::uvec4>(1, totalsAt).front();
 }

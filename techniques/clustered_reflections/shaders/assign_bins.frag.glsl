@@ -5,15 +5,15 @@
 #include "clustered_reflections/clustering.glsl"
 #include "reflections/octahedral.glsl"
 
-layout(binding = SURFACE_UNIT) uniform usampler2D surfaces;
-layout(binding = NORMAL_UNIT) uniform sampler2D normals;
-layout(binding = WANTED_UNIT) uniform usampler2D wanted;
+uniform usampler2D surfaces;
+uniform sampler2D normals;
+uniform usampler2D wanted;
 // (cos, sin) of border k = 1 … n − 1 between n theta bins, for n = 2, 3, … one after the other.
-layout(std430, binding = THETA_BORDERS_BINDING) restrict readonly buffer ThetaBorders {
+layout(std430) restrict readonly buffer ThetaBorders {
     vec2 thetaBorders[];
 };
 // cos · |cos| of the borders between n phi bins, in the same order.
-layout(std430, binding = PHI_BORDERS_BINDING) restrict readonly buffer PhiBorders {
+layout(std430) restrict readonly buffer PhiBorders {
     float phiBorders[];
 };
 

@@ -1,16 +1,16 @@
 // What the passes of the atlas share.
 #include "clustered_reflections/cluster_camera.glsl"
 
-layout(std430, binding = kCamerasBinding) readonly buffer Cameras {
+layout(std430) readonly buffer Cameras {
     ClusterCamera cameras[];
 };
-layout(std430, binding = kImageCountsBinding) readonly buffer Counts {
+layout(std430) readonly buffer Counts {
     uint clusterCount;
 };
-layout(std430, binding = kPlacesBinding) buffer Places {
+layout(std430) buffer Places {
     ivec4 places[];  // x, y, width, height; width 0: no image
 };
-layout(std430, binding = kOrderBinding) buffer Order {
+layout(std430) buffer Order {
     float atlasScale;  // by which all images were scaled to fit
     uint instanceCount, instancesLeftOut, trianglesDrawn;
     uint clusterGroups[3], orderPadding;

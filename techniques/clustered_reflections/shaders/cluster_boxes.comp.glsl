@@ -9,9 +9,9 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples { uint samples[]; };
+layout(std430) restrict readonly buffer Samples { uint samples[]; };
 #if WHOLE_IMAGE
-layout(binding = CLUSTER_UNIT) uniform usampler2D clusterOfSample;
+uniform usampler2D clusterOfSample;
 #endif
 
 uniform float maxSlope;  // of rays to n_c

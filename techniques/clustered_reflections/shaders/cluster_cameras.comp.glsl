@@ -6,7 +6,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = CAMERAS_BINDING) restrict writeonly buffer Cameras {
+layout(std430) restrict writeonly buffer Cameras {
     ClusterCamera cameras[];
 };
 

@@ -8,7 +8,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples { uint samples[]; };
+layout(std430) restrict readonly buffer Samples { uint samples[]; };
 
 uniform vec3 eyeRight;
 uniform vec3 eyeUp;

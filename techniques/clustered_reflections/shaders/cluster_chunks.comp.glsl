@@ -6,8 +6,8 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = COUNTS_BINDING) restrict readonly buffer Counts { uint counts[]; };
-layout(std430, binding = ARGUMENTS_BINDING) restrict writeonly buffer Arguments {
+layout(std430) restrict readonly buffer Counts { uint counts[]; };
+layout(std430) restrict writeonly buffer Arguments {
     uint arguments[];  // of two glDispatchComputeIndirect
 };
 

@@ -1,12 +1,12 @@
 // What the passes of ClusterCameras share: the sorted samples cut into chunks of CHUNK_LENGTH, each
 // of one cluster; what is worked out of a chunk (partials), and a cluster's frame.
 
-layout(std430, binding = RANGES_BINDING) restrict readonly buffer Ranges { uvec4 ranges[]; };
-layout(std430, binding = CHUNKS_BINDING) restrict buffer Chunks {
+layout(std430) restrict readonly buffer Ranges { uvec4 ranges[]; };
+layout(std430) restrict buffer Chunks {
     uint clusterCount;
     uint firstChunk[];  // of each cluster; one more: all chunks
 };
-layout(std430, binding = PARTIALS_BINDING) restrict buffer Partials { vec4 partials[]; };
+layout(std430) restrict buffer Partials { vec4 partials[]; };
 
 // Coordinates in the frame: origin P_c, axes x and y on the fitting plane, z along n_c.
 struct ClusterFrame {
@@ -16,7 +16,7 @@ struct ClusterFrame {
     vec4 normal;  // n_c; w: z of the sample farthest behind the fitting plane, at most 0
     vec4 eye;     // xyz: e_0, then e_c, in the frame (z negative); w: flags
 };
-layout(std430, binding = FRAMES_BINDING) restrict buffer Frames { ClusterFrame frames[]; };
+layout(std430) restrict buffer Frames { ClusterFrame frames[]; };
 
 const int kPartials = 3;  // a chunk
 

@@ -9,7 +9,7 @@
 #include "reflections/surface.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
-layout(std430, binding = kCamerasBinding) readonly buffer Cameras {
+layout(std430) readonly buffer Cameras {
     ClusterCamera cameras[];
 };
 

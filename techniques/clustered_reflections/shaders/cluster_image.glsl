@@ -5,12 +5,12 @@
 #include "clustered_reflections/march.glsl"
 
 #if OF_TRIANGLES
-layout(binding = kImageColourUnit) uniform usampler2D imageTriangles;  // bit 31: own reflector
+uniform usampler2D imageTriangles;  // bit 31: own reflector
 #else
-layout(binding = kImageColourUnit) uniform sampler2D imageColour;  // keptColour(); a: own reflector
+uniform sampler2D imageColour;  // keptColour(); a: own reflector
 #endif
-layout(binding = kImageDepthUnit) uniform sampler2D imageDepth;    // near distance / z
-layout(binding = kImageNearestUnit) uniform sampler2D imageNearest;
+uniform sampler2D imageDepth;    // near distance / z
+uniform sampler2D imageNearest;
 
 float storedAt(ivec2 texel) {
     return texelFetch(imageDepth, texel, 0).r;

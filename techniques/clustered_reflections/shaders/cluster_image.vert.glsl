@@ -10,7 +10,7 @@ layout(location = kTexcoord) in vec2 texcoord;
 layout(location = kColor) in vec3 color;
 layout(location = kObjectIndex) in uint instance;
 
-layout(std430, binding = kCamerasBinding) readonly buffer Cameras {
+layout(std430) readonly buffer Cameras {
     ClusterCamera cameras[];
 };
 
@@ -25,7 +25,7 @@ out SurfacePoint {
 flat out uint clusterOfPoint;
 
 #if ATLAS
-layout(std430, binding = kPlacesBinding) readonly buffer Places {
+layout(std430) readonly buffer Places {
     ivec4 places[];
 };
 uniform vec2 atlasSizePx;

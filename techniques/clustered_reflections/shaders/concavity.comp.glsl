@@ -11,13 +11,13 @@ layout(local_size_x = kThreads) in;
 // Enough for a sign.
 const uint kMostSamples = 1024u;
 
-layout(std430, binding = kCamerasBinding) buffer Cameras {
+layout(std430) buffer Cameras {
     ClusterCamera cameras[];
 };
-layout(std430, binding = kSamplesBinding) readonly buffer Samples {
+layout(std430) readonly buffer Samples {
     uint samples[];  // x | y << 16
 };
-layout(std430, binding = kRangesBinding) readonly buffer Ranges {
+layout(std430) readonly buffer Ranges {
     uvec4 ranges[];  // first sample, sample count, reflector, flags
 };
 

@@ -5,8 +5,8 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = BIN_UNIT) uniform usampler2D binOfSample;
-layout(std430, binding = MATRIX_BINDING) restrict buffer Matrix { uint matrix[]; };  // bin by bin
+uniform usampler2D binOfSample;
+layout(std430) restrict buffer Matrix { uint matrix[]; };  // bin by bin
 
 void main() {
     uint block = gl_GlobalInvocationID.x;

@@ -1,5 +1,5 @@
 // What a cluster's image leaves out: what lies outside of a plane, and the other side of its reflector.
-layout(std430, binding = kFamiliesBinding) readonly buffer Families {
+layout(std430) readonly buffer Families {
     uint families[];  // reflectorFamilies() of cluster_images.h
 };
 

@@ -13,6 +13,6 @@ struct DetailChunk {
     uint firstTriangle, triangleCount, object, padding;
 };
 
-layout(std430, binding = kChunksBinding) readonly buffer Chunks {
+layout(std430) readonly buffer Chunks {
     DetailChunk chunks[];
 };

@@ -3,7 +3,7 @@
 #include "reflections/surface_at.glsl"
 #include "clustered_reflections/triangle_corners.glsl"
 
-layout(std430, binding = kTrianglesBinding) readonly buffer Triangles {
+layout(std430) readonly buffer Triangles {
     uvec4 triangles[];  // vertices, object
 };
 

@@ -4,14 +4,14 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = kSamplesBinding) readonly buffer Samples {
+layout(std430) readonly buffer Samples {
     uint samples[];  // x | y << 16
 };
 uniform uint cluster, firstSample, sampleCount;
 
-layout(binding = 0, rgba16f) uniform writeonly image2D radiance;
-layout(binding = 1, r32f) uniform writeonly image2D distanceM;
-layout(binding = 2, r8ui) uniform writeonly uimage2D tookEnvironment;
+layout(rgba16f) uniform writeonly image2D radiance;
+layout(r32f) uniform writeonly image2D distanceM;
+layout(r8ui) uniform writeonly uimage2D tookEnvironment;
 
 void main() {
     if (gl_GlobalInvocationID.x >= sampleCount) return;

@@ -3,7 +3,7 @@
 // atlas.
 #include "clustered_reflections/intersect.glsl"
 
-layout(binding = kClusterOfSampleUnit) uniform usampler2D clusterOfSample;
+uniform usampler2D clusterOfSample;
 
 layout(location = 0) out vec4 radiance;
 layout(location = 1) out float distanceM;

@@ -5,10 +5,10 @@
 #include "clustered_reflections/cluster_camera.glsl"
 #include "clustered_reflections/cluster_image.glsl"
 
-layout(std430, binding = kCamerasBinding) readonly buffer Cameras {
+layout(std430) readonly buffer Cameras {
     ClusterCamera cameras[];
 };
-layout(std430, binding = kPlacesBinding) readonly buffer Places {
+layout(std430) readonly buffer Places {
     ivec4 places[];  // x, y, width, height of the images; width 0: none
 };
 

@@ -1,8 +1,8 @@
 #version 450 core
 // 1 + cluster of each sample, from its bin; 0 where nothing reflects.
 
-layout(binding = BIN_UNIT) uniform usampler2D binOfSample;
-layout(std430, binding = BINS_BINDING) restrict readonly buffer Bins { uint clusterOfBin[]; };
+uniform usampler2D binOfSample;
+layout(std430) restrict readonly buffer Bins { uint clusterOfBin[]; };
 
 layout(location = 0) out uint clusterPlusOne;
 

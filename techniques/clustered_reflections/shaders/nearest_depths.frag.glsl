@@ -2,7 +2,7 @@
 // One level of the pyramid of nearest depths: the nearest of factor × factor texels below, 4 × 4 of
 // the image itself, then 2 × 2. Depths are near distance / z, so the nearest is the largest.
 
-layout(binding = kImageDepthUnit) uniform sampler2D below;
+uniform sampler2D below;
 uniform int factor;
 
 layout(location = 0) out float nearest;

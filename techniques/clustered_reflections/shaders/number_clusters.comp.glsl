@@ -7,12 +7,12 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = MATRIX_BINDING) restrict readonly buffer Matrix { uint matrix[]; };
-layout(std430, binding = PIECES_BINDING) restrict coherent buffer Pieces { uint pieces[]; };
+layout(std430) restrict readonly buffer Matrix { uint matrix[]; };
+layout(std430) restrict coherent buffer Pieces { uint pieces[]; };
 // In: the reflector of each bin. Out: its cluster.
-layout(std430, binding = BINS_BINDING) restrict buffer Bins { uint bins[]; };
-layout(std430, binding = RANGES_BINDING) restrict coherent buffer Ranges { uvec4 ranges[]; };
-layout(std430, binding = COUNTS_BINDING) restrict buffer Counts {
+layout(std430) restrict buffer Bins { uint bins[]; };
+layout(std430) restrict coherent buffer Ranges { uvec4 ranges[]; };
+layout(std430) restrict buffer Counts {
     uint clusterCount, sampleCount, visibleCount;
 };
 

@@ -6,16 +6,16 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = kTrianglesBinding) readonly buffer Triangles {
+layout(std430) readonly buffer Triangles {
     uvec4 triangles[];  // vertices, object
 };
-layout(std430, binding = kPositionsBinding) readonly buffer Positions {
+layout(std430) readonly buffer Positions {
     float positions[];
 };
-layout(std430, binding = kCornersBinding) writeonly buffer Corners {
+layout(std430) writeonly buffer Corners {
     float corners[];  // nine a triangle
 };
-layout(std430, binding = kChunkBoxesBinding) writeonly buffer ChunkBoxes {
+layout(std430) writeonly buffer ChunkBoxes {
     vec4 chunkBoxes[];  // centre, half size
 };
 

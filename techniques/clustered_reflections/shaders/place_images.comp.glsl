@@ -8,7 +8,7 @@
 const uint kThreads = 256u;
 layout(local_size_x = kThreads) in;
 
-layout(std430, binding = kRangesBinding) readonly buffer Ranges {
+layout(std430) readonly buffer Ranges {
     uvec4 ranges[];  // first sample, sample count, reflector, flags
 };
 

@@ -4,9 +4,9 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = SURFACE_UNIT) uniform usampler2D surfaces;
-layout(binding = WANTED_UNIT) uniform usampler2D wanted;
-layout(std430, binding = AREAS_BINDING) restrict buffer Areas { uint areas[]; };
+uniform usampler2D surfaces;
+uniform usampler2D wanted;
+layout(std430) restrict buffer Areas { uint areas[]; };
 
 void main() {
     ivec2 size = textureSize(surfaces, 0);

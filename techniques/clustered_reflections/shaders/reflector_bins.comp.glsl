@@ -6,13 +6,13 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = AREAS_BINDING) restrict readonly buffer Areas { uint areas[]; };
+layout(std430) restrict readonly buffer Areas { uint areas[]; };
 // The least scale for k + 2 bins, over the gain: theta's, then phi's (see BinTables).
-layout(std430, binding = THRESHOLDS_BINDING) restrict readonly buffer Thresholds {
+layout(std430) restrict readonly buffer Thresholds {
     float leastScale[];
 };
-layout(std430, binding = BINS_BINDING) restrict writeonly buffer Bins { uint reflectorOfBin[]; };
-layout(std430, binding = COUNTS_BINDING) restrict writeonly buffer Counts {
+layout(std430) restrict writeonly buffer Bins { uint reflectorOfBin[]; };
+layout(std430) restrict writeonly buffer Counts {
     uint clusterCount, sampleCount, visibleCount;
 };
 

@@ -5,8 +5,8 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = MATRIX_BINDING) restrict buffer Matrix { uint matrix[]; };
-layout(std430, binding = PIECES_BINDING) restrict writeonly buffer Pieces { uint pieces[]; };
+layout(std430) restrict buffer Matrix { uint matrix[]; };
+layout(std430) restrict writeonly buffer Pieces { uint pieces[]; };
 
 const uint kShare = uint(PIECE_LENGTH / GROUP_SIZE);
 

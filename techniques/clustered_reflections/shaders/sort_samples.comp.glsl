@@ -5,10 +5,10 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = BIN_UNIT) uniform usampler2D binOfSample;
-layout(std430, binding = MATRIX_BINDING) restrict buffer Matrix { uint matrix[]; };
-layout(std430, binding = PIECES_BINDING) restrict readonly buffer Pieces { uint pieces[]; };
-layout(std430, binding = SAMPLES_BINDING) restrict writeonly buffer Samples { uint samples[]; };
+uniform usampler2D binOfSample;
+layout(std430) restrict buffer Matrix { uint matrix[]; };
+layout(std430) restrict readonly buffer Pieces { uint pieces[]; };
+layout(std430) restrict writeonly buffer Samples { uint samples[]; };
 
 void main() {
     uint block = gl_GlobalInvocationID.x;

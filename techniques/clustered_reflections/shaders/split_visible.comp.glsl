@@ -7,7 +7,7 @@ layout(local_size_x = DRAWS) in;
 struct DrawCommand {
     uint count, instanceCount, first, baseInstance;
 };
-layout(std430, binding = kCommandsBinding) writeonly buffer Commands {
+layout(std430) writeonly buffer Commands {
     DrawCommand commands[];
 };
 

@@ -1,6 +1,6 @@
 // Triangles of all levels of detail in the world, as place_chunks.comp.glsl puts them there.
 
-layout(std430, binding = kCornersBinding) readonly buffer Corners {
+layout(std430) readonly buffer Corners {
     float corners[];  // nine a triangle
 };
 

@@ -4,7 +4,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = VALUES_BINDING) restrict buffer Values { TYPE values[]; };
+layout(std430) restrict buffer Values { TYPE values[]; };
 
 uniform uint count;
 

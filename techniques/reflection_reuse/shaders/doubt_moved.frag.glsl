@@ -3,7 +3,7 @@
 #include "reflection_reuse/moved_objects.glsl"
 #include "reflections/gbuffer.glsl"
 
-layout(binding = DISTANCE_UNIT) uniform sampler2D distanceM;
+uniform sampler2D distanceM;
 uniform float missDistance;  // of rays that left the scene
 
 layout(location = 0) out uint doubtful;

@@ -2,9 +2,9 @@
 // path ([xie2017] Sec. 5.4.2).
 #include "reflection_reuse/grid_vertex.glsl"
 
-layout(binding = DISTANCE_UNIT) uniform sampler2D distanceM;
-layout(binding = OFFSETS_UNIT) uniform sampler2D offsets;
-layout(binding = DOUBTFUL_UNIT) uniform usampler2D doubtful;
+uniform sampler2D distanceM;
+uniform sampler2D offsets;
+uniform usampler2D doubtful;
 uniform bool hasDoubts;
 uniform float missDistance;  // of rays that left the scene
 uniform float longestPath;

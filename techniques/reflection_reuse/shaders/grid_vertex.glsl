@@ -1,8 +1,8 @@
 // A vertex of a grid over the key frame: a pixel centre, by gl_VertexID.
 
-layout(binding = RADIANCE_UNIT) uniform sampler2D radiance;
-layout(binding = KEY_DEPTH_UNIT) uniform sampler2D keyDepth;
-layout(binding = KEY_SURFACE_UNIT) uniform usampler2D keySurface;
+uniform sampler2D radiance;
+uniform sampler2D keyDepth;
+uniform usampler2D keySurface;
 uniform float pointBias;
 
 out GridPoint {

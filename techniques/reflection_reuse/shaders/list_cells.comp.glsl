@@ -6,21 +6,21 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = CELLS_UNIT) uniform usampler2D cells;  // of classify_cells.frag.glsl
-layout(binding = SAMPLES_UNIT) uniform sampler2D samples;
+uniform usampler2D cells;  // of classify_cells.frag.glsl
+uniform sampler2D samples;
 uniform bool holdsOffsets;  // `samples` does; else a = 1 is valid
 uniform bool onlyPoints;
 
-layout(std430, binding = TRIANGLES_BINDING) restrict writeonly buffer Triangles {
+layout(std430) restrict writeonly buffer Triangles {
     uint triangles[];
 };
-layout(std430, binding = POINTS_BINDING) restrict writeonly buffer Points { uint points[]; };
+layout(std430) restrict writeonly buffer Points { uint points[]; };
 struct Command {
     uint count, instanceCount, firstIndex;
     int baseVertex;
     uint baseInstance;
 };
-layout(std430, binding = COMMANDS_BINDING) restrict buffer Commands {
+layout(std430) restrict buffer Commands {
     Command triangleDraw, pointDraw;
 };
 

@@ -5,9 +5,9 @@
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
 
-layout(binding = OFFSET_UNIT) uniform sampler2D offsets;
-layout(binding = STEPS_UNIT) uniform usampler2D stepCounts;
-layout(std430, binding = COUNTS_BINDING) restrict buffer Counts {
+uniform sampler2D offsets;
+uniform usampler2D stepCounts;
+layout(std430) restrict buffer Counts {
     uint reflectiveSamples;
     uint invalidSamples;
     uint steps;

@@ -4,10 +4,10 @@
 // they are mixed with those.
 #include "reflections/gbuffer.glsl"
 
-layout(binding = WANTED_UNIT) uniform usampler2D wanted;
-layout(binding = TRACED_UNIT) uniform sampler2D traced;
-layout(binding = TRACED_DISTANCE_UNIT) uniform sampler2D tracedDistance;
-layout(binding = REUSED_UNIT) uniform sampler2D reused;  // read where wanted is 0, written where 1
+uniform usampler2D wanted;
+uniform sampler2D traced;
+uniform sampler2D tracedDistance;
+uniform sampler2D reused;  // read where wanted is 0, written where 1
 uniform int seamPx;
 
 layout(location = 0) out vec4 radiance;

@@ -6,7 +6,7 @@ struct Moved {
     uint object;
 };
 
-layout(std430, binding = MOVED_BINDING) restrict readonly buffer MovedObjects { Moved moved[]; };
+layout(std430) restrict readonly buffer MovedObjects { Moved moved[]; };
 
 uniform uint movedCount;
 uniform float margin;  // metres, on all sides of a box

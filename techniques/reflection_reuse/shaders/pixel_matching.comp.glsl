@@ -8,10 +8,10 @@
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
 
-layout(binding = DISTANCE_UNIT) uniform sampler2D travelDistances;  // s.r, metres; 0: left the scene
-layout(binding = PREVIOUS_UNIT) uniform sampler2D previousOffsets;
-layout(binding = OFFSET_IMAGE, rg16f) restrict writeonly uniform image2D offsets;
-layout(binding = STEPS_IMAGE, r8ui) restrict writeonly uniform uimage2D stepCounts;
+uniform sampler2D travelDistances;  // s.r, metres; 0: left the scene
+uniform sampler2D previousOffsets;
+layout(rg16f) restrict writeonly uniform image2D offsets;
+layout(r8ui) restrict writeonly uniform uimage2D stepCounts;
 
 uniform vec3 eyeWorld;  // E_cur
 uniform float diagonalM;

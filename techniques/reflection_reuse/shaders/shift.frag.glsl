@@ -2,7 +2,7 @@
 // Shift, fragments ([xie2017] Sec. 5.4.2): the intermediate image of Fig. 36 C.
 #include "reflection_reuse/grid_fragment.glsl"
 
-layout(binding = KEY_SURFACE_UNIT) uniform usampler2D keySurface;
+uniform usampler2D keySurface;
 
 layout(location = kRadianceTarget) out vec4 shifted;  // a: 1 valid, 0 invalid
 

@@ -1,10 +1,10 @@
 // Closest hits by the BVH that GpuBvh builds and binds.
 #include "reflections/bvh_layout.glsl"
 
-layout(std430, binding = BVH_NODES_BINDING) restrict readonly buffer BvhNodes {
+layout(std430) restrict readonly buffer BvhNodes {
     BvhNode bvhNodes[];
 };
-layout(std430, binding = BVH_TRIANGLES_BINDING) restrict readonly buffer BvhTriangles {
+layout(std430) restrict readonly buffer BvhTriangles {
     BvhTriangle bvhTriangles[];
 };
 

@@ -7,9 +7,9 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = PAIRS_BINDING) restrict readonly buffer Pairs { uvec2 pairs[]; };
-layout(std430, binding = NODES_BINDING) coherent restrict buffer Nodes { BvhNode nodes[]; };
-layout(std430, binding = TRIANGLES_BINDING) restrict buffer Triangles { BvhTriangle triangles[]; };
+layout(std430) restrict readonly buffer Pairs { uvec2 pairs[]; };
+layout(std430) coherent restrict buffer Nodes { BvhNode nodes[]; };
+layout(std430) restrict buffer Triangles { BvhTriangle triangles[]; };
 
 uniform uint triangleCount;
 

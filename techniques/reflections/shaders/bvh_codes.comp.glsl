@@ -5,7 +5,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = PAIRS_BINDING) restrict writeonly buffer Pairs {
+layout(std430) restrict writeonly buffer Pairs {
     uvec2 pairs[];  // code, triangle
 };
 

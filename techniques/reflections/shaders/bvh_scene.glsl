@@ -1,11 +1,11 @@
 // The scene's triangles as the passes that build a BVH read them, in the objects' present poses.
 #include "reflections/objects.glsl"
 
-layout(std430, binding = POSITIONS_BINDING) restrict readonly buffer Positions {
+layout(std430) restrict readonly buffer Positions {
     float positions[];
 };
-layout(std430, binding = INDICES_BINDING) restrict readonly buffer Indices { uint indices[]; };
-layout(std430, binding = OBJECT_OF_TRIANGLE_BINDING) restrict readonly buffer ObjectOfTriangle {
+layout(std430) restrict readonly buffer Indices { uint indices[]; };
+layout(std430) restrict readonly buffer ObjectOfTriangle {
     uint objectOfTriangle[];
 };
 

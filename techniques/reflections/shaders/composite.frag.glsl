@@ -3,7 +3,7 @@
 // of an output pixel.
 #include "reflections/gbuffer.glsl"
 
-layout(binding = REFLECTED_UNIT) uniform sampler2D reflected;  // rgb_n
+uniform sampler2D reflected;  // rgb_n
 uniform int supersampling;
 uniform int showsReflectionOnly;
 uniform int hasFresnel;

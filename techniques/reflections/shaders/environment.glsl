@@ -1,7 +1,7 @@
-// The environment map as a fallback. The includer defines ENVIRONMENT_UNIT.
+// The environment map as a fallback.
 #include "reflections/kept_colour.glsl"
 
-layout(binding = ENVIRONMENT_UNIT) uniform samplerCube environmentMap;
+uniform samplerCube environmentMap;
 
 vec3 radianceFrom(vec3 direction) {
     return linearColour(textureLod(environmentMap, direction, 0.0).rgb);

@@ -6,7 +6,7 @@
 #include "reflections/gbuffer.glsl"
 #include "reflections/lobe.glsl"
 
-layout(binding = WANTED_UNIT) uniform usampler2D wanted;
+uniform usampler2D wanted;
 uniform int hasWanted;
 
 layout(location = 0) out vec4 radiance;

@@ -7,11 +7,11 @@ struct FoundSample {
     float distanceM;
     float radiance[3];
 };
-layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples {
+layout(std430) restrict readonly buffer Samples {
     FoundSample samples[];
 };
-layout(rgba16f, binding = RADIANCE_IMAGE) uniform restrict writeonly image2D radianceImage;
-layout(r32f, binding = DISTANCE_IMAGE) uniform restrict writeonly image2D distanceImage;
+layout(rgba16f) uniform restrict writeonly image2D radianceImage;
+layout(r32f) uniform restrict writeonly image2D distanceImage;
 
 uniform uint count;
 

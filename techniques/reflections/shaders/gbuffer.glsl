@@ -1,12 +1,11 @@
-// Reads what GBufferRenderer drew. The includer defines GBUFFER_UNIT, the first of four texture
-// units, and GBuffer::bind() fills them and the uniforms.
+// Reads what GBufferRenderer drew: GBuffer::resourcesFor().
 #include "reflections/kept_colour.glsl"
 #include "reflections/octahedral.glsl"
 
-layout(binding = GBUFFER_UNIT) uniform sampler2D gbufferDiffuse;
-layout(binding = GBUFFER_UNIT + 1) uniform sampler2D gbufferNormal;
-layout(binding = GBUFFER_UNIT + 2) uniform sampler2D gbufferDepth;
-layout(binding = GBUFFER_UNIT + 3) uniform usampler2D gbufferSurface;
+uniform sampler2D gbufferDiffuse;
+uniform sampler2D gbufferNormal;
+uniform sampler2D gbufferDepth;
+uniform usampler2D gbufferSurface;
 uniform mat4 gbufferWorldFromPixels;
 uniform vec3 gbufferEyeWorld;
 

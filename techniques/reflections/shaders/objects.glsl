@@ -15,6 +15,6 @@ struct Object {
     vec4 reflection;   // factors of metalness and roughness, least s, largest roughness
 };
 
-layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects {
+layout(std430) readonly buffer Objects {
     Object objects[];
 };

@@ -7,11 +7,11 @@
 
 layout(local_size_x = LIST_GROUP_SIZE) in;
 
-layout(binding = WANTED_UNIT) uniform usampler2D wanted;
-layout(std430, binding = SAMPLES_BINDING) restrict writeonly buffer Samples {
+uniform usampler2D wanted;
+layout(std430) restrict writeonly buffer Samples {
     uint samples[];  // x | y << 16
 };
-layout(std430, binding = ARGUMENTS_BINDING) restrict buffer Arguments {
+layout(std430) restrict buffer Arguments {
     uint groups[3];
     uint sampleCount;
     uint rayCount;

@@ -6,7 +6,7 @@
 #include "reflections/gbuffer.glsl"
 #include "reflections/lobe.glsl"
 
-layout(binding = WANTED_UNIT) uniform usampler2D wanted;
+uniform usampler2D wanted;
 uniform bool hasWanted;
 uniform mat4 pixelsFromWorld;  // to (x·d, y·d, d, 1), (x, y) in pixels
 uniform float nearM;

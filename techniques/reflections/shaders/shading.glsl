@@ -9,13 +9,13 @@ struct Light {
     vec4 intensity;  // linear
 };
 
-layout(std140, binding = LIGHTS_BINDING) uniform Lights {
+layout(std140) uniform Lights {
     Light lights[MAX_LIGHTS];
     int lightCount;
 };
 
-layout(binding = TEXTURE_LAYERS_UNIT) uniform sampler2DArray textureLayers;
-layout(binding = VALUE_LAYERS_UNIT) uniform sampler2DArray valueLayers;
+uniform sampler2DArray textureLayers;
+uniform sampler2DArray valueLayers;
 
 // Base colour times vertex colour times texture.
 vec3 albedoOf(Object object, vec2 texcoord, float footprint, vec3 vertexColor) {

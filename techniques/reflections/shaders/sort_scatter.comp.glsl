@@ -5,11 +5,11 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430, binding = PAIRS_BINDING) restrict readonly buffer Pairs { uvec2 pairs[]; };
-layout(std430, binding = SORTED_PAIRS_BINDING) restrict writeonly buffer SortedPairs {
+layout(std430) restrict readonly buffer Pairs { uvec2 pairs[]; };
+layout(std430) restrict writeonly buffer SortedPairs {
     uvec2 sortedPairs[];
 };
-layout(std430, binding = COUNTS_BINDING) restrict readonly buffer Counts { uint counts[]; };
+layout(std430) restrict readonly buffer Counts { uint counts[]; };
 
 uniform uint pairCount;
 uniform uint shift;

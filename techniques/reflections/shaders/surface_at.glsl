@@ -1,11 +1,11 @@
-// What a point of a triangle shows: for rays that meet it. The includer defines the bindings.
+// What a point of a triangle shows: for rays that meet it.
 #include "reflections/shading.glsl"
 
-layout(std430, binding = NORMALS_BINDING) restrict readonly buffer Normals { float normals[]; };
-layout(std430, binding = TEXCOORDS_BINDING) restrict readonly buffer Texcoords {
+layout(std430) restrict readonly buffer Normals { float normals[]; };
+layout(std430) restrict readonly buffer Texcoords {
     float texcoords[];
 };
-layout(std430, binding = COLORS_BINDING) restrict readonly buffer Colors { float colors[]; };
+layout(std430) restrict readonly buffer Colors { float colors[]; };
 
 vec2 texcoordOf(uint vertex) {
     return vec2(texcoords[2u * vertex], texcoords[2u * vertex + 1u]);

@@ -9,18 +9,18 @@
 
 layout(local_size_x = TRACE_GROUP_SIZE) in;
 
-layout(std430, binding = INDICES_BINDING) restrict readonly buffer Indices { uint indices[]; };
-layout(std430, binding = OBJECT_OF_TRIANGLE_BINDING) restrict readonly buffer ObjectOfTriangle {
+layout(std430) restrict readonly buffer Indices { uint indices[]; };
+layout(std430) restrict readonly buffer ObjectOfTriangle {
     uint objectOfTriangle[];
 };
-layout(std430, binding = SAMPLES_BINDING) restrict readonly buffer Samples { uint samples[]; };
-layout(std430, binding = ARGUMENTS_BINDING) restrict readonly buffer Arguments {
+layout(std430) restrict readonly buffer Samples { uint samples[]; };
+layout(std430) restrict readonly buffer Arguments {
     uint groups[3];
     uint sampleCount;
     uint rayCount;
 };
-layout(rgba16f, binding = RADIANCE_IMAGE) uniform restrict writeonly image2D radianceImage;
-layout(r32f, binding = DISTANCE_IMAGE) uniform restrict writeonly image2D distanceImage;
+layout(rgba16f) uniform restrict writeonly image2D radianceImage;
+layout(r32f) uniform restrict writeonly image2D distanceImage;
 
 uniform float rayStart;  // metres along the ray: less would meet the surface that it leaves
 

@@ -11,10 +11,10 @@ struct ListedSample {
     float normal[2];   // octahedral
     float diffuse[3];  // kept
 };
-layout(std430, binding = PLACES_BINDING) restrict readonly buffer Places {
+layout(std430) restrict readonly buffer Places {
     uint places[];  // x + width · y
 };
-layout(std430, binding = SAMPLES_BINDING) restrict writeonly buffer Samples {
+layout(std430) restrict writeonly buffer Samples {
     ListedSample samples[];
 };
 

@@ -230,8 +230,7 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
     std::size_t texels = 0, drawn = 0, different = 0;
     for (std::uint32_t i = 0; i < cameras.size(); ++i) {
         const glm::ivec4 place = places[i];
-        buffer.bindStorage(kCamerasBinding);
-        one.draw(objects, i, cameras[i], {place.z, place.w}, alone);
+        one.draw(objects, buffer, i, cameras[i], {place.z, place.w}, alone);
         const auto depth = alone.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
         const auto colour = alone.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
         for (int y = 0; y < place.w; ++y) {
@@ -259,8 +258,7 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
     const gl::Buffer buffer = cameraBuffer({camera});
     ClusterImages images(shaders(), glm::ivec2(64), false);
     OneByOnePainter painter(shaders(), scene);
-    buffer.bindStorage(kCamerasBinding);
-    painter.draw(objects, 0, camera, camera.sizePx, images);
+    painter.draw(objects, buffer, 0, camera, camera.sizePx, images);
     const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
     const glm::dmat4 worldFromClip = glm::inverse(glm::dmat4(camera.clipFromWorld));
     for (int y = 0; y < 30; ++y) {
@@ -285,8 +283,7 @@ TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
     OneByOnePainter painter(shaders(), scene);
     const auto drawnTexels = [&] {
         const gl::Buffer buffer = cameraBuffer({camera});
-        buffer.bindStorage(kCamerasBinding);
-        painter.draw(objects, 0, camera, camera.sizePx, images);
+        painter.draw(objects, buffer, 0, camera, camera.sizePx, images);
         const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
         int drawn = 0;
         for (int y = 0; y < 30; ++y) {

@@ -18,7 +18,7 @@ class PrefixSumTest : public DepthImageTest {
         const auto count = static_cast<unsigned>(values.size());
         values.push_back(T(77U));
         const gl::Buffer buffer = gl::Buffer::of(values);
-        PrefixSum(shaders, type, 3, total).run(buffer, count);
+        PrefixSum(shaders, type, total).run(buffer, count);
         return buffer.read<T>(values.size());
     }
 };

@@ -38,25 +38,22 @@ class BeamTest : public ReflectionsTest {
 };
 
 TEST_F(BeamTest, IsTheSameOnTheDevice) {
-    const gl::Program program = compute(R"(#version 450 core
+    const gl::Pass read = compute(R"(#version 450 core
 #include "reflections/beam.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
     vec3 beam = beamOf(pixel);
     results[i] = vec4(beamArea(beam, 0.0), beamArea(beam, 0.5), beamArea(beam, 3.0), 0.0);
 }
-)",
-                                        {{"GBUFFER_UNIT", 3}});
+)");
     const GBuffer gbuffer = mirrorSeen(ballMesh(), 0.4F);
     const HostGBuffer host = readGBuffer(gbuffer);
     const gl::Buffer buffer(host.depthM.size() * sizeof(glm::vec4));
-    program.use();
-    gbuffer.bind(program, 3);
-    buffer.bindStorage(0);
-    glDispatchCompute(static_cast<GLuint>(kSize.x), static_cast<GLuint>(kSize.y), 1);
+    read.dispatch({kSize.x, kSize.y, 1},
+                  gl::Resources{{"Results", buffer}}.with(gbuffer.resourcesFor(read)));
     const auto results = buffer.read<glm::vec4>(host.depthM.size());
     int reflective = 0;
     for (int y = 0; y < kSize.y; ++y) {

@@ -98,24 +98,20 @@ TEST_F(EnvironmentMapTest, ShowsTheWallsInTheirDirections) {
     }
 
     // The device samples the same texels, but where a direction passes between two.
-    const gl::Program program = compute(R"(#version 450 core
+    const gl::Pass read = compute(R"(#version 450 core
 #include "reflections/environment.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Inputs { vec4 inputs[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     results[i] = vec4(radianceFrom(inputs[i].xyz), 1.0);
 }
-)",
-                                        {{"ENVIRONMENT_UNIT", 2}});
+)");
     const gl::Buffer inputs = gl::Buffer::of(directions);
     const gl::Buffer results(directions.size() * sizeof(glm::vec4));
-    program.use();
-    map.bind(2);
-    inputs.bindStorage(0);
-    results.bindStorage(1);
-    glDispatchCompute(static_cast<GLuint>(directions.size()), 1, 1);
+    read.dispatch({directions.size(), 1, 1},
+                  gl::Resources{{"Inputs", inputs}, {"Results", results}}.with(map.resources()));
     const auto found = results.read<glm::vec4>(directions.size());
     int different = 0;
     for (std::size_t i = 0; i < directions.size(); ++i) {

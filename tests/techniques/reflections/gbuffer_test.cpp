@@ -138,10 +138,10 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
 }
 
 TEST_F(GBufferTest, IsReadTheSameOnTheDevice) {
-    const gl::Program program = compute(R"(#version 450 core
+    const gl::Pass read = compute(R"(#version 450 core
 #include "reflections/gbuffer.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
@@ -153,14 +153,11 @@ void main() {
     results[4 * i + 2] = vec4(gbufferMirrorDirection(position, normal), glossinessOf(surface));
     results[4 * i + 3] = vec4(gbufferDiffuseAt(pixel), 1.0);
 }
-)",
-                                        {{"GBUFFER_UNIT", 3}});
+)");
     const HostGBuffer host = readGBuffer(gbuffer);
     const gl::Buffer buffer(4 * host.depthM.size() * sizeof(glm::vec4));
-    program.use();
-    gbuffer.bind(program, 3);
-    buffer.bindStorage(0);
-    glDispatchCompute(static_cast<GLuint>(kSize.x), static_cast<GLuint>(kSize.y), 1);
+    read.dispatch({kSize.x, kSize.y, 1},
+                  gl::Resources{{"Results", buffer}}.with(gbuffer.resourcesFor(read)));
     const auto results = buffer.read<glm::vec4>(4 * host.depthM.size());
     for (int y = 0; y < kSize.y; ++y) {
         for (int x = 0; x < kSize.x; ++x) {
@@ -305,19 +302,18 @@ TEST_F(GBufferTest, ClearsWhatWasThere) {
 }
 
 TEST_F(GBufferTest, DrawsSomeObjectsOnly) {
-    const gl::Program program(
-        shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
-        objectDefines());
+    const gl::Pass draw(shaders,
+                        {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
+                        objectDefines());
     const gl::SampleQuery query;
     const auto samplesOf = [&](std::vector<std::uint32_t> drawn) {
         const gl::Texture colour = gl::Texture::make2D(GL_RGBA8, kSize);
         const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&colour});
         framebuffer.bind();
         glDisable(GL_DEPTH_TEST);
-        program.use();
-        program.set("clipFromWorld", gbuffer.view.clipFromWorld());
-        program.set("eyeWorld", gbuffer.view.eyeWorld);
-        objects.bind();
+        draw.set("clipFromWorld", gbuffer.view.clipFromWorld());
+        draw.set("eyeWorld", gbuffer.view.eyeWorld);
+        draw.use(objects.resources());
         query.begin();
         objects.draw(drawn);
         query.end();

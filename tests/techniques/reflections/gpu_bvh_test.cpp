@@ -33,8 +33,8 @@ constexpr const char* kTraceShader = R"(#version 450 core
 layout(local_size_x = 64) in;
 struct Ray { vec3 origin; float tMin; vec3 direction; float tMax; };
 struct Hit { float t; uint triangle; vec2 barycentric; };
-layout(std430, binding = 8) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 9) writeonly buffer Hits { Hit hits[]; };
+layout(std430) readonly buffer Rays { Ray rays[]; };
+layout(std430) writeonly buffer Hits { Hit hits[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= uint(rays.length())) return;
@@ -81,13 +81,9 @@ class GpuBvhTest : public test::GlTest {
             const auto path = dataFolder("shaders") / "reflections" / name;
             folder.write(fmt::format("reflections/{}", name), readFile(path));
         }
-        const gl::Program trace = program({{"trace.comp.glsl", kTraceShader}}, GpuBvh::defines());
-        bvh_->bind();
-        rayBuffer.bindStorage(8);
-        hits.bindStorage(9);
-        trace.use();
-        glDispatchCompute(static_cast<GLuint>((rays.size() + 63) / 64), 1, 1);
-        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        const gl::Pass trace = pass({{"trace.comp.glsl", kTraceShader}});
+        trace.dispatch({(rays.size() + 63) / 64, 1, 1},
+                       gl::Resources{{"Rays", rayBuffer}, {"Hits", hits}}.with(bvh_->resources()));
         return hits.read<DeviceHit>(rays.size());
     }
 

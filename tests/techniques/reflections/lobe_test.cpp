@@ -13,8 +13,8 @@ constexpr const char* kLobeShader = R"(#version 450 core
 #include "reflections/lobe.glsl"
 layout(local_size_x = 1) in;
 struct Input { vec4 directionAndGlossiness; vec4 indexAndDistance; };
-layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Inputs { Input inputs[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     Input ray = inputs[gl_GlobalInvocationID.x];
     float glossiness = ray.directionAndGlossiness.w;
@@ -43,15 +43,12 @@ TEST_F(ReflectionsTest, SpreadsRaysAsTheHostDoes) {
             {{direction, glossiness},
              {static_cast<float>(random.index(49)), random.uniform(0.0F, 5.0F), 0, 0}});
     }
-    const gl::Program program = compute(kLobeShader);
+    const gl::Pass pass = compute(kLobeShader);
     const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
     const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
-    inputBuffer.bindStorage(0);
-    resultBuffer.bindStorage(1);
     for (const LobeSettings& lobe : {LobeSettings{}, LobeSettings{16, 0.3F, 2.0F}}) {
-        program.use();
-        setLobe(program, lobe, kDiagonalM);
-        glDispatchCompute(static_cast<GLuint>(inputs.size()), 1, 1);
+        setLobe(pass, lobe, kDiagonalM);
+        pass.dispatch({inputs.size(), 1, 1}, {{"Inputs", inputBuffer}, {"Results", resultBuffer}});
         const auto results = resultBuffer.read<glm::vec4>(2 * inputs.size());
         int faded = 0;
         for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -133,11 +130,11 @@ TEST_F(ReflectionsTest, KeepsDirectionsInTwoNumbers) {
             directions.push_back(unit);
         }
     }
-    const gl::Program program = compute(R"(#version 450 core
+    const gl::Pass pass = compute(R"(#version 450 core
 #include "reflections/octahedral.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Inputs { vec4 inputs[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     vec2 e = octahedralFromUnit(inputs[gl_GlobalInvocationID.x].xyz);
     float outside = max(max(abs(e.x), abs(e.y)) - 1.0, 0.0);
@@ -146,10 +143,7 @@ void main() {
 )");
     const gl::Buffer inputBuffer = gl::Buffer::of(directions);
     const gl::Buffer resultBuffer(directions.size() * sizeof(glm::vec4));
-    inputBuffer.bindStorage(0);
-    resultBuffer.bindStorage(1);
-    program.use();
-    glDispatchCompute(static_cast<GLuint>(directions.size()), 1, 1);
+    pass.dispatch({directions.size(), 1, 1}, {{"Inputs", inputBuffer}, {"Results", resultBuffer}});
     const auto results = resultBuffer.read<glm::vec4>(directions.size());
     for (std::size_t i = 0; i < directions.size(); ++i) {
         EXPECT_LE(glm::distance(results[i], directions[i]), 1e-6F) << i;

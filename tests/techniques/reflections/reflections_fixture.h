@@ -85,13 +85,13 @@ inline image::Image8 randomImage(int width, int height, std::uint64_t seed) {
 class ReflectionsTest : public test::GlTest {
   protected:
     /// A compute shader that includes "reflections/…".
-    gl::Program compute(const std::string& text, const gl::Defines& defines = {}) const {
+    gl::Pass compute(const std::string& text, const gl::Defines& defines = {}) const {
         // The library takes one folder: the shader goes next to copies of what it includes.
         for (const auto& entry :
              std::filesystem::directory_iterator(shaders.folder() / "reflections")) {
             folder.write("reflections/" + entry.path().filename().string(), readFile(entry.path()));
         }
-        return program({{"test.comp.glsl", text}}, defines);
+        return pass({{"test.comp.glsl", text}}, defines);
     }
 
     gl::ShaderLibrary shaders{dataFolder("shaders")};

@@ -13,8 +13,8 @@ constexpr const char* kShader = R"(#version 450 core
 #include "reflections/shading.glsl"
 layout(local_size_x = 1) in;
 struct Input { vec4 position; vec4 normal; vec4 color; vec4 texcoordAndObject; };
-layout(std430, binding = 8) readonly buffer Inputs { Input inputs[]; };
-layout(std430, binding = 9) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Inputs { Input inputs[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     Input point = inputs[gl_GlobalInvocationID.x];
     Object object = objects[int(point.texcoordAndObject.z)];
@@ -81,14 +81,12 @@ TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
         colours.push_back(shadeDiffuse(scene.lights(), position, normal, albedos.back(),
                                        scene.objects()[object].emissive));
     }
-    const gl::Program shade = compute(kShader, surfaceDefines(scene));
+    const gl::Pass shade = compute(kShader, surfaceDefines(scene));
     const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
     const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
-    shade.use();
-    objects.bind();
-    inputBuffer.bindStorage(kFirstFreeStorage);
-    resultBuffer.bindStorage(kFirstFreeStorage + 1);
-    glDispatchCompute(static_cast<GLuint>(inputs.size()), 1, 1);
+    shade.dispatch({inputs.size(), 1, 1},
+                   gl::Resources{{"Inputs", inputBuffer}, {"Results", resultBuffer}}.with(
+                       objects.resources()));
     const auto results = resultBuffer.read<glm::vec4>(2 * inputs.size());
 
     int withinRange = 0;
@@ -126,10 +124,10 @@ TEST_F(ReflectionsTest, PutsObjectsWhereTheyAre) {
         EXPECT_NEAR(box.max[axis], glm::vec3(5, 3, 2)[axis], 1e-5F);
     }
 
-    const gl::Program read = compute(R"(#version 450 core
+    const gl::Pass read = compute(R"(#version 450 core
 #include "reflections/objects.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 8) writeonly buffer Results { vec4 results[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     results[4 * i] = vec4(normalize(mat3(objects[i].normalFromMesh) * vec3(0, 0, 1)),
@@ -140,12 +138,9 @@ void main() {
                               objects[i].surface & 0xFFFFu, objects[i].surface >> 16);
 }
 )",
-                                     objectDefines());
+                                  objectDefines());
     const gl::Buffer results(12 * sizeof(glm::vec4));
-    read.use();
-    objects.bind();
-    results.bindStorage(kFirstFreeStorage);
-    glDispatchCompute(3, 1, 1);
+    read.dispatch({3, 1, 1}, gl::Resources{{"Results", results}}.with(objects.resources()));
     const auto values = results.read<glm::vec4>(12);
     const auto expectNear = [&](std::size_t i, const glm::vec4& expected) {
         for (int c = 0; c < 4; ++c) EXPECT_NEAR(values[i][c], expected[c], 1e-5F) << i << " " << c;
