@@ -6,25 +6,15 @@ namespace gfxrepro::soft_shadows {
 namespace {
 
 constexpr int kGroupSize = 8;
-enum TextureUnit { kShadowMapUnit = 0, kMomentUnit = 1 };
-enum ImageUnit { kPositionImage = 0, kNormalImage = 1, kShareImage = 2, kMomentImage = 0 };
 
 gl::Defines filterDefines(ShadowFilter filter) {
-    gl::Defines defines{{"GROUP_SIZE", kGroupSize},
-                        {"SHADOW_MAP_UNIT", kShadowMapUnit},
-                        {"POSITION_IMAGE", kPositionImage},
-                        {"NORMAL_IMAGE", kNormalImage},
-                        {"SHARE_IMAGE", kShareImage}};
-    if (filter == ShadowFilter::Variance) {
-        defines["VARIANCE"] = 1;
-        defines["MOMENT_UNIT"] = kMomentUnit;
-    }
+    gl::Defines defines{{"GROUP_SIZE", kGroupSize}};
+    if (filter == ShadowFilter::Variance) defines["VARIANCE"] = 1;
     return defines;
 }
 
-void dispatch(glm::ivec2 sizePx) {
-    glDispatchCompute(kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize),
-                      1);
+glm::uvec3 groupsOver(glm::ivec2 sizePx) {
+    return {kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize), 1};
 }
 
 }  // namespace
@@ -35,22 +25,17 @@ FilteredShadows::FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter 
       shadowMap_(shaders, settings),
       filter_(shaders, {"soft_shadows/filtered_shadow.comp.glsl"}, filterDefines(filter)) {
     if (filter == ShadowFilter::Pcss) return;
-    moments_ = gl::Program(shaders, {"soft_shadows/depth_moments.comp.glsl"},
-                           {{"GROUP_SIZE", kGroupSize},
-                            {"SHADOW_MAP_UNIT", kShadowMapUnit},
-                            {"MOMENT_IMAGE", kMomentImage}});
+    moments_ =
+        gl::Pass(shaders, {"soft_shadows/depth_moments.comp.glsl"}, {{"GROUP_SIZE", kGroupSize}});
     momentPyramid_ = gl::Texture::make2D(GL_RG32F, glm::ivec2(settings.sizePx), 0);
     momentPyramid_.setFilter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
 }
 
 void FilteredShadows::makeMoments(const kit::View& view) {
-    moments_.use();
     moments_.set("nearM", view.nearM);
     moments_.set("farM", view.farM);
-    shadowMap_.shadowMap().bind(kShadowMapUnit);
-    momentPyramid_.bindImage(kMomentImage, GL_WRITE_ONLY);
-    dispatch(view.sizePx);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+    moments_.dispatch(groupsOver(view.sizePx),
+                      {{"shadowMap", shadowMap_.shadowMap()}, {"moments", momentPyramid_}});
     momentPyramid_.generateMipmaps();
 }
 
@@ -62,7 +47,6 @@ void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
     if (momentPyramid_.id() != 0) makeMoments(view);
 
     const glm::mat4 clipFromWorld = view.clipFromWorld();
-    filter_.use();
     filter_.set("clipFromWorld", clipFromWorld);
     filter_.setIfActive("worldFromClip", glm::inverse(clipFromWorld));
     filter_.set("lightPosition", light.centre);
@@ -72,13 +56,11 @@ void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
     filter_.set("nearM", view.nearM);
     filter_.setIfActive("farM", view.farM);
     filter_.set("biasPerDistance", shadowMap_.biasPerDistance(view));
-    shadowMap_.shadowMap().bind(kShadowMapUnit);
-    if (momentPyramid_.id() != 0) momentPyramid_.bind(kMomentUnit);
-    receivers.positions.bindImage(kPositionImage, GL_READ_ONLY);
-    receivers.normals.bindImage(kNormalImage, GL_READ_ONLY);
-    litShares.bindImage(kShareImage, GL_WRITE_ONLY);
-    dispatch(receivers.view.sizePx);
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    filter_.dispatch(groupsOver(receivers.view.sizePx), {{"shadowMap", shadowMap_.shadowMap()},
+                                                         {"moments", momentPyramid_},
+                                                         {"positions", receivers.positions},
+                                                         {"normals", receivers.normals},
+                                                         {"litShares", litShares}});
 }
 
 }  // namespace gfxrepro::soft_shadows

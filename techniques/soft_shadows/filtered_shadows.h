@@ -33,8 +33,8 @@ class FilteredShadows {
 
     ShadowMapSettings settings_;
     LightVisibility shadowMap_;
-    gl::Program filter_;
-    gl::Program moments_;        // variance only
+    gl::Pass filter_;
+    gl::Pass moments_;           // variance only
     gl::Texture momentPyramid_;  // RG32F, all levels; variance only
 };
 

@@ -9,7 +9,6 @@ namespace gfxrepro::soft_shadows {
 namespace {
 
 constexpr unsigned kBaseColorUnit = 0;
-enum TextureUnit { kShadowMapUnit = 0, kPositionUnit = 1, kNormalUnit = 2 };
 
 void setDepthState() {
     glEnable(GL_DEPTH_TEST);
@@ -65,10 +64,7 @@ LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
     : settings_(settings),
       shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
       framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
-      test_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"},
-            {{"SHADOW_MAP_UNIT", kShadowMapUnit},
-             {"POSITION_UNIT", kPositionUnit},
-             {"NORMAL_UNIT", kNormalUnit}}),
+      test_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/shadow_test.frag.glsl"}),
       plainPass_(shaders, {"kit/whole_image.vert.glsl", "soft_shadows/plain_pass.frag.glsl"}) {}
 
 VisibilityMask LightVisibility::makeMask(glm::ivec2 sizePx, int gridSize) {
@@ -124,7 +120,6 @@ float LightVisibility::biasPerDistance(const kit::View& lightView) const {
 
 void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& receivers,
                            const kit::View& lightView) const {
-    test_.use();
     test_.set("clipFromWorld", lightView.clipFromWorld());
     test_.set("lightPosition", lightView.eyeWorld);
     test_.set("biasPerDistance", biasPerDistance(lightView));
@@ -135,9 +130,9 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
     test_.set("nearM", lightView.nearM);
     test_.set("farM", lightView.farM);
     test_.set("bit", 1U << (sample % 32));
-    shadowMap_.bind(kShadowMapUnit);
-    receivers.positions.bind(kPositionUnit);
-    receivers.normals.bind(kNormalUnit);
+    test_.use({{"shadowMap", shadowMap_},
+               {"positions", receivers.positions},
+               {"normals", receivers.normals}});
     drawBits(mask, sample);
 }
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/kit/drawable_scene.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/soft_shadows/area_light.h"
@@ -92,7 +92,7 @@ class LightVisibility {
     ShadowMapSettings settings_;
     gl::Texture shadowMap_;
     gl::Framebuffer framebuffer_;
-    gl::Program test_;
+    gl::Pass test_;
     gl::Program plainPass_;
     kit::WholeImage wholeImage_;
 };

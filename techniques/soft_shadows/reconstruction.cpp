@@ -10,15 +10,6 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-enum TextureUnit : int { kDepthUnit = 0, kIdUnit = 1, kOffsetDepthUnit = 2, kOffsetIdUnit = 3 };
-enum ImageUnit : int { kFlagsUnit = 0, kPlacesUnit = 1 };
-enum StorageBinding : int {
-    kNormalBinding = 0,
-    kRunBinding = 1,
-    kVertexBinding = 2,
-    kIndexBinding = 3,
-};
-
 constexpr int kGroupWidth = 32;
 constexpr int kGroupHeight = 4;
 constexpr int kCountGroupSize = 64;
@@ -32,33 +23,23 @@ constexpr int kMaxSizePx = ((1 << 16) - 1) / 2;
 
 gl::Defines passDefines(const ReconstructionSettings& settings) {
     return {{"MERGE_ROWS", settings.mergesRows ? 1 : 0},
-            {"DEPTH_UNIT", kDepthUnit},
-            {"ID_UNIT", kIdUnit},
-            {"OFFSET_DEPTH_UNIT", kOffsetDepthUnit},
-            {"OFFSET_ID_UNIT", kOffsetIdUnit},
-            {"FLAGS_UNIT", kFlagsUnit},
-            {"PLACES_UNIT", kPlacesUnit},
-            {"NORMAL_BINDING", kNormalBinding},
-            {"RUN_BINDING", kRunBinding},
-            {"VERTEX_BINDING", kVertexBinding},
-            {"INDEX_BINDING", kIndexBinding},
             {"GROUP_WIDTH", kGroupWidth},
             {"GROUP_HEIGHT", kGroupHeight},
             {"COUNT_GROUP_SIZE", kCountGroupSize},
             {"RUN_LENGTH", kRunLength}};
 }
 
-gl::Program pass(const gl::ShaderLibrary& shaders, const char* name,
-                 const ReconstructionSettings& settings) {
+gl::Pass pass(const gl::ShaderLibrary& shaders, const char* name,
+              const ReconstructionSettings& settings) {
     const char* suffix = settings.method == Reconstruction::Hybrid ? "hybrid" : "classic";
     return {shaders,
             {fmt::format("soft_shadows/{}_{}.comp.glsl", name, suffix)},
             passDefines(settings)};
 }
 
-void dispatchCorners(glm::ivec2 cornersSize) {
-    glDispatchCompute(kit::groupsFor(cornersSize.x, kGroupWidth),
-                      kit::groupsFor(cornersSize.y, kGroupHeight), 1);
+glm::uvec3 groupsOverCorners(glm::ivec2 cornersSize) {
+    return {kit::groupsFor(cornersSize.x, kGroupWidth), kit::groupsFor(cornersSize.y, kGroupHeight),
+            1};
 }
 
 /// H's pixel (x, y) must lie on the lower left corner of I's. 0.01: a hundredth of a pixel, far
@@ -114,37 +95,26 @@ void Reconstructor::setGeometry(const gl::Program& program, const kit::View& vie
     program.setIfActive("runsPerRow", runsPerRow_);
 }
 
-glm::uvec4 Reconstructor::countElements(const kit::View& view) {
-    flags_.bindImage(kFlagsUnit, GL_READ_WRITE);
-    places_.bindImage(kPlacesUnit, GL_READ_WRITE);
-    runs_.bindStorage(kRunBinding);
-
-    classify_.use();
+glm::uvec4 Reconstructor::countElements(const kit::View& view, const gl::Resources& images) {
     setGeometry(classify_, view);
-    dispatchCorners(cornersSize_);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    classify_.dispatch(groupsOverCorners(cornersSize_), images);
 
     const int runCount = runsPerRow_ * cornersSize_.y;
-    count_.use();
     setGeometry(count_, view);
-    glDispatchCompute(kit::groupsFor(runCount, kCountGroupSize), 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    count_.dispatch({kit::groupsFor(runCount, kCountGroupSize), 1, 1}, images);
 
     scan_.run(runs_, static_cast<unsigned>(runCount));
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     const std::size_t totalsAt = static_cast<std::size_t>(runCount) * sizeof(glm::uvec4);
     return runs_.read<glm::uvec4>(1, totalsAt).front();
 }
 
-void Reconstructor::emit(const ReconstructedMesh& mesh) {
-    emit_.use();
+void Reconstructor::emit(const ReconstructedMesh& mesh, const gl::Resources& images) {
     setGeometry(emit_, mesh.view);
-    mesh.vertices.bindStorage(kVertexBinding);
-    mesh.indices.bindStorage(kIndexBinding);
-    dispatchCorners(cornersSize_);
-    // The next image's classify overwrites what emit reads.
-    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
-                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    emit_.dispatch(
+        groupsOverCorners(cornersSize_),
+        gl::Resources{{"Vertices", mesh.vertices}, {"Indices", mesh.indices}}.with(images));
+    mesh.vertices.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    mesh.indices.awaitPasses(GL_ELEMENT_ARRAY_BARRIER_BIT);
 }
 
 ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
@@ -158,16 +128,19 @@ ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
     }
     const bool isHybrid = settings_.method == Reconstruction::Hybrid;
     resizeScratch(view.sizePx);
-    image.depth.bind(kDepthUnit);
-    image.triangleId.bind(kIdUnit);
+    gl::Resources images = gl::Resources{}.with({{"depthOfI", image.depth},
+                                                 {"idOfI", image.triangleId},
+                                                 {"Normals", triangleNormals},
+                                                 {"flags", flags_},
+                                                 {"places", places_},
+                                                 {"Runs", runs_}});
     if (isHybrid) {
         GFXREPRO_ASSERT(offsetImage != nullptr && isHalfPixelToLowerLeft(offsetImage->view, view));
-        offsetImage->depth.bind(kOffsetDepthUnit);
-        offsetImage->triangleId.bind(kOffsetIdUnit);
+        images =
+            images.with({{"depthOfH", offsetImage->depth}, {"idOfH", offsetImage->triangleId}});
     }
-    triangleNormals.bindStorage(kNormalBinding);
 
-    const glm::uvec4 totals = countElements(view);
+    const glm::uvec4 totals = countElements(view, images);
     ReconstructedMesh mesh;
     mesh.view = view;
     mesh.vertexCount = totals.x;
@@ -177,7 +150,7 @@ ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
     mesh.sharedCorners = isHybrid ? 4 * totals.z - totals.w : 0;
     mesh.vertices = gl::Buffer(mesh.vertexCount * sizeof(CornerVertex));
     mesh.indices = gl::Buffer(mesh.triangleCount * sizeof(glm::uvec3));
-    if (mesh.triangleCount > 0) emit(mesh);
+    if (mesh.triangleCount > 0) emit(mesh, images);
     return mesh;
 }
 

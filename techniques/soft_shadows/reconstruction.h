@@ -5,7 +5,7 @@
 #include <span>
 
 #include "runner/gl/device.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "runner/scene/scene.h"
 #include "techniques/kit/depth_image.h"
 #include "techniques/kit/prefix_sum.h"
@@ -79,13 +79,13 @@ class Reconstructor {
     void resizeScratch(glm::ivec2 imageSizePx);
     void setGeometry(const gl::Program& program, const kit::View& view) const;
     /// Vertices, triangles, samples and plane-fitted corners of the mesh.
-    glm::uvec4 countElements(const kit::View& view);
-    void emit(const ReconstructedMesh& mesh);
+    glm::uvec4 countElements(const kit::View& view, const gl::Resources& images);
+    void emit(const ReconstructedMesh& mesh, const gl::Resources& images);
 
     ReconstructionSettings settings_;
-    gl::Program classify_, count_;
+    gl::Pass classify_, count_;
     kit::PrefixSum scan_;
-    gl::Program emit_;
+    gl::Pass emit_;
 
     // A texel a corner, where up to four pixels meet: (width + 1) × (height + 1).
     glm::ivec2 cornersSize_{0};

@@ -7,7 +7,7 @@ layout(local_size_x = GROUP_WIDTH, local_size_y = GROUP_HEIGHT) in;
 
 // Bit k: there is the triangle of the three samples other than that whose corner k this is. Bit 4:
 // pixel (x, y) holds a sample.
-layout(binding = FLAGS_UNIT, r16ui) uniform restrict writeonly uimage2D flags;
+layout(r16ui) uniform restrict writeonly uimage2D flags;
 
 uniform float discontinuityPx;
 

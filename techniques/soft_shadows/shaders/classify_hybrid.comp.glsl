@@ -5,11 +5,11 @@
 
 layout(local_size_x = GROUP_WIDTH, local_size_y = GROUP_HEIGHT) in;
 
-layout(binding = OFFSET_DEPTH_UNIT) uniform sampler2D depthOfH;
-layout(binding = OFFSET_ID_UNIT) uniform usampler2D idOfH;
+uniform sampler2D depthOfH;
+uniform usampler2D idOfH;
 // Bit k: the pixel that this is corner k of holds a sample. Bit 4 + k: the corner is valid for it.
 // Bit 8 + k: H's sample there is of the same triangle.
-layout(binding = FLAGS_UNIT, r16ui) uniform restrict writeonly uimage2D flags;
+layout(r16ui) uniform restrict writeonly uimage2D flags;
 
 uniform float discontinuityPx;
 

@@ -2,7 +2,7 @@
 // (x, y) where a triangle uses it.
 #include "soft_shadows/corners.glsl"
 
-layout(binding = FLAGS_UNIT, r16ui) uniform restrict readonly uimage2D flags;
+layout(r16ui) uniform restrict readonly uimage2D flags;
 
 uint trianglesOf(uint bits) { return bits & 15u; }
 

@@ -2,7 +2,7 @@
 // is valid, one of its own for every other sample around it, and the quad of pixel (x, y).
 #include "soft_shadows/corners.glsl"
 
-layout(binding = FLAGS_UNIT, r16ui) uniform restrict readonly uimage2D flags;
+layout(r16ui) uniform restrict readonly uimage2D flags;
 
 uint samplesAround(uint bits) { return bits & 15u; }
 uint sharersOf(uint bits) { return bits >> 4 & 15u; }

@@ -4,8 +4,8 @@
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
 
-layout(binding = SHADOW_MAP_UNIT) uniform sampler2D shadowMap;
-layout(binding = MOMENT_IMAGE, rg32f) uniform writeonly restrict image2D moments;
+uniform sampler2D shadowMap;
+layout(rg32f) uniform writeonly restrict image2D moments;
 
 uniform float nearM;
 uniform float farM;

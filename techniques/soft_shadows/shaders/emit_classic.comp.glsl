@@ -6,7 +6,7 @@
 
 layout(local_size_x = GROUP_WIDTH, local_size_y = GROUP_HEIGHT) in;
 
-layout(binding = DEPTH_UNIT) uniform sampler2D depthOfI;
+uniform sampler2D depthOfI;
 
 void main() {
     ivec2 corner = ivec2(gl_GlobalInvocationID.xy);

@@ -7,7 +7,7 @@
 
 layout(local_size_x = GROUP_WIDTH, local_size_y = GROUP_HEIGHT) in;
 
-layout(binding = OFFSET_DEPTH_UNIT) uniform sampler2D depthOfH;
+uniform sampler2D depthOfH;
 
 /// The vertex of pixel's corner k: H's sample or its own.
 uint vertexAt(ivec2 pixel, int k) {

@@ -7,13 +7,13 @@
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
 
-layout(binding = SHADOW_MAP_UNIT) uniform sampler2D shadowMap;  // window depth
+uniform sampler2D shadowMap;  // window depth
 #ifdef VARIANCE
-layout(binding = MOMENT_UNIT) uniform sampler2D moments;        // depth, depth², with all levels
+uniform sampler2D moments;        // depth, depth², with all levels
 #endif
-layout(binding = POSITION_IMAGE, rgba32f) uniform readonly restrict image2D positions;
-layout(binding = NORMAL_IMAGE, rgba16f) uniform readonly restrict image2D normals;
-layout(binding = SHARE_IMAGE, r32f) uniform writeonly restrict image2D litShares;
+layout(rgba32f) uniform readonly restrict image2D positions;
+layout(rgba16f) uniform readonly restrict image2D normals;
+layout(r32f) uniform writeonly restrict image2D litShares;
 
 uniform mat4 clipFromWorld;
 uniform mat4 worldFromClip;

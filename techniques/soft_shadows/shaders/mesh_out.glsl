@@ -3,8 +3,8 @@
 #include "soft_shadows/places.glsl"
 
 // CornerVertex: x and y in half pixels, 16 bits each; depth
-layout(std430, binding = VERTEX_BINDING) restrict writeonly buffer Vertices { uvec2 vertices[]; };
-layout(std430, binding = INDEX_BINDING) restrict writeonly buffer Indices { uint indices[]; };
+layout(std430) restrict writeonly buffer Vertices { uvec2 vertices[]; };
+layout(std430) restrict writeonly buffer Indices { uint indices[]; };
 
 uint firstVertexAt(ivec2 corner) {
     return runs[runOf(corner)].x + (imageLoad(places, corner).r & 0xFFFFu);

@@ -1,8 +1,8 @@
 // Where a corner's vertices and triangles stand in the mesh: corners in row order, cut into runs of
 // RUN_LENGTH within a row.
 
-layout(binding = PLACES_UNIT, r32ui) uniform restrict PLACES_ACCESS uimage2D places;
-layout(std430, binding = RUN_BINDING) restrict buffer Runs { uvec4 runs[]; };
+layout(r32ui) uniform restrict PLACES_ACCESS uimage2D places;
+layout(std430) restrict buffer Runs { uvec4 runs[]; };
 
 uniform int runsPerRow;
 

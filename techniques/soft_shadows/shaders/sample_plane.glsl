@@ -2,9 +2,9 @@
 // normals of the scene's triangles.
 #include "soft_shadows/corners.glsl"
 
-layout(binding = DEPTH_UNIT) uniform sampler2D depthOfI;  // metres along the view axis
-layout(binding = ID_UNIT) uniform usampler2D idOfI;
-layout(std430, binding = NORMAL_BINDING) restrict readonly buffer Normals { vec4 normals[]; };
+uniform sampler2D depthOfI;  // metres along the view axis
+uniform usampler2D idOfI;
+layout(std430) restrict readonly buffer Normals { vec4 normals[]; };
 
 // The ray through pixel coordinates (x, y), in the world, reaching a depth of 1:
 uniform vec3 rayOrigin;  // of (0, 0)

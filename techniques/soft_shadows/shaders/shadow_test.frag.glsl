@@ -2,9 +2,9 @@
 // [xie2017] Algorithm 5, step 3: estimates the visibility of one light sample for every output sample
 // from its shadow map. Out: the sample's bit where it is seen, to be or-ed to those of the others.
 
-layout(binding = SHADOW_MAP_UNIT) uniform sampler2D shadowMap;
-layout(binding = POSITION_UNIT) uniform sampler2D positions;
-layout(binding = NORMAL_UNIT) uniform sampler2D normals;
+uniform sampler2D shadowMap;
+uniform sampler2D positions;
+uniform sampler2D normals;
 
 uniform mat4 clipFromWorld;      // of the light sample's view
 uniform vec3 lightPosition;
