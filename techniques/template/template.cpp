@@ -6,7 +6,7 @@
 
 #include "runner/gl/gl.h"
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "runner/gpu_scene/gpu_mesh.h"
 #include "runner/raycast/ray_tracer.h"
 #include "techniques/kit/image_layers.h"
@@ -51,8 +51,8 @@ class TemplateTechnique : public technique::Technique {
         const gl::Texture* attachments[] = {&colour_};
         framebuffer_ = gl::Framebuffer(attachments);
         if (method_ == Method::Gradient) {
-            program_ = gl::Program(context.shaders,
-                                   {"kit/whole_image.vert.glsl", "template/gradient.frag.glsl"});
+            pass_ = gl::Pass(context.shaders,
+                             {"kit/whole_image.vert.glsl", "template/gradient.frag.glsl"});
             wholeImage_.emplace();
             return;
         }
@@ -61,9 +61,9 @@ class TemplateTechnique : public technique::Technique {
         view_ = kit::viewOf(scene::framingCamera(scene.bounds(), aspect), size_);
         mesh_.emplace(scene::flattened(scene));
         if (hasErrors_) rays_.emplace(scene);
-        program_ = gl::Program(context.shaders,
-                               {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
-                               gpu_scene::attributeDefines());
+        pass_ = gl::Pass(context.shaders,
+                         {"template/silhouette.vert.glsl", "template/silhouette.frag.glsl"},
+                         gpu_scene::attributeDefines());
     }
 
     // One measured iteration. Each pass stands in a scope with the paper's step name.
@@ -73,13 +73,16 @@ class TemplateTechnique : public technique::Technique {
         framebuffer_.clearColour(0, glm::vec4(0.0F));
         glDisable(GL_DEPTH_TEST);  // a pass sets all state that it relies on
         glDisable(GL_CULL_FACE);
-        program_.use();
-        program_.set("brightness", brightness_);
+        // Buffers and textures are given here by their names in the shaders, such as
+        // {{"Areas", areas_}, {"normals", normals_}}: barriers follow, and a missing one is an
+        // error.
+        pass_.use({});
+        pass_.set("brightness", brightness_);
         if (method_ == Method::Gradient) {
-            program_.set("widthPx", static_cast<float>(size_.x));
+            pass_.set("widthPx", static_cast<float>(size_.x));
             wholeImage_->draw();
         } else {
-            program_.set("clipFromWorld", view_.clipFromWorld());
+            pass_.set("clipFromWorld", view_.clipFromWorld());
             mesh_->draw();
         }
     }
@@ -138,7 +141,7 @@ class TemplateTechnique : public technique::Technique {
     kit::View view_;
     gl::Texture colour_;
     gl::Framebuffer framebuffer_;
-    gl::Program program_;
+    gl::Pass pass_;
     std::optional<gpu_scene::GpuMesh> mesh_;
     std::optional<raycast::RayTracer> rays_;
     std::optional<kit::WholeImage> wholeImage_;
