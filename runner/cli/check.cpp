@@ -16,6 +16,7 @@
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"
 #include "runner/tables/figure.h"
 #include "runner/tables/printed_values.h"
@@ -130,6 +131,7 @@ void sayAbsent(const std::string& file, const std::vector<run::Case>& cases) {
 int check(const Context& context, const Selection& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
     run::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
+    run::Plan all;
     for (const std::string& file : selection.names) {
         request.configs = {file};
         config::Experiment experiment = loadExperiments(request, selection.profile).front();
@@ -154,6 +156,12 @@ int check(const Context& context, const Selection& selection) {
         const bool isReduced =
             !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
         if (isReduced) sayUnread(context, catalog, file, experiment, table);
+        if (!selection.only.empty()) all.cases.insert(all.cases.end(), cases.begin(), cases.end());
+    }
+    if (!selection.only.empty()) {
+        const std::size_t caseCount = all.cases.size();
+        run::keepOnly(all, selection.only);
+        say("--only leaves {} of {} cases\n", all.cases.size(), caseCount);
     }
     const std::vector<Error> unknown = unknownExpectations(
         context, selection.names, {config::kDeviceClasses.begin(), config::kDeviceClasses.end()},

@@ -150,6 +150,7 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
     CLI::App* checkApp = app.add_subcommand("check", "validate configs; needs no device");
     addConfigs(checkApp, o.selection.names)->required();
     addSelection(checkApp, o.selection);
+    addOnly(checkApp, o.selection.only);
     checkApp->callback([&] { o.command = [&] { return check(context, o.selection); }; });
 
     CLI::App* planApp =

@@ -338,6 +338,20 @@ TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
 }
 
+TEST(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {marker: [x, y], number: [1, 2]}\n");
+    const auto checked = [&](const std::string& only) {
+        return mockGfxrepro({"check", config, "--only", only});
+    };
+    EXPECT_EQ(checked("marker=x").out,
+              config + ": ok, sweep/mock, 4 cases, 0 claims\n--only leaves 2 of 4 cases\n");
+    const ProcessResult none = checked("number=3");
+    EXPECT_EQ(none.exitCode, 2);
+    EXPECT_THAT(none.err, testing::HasSubstr("no case has that value; there are 1, 2"));
+    EXPECT_THAT(checked("numbr=1").err, testing::HasSubstr("did you mean 'number'?"));
+}
+
 TEST(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
     const TemporaryFolder folder;
     const std::string config =
