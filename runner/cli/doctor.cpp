@@ -14,6 +14,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/scene_state.h"
 #include "runner/core/files.h"
 #include "runner/core/processors.h"
 #include "runner/core/text.h"
@@ -68,17 +69,6 @@ std::string embreeIsa() {
 #else
     return "NEON";
 #endif
-}
-
-/// "real", "stand-in", "generated" or "missing".
-std::string sceneState(const scene::Catalog& catalog, const std::string& name) {
-    const scene::SceneEntry& entry = catalog.entries().at(name);
-    for (const scene::SceneSource& source : entry.sources) {
-        const bool isThere =
-            source.file.empty() || fs::exists(catalog.assetsFolder() / source.file);
-        if (isThere) return std::string(scene::kindName(source.kind));
-    }
-    return "missing";
 }
 
 std::vector<DeviceFacts> deviceFacts(const std::vector<gl::DeviceReport>& reports) {

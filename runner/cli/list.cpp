@@ -8,6 +8,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/scene_state.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;  // name and what it is
+using Rows = std::vector<std::vector<std::string>>;  // name first, what it is last
 
 Rows tables() {
     run::Request request;
@@ -48,7 +49,7 @@ Rows scenes(const Context& context, const std::string& assets) {
     Rows rows;
     const scene::Catalog catalog = openCatalog(context, assets);
     for (const auto& [name, entry] : catalog.entries()) {
-        rows.push_back({name, entry.doc});
+        rows.push_back({name, sceneState(catalog, name), entry.doc});
     }
     return rows;
 }
@@ -110,7 +111,8 @@ int list(const Context& context, const std::string& what, const std::string& ass
     }
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const auto& row : rows) {
-        json.push_back({{"name", row[0]}, {"summary", row.size() > 1 ? row[1] : ""}});
+        json.push_back({{"name", row[0]}, {"summary", row.size() > 1 ? row.back() : ""}});
+        if (row.size() > 2) json.back()["state"] = row[1];
     }
     fmt::print("{}\n", json.dump(2));
     return kExitOk;

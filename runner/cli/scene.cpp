@@ -38,6 +38,7 @@ void print(const scene::Scene& scene) {
     }
     say("box        ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", box.min.x, box.min.y, box.min.z,
         box.max.x, box.max.y, box.max.z);
+    for (const std::string& line : scene.warnings) say("warning    {}\n", line);
 }
 
 void exportTo(const fs::path& path, const scene::Scene& scene) {

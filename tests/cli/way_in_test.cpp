@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 
@@ -258,6 +259,28 @@ TEST(Modeline, ChangesNoPlan) {
     EXPECT_NE(without.find("\"hash\""), std::string::npos);
     EXPECT_EQ(planOf("# yaml-language-server: $schema=../schema/experiment.json\n"), without);
     EXPECT_NE(planOf("scene: shapes/torus\n"), without);
+}
+
+TEST(WayIn, ASceneSaysWhatItsModelLacks) {
+    const TemporaryFolder folder;
+    const std::string model = folder.write(
+        "model.obj", "mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    EXPECT_THAT(gfxrepro({"scene", model}).out,
+                HasSubstr("warning    material file 'lost.mtl' is not beside the model: its "
+                          "materials are grey\n"));
+}
+
+TEST(WayIn, ScenesAreListedWithWhatTheyAreMadeOf) {
+    const TemporaryFolder none;
+    const auto listed = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> command = {"list", "scenes", "--assets", none.path().string()};
+        command.insert(command.end(), more.begin(), more.end());
+        return gfxrepro(command).out;
+    };
+    EXPECT_THAT(linesOf(listed({})),
+                IsSupersetOf({testing::ContainsRegex("^models/bunny +stand-in +"),
+                              testing::ContainsRegex("^shapes/torus +generated +")}));
+    EXPECT_THAT(listed({"--json"}), HasSubstr("\"state\": \"stand-in\""));
 }
 
 }  // namespace
