@@ -72,8 +72,8 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
     : method(params.getEnum("method", Method::NonRedundant, kMethods, {"where shadows come from"})),
       referenceImages(params.getInt("reference_images", 4,
                                     {"depth images, or layers of depth_peeling", "images", 1, 16})),
-      referenceSizePx(
-          params.getInt("reference_size", 1024, {"of a depth image", "pixels", 1, 32768})),
+      referenceSizePx(params.getInt("reference_size", 512,
+                                    {"of a depth image; the thesis has 1024", "pixels", 1, 32768})),
       reconstruction(readReconstruction(params)),
       simplifyTo(number(params, "simplify_to", 1.0,
                         {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
@@ -83,7 +83,8 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
           number(params, "simplification_error", 0.001,
                  {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
       light(readLight(params)),
-      lightGrid(params.getInt("light_grid", 16, {"light samples along each edge", "1", 1, 64})),
+      lightGrid(params.getInt("light_grid", 8,
+                              {"light samples along each edge; the thesis has 16", "1", 1, 64})),
       hasGround(params.getBool("ground", true, {"a square floor under the scene"})),
       groundSize(
           number(params, "ground_size", 1.5, {"side of the floor", "diagonals", 0.0, 100.0})),
