@@ -27,12 +27,13 @@ const CLI::App* chosenCommand(const CLI::App& app) {
 UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
     const CLI::App& command = *chosenCommand(app);
     const std::string name = command.get_name();
+    const std::string whose = &command == &app ? "" : name + ": ";
     const std::vector<std::string> extras = app.remaining(true);
     if (!extras.empty()) {
         const std::string& extra = extras.front();
         if (extra.starts_with("-")) {
             const std::string option = extra.substr(0, extra.find('='));
-            return UsageError(name + ": unknown option '" + option + "'" +
+            return UsageError(whose + "unknown option '" + option + "'" +
                               suggestion(option, optionNames(command)) +
                               (&command == &app ? "; see 'gfxrepro --help'"
                                                 : "; see 'gfxrepro help " + name + "'"));
@@ -41,9 +42,9 @@ UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
             return UsageError("unknown command '" + extra + "'" +
                               suggestion(extra, commandNames(app)) + "; see 'gfxrepro --help'");
         }
-        return UsageError(name + ": unexpected argument '" + extra + "'");
+        return UsageError(whose + "unexpected argument '" + extra + "'");
     }
-    return UsageError(name + ": " + problem.what());
+    return UsageError(whose + problem.what());
 }
 
 /// `latest` is the newest run of runs/ wherever a run is named.

@@ -40,6 +40,8 @@ TEST(Usage, UnknownOption) {
     EXPECT_EQ(refusal({"run", "--jbos", "2", "x.yaml"}, folder),
               "gfxrepro: run: unknown option '--jbos'; did you mean '--jobs'?; see 'gfxrepro help "
               "run'\n");
+    EXPECT_EQ(refusal({"--verbose"}, folder),
+              "gfxrepro: unknown option '--verbose'; see 'gfxrepro --help'\n");
 }
 
 TEST(Usage, MissingConfig) {
