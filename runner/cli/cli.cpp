@@ -91,7 +91,7 @@ void addSelection(CLI::App* app, Selection& selection) {
 }
 
 void addOnly(CLI::App* app, std::vector<std::string>& only) {
-    addEach(app, "--only", only, "only the cases that have it", "KEY=VALUE");
+    addEach(app, "--only", only, "only cases with this value", "KEY=VALUE");
 }
 
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
@@ -105,7 +105,7 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
         ->option_text("DIR");
     app->add_option("--resume", options.resume, "go on with this run; with configs, begin it")
         ->option_text("RUN");
-    app->add_option("--shard", options.shard, "the Kth of N parts; --from the same for each")
+    app->add_option("--shard", options.shard, "the Kth of N parts; give each the same --from")
         ->option_text("K/N");
     addFrom(app, options.from);
     app->add_option("--budget", options.budget, "only tables that decide most claims in TIME")
@@ -113,15 +113,15 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--jobs", options.jobs, "quality cases at once")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
-    app->add_option("--max-failures", options.failuresAtMost, "stop when as many cases failed")
+    app->add_option("--max-failures", options.failuresAtMost, "stop after so many failed cases")
         ->check(CLI::Range(1, 1'000'000'000))
         ->option_text("N");
-    app->add_flag("--retry", options.triesAgain, "resume with what was not survived, too");
+    app->add_flag("--retry", options.triesAgain, "resume with what crashed or took too long, too");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 
 void addQueries(CLI::App& app, const Context& context, Options& o) {
-    CLI::App* doctorApp = app.add_subcommand("doctor", "devices, limits, assets, disk");
+    CLI::App* doctorApp = app.add_subcommand("doctor", "what this machine has, and what it lacks");
     addAssets(doctorApp, o.selection.assets);
     doctorApp->add_flag("--json", o.asJson, "machine-readable");
     doctorApp->callback(
@@ -147,7 +147,7 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
     addAssets(describeApp, o.describe.assets);
     describeApp->callback([&] { o.command = [&] { return describe(context, o.describe); }; });
 
-    CLI::App* checkApp = app.add_subcommand("check", "validate configs; needs no device");
+    CLI::App* checkApp = app.add_subcommand("check", "find mistakes in configs; needs no device");
     addConfigs(checkApp, o.selection.names)->required();
     addSelection(checkApp, o.selection);
     addOnly(checkApp, o.selection.only);
@@ -165,7 +165,7 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
 }
 
 void addRuns(CLI::App& app, const Context& context, Options& o) {
-    CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs: records.csv");
+    CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs into records.csv");
     addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
     runApp->add_option("--plan", o.run.plan, "what was submitted, instead of configs")
@@ -173,7 +173,7 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =
-        app.add_subcommand("reproduce", "run + tables + claims + report of papers or tables");
+        app.add_subcommand("reproduce", "measure papers or tables and write their report");
     addTables(reproduceApp, o.run.selection.names)
         ->description("PAPER, PAPER/TABLE or config files; none: all papers");
     addRunOptions(reproduceApp, o.run);
@@ -234,7 +234,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
     submitApp->add_option("--partition", s.partition, "as for sbatch")->option_text("PARTITION");
     submitApp->add_option("--gres", s.gres, "as for sbatch: gpu:1")->option_text("LIST");
     addEach(submitApp, "--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x", "FLAG");
-    submitApp->add_flag("--force", s.isForced, "also what may be queued: squeue does not answer");
+    submitApp->add_flag("--force", s.isForced, "even where squeue does not answer");
     submitApp->add_flag("--dry-run", s.isDryRun, "print scripts and commands only");
     submitApp->add_flag("--status", s.isStatus, "of the submission in this folder");
     submitApp->callback([&] { o.command = [&] { return submit(context, o.submit); }; });
@@ -269,7 +269,7 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
         app.add_subcommand("sensitivity", "how claims depend on what the paper left open");
     sensitivityApp->add_option("names", s.selection.names, "PAPER, PAPER/TABLE or config files")
         ->required()
-        ->option_text("TABLE...");
+        ->option_text("TABLE");
     addSelection(sensitivityApp, s.selection);
     s.selection.profile = "quick";
     sensitivityApp->add_option("--points", s.points, "values of a range of numbers (default 3)")
