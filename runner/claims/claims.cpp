@@ -6,11 +6,13 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "runner/claims/claim_parts.h"
 #include "runner/claims/claim_reader.h"
 #include "runner/claims/claim_same_mean.h"
+#include "runner/config/schema.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::claims {
@@ -122,11 +124,13 @@ tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
     return tables::transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
 }
 
-/// What the config knows of the claim on this device and in this profile.
-void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
+/// What the config knows of the claim on this device, in this profile and of such scenes.
+void takeKnown(const ClaimSpec& claim, const config::Experiment& experiment,
+               const ReportContext& context, ClaimResult& result) {
     for (const ClaimSpec::Known& known : claim.because) {
         if (known.device.value_or(context.deviceClass) != context.deviceClass) continue;
         if (known.profile.value_or(context.profile) != context.profile) continue;
+        if (known.scenes && *known.scenes != sceneClass(experiment, context.sceneFiles)) continue;
         result.known = verdictFromName(known.verdict);
         result.because = known.reason;
         result.shownBy = known.shownBy;
@@ -135,8 +139,8 @@ void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult
 }
 
 /// The claim with what its config says of it, not judged yet.
-ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
-                     const ReportContext& context) {
+ClaimResult unjudged(const ClaimSpec& claim, const config::Experiment& experiment,
+                     const tables::Table& table, const ReportContext& context) {
     ClaimResult result;
     result.id = claim.id;
     result.table = table.id;
@@ -144,7 +148,7 @@ ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
     result.origin = claim.origin.value_or(ClaimSpec::Origin::Ours);
     result.boundFrom = claim.boundFrom;
     result.timeKind = claim.timeKind;
-    takeKnown(claim, context, result);
+    takeKnown(claim, experiment, context, result);
     std::vector<std::string> required;
     for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
     result.required = joined(required, "; ");
@@ -166,9 +170,9 @@ std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
         1.0 / *context.fragmentShare);
 }
 
-ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
-                     const ReportContext& context) {
-    ClaimResult result = unjudged(claim, table, context);
+ClaimResult evaluate(const ClaimSpec& claim, const config::Experiment& experiment,
+                     const tables::Table& table, const ReportContext& context) {
+    ClaimResult result = unjudged(claim, experiment, table, context);
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
     if (claim.type == ClaimSpec::Type::SameMean && !reader.readsOnly(kSameMeanMetric)) {
@@ -207,13 +211,13 @@ ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
 }
 
 /// The same of a table that may lack what the claim reads.
-ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& table,
-                                const ReportContext& context) {
+ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const config::Experiment& experiment,
+                                const tables::Table& table, const ReportContext& context) {
     const tables::Table own = tableFor(claim, table);
     try {
-        return evaluate(claim, own, context);
+        return evaluate(claim, experiment, own, context);
     } catch (const AbsentColumnError& error) {
-        ClaimResult result = unjudged(claim, own, context);
+        ClaimResult result = unjudged(claim, experiment, own, context);
         result.reason = "not among what was measured: " + error.text();
         return result;
     }
@@ -232,6 +236,21 @@ std::string restsOn(const ClaimResult& result, const KeptSensitivity& tried) {
 
 }  // namespace
 
+std::string sceneClass(const config::Experiment& experiment, const SceneFiles& files) {
+    std::set<std::string> scenes;
+    for (const config::CaseSpec& item : config::expandCases(experiment)) {
+        if (!item.scene.isNull()) scenes.insert(item.scene.text());
+    }
+    std::size_t ofFiles = 0;
+    for (const std::string& scene : scenes) {
+        const auto found = files.find(scene);
+        if (found == files.end()) return "";
+        ofFiles += found->second ? 1 : 0;
+    }
+    if (scenes.empty() || (ofFiles > 0 && ofFiles < scenes.size())) return "";
+    return std::string(config::kSceneClasses[ofFiles > 0 ? 0 : 1]);
+}
+
 std::string whyText(const ClaimResult& claim) {
     if (claim.because.empty()) return claim.reason;
     if (claim.verdict != claim.known) {
@@ -245,7 +264,7 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
                                         const tables::Table& table, const ReportContext& context) {
     std::vector<ClaimResult> results;
     for (const ClaimSpec& claim : experiment.claims) {
-        results.push_back(evaluateWhatIsThere(claim, table, context));
+        results.push_back(evaluateWhatIsThere(claim, experiment, table, context));
         results.back().restsOn = restsOn(results.back(), context.tried);
         const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
         results.back().where = claim.location.file == file.file ? claim.location : file;

@@ -30,6 +30,12 @@ struct TriedClaim {
 /// By table and claim.
 using KeptSensitivity = std::map<std::pair<std::string, std::string>, TriedClaim>;
 
+/// Of each scene of a run, whether a file was read for it; none was for a generated one.
+using SceneFiles = std::map<std::string, bool>;
+/// "files" where every scene of the experiment's cases was made of a file, "generated" where none
+/// was; empty where some were, where it has no scene, and where one is not known.
+std::string sceneClass(const config::Experiment& experiment, const SceneFiles& files);
+
 /// Where the run took place, as far as claims ask, and what is known of them.
 struct ReportContext {
     std::string device;       // renderer, for people: "llvmpipe (LLVM 15.0.6, 256 bits)"
@@ -40,6 +46,7 @@ struct ReportContext {
     std::optional<double> fragmentShare = {};  // of hardware: gl::DeviceBalance::fragmentShare()
     KeptSensitivity tried = {};
     tables::TableNotes tableNotes = {};
+    SceneFiles sceneFiles = {};
 };
 
 struct ClaimResult {

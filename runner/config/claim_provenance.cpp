@@ -45,6 +45,7 @@ ClaimSpec::Known readKnown(const Node& node, const std::string& what) {
     known.verdict = *nameIn(node, "verdict", what, kKnownVerdicts);
     known.device = nameIn(node, "device", what, kDeviceClasses);
     known.profile = nameIn(node, "profile", what, kProfiles);
+    known.scenes = nameIn(node, "scenes", what, kSceneClasses);
     known.reason = lineOf(*node.find("reason"), what + ": reason");
     if (const Node* shown = node.find("shown_by")) {
         known.shownBy = lineOf(*shown, what + ": shown_by");
@@ -53,30 +54,33 @@ ClaimSpec::Known readKnown(const Node& node, const std::string& what) {
 }
 
 std::string placeOf(const ClaimSpec::Known& known) {
-    return known.device.value_or("any device") + ", " + known.profile.value_or("any profile");
+    return known.device.value_or("any device") + ", " + known.profile.value_or("any profile") +
+           (known.scenes ? ", scenes: " + *known.scenes : "");
 }
 
-/// The first that is of a device and profile is taken: a later one may be of more, never of what an
-/// earlier one has.
+/// The first that is of a device, profile and kind of scenes is taken: a later one may be of more,
+/// never of what an earlier one has.
 void requireApart(const std::vector<ClaimSpec::Known>& known, const Node::Sequence& entries,
                   const std::string& what) {
-    const auto isWithin = [](const auto& narrow, const auto& wide) {
-        return !wide || narrow == wide;
+    using Place = std::array<std::optional<std::string>, 3>;
+    const auto place = [](const ClaimSpec::Known& one) {
+        return Place{one.device, one.profile, one.scenes};
     };
     for (std::size_t later = 1; later < known.size(); ++later) {
         for (std::size_t i = 0; i < later; ++i) {
             const ClaimSpec::Known &one = known[i], &other = known[later];
-            const bool areApart = (one.device && other.device && one.device != other.device) ||
-                                  (one.profile && other.profile && one.profile != other.profile);
-            const bool isNarrower = isWithin(one.device, other.device) &&
-                                    isWithin(one.profile, other.profile) &&
-                                    (one.device != other.device || one.profile != other.profile);
-            if (areApart || isNarrower) continue;
+            const Place narrow = place(one), wide = place(other);
+            bool areApart = false, isWithin = true;
+            for (std::size_t k = 0; k < narrow.size(); ++k) {
+                areApart |= narrow[k] && wide[k] && narrow[k] != wide[k];
+                isWithin &= !wide[k] || narrow[k] == wide[k];
+            }
+            if (areApart || (isWithin && narrow != wide)) continue;
             throw Error(entries[later].location(),
                         what + " is of " + placeOf(other) + ", and an earlier one of " +
                             placeOf(one) +
-                            "; allowed: one for each device and profile, what is "
-                            "of more behind what is of less");
+                            "; allowed: one for each device, profile and kind of "
+                            "scenes, what is of more behind what is of less");
         }
     }
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -161,6 +162,7 @@ struct ClaimSpec {
         std::string verdict;                 // "fails", "ambiguous", …
         std::optional<std::string> device;   // "software" | "gpu"; none: on any
         std::optional<std::string> profile;  // none: in any
+        std::optional<std::string> scenes;   // "files" | "generated"; none: of any
         std::string reason;                  // in a sentence or two, for a reader of the document
         std::string shownBy = {};            // the numbers and runs that prove it; perhaps empty
     };
@@ -261,6 +263,7 @@ struct Experiment {
     Measure measure;
     /// Given or not: then PictureTolerance's own of two builds, and nothing of one.
     std::optional<PictureTolerance> pictureTolerance;
+    std::map<std::string, std::string> labels;  // what people read for a name
     std::vector<std::string> shows;  // names of the pictures that the document shows; or empty
     Layout layout;
     Printed printed;

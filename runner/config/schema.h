@@ -31,6 +31,8 @@ inline constexpr std::array<std::string_view, 3> kTimeKinds = {"algorithmic", "a
 inline constexpr std::array<std::string_view, 3> kKnownVerdicts = {"fails", "ambiguous",
                                                                    "unmeasured"};
 inline constexpr std::array<std::string_view, 2> kDeviceClasses = {"software", "gpu"};
+/// Of scenes: a file was read for them, or a generator made them, if in a real one's place.
+inline constexpr std::array<std::string_view, 2> kSceneClasses = {"files", "generated"};
 inline constexpr std::array<std::string_view, 3> kProfiles = {"quick", "full", "paper"};
 
 /// A key of a map.

@@ -57,8 +57,9 @@ SchemaSection common() {
               "at the printed parameters. The last two are judged on a GPU only",
               choice(kTimeKinds)},
              {"because", "known | [known]", "none",
-              "where it is known not to hold, and why, one for each device and profile, what is of "
-              "more behind what is of less; any other verdict than the known is news",
+              "where it is known not to hold, and why, one for each device, profile and kind of "
+              "scenes, what is of more behind what is of less; any other verdict than the known is "
+              "news",
               oneOrMore(refTo("because"))}},
             false};
 }
@@ -74,7 +75,10 @@ SchemaSection because() {
           "the cause, in a sentence or two that a reader of the document understands", text()},
          {"shown_by", "line", "none", "the numbers and experiments that prove it", text()},
          {"device", "software | gpu", "any", "on this class of devices", choice(kDeviceClasses)},
-         {"profile", "quick | full | paper", "any", "in this profile", choice(kProfiles)}},
+         {"profile", "quick | full | paper", "any", "in this profile", choice(kProfiles)},
+         {"scenes", "files | generated", "any",
+          "where all scenes were made of files, or none, as where a real model is not at hand",
+          choice(kSceneClasses)}},
         false};
 }
 

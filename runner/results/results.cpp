@@ -32,6 +32,10 @@ claims::ReportContext reportContext(const run::Json& manifest) {
     if (const auto info = manifest.at("gl"); info.contains("balance")) {
         context.fragmentShare = run::balanceFromJson(info["balance"]).fragmentShare();
     }
+    const run::Json scenes = manifest.value("scenes", run::Json::object());
+    for (const auto& [scene, from] : scenes.items()) {
+        context.sceneFiles[scene] = !from.value("sha256", "").empty();
+    }
     return context;
 }
 

@@ -24,6 +24,7 @@ struct Kept {
     claims::Verdict verdict;
     std::string deviceClass, profile;
     std::string file;  // with the claim: what a message names
+    claims::SceneFiles scenes = {};
 };
 
 /// By table and claim. Those of before claims had an origin are of other configs.
@@ -38,16 +39,22 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
         if (head.find(",origin,") == head.npos) continue;
         std::ifstream file(entry.path().parent_path() / "manifest.json");
         const auto manifest = nlohmann::json::parse(file);
+        claims::SceneFiles scenes;
+        for (const auto& [scene, from] : manifest.at("scenes").items()) {
+            scenes[scene] = from.at("sha256") != "";
+        }
         for (const claims::ClaimResult& claim : claims::readClaims(entry.path())) {
             kept[{claim.table, claim.id}].push_back(
                 {claim.verdict, manifest.at("device_class"), manifest.at("profile"),
-                 fs::relative(entry.path(), root).string() + ": " + claim.table + " " + claim.id});
+                 fs::relative(entry.path(), root).string() + ": " + claim.table + " " + claim.id,
+                 scenes});
         }
     }
     return kept;
 }
 
-bool isOf(const Known& known, const Kept& kept) {
+bool isOf(const Known& known, const config::Experiment& experiment, const Kept& kept) {
+    if (known.scenes && *known.scenes != claims::sceneClass(experiment, kept.scenes)) return false;
     return known.device.value_or(kept.deviceClass) == kept.deviceClass &&
            known.profile.value_or(kept.profile) == kept.profile;
 }
@@ -61,8 +68,8 @@ std::vector<std::string> complaints(const config::Experiment& experiment,
         const auto found = all.find({experiment.id, claim.id});
         if (found == all.end()) continue;
         for (const Kept& kept : found->second) {
-            const bool isKnown =
-                std::ranges::any_of(claim.because, [&](const Known& k) { return isOf(k, kept); });
+            const bool isKnown = std::ranges::any_of(
+                claim.because, [&](const Known& k) { return isOf(k, experiment, kept); });
             if (kept.verdict == claims::Verdict::Fails && !isKnown) {
                 texts.push_back(kept.file + " fails, and its config has no reason for it");
             }
@@ -71,7 +78,7 @@ std::vector<std::string> complaints(const config::Experiment& experiment,
             if (known.verdict != "fails") continue;  // ambiguous is no verdict that turns
             std::size_t holding = 0, others = 0;
             for (const Kept& kept : found->second) {
-                if (isOf(known, kept)) {
+                if (isOf(known, experiment, kept)) {
                     ++(kept.verdict == claims::Verdict::Holds ? holding : others);
                 }
             }
@@ -136,11 +143,19 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     const Kept fails{claims::Verdict::Fails, "software", "quick", "f"};
     const Kept holds{claims::Verdict::Holds, "software", "quick", "h"};
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
-    experiment.claims[0].because = {{"fails", "software", std::nullopt, "r", ""}};
+    experiment.claims[0].because = {{"fails", "software", std::nullopt, std::nullopt, "r", ""}};
     EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {fails, holds}}}), testing::IsEmpty());
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {holds}}}).size(), 1u);
     experiment.claims[0].because[0].device = "gpu";
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
+    // What is known of real scenes alone tells nothing of generated ones.
+    experiment.scene = config::Node::scalar("s");
+    experiment.claims[0].because[0] = {"fails", std::nullopt, std::nullopt, "files", "r", ""};
+    Kept real = fails, generated = fails;
+    real.scenes["s"] = true;
+    generated.scenes["s"] = false;
+    EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {real}}}), testing::IsEmpty());
+    EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {generated}}}).size(), 1u);
     EXPECT_TRUE(isPlain("Ten. 2.5 % of them, at 0.3 m"));
     EXPECT_FALSE(isPlain("One. Two. Three."));
 }

@@ -207,6 +207,34 @@ TEST(Claims, KnownVerdictsAndNews) {
     EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
 }
 
+/// What is known of real models alone is no news where generated ones stand for them, and hold.
+TEST(Claims, AReasonMayBeOfScenesOfFilesOrOfGeneratedOnesAlone) {
+    const auto records = powers([](double n) { return n; });
+    const auto judged = [&](const std::string& scene, const SceneFiles& files) {
+        ReportContext context = kSoftware;
+        context.sceneFiles = files;
+        return judgeOne(scene + powersBody("bound: a, below: 8, because: {verdict: fails, scenes: "
+                                           "files, reason: r}"),
+                        records, context);
+    };
+    const std::string scene = "\nscene: s";
+    EXPECT_EQ(judged(scene, {{"s", true}}).known, Verdict::Fails);
+    EXPECT_TRUE(judged(scene, {{"s", true}}).isNews());
+    EXPECT_EQ(judged(scene, {{"s", false}}).known, Verdict::Holds);
+    EXPECT_EQ(judged(scene, {{"other", true}}).known, Verdict::Holds) << "not known";
+    EXPECT_EQ(judged("", {{"s", true}}).known, Verdict::Holds) << "no scene";
+}
+
+TEST(Claims, TheScenesOfAnExperimentAreOfFilesOrGeneratedOrSome) {
+    const auto classOf = [](const SceneFiles& files) {
+        return sceneClass(tables::experimentFrom("\nsweep: {scene: [a, b]}\n"), files);
+    };
+    EXPECT_EQ(classOf({{"a", true}, {"b", true}, {"c", false}}), "files");
+    EXPECT_EQ(classOf({{"a", false}, {"b", false}}), "generated");
+    EXPECT_EQ(classOf({{"a", false}, {"b", true}}), "");
+    EXPECT_EQ(classOf({{"a", true}}), "");
+}
+
 std::string provenanceError(const std::string& claim, bool isSweep = false, int processes = 6) {
     config::Experiment experiment = tables::experimentFrom(
         "measure: {lane: timing, processes: " + std::to_string(processes) +

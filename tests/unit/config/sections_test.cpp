@@ -346,7 +346,9 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
                      "}, {verdict: ambiguous, reason: r" + second + "}]");
     };
     const std::string rule =
-        "; allowed: one for each device and profile, what is of more behind what is of less";
+        "; allowed: one for each device, profile and kind of scenes, what is of more behind what "
+        "is "
+        "of less";
     EXPECT_EQ(known("", ""), head +
                                  "80: claim 'C': because is of any device, any profile, and an "
                                  "earlier one of any device, any profile" +
@@ -367,6 +369,15 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
                   "98: claim 'C': because is of any device, quick, and an earlier one of "
                   "software, any profile" +
                   rule);
+    EXPECT_EQ(known(", scenes: files", ", scenes: files"),
+              head +
+                  "95: claim 'C': because is of any device, any profile, scenes: files, and an "
+                  "earlier one of any device, any profile, scenes: files" +
+                  rule);
+    EXPECT_EQ(error("because: [{verdict: fails, reason: r, scenes: real}]"),
+              head + "87: claim 'C': because: scenes is real; allowed: files | generated");
+    EXPECT_EQ(known(", scenes: files", ", scenes: generated"), "no error");
+    EXPECT_EQ(known(", scenes: files", ""), "no error");
     EXPECT_EQ(known(", profile: quick", ", profile: paper"), "no error");
     EXPECT_EQ(known(", profile: quick", ""), "no error");
     EXPECT_EQ(known(", device: gpu, profile: quick", ", device: gpu"), "no error");
@@ -377,7 +388,8 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
         "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
         "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
         "  C: {says: s, bound: aa, more_than: 0, origin: derived, bound_from: print, kind: "
-        "architectural, because: [{verdict: fails, profile: quick, reason: r, shown_by: s}]}\n");
+        "architectural, because: [{verdict: fails, profile: quick, reason: r, shown_by: s, scenes: "
+        "files}]}\n");
     const ClaimSpec& claim = table.claims.at(0);
     EXPECT_EQ(claim.origin, ClaimSpec::Origin::Derived);
     EXPECT_EQ(claim.boundFrom, ClaimSpec::BoundSource::Print);
@@ -387,6 +399,7 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     ASSERT_EQ(claim.because.size(), 1u);
     EXPECT_EQ(claim.because[0].profile, "quick");
     EXPECT_EQ(claim.because[0].shownBy, "s");
+    EXPECT_EQ(claim.because[0].scenes, "files");
     EXPECT_EQ(claim.because[0].device, std::nullopt);
 }
 
