@@ -280,6 +280,15 @@ void requireColumns(const Node& fit, const TableNames& names) {
     }
 }
 
+std::map<std::string, std::string> labelsOf(const Node& document) {
+    std::map<std::string, std::string> labels;
+    const Node given = mapOf(document, "labels");
+    for (const auto& [name, words] : given.entries()) {
+        labels[name] = lineOf(words, "labels: '" + name + "'");
+    }
+    return labels;
+}
+
 /// Layout, and what is checked against it: printed values, claims, plots.
 void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const Node* printed = document.find("printed");
@@ -342,6 +351,7 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
     const Node* title = document.find("title");
     if (!title) throw Error(document.location(), "'title' is missing");
     experiment.title = lineOf(*title, "title");
+    experiment.labels = labelsOf(document);
     if (document.find("technique")) {
         readMeasurement(document, experiment);
     } else {

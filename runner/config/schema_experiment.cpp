@@ -92,6 +92,10 @@ SchemaSection content() {
           "pictures that the document shows, by the names that the technique gives them "
           "(`classes` is also classes_0, …): the report folds the others",
           listOf(text())},
+         {"labels", "{name: words}", "{}",
+          "what the report says for a parameter, a scene, a row or a column; a preset may have "
+          "names that a file lacks",
+          mapOf(text())},
          {"layout", "map", "none", "what the table looks like", refTo("layout")},
          {"printed", "map", "none", "what the paper printed; never reaches a worker",
           refTo("printed")},

@@ -24,6 +24,7 @@ class Pictures {
     Pictures(const Page& page, std::size_t run, const Model& model)
         : page_(page),
           shots_(page.parts[run].shots),
+          words_(page.parts[run].table.words),
           letter_(model.isComparison() ? Model::letter(run) : ""),
           prefix_(Model::letter(run) + "-" + page.slug) {
         const RunPart& part = page.parts[run];
@@ -96,7 +97,7 @@ class Pictures {
         if (!grid.others.empty()) {
             html += "<div class=\"gallery\">\n";
             for (const std::size_t i : grid.others) {
-                html += figureHtml(i, fmt::format("{} · {}", shownName(shots_[i].name),
+                html += figureHtml(i, fmt::format("{} · {}", shownName(shots_[i].name, words_),
                                                   withoutTable(shots_[i].caseTitle, page_.id)));
             }
             html += "</div>\n";
@@ -153,7 +154,7 @@ class Pictures {
                 "{}\" width=\"{}\" height=\"{}\" loading=\"lazy\"></button><figcaption>error: FLIP "
                 "{:.4f} to {}</figcaption>\n",
                 escapeXml(idOf(i)), shot.flip, escapeXml(shot.name), escapeXml(shot.truth),
-                shot.width, shot.height, shot.flipMean, escapeXml(shownName(shot.truth)));
+                shot.width, shot.height, shot.flipMean, escapeXml(shownName(shot.truth, words_)));
         }
         return html + "</figure>\n";
     }
@@ -165,7 +166,7 @@ class Pictures {
             return shots_[other].name == shots_[i].name;
         };
         const bool isOne = std::ranges::count_if(cell, isNamedAlike) == 1;
-        const std::string name = shownName(shots_[i].name);
+        const std::string name = shownName(shots_[i].name, words_);
         std::string says = column.empty() ? name : fmt::format("{}: {}", column, name);
         if (!isOne) says += " · " + withoutTable(shots_[i].caseTitle, page_.id);
         return says;
@@ -174,7 +175,8 @@ class Pictures {
     /// One row: as many beside each other as the window has place for.
     std::string flowHtml(const PictureGrid& grid, const PictureLine& line) const {
         std::string html = "<div class=\"gallery\">\n";
-        for (const std::size_t i : line.truth) html += figureHtml(i, shownName(shots_[i].name));
+        for (const std::size_t i : line.truth)
+            html += figureHtml(i, shownName(shots_[i].name, words_));
         for (std::size_t c = 0; c < line.cells.size(); ++c) {
             for (const std::size_t i : line.cells[c]) {
                 html += figureHtml(i, saysOf(i, line.cells[c], grid.columns[c]));
@@ -226,6 +228,7 @@ class Pictures {
 
     const Page& page_;
     const std::vector<Shot>& shots_;
+    const Words& words_;
     PictureGrid main_;  // what the page shows first
     PictureGrid rest_;
     std::string letter_;

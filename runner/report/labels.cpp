@@ -25,17 +25,21 @@ std::string withBlanks(std::string text) {
 
 }  // namespace
 
-std::string shownName(std::string_view name) {
+std::string shownName(std::string_view name, const Words& words) {
+    if (const auto known = words.find(std::string(name)); known != words.end()) {
+        return known->second;
+    }
     if (!isName(name)) return std::string(name);
     return withBlanks(std::string(name.substr(name.find('/') + 1)));
 }
 
-std::map<std::string, std::string> shownNames(const std::set<std::string>& names) {
+std::map<std::string, std::string> shownNames(const std::set<std::string>& names,
+                                              const Words& words) {
     std::map<std::string, int> uses;
-    for (const std::string& name : names) ++uses[shownName(name)];
+    for (const std::string& name : names) ++uses[shownName(name, words)];
     std::map<std::string, std::string> shown;
     for (const std::string& name : names) {
-        const std::string text = shownName(name);
+        const std::string text = shownName(name, words);
         shown[name] = uses[text] == 1 ? text : isName(name) ? withBlanks(name) : name;
     }
     return shown;

@@ -53,7 +53,8 @@ std::map<std::string, Place> placesOf(const tables::Table& table,
     for (auto& [id, item] : found) {
         for (std::size_t i = 0; i < item.row->size(); ++i) {  // a number says nothing alone
             auto& label = (*item.row)[i];
-            if (label && parseDouble(*label)) label = shownName(table.rowAxes[i]) + ' ' + *label;
+            if (label && parseDouble(*label))
+                label = shownName(table.rowAxes[i], table.words) + ' ' + *label;
         }
         places.emplace(id, Place{*item.row, *item.column, item.firstRow, item.firstColumn});
     }
@@ -92,10 +93,10 @@ void layAlongColumns(std::map<std::string, Place>& places) {
     }
 }
 
-std::string textOf(const Labels& labels) {
+std::string textOf(const Labels& labels, const Words& words) {
     std::vector<std::string> said;
     for (const auto& label : labels) {
-        if (label && !label->empty()) said.push_back(shownName(*label));
+        if (label && !label->empty()) said.push_back(shownName(*label, words));
     }
     return joined(said);
 }
@@ -216,8 +217,9 @@ PictureGrid pictureGrid(const tables::Table& table, const std::vector<Shot>& sho
     }
     const std::vector<Labels> rows = distinct(places, &Place::row, &Place::firstRow);
     PictureGrid grid;
-    for (const Labels& column : columns) grid.columns.push_back(textOf(column));
-    for (const Labels& row : rows) grid.rows.push_back({rows.size() > 1 ? textOf(row) : "", {}});
+    for (const Labels& column : columns) grid.columns.push_back(textOf(column, table.words));
+    for (const Labels& row : rows)
+        grid.rows.push_back({rows.size() > 1 ? textOf(row, table.words) : "", {}});
     const std::map<std::size_t, std::size_t> truths = truthsOf(shots);
     std::set<std::size_t> shownAsTruth;
     for (const auto& [shot, truth] : truths) {

@@ -58,7 +58,7 @@ std::string withoutUnit(const std::string& name, const std::string& unit) {
                                                    : name;
 }
 
-Head headOf(const tables::TableColumn& column) {
+Head headOf(const tables::TableColumn& column, const Words& words) {
     Head head;
     head.above = column.parts;
     std::string name = column.label;
@@ -68,7 +68,8 @@ Head headOf(const tables::TableColumn& column) {
     }
     // "triangles" says its unit already.
     const bool isSaid = column.unit == "1" || name == column.unit;
-    head.own = escapeXml(shownName(withoutUnit(name, column.unit)));
+    const bool isInWords = words.contains(name);
+    head.own = escapeXml(shownName(isInWords ? name : withoutUnit(name, column.unit), words));
     if (!isSaid && !column.unit.empty()) {
         head.own += fmt::format(" <span class=\"sub\">{}</span>", escapeXml(column.unit));
     }
@@ -105,7 +106,7 @@ std::string sharedHeadsHtml(const Overlay& overlay, const std::vector<Head>& hea
             width += overlay.widthOf(overlay.columns()[last++].label);
         }
         html += fmt::format("<th class=\"group\" scope=\"colgroup\" colspan=\"{}\">{}</th>", width,
-                            escapeXml(shownName(partsOf(first)[level])));
+                            escapeXml(shownName(partsOf(first)[level], overlay.first().words)));
         first = last;
     }
     return html;
@@ -114,10 +115,11 @@ std::string sharedHeadsHtml(const Overlay& overlay, const std::vector<Head>& hea
 }  // namespace
 
 std::string headHtml(const Overlay& overlay, bool isComparison) {
+    const Words& words = overlay.first().words;
     std::vector<Head> heads;
     std::size_t levels = 0;
     for (const tables::TableColumn& column : overlay.columns()) {
-        heads.push_back(headOf(column));
+        heads.push_back(headOf(column, words));
         levels = std::max(levels, heads.back().above.size());
     }
     const auto isGroup = [&](const auto& column) { return overlay.widthOf(column.label) > 1; };
@@ -128,7 +130,7 @@ std::string headHtml(const Overlay& overlay, bool isComparison) {
     for (const std::string& axis : overlay.first().rowAxes) {
         html += fmt::format(
             "<th class=\"axis{}\" scope=\"col\" rowspan=\"{}\" title=\"{}\">{}</th>",
-            isFirst ? " first" : "", height, escapeXml(axis), escapeXml(shownName(axis)));
+            isFirst ? " first" : "", height, escapeXml(axis), escapeXml(shownName(axis, words)));
         isFirst = false;
     }
     for (std::size_t level = 0; level < levels; ++level) {

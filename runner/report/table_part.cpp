@@ -94,14 +94,14 @@ std::size_t heightOf(const Overlay& overlay, std::size_t row, std::size_t axis) 
 
 using ShownLabels = std::vector<std::map<std::string, std::string>>;  // beside the row axes
 
-ShownLabels shownLabels(const std::vector<std::vector<std::string>>& rows) {
+ShownLabels shownLabels(const std::vector<std::vector<std::string>>& rows, const Words& words) {
     std::vector<std::set<std::string>> names;
     for (const std::vector<std::string>& labels : rows) {
         names.resize(std::max(names.size(), labels.size()));
         for (std::size_t i = 0; i < labels.size(); ++i) names[i].insert(labels[i]);
     }
     ShownLabels shown;
-    for (const auto& axis : names) shown.push_back(shownNames(axis));
+    for (const auto& axis : names) shown.push_back(shownNames(axis, words));
     return shown;
 }
 
@@ -199,16 +199,19 @@ std::string absentRowsHtml(const Page& page) {
         "<div class=\"scroll\"><table class=\"results\"><thead><tr>",
         table.printedRows.size(), table.printedRows.size() == 1 ? " is" : "s are");
     for (const std::string& axis : table.rowAxes) {
-        html += fmt::format("<th class=\"axis\" scope=\"col\">{}</th>", escapeXml(shownName(axis)));
+        html += fmt::format("<th class=\"axis\" scope=\"col\">{}</th>",
+                            escapeXml(shownName(axis, table.words)));
     }
     for (const tables::TableColumn& column : table.columns) {
-        html += fmt::format("<th scope=\"col\">{}</th>", escapeXml(shownName(column.label)));
+        html += fmt::format("<th scope=\"col\">{}</th>",
+                            escapeXml(shownName(column.label, table.words)));
     }
     html += "</tr></thead>\n<tbody>\n";
     for (const TableRow& row : table.printedRows) {
         html += "<tr>";
         for (const std::string& label : row.labels) {
-            html += fmt::format("<th scope=\"row\">{}</th>", escapeXml(shownName(label)));
+            html +=
+                fmt::format("<th scope=\"row\">{}</th>", escapeXml(shownName(label, table.words)));
         }
         for (const Cell& cell : row.cells) {
             html += fmt::format("<td class=\"num printed\">{}</td>",
@@ -226,7 +229,7 @@ std::string tableHtml(const Page& page, const Model& model) {
                        "<div class=\"scroll\"><table class=\"results\">\n" +
                        headHtml(overlay, model.isComparison()) + "<tbody>\n";
     bool hasStandIn = false;
-    const ShownLabels shown = shownLabels(overlay.rows());
+    const ShownLabels shown = shownLabels(overlay.rows(), overlay.first().words);
     for (std::size_t row = 0; row < overlay.rows().size(); ++row) {
         html += rowHtml(overlay, row, shown);
         hasStandIn |= isStandIn(overlay, overlay.rows()[row]);

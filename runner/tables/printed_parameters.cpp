@@ -254,10 +254,16 @@ std::string sentence(const Tally& tally) {
     return text;
 }
 
+void putInWords(const std::map<std::string, std::string>& words, std::string& name) {
+    if (const auto known = words.find(name); known != words.end()) name = known->second;
+}
+
 std::string line(const Table& table, std::span<const TableRow> rows) {
     if (!table.isPublished) return "";
-    const Tally tally = tallyOf(rows);
+    Tally tally = tallyOf(rows);
     if (tally.count() == 0) return "";
+    for (Departure& departure : tally.departures) putInWords(table.words, departure.parameter);
+    for (std::string& parameter : tally.open) putInWords(table.words, parameter);
     if (!table.knowsPrintedParameters) {
         return "Whether it was measured at the printed parameters is not known: the run's plan "
                "does not have them";

@@ -257,6 +257,7 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
     table.slug = experiment.slug();
     table.label = experiment.label();
     table.title = experiment.title;
+    table.words = experiment.labels;
     table.hardware = experiment.printed.hardware;
     table.remark = experiment.printed.remark;
     if (experiment.technique.empty()) layPrintedAlone(experiment.printed, table);

@@ -1,6 +1,7 @@
 // Tables of measurements: records gathered into the rows and columns that the experiment lays out.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -118,6 +119,8 @@ struct Table {
     bool isOnlyPrinted = false;  // nothing is measured for it
     bool isPublished = false;    // what is measured stands for something that a paper shows
     bool knowsPrintedParameters = false;  // not so in runs of before these were kept
+    /// `labels:` of its config: what people read for the name of a parameter, axis, row or column.
+    std::map<std::string, std::string> words;
     std::vector<std::string> rowAxes;
     std::vector<TableColumn> columns;
     std::vector<TableRow> rows;

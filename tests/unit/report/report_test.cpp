@@ -402,6 +402,21 @@ layout:
     EXPECT_EQ(html.find(">bird nest</th>"), html.rfind(">bird nest</th>"));
 }
 
+TEST(Report, LabelsAreReadForNames) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.experiments[0].labels = {
+        {"scene", "model"}, {"models/duck", "rubber duck"}, {"draw_ms", "time to draw"}};
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr("title=\"scene\">model</th>"));
+    EXPECT_THAT(html, HasSubstr("title=\"models/duck\">rubber duck"));
+    EXPECT_THAT(html, HasSubstr(">time to draw <span"));
+    EXPECT_THAT(html, HasSubstr("title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>"))
+        << "what has none stays";
+}
+
 /// What a chapter holds and what it does not, in words, with the pictures that show it.
 TEST(Report, FirstScreenSaysWhatReproduced) {
     const test::TemporaryFolder folder;

@@ -113,6 +113,22 @@ TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
               "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (50).");
 }
 
+TEST(PrintedParameters, AreNamedInTheConfigsWords) {
+    const std::string words = "labels: {light_grid: light samples a side, bias: the bias}\n";
+    const auto lineAt = [&](const char* params, const std::string& more) {
+        RecordMaker maker;
+        maker.beginCase("models/duck", params).add("gpu_time_ms", {8.0});
+        return parametersLine(
+            buildTable(withPaperCases(experimentFrom(kDuck + words + more),
+                                      {{"models/duck", R"({"bias": 1, "light_grid": 16})"}}),
+                       maker.records()));
+    };
+    EXPECT_EQ(lineAt(R"({"bias": 1, "light_grid": 4})", ""),
+              "Measured at light samples a side 4 (printed 16).");
+    EXPECT_EQ(lineAt(R"({"bias": 1, "light_grid": 16})", "assumptions: {bias: {why: not given}}\n"),
+              "Measured at the printed parameters as far as they are given (not: the bias).");
+}
+
 /// What the document does not give is the paper profile's, and no printed parameter.
 TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     const std::string open =
