@@ -1,5 +1,7 @@
 #include "runner/config/experiment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -213,8 +215,9 @@ void requireTold(const Node& document, const Experiment& experiment) {
     require("scene", hasScene, "{scene}", program.uses(placeholder::kScene));
     require("output", hasSize, "{width} or {height}",
             program.uses(placeholder::kWidth) || program.uses(placeholder::kHeight));
-    require("measure", experiment.measure.frames > 1, "{frame}, of which there are several",
-            program.uses(placeholder::kFrame));
+    const char* told = program.givesAllFrames ? placeholder::kFrames : placeholder::kFrame;
+    require("measure", experiment.measure.frames > 1,
+            fmt::format("{{{}}}, of which there are several", told), program.uses(told));
 }
 
 void readMeasurement(const Node& document, Experiment& experiment) {

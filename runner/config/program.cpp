@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <limits>
 #include <regex>
 #include <utility>
 
 #include "runner/config/checks.h"
+#include "runner/config/program_parts.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
@@ -19,30 +17,6 @@ namespace gfxrepro::config {
 namespace {
 
 using Names = std::vector<std::string>;
-using Type = ProgramParam::Type;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-const Names& reservedNames() {
-    static const Names names = {placeholder::kHere,  placeholder::kOut,    placeholder::kScene,
-                                placeholder::kWidth, placeholder::kHeight, placeholder::kSeed,
-                                placeholder::kFrame, placeholder::kFrames};
-    return names;
-}
-
-bool isSnakeCase(std::string_view name) {
-    return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) &&
-           std::ranges::all_of(name, [](unsigned char c) {
-               return std::islower(c) || std::isdigit(c) || c == '_';
-           });
-}
-
-void requireSnakeCase(const Node& map, const std::string& name, std::string_view what) {
-    if (isSnakeCase(name)) return;
-    throw Error(map.keyLocation(name), fmt::format("program: {} '{}'; allowed: small letters, "
-                                                   "digits and _, a letter first",
-                                                   what, name));
-}
 
 /// Calls `text` and `name` for the parts of a text outside and inside of braces.
 template <class OnText, class OnName>
@@ -107,93 +81,12 @@ Names argumentsOf(const Node& node, std::string_view what, const Names& known) {
     return arguments;
 }
 
-std::string optionalLine(const Node& map, const char* key, const std::string& what) {
+/// Whether the text at `key` is the second of the two; where it is not there the first counts.
+bool isSecond(const Node& map, const char* key, const char* first, const char* second) {
     const Node* node = map.find(key);
-    return node ? lineOf(*node, what + ": " + key) : "";
-}
-
-double optionalNumber(const Node& map, const char* key, double fallback) {
-    const Node* node = map.find(key);
-    return node ? node->asDouble() : fallback;
-}
-
-constexpr std::pair<std::string_view, Type> kTypes[] = {{"integer", Type::Integer},
-                                                        {"number", Type::Number},
-                                                        {"boolean", Type::Boolean},
-                                                        {"text", Type::Text}};
-
-/// As it is said, else as the default looks.
-Type typeOf(const Node& map, const Node& fallback, const std::string& what) {
-    const Node* choices = map.find("choices");
-    const Node* type = map.find("type");
-    if (type) {
-        for (const auto& [name, known] : kTypes) {
-            if (type->isScalar() && type->text() == name && !choices) return known;
-        }
-        throwNotAllowed(*type, what + ": type",
-                        choices ? "none beside 'choices'" : "integer, number, boolean, text");
-    }
-    if (choices) return Type::Choice;
-    if (fallback.tryBool()) return Type::Boolean;
-    if (fallback.tryInteger()) return Type::Integer;
-    return fallback.tryDouble() ? Type::Number : Type::Text;
-}
-
-ProgramParam paramOf(const Node& params, const std::string& name) {
-    const Node& given = *params.find(name);
-    const std::string what = "program: parameter '" + name + "'";
-    requireSnakeCase(params, name, "parameter");
-    if (std::ranges::find(reservedNames(), name) != reservedNames().end()) {
-        throw Error(params.keyLocation(name),
-                    what + ": every program has that placeholder; give it another name");
-    }
-    static const Names kOfCases = {"output", "scene_sample", "stands_for"};
-    if (std::ranges::find(kOfCases, name) != kOfCases.end()) {
-        throw Error(params.keyLocation(name),
-                    what + ": plans and tables have that of every case; give it another name");
-    }
-    // A value alone is its default.
-    const Node map = given.isMap() ? given : Node::map({{"default", given}}, given.location());
-    requireKeys(map, what, keysOf("program_param"));
-    const Node* fallback = map.find("default");
-    if (!fallback || !fallback->isScalar()) {
-        throw Error(given.location(), what + " needs 'default', a number, a boolean or text");
-    }
-    ProgramParam param;
-    param.name = name;
-    param.fallback = *fallback;
-    param.doc = optionalLine(map, "doc", what);
-    param.unit = optionalLine(map, "unit", what);
-    param.type = typeOf(map, *fallback, what);
-    param.min = optionalNumber(map, "min", -kInfinity);
-    param.max = optionalNumber(map, "max", kInfinity);
-    const bool isNumber = param.type == Type::Integer || param.type == Type::Number;
-    for (const char* key : {"min", "max"}) {
-        if (map.find(key) && !isNumber) {
-            throw Error(map.keyLocation(key), what + ": '" + key + "' is of numbers alone");
-        }
-    }
-    if (const Node* choices = map.find("choices")) {
-        if (!choices->isSequence() || choices->items().empty()) {
-            throwNotAllowed(*choices, what + ": choices", "a list of values");
-        }
-        for (const Node& choice : choices->items()) param.choices.push_back(choice.text());
-    }
-    const auto value = fallback->tryDouble();
-    const auto whole = fallback->tryInteger();
-    if (param.type == Type::Integer && whole && !std::in_range<int>(*whole)) {
-        throwNotAllowed(*fallback, what + ": default",
-                        "a whole number of 32 bits, or 'type: number' beside it");
-    }
-    const bool isWhole = param.type != Type::Integer || whole;
-    const bool isLegal =
-        isNumber ? value && isWhole && *value >= param.min && *value <= param.max
-        : param.type == Type::Boolean ? fallback->tryBool().has_value()
-        : param.type == Type::Choice
-            ? std::ranges::find(param.choices, fallback->text()) != param.choices.end()
-            : true;
-    if (!isLegal) throwNotAllowed(*fallback, what + ": default", "one of the values it may have");
-    return param;
+    if (!node || (node->isScalar() && node->text() == first)) return false;
+    if (node->isScalar() && node->text() == second) return true;
+    throwNotAllowed(*node, std::string("program: ") + key, std::string(first) + ", " + second);
 }
 
 Better betterOf(const Node& metric, const std::string& what) {
@@ -221,6 +114,11 @@ void readMetrics(const Node& metrics, Program& program) {
         if (optional && optional->asBool()) program.optionalMetrics.push_back(name);
         const Node* pattern = map.find("pattern");
         if (!pattern) continue;
+        if (program.givesAllFrames) {
+            throw Error(pattern->location(), what +
+                                                 ": a pattern does not tell frames apart, and "
+                                                 "one run gives them all ('frames: all')");
+        }
         const std::string& text = lineOf(*pattern, what + ": pattern");
         try {
             if (std::regex(text).mark_count() < 1) {
@@ -251,7 +149,13 @@ void readTruthFrames(const Node& truth, const std::string& what, const Program& 
         throwNotAllowed(frames, what + ": frames", "2 … 1000 pictures, each of another seed");
     }
     const Node* first = truth.find(placeholder::kFrame);
-    if (!first || !first->tryInteger() || !program.uses(placeholder::kFrame)) {
+    if (program.givesAllFrames) {
+        if (!program.uses(placeholder::kFrames)) {
+            throw Error(frames.location(), what +
+                                               ": 'frames', and the program's command has no "
+                                               "{frames}");
+        }
+    } else if (!first || !first->tryInteger() || !program.uses(placeholder::kFrame)) {
         throw Error(frames.location(),
                     what +
                         ": 'frames' are other seeds from 'frame' on: give that, a whole number, "
@@ -266,13 +170,18 @@ void readTruth(const Node& truth, const std::string& what, const Names& known, P
         picture.truthFile = templateOf(truth, what, known);
         return;
     }
-    Names allowed = {placeholder::kSeed, placeholder::kFrame, placeholder::kFrames};
+    Names allowed = {placeholder::kFrames};
+    if (!program.givesAllFrames) allowed.emplace_back(placeholder::kFrame);
+    if (program.uses(placeholder::kSeed)) allowed.emplace_back(placeholder::kSeed);
     for (const ProgramParam& param : program.params) allowed.push_back(param.name);
     requireKeys(truth, what, allowed);
-    Node given = truth;  // read as a case's
-    for (const char* name : {placeholder::kSeed, placeholder::kFrame, placeholder::kFrames}) {
-        given.erase(name);
+    if (program.seedsByProcess && !truth.find(placeholder::kSeed)) {
+        throw Error(truth.location(), what +
+                                          " needs 'seed', as that of the cases is another in "
+                                          "each process");
     }
+    Node given = truth;  // read as a case's
+    for (const char* name : {placeholder::kFrame, placeholder::kFrames}) given.erase(name);
     Params values(given, what);
     program.declare(values);
     values.finish();
@@ -293,6 +202,10 @@ void readPictures(const Node& pictures, const Names& known, Program& program) {
         ProgramPicture picture;
         picture.name = name;
         picture.file = templateOf(*file, what + ": file", known);
+        if (program.givesAllFrames && !hasPlaceholder(picture.file, placeholder::kFrame)) {
+            throwNotAllowed(*file, what + ": file",
+                            "one with {frame}, as one run leaves the pictures of all frames");
+        }
         if (const Node* truth = map.find("truth")) {
             readTruth(*truth, what + ": truth", known, program, picture);
         }
@@ -337,11 +250,13 @@ Program readProgram(const Node& node) {
     };
     section("here", [&](const Node& here) { program.here = lineOf(here, "program: here"); });
     section("gpu", [&](const Node& gpu) { program.usesGpu = gpu.asBool(); });
+    program.givesAllFrames = isSecond(node, "frames", "one", "all");
+    program.seedsByProcess = isSecond(node, "seeds", "case", "process");
     Names known = reservedNames();
     section("params", [&](const Node& params) {
         if (!params.isMap()) throwNotAllowed(params, "program: params", "a map {name: parameter}");
         for (const auto& [name, param] : params.entries()) {
-            program.params.push_back(paramOf(params, name));
+            program.params.push_back(readProgramParam(params, name));
             known.push_back(name);
         }
     });
@@ -354,6 +269,14 @@ Program readProgram(const Node& node) {
             program.environment.emplace_back(name, templateOf(text, "program: env", known));
         }
     });
+    if (program.givesAllFrames && program.uses(placeholder::kFrame)) {
+        throw Error(command->location(),
+                    "program: {frame}, and one run gives all frames; allowed: "
+                    "{frames}, their number");
+    }
+    if (program.seedsByProcess && !program.uses(placeholder::kSeed)) {
+        throw Error(node.keyLocation("seeds"), "program: seeds: the command has no {seed}");
+    }
     section("version", [&](const Node& version) {
         program.version = argumentsOf(version, "program: version", {placeholder::kHere});
     });

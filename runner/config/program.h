@@ -31,7 +31,7 @@ inline constexpr const char* kOut = "out";        // an empty folder, in which t
 inline constexpr const char* kScene = "scene";    // the case's scene, as a .glb file
 inline constexpr const char* kWidth = "width";    // of the picture, in pixels
 inline constexpr const char* kHeight = "height";  // likewise
-inline constexpr const char* kSeed = "seed";      // of the run
+inline constexpr const char* kSeed = "seed";      // of random numbers
 inline constexpr const char* kFrame = "frame";    // that is drawn, from 0
 inline constexpr const char* kFrames = "frames";  // of the path
 }  // namespace placeholder
@@ -46,6 +46,9 @@ struct ProgramParam {
     std::vector<std::string> choices;  // of a choice alone
 };
 
+/// What {seed} grows by from one process of a case to the next, with `seeds: process`.
+inline constexpr int kSeedsOfAProcess = 1000;
+
 /// A picture that the program leaves, .exr or .png.
 struct ProgramPicture {
     std::string name;
@@ -54,8 +57,9 @@ struct ProgramPicture {
     /// the case's, with which the program makes it. Empty and null where that is not known.
     std::string truthFile;
     Node truthParams;
-    /// So many pictures of the truth, of `frame` and those that follow it: each another seed. From
-    /// 2 on the case's own frames, other seeds too, are tested for the same expectation.
+    /// So many pictures of the truth, of `frame` and those that follow it (from 0, where one run
+    /// gives all): each another seed. From 2 on the case's own frames, other seeds too, are tested
+    /// for the same expectation.
     int truthFrames = 1;
 
     bool hasTruth() const { return !truthFile.empty() || !truthParams.isNull(); }
@@ -75,6 +79,8 @@ struct Program {
     std::vector<std::string> files;    // what else its outcome depends on
     std::string here;                  // absolute folder
     bool usesGpu = false;
+    bool givesAllFrames = false;  // one run all frames of a case; else each frame has its own run
+    bool seedsByProcess = false;  // {seed} is another in each process of a case
     std::vector<ProgramParam> params;
     Outputs outputs;                           // what it says; pictures with a truth are passes
     std::vector<std::string> optionalMetrics;  // that it may leave out
@@ -83,7 +89,7 @@ struct Program {
 
     /// Whether an argument or a variable has the placeholder.
     bool uses(std::string_view name) const;
-    /// Reads each parameter.
+    /// Reads each parameter, and `seed` where the program takes {seed}.
     void declare(Params& params) const;
     /// Those parameters, and `here`, as placeholders have them.
     Placeholders valuesOf(const Node& resolved) const;

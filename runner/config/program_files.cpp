@@ -34,6 +34,9 @@ Placeholders Program::valuesOf(const Node& resolved) const {
     for (const ProgramParam& param : params) {
         if (const Node* value = resolved.find(param.name)) values[param.name] = value->text();
     }
+    if (const Node* seed = resolved.find(placeholder::kSeed)) {
+        values[placeholder::kSeed] = seed->text();
+    }
     return values;
 }
 

@@ -1,14 +1,59 @@
-// The parameters of a program as a case has them.
+// The parameters of a program: as its config declares them, and as a case has them.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <limits>
+#include <utility>
 
-#include "runner/config/program.h"
+#include "runner/config/checks.h"
+#include "runner/config/program_parts.h"
+#include "runner/config/schema.h"
+#include "runner/config/sections.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::config {
 
 namespace {
+
+using Names = std::vector<std::string>;
+using Type = ProgramParam::Type;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool isSnakeCase(std::string_view name) {
+    return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) &&
+           std::ranges::all_of(name, [](unsigned char c) {
+               return std::islower(c) || std::isdigit(c) || c == '_';
+           });
+}
+
+double optionalNumber(const Node& map, const char* key, double fallback) {
+    const Node* node = map.find(key);
+    return node ? node->asDouble() : fallback;
+}
+
+constexpr std::pair<std::string_view, Type> kTypes[] = {{"integer", Type::Integer},
+                                                        {"number", Type::Number},
+                                                        {"boolean", Type::Boolean},
+                                                        {"text", Type::Text}};
+
+/// As it is said, else as the default looks.
+Type typeOf(const Node& map, const Node& fallback, const std::string& what) {
+    const Node* choices = map.find("choices");
+    const Node* type = map.find("type");
+    if (type) {
+        for (const auto& [name, known] : kTypes) {
+            if (type->isScalar() && type->text() == name && !choices) return known;
+        }
+        throwNotAllowed(*type, what + ": type",
+                        choices ? "none beside 'choices'" : "integer, number, boolean, text");
+    }
+    if (choices) return Type::Choice;
+    if (fallback.tryBool()) return Type::Boolean;
+    if (fallback.tryInteger()) return Type::Integer;
+    return fallback.tryDouble() ? Type::Number : Type::Text;
+}
 
 /// One of a list that is known only now.
 void readChoice(const ProgramParam& param, Params& values) {
@@ -21,6 +66,82 @@ void readChoice(const ProgramParam& param, Params& values) {
 }
 
 }  // namespace
+
+const Names& reservedNames() {
+    static const Names names = {placeholder::kHere,  placeholder::kOut,    placeholder::kScene,
+                                placeholder::kWidth, placeholder::kHeight, placeholder::kSeed,
+                                placeholder::kFrame, placeholder::kFrames};
+    return names;
+}
+
+void requireSnakeCase(const Node& map, const std::string& name, std::string_view what) {
+    if (isSnakeCase(name)) return;
+    throw Error(map.keyLocation(name), fmt::format("program: {} '{}'; allowed: small letters, "
+                                                   "digits and _, a letter first",
+                                                   what, name));
+}
+
+std::string optionalLine(const Node& map, const char* key, const std::string& what) {
+    const Node* node = map.find(key);
+    return node ? lineOf(*node, what + ": " + key) : "";
+}
+
+ProgramParam readProgramParam(const Node& params, const std::string& name) {
+    const Node& given = *params.find(name);
+    const std::string what = "program: parameter '" + name + "'";
+    requireSnakeCase(params, name, "parameter");
+    if (std::ranges::find(reservedNames(), name) != reservedNames().end()) {
+        throw Error(params.keyLocation(name),
+                    what + ": every program has that placeholder; give it another name");
+    }
+    static const Names kOfCases = {"output", "scene_sample", "stands_for"};
+    if (std::ranges::find(kOfCases, name) != kOfCases.end()) {
+        throw Error(params.keyLocation(name),
+                    what + ": plans and tables have that of every case; give it another name");
+    }
+    // A value alone is its default.
+    const Node map = given.isMap() ? given : Node::map({{"default", given}}, given.location());
+    requireKeys(map, what, keysOf("program_param"));
+    const Node* fallback = map.find("default");
+    if (!fallback || !fallback->isScalar()) {
+        throw Error(given.location(), what + " needs 'default', a number, a boolean or text");
+    }
+    ProgramParam param;
+    param.name = name;
+    param.fallback = *fallback;
+    param.doc = optionalLine(map, "doc", what);
+    param.unit = optionalLine(map, "unit", what);
+    param.type = typeOf(map, *fallback, what);
+    param.min = optionalNumber(map, "min", -kInfinity);
+    param.max = optionalNumber(map, "max", kInfinity);
+    const bool isNumber = param.type == Type::Integer || param.type == Type::Number;
+    for (const char* key : {"min", "max"}) {
+        if (map.find(key) && !isNumber) {
+            throw Error(map.keyLocation(key), what + ": '" + key + "' is of numbers alone");
+        }
+    }
+    if (const Node* choices = map.find("choices")) {
+        if (!choices->isSequence() || choices->items().empty()) {
+            throwNotAllowed(*choices, what + ": choices", "a list of values");
+        }
+        for (const Node& choice : choices->items()) param.choices.push_back(choice.text());
+    }
+    const auto value = fallback->tryDouble();
+    const auto whole = fallback->tryInteger();
+    if (param.type == Type::Integer && whole && !std::in_range<int>(*whole)) {
+        throwNotAllowed(*fallback, what + ": default",
+                        "a whole number of 32 bits, or 'type: number' beside it");
+    }
+    const bool isWhole = param.type != Type::Integer || whole;
+    const bool isLegal =
+        isNumber ? value && isWhole && *value >= param.min && *value <= param.max
+        : param.type == Type::Boolean ? fallback->tryBool().has_value()
+        : param.type == Type::Choice
+            ? std::ranges::find(param.choices, fallback->text()) != param.choices.end()
+            : true;
+    if (!isLegal) throwNotAllowed(*fallback, what + ": default", "one of the values it may have");
+    return param;
+}
 
 void Program::declare(Params& values) const {
     for (const ProgramParam& param : params) {
@@ -42,6 +163,9 @@ void Program::declare(Params& values) const {
                 readChoice(param, values);
                 break;
         }
+    }
+    if (uses(placeholder::kSeed)) {
+        values.getInt(placeholder::kSeed, 1, {"{seed}, of its random numbers", "", 0, 1e9});
     }
 }
 

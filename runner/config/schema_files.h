@@ -6,6 +6,7 @@
 namespace gfxrepro::config {
 
 SchemaFile experimentSchema();
+std::vector<SchemaSection> programSections();
 std::vector<SchemaSection> claimSections();
 SchemaFile sceneSchema();
 SchemaFile expectationsSchema();

@@ -130,12 +130,19 @@ class WorkGuard {
     std::vector<RepeatWork> repeats_;
 };
 
+/// Frames that one render() draws: all, of a program that gives them in one run.
+int framesAtOnce(const Case& item) {
+    const bool areAll = !item.program.isNull() && config::readProgram(item.program).givesAllFrames;
+    return areAll ? item.measure.frames : 1;
+}
+
 /// The frames of one case, drawn and timed.
 class FrameLoop {
   public:
     FrameLoop(const Case& item, bool drawsOnDevice, technique::Technique& technique,
               gl::Profiler& profiler, const MeasureContext& context)
         : measure_(item.measure),
+          atOnce_(framesAtOnce(item)),
           technique_(technique),
           profiler_(profiler),
           context_(context),
@@ -144,9 +151,9 @@ class FrameLoop {
           guard_(context.device, item.measure.lane == config::Measure::Lane::Timing) {}
 
     /// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is
-    /// recorded.
+    /// recorded. Of frames that are drawn at once one record() follows another, in their order.
     void run(RunRecorder& recorder, CaseResult& result) {
-        for (int frame = 0; frame < measure_.frames; ++frame) {
+        for (int frame = 0; frame < measure_.frames; frame += atOnce_) {
             technique::FrameContext frameContext{frame, measure_.frames, profiler_};
             const std::size_t firstSample = result.samples.size();
             guard_.beginFrame();
@@ -157,9 +164,11 @@ class FrameLoop {
             }
             guard_.endFrame(frame, firstSample, result);
             const PhaseScope phase(context_, "record", result.cost.recordS);
-            recorder.setIteration(frame, 0);
-            technique_.record(recorder);
-            recorder.checkTruths();
+            for (int drawn = frame; drawn < frame + atOnce_; ++drawn) {
+                recorder.setIteration(drawn, 0);
+                technique_.record(recorder);
+                recorder.checkTruths();
+            }
             context_.device.finish("recording");
             profiler_.collect();
         }
@@ -194,37 +203,43 @@ class FrameLoop {
         for (int i = 0; tables::isRepeated(measure_, timesMs) ||
                         (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
              ++i) {
-            recorder.setIteration(frame.frame, i);
             if (pacing_.inFlight(lastMs_) > 1) keepBusy(frame);
-            lastMs_ = measureFrame(frame, recorder);
+            lastMs_ = measureFrame(frame, i, recorder);
             timesMs.push_back(lastMs_);
-            spentS += 1e-3 * lastMs_;
+            spentS += 1e-3 * lastMs_ * atOnce_;
         }
     }
-    /// Its wall time, in ms.
-    double measureFrame(technique::FrameContext& frame, RunRecorder& recorder) {
+    /// Its wall time, in ms; of frames that are drawn at once, that of all ÷ their number.
+    double measureFrame(technique::FrameContext& frame, int repeat, RunRecorder& recorder) {
+        const auto recordOfEach = [&](const char* metric, double value, const char* unit) {
+            for (int drawn = frame.frame; drawn < frame.frame + atOnce_; ++drawn) {
+                recorder.setIteration(drawn, repeat);
+                recorder.metric(metric, value, unit, "");
+            }
+        };
         guard_.beginRepeat();
         const double processBeginMs = gl::processTimeMs();
         const Clock::time_point begin = Clock::now();
         technique_.render(frame);
         context_.device.finish("rendering");
-        const double wallTimeMs = millisecondsSince(begin);
+        const double wallTimeMs = millisecondsSince(begin) / atOnce_;
         const double processTimeMs = gl::processTimeMs() - processBeginMs;
-        recorder.metric("wall_time_ms", wallTimeMs, "ms", "");
+        recordOfEach("wall_time_ms", wallTimeMs, "ms");
         if (const auto elsewhere = technique_.usageElsewhere()) {
-            recorder.metric("process_time_ms", elsewhere->processTimeMs, "ms", "");
+            recordOfEach("process_time_ms", elsewhere->processTimeMs / atOnce_, "ms");
         } else if (isSoftware_) {
-            recorder.metric("process_time_ms", processTimeMs, "ms", "");
+            recordOfEach("process_time_ms", processTimeMs / atOnce_, "ms");
         }
+        recorder.setIteration(frame.frame, repeat);
         recordPasses(profiler_, isSoftware_, recorder);
         guard_.endRepeat(technique_, recorder);
-        recorder.metric("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs), "1/s", "");
+        recordOfEach("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs), "1/s");
         return wallTimeMs;
     }
     /// The time of a frame of several that follow one another without a wait for each.
     double timeInFlightMs(technique::FrameContext& frame, double wallTimeMs) {
         const int count = pacing_.inFlight(wallTimeMs);
-        if (count == 1) return wallTimeMs;
+        if (count == 1 || atOnce_ > 1) return wallTimeMs;
         const Clock::time_point begin = Clock::now();
         for (int i = 0; i < count; ++i) {
             technique_.render(frame);
@@ -237,6 +252,7 @@ class FrameLoop {
     }
 
     const config::Measure& measure_;
+    int atOnce_;
     technique::Technique& technique_;
     gl::Profiler& profiler_;
     const MeasureContext& context_;

@@ -229,6 +229,9 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
+        // Of a program that takes {seed} it is a parameter.
+        const config::Node* own = item.params.find(config::placeholder::kSeed);
+        if (own && !item.program.isNull()) item.seed = static_cast<std::uint64_t>(own->asInteger());
         take(std::move(item), need);
     }
 }

@@ -42,6 +42,10 @@ CaseResult failure(records::Status status, const std::string& message) {
     return result;
 }
 
+bool isSeededByProcess(const Case& item) {
+    return !item.program.isNull() && config::readProgram(item.program).seedsByProcess;
+}
+
 /// The batch case loop's catch: whatever a case throws becomes its status.
 CaseResult resultOf(const Case& item, MeasureContext& context) {
     try {
@@ -90,7 +94,12 @@ void serve(gl::Device& device, const WorkerOptions& options,
         const config::Node request = config::parseJson(line, "what the runner sent");
         const config::Node* asked = request.isMap() ? request.find("case") : nullptr;
         if (!asked) throw Error("what the runner sent: '/case' is missing");
-        const Case item = Case::fromJson(*asked);
+        Case item = Case::fromJson(*asked);
+        const config::Node* process = request.find("process");
+        if (process && isSeededByProcess(item)) {
+            item.seed +=
+                static_cast<std::uint64_t>(process->asInteger() * config::kSeedsOfAProcess);
+        }
         const CaseResult result = resultOf(item, context);
         std::cout.flush();
         std::cerr.flush();

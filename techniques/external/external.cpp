@@ -96,6 +96,7 @@ class External : public technique::Technique {
         values_[placeholder::kFrames] = std::to_string(context.frameCount);
         frame_ = context.frame;
         frameCount_ = context.frameCount;
+        isRecorded_ = false;
         end_ = run(values_, "out");
         peakBytes_ = std::max(peakBytes_, end_.peakBytes);
     }
@@ -105,7 +106,13 @@ class External : public technique::Technique {
     }
 
     void record(technique::Recorder& recorder) override {
-        logOutput(end_.output);
+        if (program_.givesAllFrames && isRecorded_) {
+            values_[placeholder::kFrame] = std::to_string(++frame_);
+        } else {
+            logOutput(end_.output);
+            given_ = metricsIn(metricsFile(), frame_, program_.givesAllFrames ? frameCount_ : 1);
+            isRecorded_ = true;
+        }
         recordMetrics(recorder);
         for (const config::ProgramPicture& picture : program_.pictures) {
             recordPicture(picture, recorder);
@@ -156,7 +163,8 @@ class External : public technique::Technique {
 
     void recordMetrics(technique::Recorder& recorder) const {
         std::vector<std::string> given;
-        for (const GivenMetric& one : metricsIn(metricsFile(), frame_)) {
+        for (const GivenMetric& one : given_) {
+            if (one.frame != frame_) continue;
             recorder.metric(one.metric, one.value, one.unit, one.pass);
             given.push_back(one.metric);
         }
@@ -174,9 +182,12 @@ class External : public technique::Technique {
             if (isIn(given, info.name) || isIn(program_.optionalMetrics, info.name)) continue;
             const bool isRead = std::ranges::any_of(
                 program_.patterns, [&](const auto& one) { return one.metric == info.name; });
+            const std::string ofFrame =
+                program_.givesAllFrames ? fmt::format(" for frame {}", frame_) : "";
             throw Error(fmt::format(
-                "metric '{}': the program {}", info.name,
-                isRead ? "prints nothing that its pattern matches" : "gave no value of it"));
+                "metric '{}': the program {}{}", info.name,
+                isRead ? "prints nothing that its pattern matches" : "gave no value of it",
+                ofFrame));
         }
     }
 
@@ -226,22 +237,42 @@ class External : public technique::Technique {
         }
         config::Placeholders values = values_;
         for (const auto& [name, value] : picture.truthParams.entries()) values[name] = value.text();
-        if (picture.truthFrames > 1) {
+        if (program_.givesAllFrames) {
+            const bool isOfItsOwn = picture.truthFrames > 1;
+            values[placeholder::kFrame] = std::to_string(isOfItsOwn ? offset : frame_);
+            values[placeholder::kFrames] =
+                std::to_string(isOfItsOwn ? picture.truthFrames : frameCount_);
+        } else if (picture.truthFrames > 1) {
             const long long first = picture.truthParams.find(placeholder::kFrame)->asInteger();
             values[placeholder::kFrame] = std::to_string(first + offset);
         }
-        const fs::path kept = scratch_ / ("truth-" + truthKey(values, picture.name) +
-                                          fs::path(picture.file).extension().string());
-        if (!fs::exists(kept)) {
-            run(values, "truth");
+        const fs::path kept = keptTruth(picture, values);
+        if (!fs::exists(kept)) makeTruth(picture, values, what, size);
+        return readPicture(kept, what, size);
+    }
+
+    fs::path keptTruth(const config::ProgramPicture& picture,
+                       const config::Placeholders& values) const {
+        const std::string frame =
+            program_.givesAllFrames ? "-" + values.at(placeholder::kFrame) : std::string();
+        return scratch_ / ("truth-" + truthKey(values, picture.name) + frame +
+                           fs::path(picture.file).extension().string());
+    }
+
+    /// The picture, and of a run that gives all frames those of the others, too.
+    void makeTruth(const config::ProgramPicture& picture, config::Placeholders values,
+                   const std::string& what, glm::ivec2 size) const {
+        run(values, "truth");
+        const int count = program_.givesAllFrames ? std::stoi(values.at(placeholder::kFrames)) : 1;
+        for (int frame = 0; frame < count; ++frame) {
+            if (program_.givesAllFrames) values[placeholder::kFrame] = std::to_string(frame);
             const fs::path made = placeOf(picture.file, values, "truth");
             readPicture(made, what, size);  // as a whole, or not at all
             // Another worker may make the same one meanwhile.
             const fs::path mine = folder_->path() / "truth.tmp";
             fs::copy_file(made, mine, fs::copy_options::overwrite_existing);
-            fs::rename(mine, kept);
+            fs::rename(mine, keptTruth(picture, values));
         }
-        return readPicture(kept, what, size);
     }
 
     /// Of all that the picture depends on but for the program itself, which is the same in a run.
@@ -265,8 +296,10 @@ class External : public technique::Technique {
     fs::path scratch_;
     std::optional<Folder> folder_;
     glm::ivec2 size_{0};
-    int frame_ = 0;
+    int frame_ = 0;  // that was drawn, or, where one run gives all, that was recorded last
     int frameCount_ = 1;
+    bool isRecorded_ = false;                 // of this run a frame
+    std::vector<GivenMetric> given_;          // in the last run
     std::map<std::string, Samples> samples_;  // by picture, a frame each
     ProcessEnd end_;
     long long peakBytes_ = 0;

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "runner/core/files.h"
+#include "runner/core/json_depth.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::external {
@@ -32,8 +34,28 @@ std::string textOf(const Json& line, const char* key, bool isRequired, const std
                                                 : fmt::format("\"{}\" is {}", key, found->dump())));
 }
 
-GivenMetric metricOf(std::string_view text, int number, int frame) {
+/// One of `count` from `first` on.
+int frameOf(const Json& line, int first, int count, const std::string& what) {
+    const auto given = line.find("frame");
+    if (given == line.end() || given->is_null()) {
+        if (count == 1) return first;
+        throw Error(fmt::format("{}: no \"frame\"; allowed: 0 … {}", what, first + count - 1));
+    }
+    const double frame = given->is_number() ? given->get<double>() : -1.0;
+    if (frame >= first && frame < first + count && frame == std::floor(frame)) {
+        return static_cast<int>(frame);
+    }
+    throw Error(fmt::format("{}: \"frame\" is {}; {}", what, given->dump(),
+                            count == 1 ? fmt::format("it was asked for frame {}", first)
+                                       : fmt::format("allowed: 0 … {}", first + count - 1)));
+}
+
+GivenMetric metricOf(std::string_view text, int number, int frame, int count) {
     const std::string what = fmt::format("line {} of its metrics", number);
+    if (isTooDeepJson(text)) {
+        throw Error(fmt::format("{} has more than {} brackets in each other: {}", what,
+                                kMostJsonLevels, shown(text)));
+    }
     const Json line = Json::parse(text, nullptr, false);
     if (!line.is_object()) {
         const bool isNan = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
@@ -55,17 +77,13 @@ GivenMetric metricOf(std::string_view text, int number, int frame) {
             value == line.end() ? "no \"value\"" : fmt::format("\"value\" is {}", value->dump())));
     }
     given.value = value->get<double>();
-    const auto drawn = line.find("frame");
-    if (drawn != line.end() && !drawn->is_null() && *drawn != frame) {
-        throw Error(fmt::format("{}: \"frame\" is {}; it was asked for frame {}", what,
-                                drawn->dump(), frame));
-    }
+    given.frame = frameOf(line, frame, count, what);
     return given;
 }
 
 }  // namespace
 
-std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame) {
+std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame, int count) {
     std::error_code isAbsent;
     if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, isAbsent))) {
         throw Error(fmt::format("its file of metrics, {}, {}", file.filename().string(),
@@ -80,7 +98,7 @@ std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame)
     int number = 0;
     for (const std::string& line : split(readFile(file), '\n')) {
         ++number;
-        if (!trimmed(line).empty()) metrics.push_back(metricOf(line, number, frame));
+        if (!trimmed(line).empty()) metrics.push_back(metricOf(line, number, frame, count));
     }
     return metrics;
 }

@@ -38,6 +38,7 @@ case $1 in
     not_a_number) say number NaN 1 ;;
     wrong_unit) say number "$2" m ;;
     undeclared) say nmuber "$2" 1 ;;
+    deep) head -c 3000000 /dev/zero | tr '\0' '[' >>"$GFXREPRO_METRICS_FILE" ;;
     no_json) echo "number: 1" >>"$GFXREPRO_METRICS_FILE" ;;
     twice) say number "$2" 1; say number "$2" 1 ;;
     no_picture) say number "$2" 1; rm "$3/result.png" ;;
@@ -95,34 +96,37 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     const std::string config =
         write(kPicture +
               "sweep: {behaviour: [ok, crash, fails, hangs, silent, not_a_number, wrong_unit, "
-              "undeclared, no_json, twice, no_picture, half_picture, other_size]}\n"
+              "undeclared, deep, no_json, twice, no_picture, half_picture, other_size]}\n"
               "measure: {lane: quality, time_limit_s: 2}\n");
     const ProcessResult result = run(config, {"--jobs", "2"});
     EXPECT_EQ(result.exitCode, 4);
-    EXPECT_THAT(result.out, HasSubstr("1 of 13 finished, 12 failed; "));
+    EXPECT_THAT(result.out, HasSubstr("1 of 14 finished, 13 failed; "));
     std::vector<std::string> lines = statusLines(dir);
     std::ranges::sort(lines);
     const std::string program = "program '" + folder.path().string() + "/renderer.sh'";
-    ASSERT_EQ(lines.size(), 13U);
+    ASSERT_EQ(lines.size(), 14U);
     EXPECT_EQ(lines[0], "crash: crash (" + program + " ended with SIGSEGV: drawing crash)");
-    EXPECT_EQ(lines[1], "fails: error (" + program + " ended with exit code 3: no such scene)");
-    EXPECT_THAT(lines[2],
+    EXPECT_THAT(lines[1], testing::StartsWith(
+                              "deep: error (line 1 of its metrics has more than 200 brackets in "
+                              "each other: [["));
+    EXPECT_EQ(lines[2], "fails: error (" + program + " ended with exit code 3: no such scene)");
+    EXPECT_THAT(lines[3],
                 testing::MatchesRegex("half_picture: error .image 'result': .*result.png: .*"));
-    EXPECT_EQ(lines[3], "hangs: timeout (not finished after 2 s (in render))");
-    EXPECT_EQ(lines[4], "no_json: error (line 1 of its metrics is no JSON object: number: 1)");
-    EXPECT_EQ(lines[5], "no_picture: error (image 'result': there is no file result.png)");
-    EXPECT_EQ(lines[6],
+    EXPECT_EQ(lines[4], "hangs: timeout (not finished after 2 s (in render))");
+    EXPECT_EQ(lines[5], "no_json: error (line 1 of its metrics is no JSON object: number: 1)");
+    EXPECT_EQ(lines[6], "no_picture: error (image 'result': there is no file result.png)");
+    EXPECT_EQ(lines[7],
               "not_a_number: error (line 1 of its metrics is no JSON object, which has no NaN and "
               "no Infinity: {\"metric\": \"number\", \"value\": NaN, \"unit\": \"1\"})");
-    EXPECT_EQ(lines[7], "ok: ok");
-    EXPECT_EQ(lines[8],
+    EXPECT_EQ(lines[8], "ok: ok");
+    EXPECT_EQ(lines[9],
               "other_size: error (image 'result': has 8 × 8 pixels; 32 × 16 were asked for)");
-    EXPECT_EQ(lines[9], "silent: error (metric 'number': the program gave no value of it)");
-    EXPECT_EQ(lines[10], "twice: error (metric 'number' is given twice for frame 0, repeat 0)");
-    EXPECT_EQ(lines[11],
+    EXPECT_EQ(lines[10], "silent: error (metric 'number': the program gave no value of it)");
+    EXPECT_EQ(lines[11], "twice: error (metric 'number' is given twice for frame 0, repeat 0)");
+    EXPECT_EQ(lines[12],
               "undeclared: error (technique 'external' has no metric 'nmuber'; did you mean "
               "'number'?)");
-    EXPECT_EQ(lines[12],
+    EXPECT_EQ(lines[13],
               "wrong_unit: error (metric 'number' is recorded in 'm', but declared in '1')");
     // What it printed is in the log.
     EXPECT_THAT(readFile(dir + "/log.jsonl"),

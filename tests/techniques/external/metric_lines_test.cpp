@@ -56,6 +56,41 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
               "line 1 of its metrics is no JSON object: {\"metric\": \"rays\", \"val");
 }
 
+TEST(MetricLines, OfSeveralFramesEachSaysItsOwn) {
+    const TemporaryFolder folder;
+    const auto metricsOfThree = [&](const std::string& text) {
+        return metricsIn(folder.write("metrics.jsonl", text), 0, 3);
+    };
+    const auto line = [](const std::string& frame) {
+        return "{\"metric\":\"rays\",\"pass\":\"trace\",\"frame\":" + frame +
+               ",\"value\":7,\"unit\":\"ray\"}\n";
+    };
+    const auto metrics = metricsOfThree(line("2") + line("0") + line("1.0"));
+    ASSERT_EQ(metrics.size(), 3U);
+    EXPECT_EQ(metrics[0].frame, 2);
+    EXPECT_EQ(metrics[0].value, 7.0);
+    EXPECT_EQ(metrics[1].frame, 0);
+    EXPECT_EQ(metrics[2].frame, 1);
+    const auto errorOfThree = [&](const std::string& text) {
+        return errorText([&] { metricsOfThree(text); });
+    };
+    const std::string head = "line 1 of its metrics: \"frame\" is ";
+    for (const std::string bad : {"3", "-1", "0.5", "\"1\"", "[0]", "1e300"}) {
+        EXPECT_TRUE(errorOfThree(line(bad)).starts_with(head)) << bad;
+        EXPECT_TRUE(errorOfThree(line(bad)).ends_with("; allowed: 0 … 2")) << bad;
+    }
+    EXPECT_EQ(errorOfThree("{\"metric\": \"rays\", \"value\": 7, \"unit\": \"ray\"}"),
+              "line 1 of its metrics: no \"frame\"; allowed: 0 … 2");
+}
+
+TEST(MetricLines, RefusesOneThatIsTooDeep) {
+    const std::string deep = "{\"metric\":" + std::string(2'000'000, '[');
+    EXPECT_EQ(errorOf(deep), "line 1 of its metrics has more than 200 brackets in each other: " +
+                                 deep.substr(0, 80) + "…");
+    const std::string closed = deep + std::string(2'000'000, ']') + "}";
+    EXPECT_EQ(errorOf(closed), errorOf(deep));
+}
+
 TEST(MetricLines, RefusesAFileThatIsGoneOrNoPlainOne) {
     const TemporaryFolder folder;
     const auto file = folder.path() / "metrics.jsonl";

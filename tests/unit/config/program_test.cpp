@@ -58,6 +58,57 @@ TEST(Program, RefusesWhatStandsForNothing) {
               "here, out, scene, width, height, seed, frame, frames; braces as such are {{ and }}");
 }
 
+TEST(Program, MayGiveAllFramesInOneRun) {
+    EXPECT_FALSE(programOf("command: t {frame}").givesAllFrames);
+    EXPECT_FALSE(programOf("command: t {frame}\nframes: one").givesAllFrames);
+    EXPECT_TRUE(programOf("command: t {frames}\nframes: all").givesAllFrames);
+    EXPECT_EQ(errorOf("command: t\nframes: 3"),
+              "c.yaml:2:9: program: frames is 3; allowed: one, all");
+    EXPECT_EQ(errorOf("command: t {frame}\nframes: all"),
+              "c.yaml:1:10: program: {frame}, and one run gives all frames; allowed: {frames}, "
+              "their number");
+    EXPECT_EQ(errorOf("command: t\nframes: all\nimages: {result: r.png}"),
+              "c.yaml:3:18: program: image 'result': file is r.png; allowed: one with {frame}, as "
+              "one run leaves the pictures of all frames");
+    EXPECT_EQ(errorOf("command: t\nframes: all\nmetrics: {n: {unit: '1', pattern: '(.)'}}"),
+              "c.yaml:3:35: program: metric 'n': a pattern does not tell frames apart, and one run "
+              "gives them all ('frames: all')");
+    const std::string head = "command: t {frames} {n}\nframes: all\nparams: {n: 1}\nimages: ";
+    EXPECT_EQ(
+        errorOf(head + "{r: {file: \"{frame}.png\", truth: {n: 2, frame: 9}}}"),
+        "c.yaml:4:49: program: image 'r': truth: unknown key 'frame'; did you mean 'frames'?");
+    EXPECT_EQ(programOf(head + "{r: {file: \"{frame}.png\", truth: {n: 2, frames: 8}}}")
+                  .pictures.front()
+                  .truthFrames,
+              8);
+}
+
+TEST(Program, ThatTakesASeedHasItAsAParameter) {
+    const Program program = programOf("command: t {seed}\nseeds: process");
+    EXPECT_TRUE(program.seedsByProcess);
+    Params params(parseYaml("{seed: 7}", "p"), "technique 't'");
+    program.declare(params);
+    params.finish();
+    EXPECT_EQ(program.valuesOf(params.resolved()).at("seed"), "7");
+    Params none(parseYaml("{seed: 7}", "p"), "technique 't'");
+    programOf("command: t").declare(none);
+    EXPECT_EQ(errorText([&] { none.finish(); }),
+              "p:1:2: technique 't': unknown parameter 'seed'; it has none");
+    EXPECT_EQ(errorOf("command: t\nseeds: process"),
+              "c.yaml:2:1: program: seeds: the command has no {seed}");
+    EXPECT_EQ(errorOf("command: t {seed}\nseeds: repeat"),
+              "c.yaml:2:8: program: seeds is repeat; allowed: case, process");
+    EXPECT_EQ(
+        errorOf("command: t {seed} {n}\nseeds: process\nparams: {n: 1}\n"
+                "images: {r: {file: r.png, truth: {n: 2}}}"),
+        "c.yaml:4:34: program: image 'r': truth needs 'seed', as that of the cases is another "
+        "in each process");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 1}\nimages: {r: {file: r.png, truth: {n: 2, "
+                      "seed: 3}}}"),
+              "c.yaml:3:41: program: image 'r': truth: unknown key 'seed'; allowed: frames, frame, "
+              "n");
+}
+
 TEST(Program, TypesAreThoseOfTheDefaults) {
     const Program program = programOf(
         "command: t {a} {b} {c} {d} {e} {f}\n"
