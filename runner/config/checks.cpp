@@ -26,6 +26,18 @@ void throwNotAllowed(const Node& value, std::string_view what, std::string_view 
                                       "; allowed: " + std::string(allowed));
 }
 
+std::optional<double> fractionOf(const Node& node) {
+    const std::string text = node.isScalar() ? node.text() : "";
+    std::optional<double> fraction = node.tryDouble();
+    if (text.ends_with('%')) {
+        fraction = parseDouble(trimmed(std::string_view(text).substr(0, text.size() - 1)));
+        if (fraction) *fraction /= 100.0;
+    } else if (fraction && *fraction > 1.0) {
+        fraction.reset();
+    }
+    return fraction;
+}
+
 std::string contentKey(const Node& node) {
     if (const auto number = node.tryDouble()) return Node::number(*number).text();
     std::string key;

@@ -1,6 +1,7 @@
 // What the readers of a config's sections share; private to this module.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,10 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
 /// Throws Error "WHAT is VALUE; allowed: ALLOWED" at the value's place.
 [[noreturn]] void throwNotAllowed(const Node& value, std::string_view what,
                                   std::string_view allowed);
+
+/// A share, as a percentage ("25%", "25 %") or a fraction; none for another text, and for a
+/// fraction beyond 1, where the sign is likely forgotten.
+std::optional<double> fractionOf(const Node& node);
 
 /// Equal when the contents are (1.0 and 1, x and 'x'): a key for sets.
 std::string contentKey(const Node& node);

@@ -288,19 +288,6 @@ class ClaimParser {
         if (claim_.direction == 0) requireSome("exponent or direction");
     }
 
-    /// "25%" or 0.25.
-    static std::optional<double> fractionOf(const Node& node) {
-        const std::string text = node.isScalar() ? node.text() : "";
-        std::optional<double> fraction = node.tryDouble();
-        if (text.ends_with('%')) {
-            fraction = parseDouble(trimmed(std::string_view(text).substr(0, text.size() - 1)));
-            if (fraction) *fraction /= 100.0;
-        } else if (fraction && *fraction > 1.0) {
-            fraction.reset();  // 25 for 25% is a likely slip
-        }
-        return fraction;
-    }
-
     void readWithin() {
         const Node& within = require("within");
         claim_.high = fractionOf(within);

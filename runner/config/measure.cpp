@@ -89,6 +89,10 @@ Measure readMeasure(Params& params, bool isOwn) {
                                           {"resident memory; 0: no limit", "bytes", 0, 1e15});
     measure.memoryLimitBytes = std::llround(bytes);
     params.finish();
+    // Rounds go on from those that an interval takes.
+    const bool isOneRound =
+        measure.relativeError > 0.0 && measure.repeatsAtMost == 0 && !params.isGiven("processes");
+    if (isOneRound && measure.lane == Measure::Lane::Timing) measure.processes = kFewestRounds;
     return measure;
 }
 

@@ -69,6 +69,10 @@ const std::vector<std::string>& sectionKeys();
 /// table, figure, section, sweep_of.
 const std::vector<std::string>& identityKeys();
 
+/// Puts what `measure.until` stands for in its place, before files and profiles are laid over each
+/// other. Throws Error for what is wrong in it, and for a key that says the same in the same file.
+void spreadUntil(Node& document);
+
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 

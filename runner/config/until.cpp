@@ -1,0 +1,49 @@
+// `measure: {until: {…}}`: the keys that it stands for.
+#include "runner/config/checks.h"
+#include "runner/config/schema.h"
+#include "runner/config/sections.h"
+
+namespace gfxrepro::config {
+
+namespace {
+
+struct UntilKey {
+    const char* name;
+    const char* meant;  // of `measure`
+};
+constexpr UntilKey kUntilKeys[] = {{"relative_error", "relative_error"},
+                                   {"at_most_s", "time_budget_s"},
+                                   {"processes", "processes_at_most"},
+                                   {"repeats", "repeats_at_most"}};
+
+Node shareOf(const Node& value, const std::string& what) {
+    const std::optional<double> share = fractionOf(value);
+    if (share && *share > 0.0 && *share <= 1.0) return Node::number(*share, value.location());
+    throwNotAllowed(value, what, "a percentage as 1 %, or a fraction, above 0 and to 1");
+}
+
+}  // namespace
+
+void spreadUntil(Node& document) {
+    Node* measure = document.find("measure");
+    if (!measure || !measure->isMap() || !measure->find("until")) return;
+    const Node until = *measure->find("until");
+    const SourceLocation where = measure->keyLocation("until");
+    measure->erase("until");
+    if (until.isNull()) return measure->set("relative_error", until, where);  // they do not go on
+    requireKeys(until, "measure: until", keysOf("until"));
+    for (const auto& [name, meant] : kUntilKeys) {
+        const Node* value = until.find(name);
+        if (!value) continue;
+        const std::string what = std::string("measure: until: ") + name;
+        const Node* same = measure->find(meant);
+        if (same && same->location().file == value->location().file) {
+            throw Error(until.keyLocation(name),
+                        what + ": '" + meant + "' beside it says the same; allowed: one of them");
+        }
+        const bool isShare = !value->isNull() && name == std::string_view("relative_error");
+        measure->set(meant, isShare ? shareOf(*value, what) : *value, until.keyLocation(name));
+    }
+}
+
+}  // namespace gfxrepro::config
