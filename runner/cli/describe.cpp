@@ -216,17 +216,21 @@ config::Json jsonOf(std::span<const config::MetricInfo> metrics) {
     return list;
 }
 
+config::Json jsonOf(std::span<const config::PassInfo> passes) {
+    config::Json list = config::Json::array();
+    for (const config::PassInfo& pass : passes) {
+        list.push_back({{"name", pass.name}, {"doc", pass.doc}});
+    }
+    return list;
+}
+
 config::Json jsonOf(const technique::TechniqueInfo& info) {
     const config::Outputs outputs = info.outputs();
-    config::Json passes = config::Json::array();
-    for (const config::PassInfo& pass : outputs.passes) {
-        passes.push_back({{"name", pass.name}, {"doc", pass.doc}});
-    }
     return {{"technique", info.name},
             {"doc", info.summary},
             {"parameters", jsonOf(paramsOf(info))},
             {"metrics", jsonOf(outputs.metrics)},
-            {"passes", std::move(passes)},
+            {"passes", jsonOf(outputs.passes)},
             {"metrics_of_every_technique", jsonOf(technique::commonMetrics())}};
 }
 
@@ -255,6 +259,27 @@ config::Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalo
             {"sources", std::move(sources)}};
 }
 
+config::Json jsonOf(const config::Program& program) {
+    config::Params params(config::Node::map({}), "program");
+    program.declare(params);
+    config::Json files = config::Json::array();
+    for (const config::ProgramFile& file :
+         config::filesOf(program, program.valuesOf(params.resolved()))) {
+        files.push_back({{"file", file.name}, {"path", file.path.string()}});
+    }
+    config::Json images = config::Json::array();
+    for (const config::ProgramPicture& picture : program.pictures) {
+        images.push_back(
+            {{"name", picture.name}, {"file", picture.file}, {"has_truth", picture.hasTruth()}});
+    }
+    return {{"command", program.command},
+            {"files", std::move(files)},
+            {"parameters", jsonOf(params.declared())},
+            {"metrics", jsonOf(program.outputs.metrics)},
+            {"passes", jsonOf(program.outputs.passes)},
+            {"images", std::move(images)}};
+}
+
 config::Json jsonOf(const config::Experiment& experiment) {
     config::Json claims = config::Json::array();
     for (const config::ClaimSpec& claim : experiment.claims) {
@@ -264,15 +289,19 @@ config::Json jsonOf(const config::Experiment& experiment) {
     for (const config::Assumption& assumption : experiment.assumptions) {
         assumptions.push_back({{"name", assumption.name}, {"why", assumption.why}});
     }
-    return {{"experiment", experiment.id},
-            {"label", experiment.label()},
-            {"title", experiment.title},
-            {"file", experiment.file.string()},
-            {"technique", experiment.technique},
-            {"cases", config::expandCases(experiment).size()},
-            {"profiles", experiment.profiles},
-            {"claims", std::move(claims)},
-            {"assumptions", std::move(assumptions)}};
+    config::Json json = {{"experiment", experiment.id},
+                         {"label", experiment.label()},
+                         {"title", experiment.title},
+                         {"file", experiment.file.string()},
+                         {"technique", experiment.technique},
+                         {"cases", config::expandCases(experiment).size()},
+                         {"profiles", experiment.profiles},
+                         {"claims", std::move(claims)},
+                         {"assumptions", std::move(assumptions)}};
+    if (const config::Node& program = config::programOf(experiment); !program.isNull()) {
+        json["program"] = jsonOf(config::readProgram(program));
+    }
+    return json;
 }
 
 template <class Infos>
