@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runner/cluster/predictions.h"
+#include "runner/config/program.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
@@ -85,17 +86,25 @@ std::string assetsText(const run::Json& manifest, const scene::Catalog& catalog)
     return text;
 }
 
+/// Where the artifact has a program's file, by its name as the manifest has it.
+using Places = std::map<std::string, fs::path>;
+
 /// Empty where none was measured.
-std::string programsText(const run::Json& manifest) {
+std::string programsText(const run::Json& manifest, const Places& places) {
     const std::set<run::ProgramUse> programs = run::programsOf(manifest);
     if (programs.empty()) return "";
     std::string text =
-        "\n# Programs\nWhat was measured from outside, with the files that it reads. They are not "
-        "in this folder: who measures again puts them where the config looks for them.\n\n"
-        "| file | version | SHA-256 |\n| --- | --- | --- |\n";
+        "\n# Programs\nWhat was measured from outside, with the files that it reads. What lay "
+        "beside "
+        "or below the config is in this folder, where its copy looks for it, if it is still what "
+        "was measured; the others are to be installed by who measures again.\n\n"
+        "| file | version | SHA-256 | in this folder |\n| --- | --- | --- | --- |\n";
     for (const run::ProgramUse& use : programs) {
-        text += fmt::format("| {} | {} | {} |\n", report::escapeMarkdown(use.file),
-                            report::escapeMarkdown(use.version), use.sha256);
+        const auto place = places.find(use.file);
+        text += fmt::format(
+            "| {} | {} | {} | {} |\n", report::escapeMarkdown(use.file),
+            report::escapeMarkdown(use.version), use.sha256,
+            place == places.end() ? "" : report::escapeMarkdown(place->second.string()));
     }
     return text;
 }
@@ -104,6 +113,50 @@ std::string programsText(const run::Json& manifest) {
 fs::path configPlace(const config::Experiment& experiment) {
     return fs::path("configs") / experiment.file.parent_path().filename() /
            experiment.file.filename();
+}
+
+/// The files of an experiment's program, by path; none where one of them is not here any more.
+std::map<fs::path, std::string> programFiles(const run::Plan& plan,
+                                             const config::Experiment& experiment) {
+    std::map<fs::path, std::string> files;
+    const config::Node& node = config::programOf(experiment);
+    if (node.isNull()) return files;
+    const config::Program program = config::readProgram(node);
+    try {
+        for (const run::Case& item : plan.cases) {
+            if (item.experiment != experiment.id) continue;
+            for (const config::ProgramFile& file :
+                 config::filesOf(program, program.valuesOf(item.params))) {
+                if (!file.path.empty()) files.emplace(file.path, file.name);
+            }
+        }
+    } catch (const Error&) {
+        files.clear();
+    }
+    return files;
+}
+
+/// Copies what lies beside or below a config, and is what was measured, to the same place beside
+/// the config's copy.
+Places copyProgramFiles(const run::StoredRun& run, const fs::path& target) {
+    const std::set<run::ProgramUse> uses = run::programsOf(run.manifest);
+    Places places;
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        const fs::path folder = fs::absolute(experiment.file).lexically_normal().parent_path();
+        for (const auto& [path, name] : programFiles(run.plan, experiment)) {
+            const fs::path inside = path.lexically_relative(folder);
+            if (inside.empty() || *inside.begin() == "..") continue;
+            const bool isMeasured = std::ranges::any_of(uses, [&](const run::ProgramUse& use) {
+                return use.file == name && use.sha256 == sha256OfFile(path);
+            });
+            if (!isMeasured) continue;
+            const fs::path place = configPlace(experiment).parent_path() / inside;
+            fs::create_directories((target / place).parent_path());
+            fs::copy_file(path, target / place, fs::copy_options::overwrite_existing);
+            places.emplace(name, place);
+        }
+    }
+    return places;
 }
 
 std::string scriptText(const run::Plan& plan, const config::Experiment& experiment) {
@@ -215,9 +268,10 @@ void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scen
     copyMeasured(runDir, target);
     writeResults(target, run, {});
     writeFileAtomic(target / "manifest.json", run.manifest.dump(2) + '\n');  // with its notes
-    writeFileAtomic(target / "ASSETS.md",
-                    assetsText(run.manifest, catalog) + programsText(run.manifest));
     writeScripts(run.plan, target);
+    const Places places = copyProgramFiles(run, target);
+    writeFileAtomic(target / "ASSETS.md",
+                    assetsText(run.manifest, catalog) + programsText(run.manifest, places));
     writeFileAtomic(target / "README.md", readmeText(target, run));
     writeFileAtomic(target / "SHA256SUMS", checksums(target));
 }

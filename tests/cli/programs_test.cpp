@@ -191,8 +191,31 @@ TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("Renderer 1.2"));
     const std::string artifact = (folder.path() / "artifact").string();
     ASSERT_EQ(gfxrepro({"export", dir, "--out", artifact}).exitCode, 0);
+    const std::string beside = "configs/" + folder.path().filename().string() + '/';
     EXPECT_THAT(readFile(artifact + "/ASSETS.md"),
-                HasSubstr("| Renderer 1.2 | " + programs[0]["sha256"].get<std::string>() + " |\n"));
+                HasSubstr("| Renderer 1.2 | " + programs[0]["sha256"].get<std::string>() + " | " +
+                          beside + "renderer.sh |\n"));
+    // What it takes to measure again is there.
+    for (const char* name : {"renderer.sh", "picture.png", "mine.yaml"}) {
+        EXPECT_EQ(readFile(fs::path(artifact) / beside / name), readFile(folder.path() / name));
+        fs::remove(folder.path() / name);
+    }
+    const ProcessResult again = runProgram({artifact + "/scripts/sweep-mine.sh"},
+                                           {std::string("GFXREPRO=") + GFXREPRO_PROGRAM});
+    EXPECT_EQ(again.exitCode, 0) << again.err;
+    EXPECT_EQ(rowsOf(artifact + "/again/sweep-mine", "number").size(), 1U);
+}
+
+TEST_F(ExternalProgram, AnArtifactHoldsNoFileThatChangedSince) {
+    ASSERT_EQ(run(write("measure: {lane: quality}\n")).exitCode, 0);
+    image::writePng(folder.path() / "picture.png", image::Image8(32, 16, 3, 7));
+    const std::string artifact = (folder.path() / "artifact").string();
+    ASSERT_EQ(gfxrepro({"export", dir, "--out", artifact}).exitCode, 0);
+    const std::string beside = artifact + "/configs/" + folder.path().filename().string();
+    EXPECT_TRUE(fs::exists(beside + "/renderer.sh"));
+    EXPECT_FALSE(fs::exists(beside + "/picture.png"));
+    EXPECT_THAT(readFile(artifact + "/ASSETS.md"),
+                testing::ContainsRegex("\\| picture.png \\|  \\| [0-9a-f]+ \\|  \\|"));
 }
 
 TEST_F(ExternalProgram, AChangedOneIsNotResumed) {
