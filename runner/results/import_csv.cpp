@@ -29,7 +29,7 @@ using Names = std::vector<std::string>;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;  // as of records.csv
 constexpr std::size_t kMostCellBytes = 1024;
 constexpr const char* kCaseId = "case_id";
-constexpr const char* kMessage = "message";  // may have lines
+constexpr const char* kMessage = "message";
 constexpr std::string_view kLongColumns[] = {"metric", "value", "unit"};
 constexpr std::string_view kRecordColumns[] = {"pass", "frame",  "repeat", "process",
                                                "lane", "status", kMessage};
@@ -68,8 +68,9 @@ bool isUtf8(const std::string& text) {
 /// Rows by the names of their columns.
 class NamedCsv {
   public:
-    explicit NamedCsv(const fs::path& file)
-        : name_(file.string()), text_(textOf(file)), reader_(text_, name_) {
+    /// `hasLines`: its cells may have several lines, as a parameter of an exported run may.
+    explicit NamedCsv(const fs::path& file, bool hasLines = false)
+        : name_(file.string()), text_(textOf(file)), reader_(text_, name_), hasLines_(hasLines) {
         if (!reader_.next(header_)) throw Error({name_, 1, 0}, "is empty; expected a header");
         for (std::size_t i = 0; i < header_.size(); ++i) {
             std::string& column = header_[i];
@@ -118,23 +119,26 @@ class NamedCsv {
     }
 
   private:
-    void requireText(const std::string& text, const std::string& what, bool hasLines) const {
+    /// What a program said may have anything in it.
+    void requireText(const std::string& text, const std::string& what, bool isMessage) const {
         const auto isControl = [&](char c) {
-            return static_cast<unsigned char>(c) < 0x20 &&
-                   !(hasLines && (c == '\n' || c == '\t' || c == '\r'));
+            const bool isOfLines = hasLines_ && (c == '\n' || c == '\t' || c == '\r');
+            return c == '\0' || (!isMessage && !isOfLines && static_cast<unsigned char>(c) < 0x20);
         };
-        if (!hasLines && text.size() > kMostCellBytes) {
+        if (!isMessage && text.size() > kMostCellBytes) {
             throw Error(where(), fmt::format("{}: {} bytes; at most {} are allowed", what,
                                              text.size(), kMostCellBytes));
         }
         if (std::ranges::any_of(text, isControl)) {
-            throw Error(where(), what + ": a control character; allowed: text of one line");
+            throw Error(where(), what + ": a control character; allowed: text" +
+                                     (isMessage || hasLines_ ? "" : " of one line"));
         }
         if (!isUtf8(text)) throw Error(where(), what + ": is not UTF-8");
     }
 
     std::string name_, text_;
     records::CsvReader reader_;
+    bool hasLines_;
     Names header_, fields_;
     std::map<std::string, std::size_t> places_;
 };
@@ -286,7 +290,7 @@ ImportedCase caseOf(const NamedCsv& csv, const Names& columns) {
 
 /// The cases by their id.
 std::map<std::string, std::size_t> readCases(const fs::path& file, ImportedNumbers& numbers) {
-    NamedCsv csv(file);
+    NamedCsv csv(file, true);
     csv.require(kCaseId, kCaseId);
     for (const std::string& name : csv.header()) {
         if (name != kCaseId) numbers.columns.push_back(name);

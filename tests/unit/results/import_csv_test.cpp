@@ -164,5 +164,15 @@ TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
               "cannot read DIR/none.csv: No such file or directory");
 }
 
+TEST_F(ImportCsv, TakesWhatAnExportMayHaveInItsTexts) {
+    const auto cases = folder_.write("cases.csv", "case_id,text\nx,\"one\ttwo\nthree\"\n");
+    const auto file = folder_.write(
+        "records.csv",
+        "case_id,metric,value,status,message\nx,,,error,\"\x1b[31mred\x1b[0m\n\x07\"\n");
+    const ImportedNumbers numbers = readImport({file, cases});
+    EXPECT_EQ(numbers.cases.at(0).cell("text"), "one\ttwo\nthree");
+    EXPECT_EQ(numbers.rows.at(0).record.message, "\x1b[31mred\x1b[0m\n\x07");
+}
+
 }  // namespace
 }  // namespace gfxrepro::results
