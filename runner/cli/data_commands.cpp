@@ -36,7 +36,10 @@ void addImport(CLI::App& app, const Context& context, ImportOptions& o,
         ->option_text("COLUMN=UNIT");
     importApp->add_option("--cases", o.cases, "CSV that says what each case_id is")
         ->option_text("FILE");
-    importApp->add_option("--machine", o.machine, "what measured them, for readers")
+    importApp
+        ->add_option(
+            "--machine", o.machine,
+            "what measured them, for readers; as exported, where run.csv is beside --cases")
         ->option_text("TEXT");
     importApp->add_flag("--gpu", o.isOfGpu, "a GPU did: claims about one are judged");
     importApp->add_option("--profile", o.profile, "of the configs")

@@ -6,6 +6,7 @@
 #include "runner/cli/experiments.h"
 #include "runner/cli/results.h"
 #include "runner/results/import_run.h"
+#include "runner/results/tidy.h"
 
 namespace gfxrepro::cli {
 
@@ -32,8 +33,14 @@ int importRun(const Context& context, const ImportOptions& options) {
         request.files.metrics.push_back(metricFrom(metric));
     }
     request.profile = options.profile;
-    if (!options.machine.empty()) request.machine = options.machine;
     request.isOfGpu = options.isOfGpu;
+    if (!options.machine.empty()) {
+        request.machine = options.machine;
+    } else if (!options.cases.empty()) {  // perhaps exported: then it is known what measured it
+        const auto known = results::exportedRun(fs::path(options.cases).parent_path());
+        if (known.contains("machine")) request.machine = known.at("machine");
+        request.isOfGpu |= known.contains("device_class") && known.at("device_class") == "gpu";
+    }
     request.commandLine = context.commandLine;
     if (!options.configs.empty()) {
         Selection selection;

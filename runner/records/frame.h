@@ -26,6 +26,9 @@ struct Frame {
 /// The file is there as a whole or not at all. Throws Error.
 void writeFrameCsv(const std::filesystem::path& file, const Frame& frame);
 
+/// Columns of a table that SQLite takes.
+inline constexpr std::size_t kMostSqliteColumns = 2000;
+
 /// An index that queries of a file are fast by.
 struct FrameIndex {
     std::string frame;

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "runner/core/files.h"
+#include "runner/records/csv.h"
 #include "runner/results/made_from.h"
 #include "runner/results/results.h"
 
@@ -25,6 +27,8 @@ FrameValue valueOf(const run::Json& value) {
     if (value.is_string()) return value.get<std::string>();
     return std::monostate{};
 }
+
+constexpr const char* kRunFile = "run.csv";
 
 using Fields = std::map<std::string, FrameValue>;
 
@@ -59,6 +63,36 @@ std::pair<Fields, std::vector<std::string>> paramsOf(const run::Case& item) {
 
 std::string laneName(const run::Case& item) {
     return item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
+}
+
+/// The parameters of `cases` as a row each, for more of them than a table of SQLite has columns.
+Frame parameterFrame(const Frame& cases) {
+    const std::size_t first = std::size(kCaseColumns);
+    const std::size_t count = cases.columns.size() - first;
+    // Of one case after another each row is made once.
+    const auto row = std::make_shared<std::pair<std::size_t, std::vector<FrameValue>>>(
+        cases.rowCount, std::vector<FrameValue>{});
+    return {"case_params",
+            {"case_id", "param", "value"},
+            cases.rowCount * count,
+            [cases, first, count, row](std::size_t i) {
+                if (row->first != i / count) *row = {i / count, cases.row(i / count)};
+                const std::size_t column = first + i % count;
+                return std::vector<FrameValue>{row->second.front(), cases.columns[column],
+                                               row->second[column]};
+            }};
+}
+
+/// `cases` with its first columns alone.
+Frame withoutParameters(const Frame& cases) {
+    Frame frame = cases;
+    frame.columns.resize(std::size(kCaseColumns));
+    frame.row = [cases, size = frame.columns.size()](std::size_t i) {
+        std::vector<FrameValue> row = cases.row(i);
+        row.resize(size);
+        return row;
+    };
+    return frame;
 }
 
 Frame axisFrame(const run::Plan& plan) {
@@ -145,12 +179,30 @@ void writeTidy(const fs::path& runDir, const run::StoredRun& run, const fs::path
         throw Error(target.string() + ": is there already; give another folder");
     }
     takeFolder(target, runDir, run.manifest);
-    const Frame frames[] = {caseFrame(run.plan.cases), recordFrame(run.records),
-                            axisFrame(run.plan), runFrame(run)};
+    std::vector<Frame> frames = {caseFrame(run.plan.cases), recordFrame(run.records),
+                                 axisFrame(run.plan), runFrame(run)};
     records::writeFrameCsv(target / "cases.csv", frames[0]);
     records::writeFrameCsv(target / "records.csv", frames[1]);
+    records::writeFrameCsv(target / kRunFile, frames[3]);
+    if (frames[0].columns.size() > records::kMostSqliteColumns) {
+        frames.push_back(parameterFrame(frames[0]));
+        frames[0] = withoutParameters(frames[0]);
+    }
     const records::FrameIndex indices[] = {{"records", "case_id"}, {"records", "metric"}};
     records::writeSqlite(target / "run.sqlite", frames, indices);
+}
+
+std::map<std::string, std::string> exportedRun(const fs::path& folder) {
+    std::map<std::string, std::string> entries;
+    const fs::path file = folder / kRunFile;
+    if (!fs::is_regular_file(file)) return entries;
+    const std::string text = readFile(file);
+    records::CsvReader reader(text, file.string());
+    std::vector<std::string> fields;
+    while (reader.next(fields)) {
+        if (fields.size() == 2) entries.emplace(fields[0], fields[1]);
+    }
+    return entries;
 }
 
 }  // namespace gfxrepro::results

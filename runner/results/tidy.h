@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -27,10 +28,14 @@ records::Frame caseFrame(std::span<const run::Case> cases);
 /// message. `records` must outlive it. Of what belongs to the whole case, frame and repeat are −1.
 records::Frame recordFrame(const std::vector<records::Record>& records);
 
-/// Writes the folder `target`, which must not exist: cases.csv, records.csv, and run.sqlite with
-/// both as tables, beside `axes` (experiment, place, axis: what is swept) and `run` (key, value: of
-/// the manifest).
+/// Writes the folder `target`, which must not exist: cases.csv, records.csv, run.csv (key, value:
+/// of the manifest), and run.sqlite with these as tables, beside `axes` (experiment, place, axis:
+/// what is swept). Of more than records::kMostSqliteColumns the parameters stand there in
+/// `case_params` instead (case_id, param, value).
 void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
                const std::filesystem::path& target);
+
+/// The entries of run.csv in such a folder, by key; none where there is no such file.
+std::map<std::string, std::string> exportedRun(const std::filesystem::path& folder);
 
 }  // namespace gfxrepro::results

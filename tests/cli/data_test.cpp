@@ -89,6 +89,48 @@ TEST_F(Data, ARunThatWasExportedAndImportedHasTheSameTables) {
     EXPECT_EQ(withoutIds("back-tidy/records.csv"), withoutIds("run-tidy/records.csv"));
 }
 
+TEST_F(Data, AnExportedRunThatIsImportedIsStillOfItsMachine) {
+    run("sweep: {number: [1, 2]}\n");
+    ASSERT_EQ(mockGfxrepro({"export", dir("run"), "--tidy"}).exitCode, 0);
+    const std::vector<std::string> import = {"import", dir("run-tidy/records.csv"), "--cases",
+                                             dir("run-tidy/cases.csv"), "--out"};
+    const auto machineOf = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = import;
+        arguments.push_back(dir(name));
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_EQ(mockGfxrepro(arguments).exitCode, 0);
+        const auto manifest = nlohmann::json::parse(readFile(dir(name) + "/manifest.json"));
+        return manifest["imported"]["machine"].get<std::string>();
+    };
+    EXPECT_THAT(machineOf("back", {}), HasSubstr("llvmpipe"));
+    EXPECT_EQ(machineOf("named", {"--machine", "mine"}), "mine");
+    fs::remove(dir("run-tidy/run.csv"));
+    EXPECT_EQ(machineOf("unknown", {}), "a machine that was not named");
+}
+
+TEST_F(Data, MoreParametersThanSqliteHasColumnsAreRowsThere) {
+    std::string config =
+        "sweep_of: wide\ntitle: T\ntechnique: external\nmeasure: {lane: quality}\n"
+        "program:\n  command: \"true";
+    for (int i = 0; i < 2100; ++i) config.append(" {p").append(std::to_string(i)).append("}");
+    config += "\"\n  params:\n";
+    for (int i = 0; i < 2100; ++i) {
+        config.append("    p").append(std::to_string(i)).append(": ").append(std::to_string(i));
+        config += '\n';
+    }
+    ASSERT_EQ(
+        mockGfxrepro({"run", folder_.write("wide.yaml", config), "--out", dir("run")}).exitCode, 0);
+    const ProcessResult exported = mockGfxrepro({"export", dir("run"), "--tidy"});
+    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    EXPECT_THAT(readFile(dir("run-tidy/cases.csv")), HasSubstr(",p2099\n"));
+    const ProcessResult asked = runProgram(
+        {"python3", "-c",
+         "import sqlite3; base = sqlite3.connect('" + dir("run-tidy/run.sqlite") +
+             "'); print(base.execute('select value from case_params join cases using (case_id) "
+             "where param = ?', ('p2099',)).fetchall())"});
+    EXPECT_EQ(asked.out, "[(2099,)]\n") << asked.err;
+}
+
 TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     const std::string csv = folder_.write("theirs.csv", "samples,mse\n4,0.5\n16,0.125\n64,0.03\n");
     const ProcessResult imported = mockGfxrepro(
