@@ -122,9 +122,9 @@ TEST_F(Data, MoreParametersThanSqliteHasColumnsAreRowsThere) {
         mockGfxrepro({"run", folder_.write("wide.yaml", config), "--out", dir("run")}).exitCode, 0);
     const ProcessResult exported = mockGfxrepro({"export", dir("run"), "--tidy"});
     ASSERT_EQ(exported.exitCode, 0) << exported.err;
-    EXPECT_THAT(readFile(dir("run-tidy/cases.csv")), HasSubstr(",p2099\n"));
+    EXPECT_THAT(readFile(dir("run-tidy/cases.csv")), HasSubstr(",p2098,p2099,output.width"));
     const ProcessResult asked = runProgram(
-        {"python3", "-c",
+        {"/usr/bin/env", "python3", "-c",
          "import sqlite3; base = sqlite3.connect('" + dir("run-tidy/run.sqlite") +
              "'); print(base.execute('select value from case_params join cases using (case_id) "
              "where param = ?', ('p2099',)).fetchall())"});

@@ -149,6 +149,7 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     experiment.claims[0].because[0].device = "gpu";
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
     // What is known of real scenes alone tells nothing of generated ones.
+    experiment.technique = "t";
     experiment.scene = config::Node::scalar("s");
     experiment.claims[0].because[0] = {"fails", std::nullopt, std::nullopt, "files", "r", ""};
     Kept real = fails, generated = fails;

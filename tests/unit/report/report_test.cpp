@@ -428,8 +428,8 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
             claim.origin = config::ClaimSpec::Origin::Document;
         }
     }
-    run.experiments[0].claims[1].because = {
-        {"fails", std::nullopt, std::nullopt, "the time is of another machine", "two machines"}};
+    run.experiments[0].claims[1].because = {{"fails", std::nullopt, std::nullopt, std::nullopt,
+                                             "the time is of another machine", "two machines"}};
     std::filesystem::create_directories(folder.path() / "images");
     image::writePng(folder.path() / "images/a.png", grey(100));
     records::ImageWriter(folder.path())
