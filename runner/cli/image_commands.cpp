@@ -93,11 +93,13 @@ void addSheet(CLI::App& image, ImageSheetOptions& o, std::function<int()>& comma
 
 }  // namespace
 
-void requireNoInput(const std::string& out, std::span<const std::string> inputs) {
+void requireNoInput(const std::string& out, std::span<const std::string> inputs,
+                    std::string_view option) {
     for (const std::string& input : inputs) {
         std::error_code isAbsent;
         if (std::filesystem::equivalent(out, input, isAbsent)) {
-            throw UsageError("--out " + out + " is the input " + input + "; allowed: another file");
+            throw UsageError(std::string(option) + " " + out + " is the input " + input +
+                             "; allowed: another file");
         }
     }
 }

@@ -68,6 +68,7 @@ int imageInfo(const std::string& file);
 void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command);
 
 /// Throws UsageError where `out` is one of the files that are read.
-void requireNoInput(const std::string& out, std::span<const std::string> inputs);
+void requireNoInput(const std::string& out, std::span<const std::string> inputs,
+                    std::string_view option = "--out");
 
 }  // namespace gfxrepro::cli

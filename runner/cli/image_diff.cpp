@@ -132,6 +132,10 @@ void writeMap(const ImageDiffOptions& options, const Pair& pair, std::optional<I
 }  // namespace
 
 int imageDiff(const ImageDiffOptions& options) {
+    if (!options.out.empty()) {
+        const std::string inputs[] = {options.reference, options.test};
+        requireNoInput(options.out, inputs);
+    }
     const Pair pair = readPair(options);
     std::optional<ImageF> flipMap;
     const auto values = valuesOf(options, pair, flipMap);

@@ -4,6 +4,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/image_commands.h"
 #include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
 #include "runner/gpu_scene/gpu_mesh.h"
@@ -92,6 +93,8 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
 }  // namespace
 
 int scene(const Context& context, const SceneOptions& options) {
+    requireNoInput(options.exportFile, {&options.name, 1}, "--export");
+    requireNoInput(options.renderFile, {&options.name, 1}, "--render");
     const scene::Scene scene = loadNamed(context, options);
     print(scene);
     if (!options.exportFile.empty()) exportTo(options.exportFile, scene);

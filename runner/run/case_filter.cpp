@@ -93,11 +93,27 @@ std::optional<std::vector<std::string>> valuesOf(const Case& item,
 
 }  // namespace
 
+namespace {
+
+/// A pattern is text, whatever YAML makes of `*` at its beginning.
+config::Override wantedBy(const std::string& written) {
+    const std::size_t value = written.find('=') + 1;
+    const std::string text(trimmed(std::string_view(written).substr(value)));
+    const bool isPattern = value > 0 && text.find_first_of("*?") != std::string::npos;
+    const bool isList = text.starts_with('[') && text.ends_with(']');
+    if (!isPattern || isList) return config::parseOverride(written);
+    std::string quoted = written.substr(0, value) + '\'';
+    for (const char c : text) quoted.append(c == '\'' ? 2 : 1, c);
+    return config::parseOverride(quoted + '\'');
+}
+
+}  // namespace
+
 void keepOnly(Plan& plan, const std::vector<std::string>& only) {
     std::vector<std::string> keys;
     std::map<std::string, std::vector<config::Override>> byKey;
     for (const std::string& written : only) {
-        config::Override wanted = config::parseOverride(written);
+        config::Override wanted = wantedBy(written);
         const bool isThere =
             std::ranges::any_of(plan.cases, [&](const Case& item) { return has(item, wanted); });
         if (!isThere) failWithout(wanted, written, plan.cases);

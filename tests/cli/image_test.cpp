@@ -295,7 +295,12 @@ TEST_F(ImageCommands, NothingIsWrittenOverWhatIsRead) {
     EXPECT_EQ(refusal({"image", "contact-sheet", b, a, "--out", a}), same);
     EXPECT_EQ(refusal({"image", "convert", a, "--out", a}), same);
     EXPECT_EQ(refusal({"image", "crop", a, "0", "0", "1", "1", "--out", a}), same);
+    EXPECT_EQ(refusal({"image", "diff", a, b, "--out", a}), same);
+    EXPECT_EQ(refusal({"image", "diff", b, a, "--out", a}), same);
     EXPECT_EQ(image::readPng8(a).at(0, 0), 50);
+    const std::string model = folder_.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(refusal({"scene", model, "--export", model}),
+              "gfxrepro: --export DIR/m.obj is the input DIR/m.obj; allowed: another file\n");
 }
 
 TEST_F(ImageCommands, InfoNamesChannelsAndAttributes) {

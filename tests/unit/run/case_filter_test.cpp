@@ -36,6 +36,13 @@ std::vector<std::string> left(const std::vector<std::string>& only) {
 
 using Ids = std::vector<std::string>;
 
+TEST(CaseFilter, APatternMayBeginWithAnything) {
+    EXPECT_EQ(left({"scene=*duck"}), (Ids{"aa11", "aa22", "bb33"}));
+    EXPECT_EQ(left({"method=*s|thin"}).size(), 3U);
+    EXPECT_EQ(left({"step=[1]*"}), (Ids{"aa11"}));
+    EXPECT_EQ(left({"resolution=?4"}).size(), 3U);
+}
+
 TEST(CaseFilter, KeepsWhatHasAllValues) {
     EXPECT_EQ(left({}), (Ids{"aa11", "aa22", "bb33"}));
     EXPECT_EQ(left({"step=2"}), (Ids{"aa22", "bb33"}));  // 2 is 2.0
