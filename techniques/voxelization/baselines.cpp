@@ -1,5 +1,5 @@
 // What the worksheet method is measured against.
-#include "techniques/voxelization/bindings.h"
+#include "runner/gpu_scene/gpu_mesh.h"
 #include "techniques/voxelization/mesh_voxelizer.h"
 
 namespace gfxrepro::voxelization {
@@ -15,10 +15,8 @@ class DirectMethod : public MeshMethod {
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope scope(profiler, "voxelization");
         grid_.sheets.clearToZero();
-        grid_.sheets.bindImage(kSheetUnit, GL_READ_WRITE);
-        for (Axis axis : kAxes) draw_.draw(mesh, axis);
-        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                        GL_TEXTURE_UPDATE_BARRIER_BIT);
+        const gl::Resources target{gl::Resource("sheet", grid_.sheets).unordered()};
+        for (Axis axis : kAxes) draw_.draw(mesh, axis, target);
     }
     const VoxelGrid* grid() const override { return &grid_; }
     void record(technique::Recorder&) override {}
@@ -42,12 +40,10 @@ class SlicesMethod : public MeshMethod {
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope scope(profiler, "voxelization");
         grid_.sheets.clearToZero();
-        grid_.sheets.bindImage(kSheetUnit, GL_READ_WRITE);
+        const gl::Resources target{gl::Resource("sheet", grid_.sheets).unordered()};
         for (int slice = 0; slice < grid_.layout.resolution(); ++slice) {
-            for (Axis axis : kAxes) draw_.drawSlice(mesh, axis, slice);
+            for (Axis axis : kAxes) draw_.drawSlice(mesh, axis, slice, target);
         }
-        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                        GL_TEXTURE_UPDATE_BARRIER_BIT);
     }
     const VoxelGrid* grid() const override { return &grid_; }
     void record(technique::Recorder&) override {}
@@ -62,8 +58,8 @@ class SlicesMethod : public MeshMethod {
 class DepthOnlyMethod : public MeshMethod {
   public:
     DepthOnlyMethod(technique::SetupContext& context, const MeshRequest& request)
-        : program_(context.shaders, {"voxelization/depth_only.vert.glsl"},
-                   passDefines(request.settings.layout)),
+        : pass_(context.shaders, {"voxelization/depth_only.vert.glsl"},
+                gpu_scene::attributeDefines()),
           depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F,
                                      glm::ivec2(request.settings.layout.resolution()))),
           framebuffer_({}, &depth_),
@@ -78,9 +74,9 @@ class DepthOnlyMethod : public MeshMethod {
         glDepthMask(GL_TRUE);
         glDisable(GL_CULL_FACE);
         framebuffer_.clearDepth(1.0F);
-        program_.use();
-        program_.set("boxCentreWorld", boxCentreWorld_);
-        program_.set("clipFromWorldScale", clipFromWorldScale_);
+        pass_.set("boxCentreWorld", boxCentreWorld_);
+        pass_.set("clipFromWorldScale", clipFromWorldScale_);
+        pass_.use({});
         mesh.drawIndexed(mesh.allTriangles());
     }
     const VoxelGrid* grid() const override { return nullptr; }
@@ -88,7 +84,7 @@ class DepthOnlyMethod : public MeshMethod {
     std::size_t sizeBytes() const override { return depth_.sizeBytes(); }
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
     glm::vec3 boxCentreWorld_;

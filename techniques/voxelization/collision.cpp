@@ -5,7 +5,6 @@
 namespace gfxrepro::voxelization {
 
 namespace {
-enum Binding { kSheetsImage = 0, kExtentBuffer = 0 };
 constexpr int kGroupSize = 8;
 
 // The block Extent of collision.comp.glsl (std430).
@@ -23,22 +22,16 @@ scene::Box GridExtent::bounds(const VoxelGrid& grid) const {
 }
 
 ExtentPass::ExtentPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout)
-    : layout_(layout), extent_(sizeof(Words)) {
-    gl::Defines defines = layout.defines();
-    defines["SHEETS_IMAGE"] = kSheetsImage;
-    defines["EXTENT_BUFFER"] = kExtentBuffer;
-    program_ = gl::Program(shaders, {"voxelization/collision.comp.glsl"}, defines);
-}
+    : layout_(layout),
+      pass_(shaders, {"voxelization/collision.comp.glsl"}, layout.defines()),
+      extent_(sizeof(Words)) {}
 
 void ExtentPass::run(const gl::Texture& sheets) {
     GFXREPRO_ASSERT(sheets.size() == glm::ivec3(layout_.sheetSizePx(), layout_.layers()));
     extent_.write(std::span<const std::uint32_t>(kNothing));
-    program_.use();
-    sheets.bindImage(kSheetsImage, GL_READ_ONLY);
-    extent_.bindStorage(kExtentBuffer);
     const auto groups = static_cast<GLuint>(layout_.resolution() / kGroupSize);
-    glDispatchCompute(groups, groups, static_cast<GLuint>(layout_.slabCount()));
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    pass_.dispatch({groups, groups, layout_.slabCount()},
+                   {{"sheets", sheets}, {"Extent", extent_}});
 }
 
 GridExtent ExtentPass::read() const {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {
@@ -28,7 +28,7 @@ class ExtentPass {
 
   private:
     WorksheetLayout layout_;
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Buffer extent_;
 };
 

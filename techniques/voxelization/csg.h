@@ -1,7 +1,7 @@
 // Constructive solid geometry on worksheets. [zju2005] Sec. 2.4.1 (3).
 #pragma once
 
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {
@@ -19,7 +19,7 @@ class CsgPass {
 
   private:
     WorksheetLayout layout_;
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 }  // namespace gfxrepro::voxelization

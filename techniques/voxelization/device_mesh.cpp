@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "runner/gpu_scene/gpu_mesh.h"
 #include "techniques/kit/draws.h"
-#include "techniques/voxelization/bindings.h"
 #include "techniques/voxelization/lattice.h"
 
 namespace gfxrepro::voxelization {
@@ -40,14 +40,18 @@ DeviceMesh::DeviceMesh(const MeshRequest& request, const AxisSplit& split,
         return;
     }
     positions = gl::Buffer::of(request.mesh.positions);
-    vertexArray.setAttribute(kPositionLocation, positions, 3);
-    if (request.hasValues()) vertexArray.setAttribute(kAttributeLocation, attributes, 3);
+    vertexArray.setAttribute(gpu_scene::kPosition, positions, 3);
+    if (request.hasValues()) vertexArray.setAttribute(gpu_scene::kNormal, attributes, 3);
     vertexArray.setIndices(triangles);
 }
 
 void DeviceMesh::update(const AxisSplit& split) {
     triangles.write(std::span<const glm::uvec3>(split.triangles));
     ranges = split.ranges;
+}
+
+gl::Resources DeviceMesh::resources() const {
+    return {{"Positions", positions}, {"Attributes", attributes}, {"Triangles", triangles}};
 }
 
 void DeviceMesh::drawIndexed(TriangleRange range) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/axis_split.h"
 #include "techniques/voxelization/grid_source.h"
 #include "techniques/voxelization/worksheet.h"
@@ -67,6 +68,8 @@ struct DeviceMesh {
     /// Replaces the indices: the dynamic index buffer of [zju2005] Sec. 2.3.1.
     void update(const AxisSplit& split);
     TriangleRange allTriangles() const { return {0, ranges[2].first + ranges[2].count}; }
+    /// For the exact rules' passes; the others have the vertex array.
+    gl::Resources resources() const;
     /// Draws these triangles with the program in use, in pieces: the memory that a software device
     /// takes for a draw then does not grow with the mesh.
     void drawIndexed(TriangleRange range) const;

@@ -4,7 +4,6 @@ namespace gfxrepro::voxelization {
 
 namespace {
 
-constexpr int kSheetsImage = 0;
 constexpr int kGroupSize = 8;
 
 // [zju2005] Sec. 2.4.1. It reaches to ±2.27.
@@ -40,23 +39,19 @@ ImplicitSource::ImplicitSource(config::Params& params, const GridSettings& setti
 void ImplicitSource::setup(technique::SetupContext& context) {
     grid_.sheets = makeSheets(grid_.layout);
     gl::Defines defines = grid_.layout.defines();
-    defines["SHEETS_IMAGE"] = kSheetsImage;
     defines["NORMALS"] = settings_.value == VoxelValue::Normal ? 1 : 0;
     defines["SOLID"] = settings_.fill == Fill::Solid ? 1 : 0;
-    program_ = gl::Program(context.shaders, {"voxelization/implicit.comp.glsl"}, defines,
-                           {{"formula", formula_.glslFunction("formula")}});
+    pass_ = gl::Pass(context.shaders, {"voxelization/implicit.comp.glsl"}, defines,
+                     {{"formula", formula_.glslFunction("formula")}});
 }
 
 void ImplicitSource::render(gl::Profiler& profiler) {
     const gl::GpuScope scope(profiler, "implicit");
-    program_.use();
-    program_.set("boxMin", grid_.box.min);
-    program_.set("voxelSize", grid_.voxelSize());
-    program_.set("insideSign", isNegativeInside_ ? 1.0F : -1.0F);
-    grid_.sheets.bindImage(kSheetsImage, GL_WRITE_ONLY);
+    pass_.set("boxMin", grid_.box.min);
+    pass_.set("voxelSize", grid_.voxelSize());
+    pass_.set("insideSign", isNegativeInside_ ? 1.0F : -1.0F);
     const auto groups = static_cast<GLuint>(grid_.layout.resolution() / kGroupSize);
-    glDispatchCompute(groups, groups, static_cast<GLuint>(grid_.layout.slabCount()));
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    pass_.dispatch({groups, groups, grid_.layout.slabCount()}, {{"sheets", grid_.sheets}});
 }
 
 }  // namespace gfxrepro::voxelization

@@ -1,6 +1,7 @@
 // Implicit surfaces f(x, y, z) = 0 sampled into a worksheet. [zju2005] Sec. 2.4.1 (1), figure 2.6.
 #pragma once
 
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/expression.h"
 #include "techniques/voxelization/grid_source.h"
 
@@ -26,7 +27,7 @@ class ImplicitSource final : public GridSource {
     Expression formula_;
     bool isNegativeInside_;
     VoxelGrid grid_;
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 }  // namespace gfxrepro::voxelization

@@ -1,7 +1,6 @@
 #include "techniques/voxelization/lookup_tables.h"
 
 #include "runner/core/error.h"
-#include "techniques/voxelization/bindings.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -55,11 +54,11 @@ LookupTables::LookupTables(const WorksheetLayout& layout)
     GFXREPRO_ASSERT_EQ(layout.layers(), 1);
 }
 
-void LookupTables::bind() const {
-    bitOfByte_.bind(kBitOfByteUnit);
-    powerOfTwo_.bind(kPowerOfTwoUnit);
-    xFromZ_.bind(kXFromZUnit);
-    yFromZ_.bind(kYFromZUnit);
+gl::Resources LookupTables::resources() const {
+    return {{"bitOfByte", bitOfByte_},
+            {"powerOfTwo", powerOfTwo_},
+            {"xFromZ", xFromZ_},
+            {"yFromZ", yFromZ_}};
 }
 
 std::size_t LookupTables::sizeBytes() const {

@@ -1,6 +1,7 @@
 // The look-up textures of [zju2005] Sec. 2.3.2, beside the integer instructions of worksheet.glsl.
 #pragma once
 
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {
@@ -11,8 +12,8 @@ class LookupTables {
     /// Asserts that the layout is one sheet, as the thesis's.
     explicit LookupTables(const WorksheetLayout& layout);
 
-    /// To the units of bindings.h.
-    void bind() const;
+    /// Of lookup_tables.glsl.
+    gl::Resources resources() const;
     std::size_t sizeBytes() const;
 
   private:

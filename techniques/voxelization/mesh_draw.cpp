@@ -1,13 +1,14 @@
 #include "techniques/voxelization/mesh_draw.h"
 
-#include "techniques/voxelization/bindings.h"
+#include "runner/gpu_scene/gpu_mesh.h"
 #include "techniques/voxelization/lattice.h"
 
 namespace gfxrepro::voxelization {
 namespace {
 
 gl::Defines drawDefines(const MeshRequest& request, DrawTarget target) {
-    gl::Defines defines = passDefines(request.settings.layout);
+    gl::Defines defines = request.settings.layout.defines();
+    defines.merge(gpu_scene::attributeDefines());
     defines["VALUE"] = static_cast<int>(request.settings.value);
     defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
     if (request.isExact()) {
@@ -34,7 +35,7 @@ std::vector<std::string> drawFiles(bool isExact) {
 }  // namespace
 
 MeshDraw::MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target)
-    : program_(shaders, drawFiles(request.isExact()), drawDefines(request, target)),
+    : pass_(shaders, drawFiles(request.isExact()), drawDefines(request, target)),
       framebuffer_(
           gl::Framebuffer::withoutAttachments(glm::ivec2(request.settings.layout.resolution()))),
       boxCentreWorld_(request.box.centre()),
@@ -42,38 +43,36 @@ MeshDraw::MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request,
       isExact_(request.isExact()),
       drawsAllAxes_(request.drawsAllAxes()) {}
 
-void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
+void MeshDraw::draw(const DeviceMesh& mesh, Axis axis, const gl::Resources& target) const {
     framebuffer_.bind();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
-    program_.use();
-    program_.set("axis", static_cast<int>(axis));
+    pass_.set("axis", static_cast<int>(axis));
+    pass_.use(target.with(mesh.resources()));
     if (isExact_) {
         drawExact(mesh, axis);
         return;
     }
-    program_.set("boxCentreWorld", boxCentreWorld_);
-    program_.set("clipFromWorldScale", clipFromWorldScale_);
+    pass_.set("boxCentreWorld", boxCentreWorld_);
+    pass_.set("clipFromWorldScale", clipFromWorldScale_);
     mesh.drawIndexed(drawsAllAxes_ ? mesh.allTriangles()
                                    : mesh.ranges[static_cast<std::size_t>(axis)]);
 }
 
-void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice) const {
-    program_.set("slice", slice);
-    draw(mesh, axis);
+void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice,
+                         const gl::Resources& target) const {
+    pass_.set("slice", slice);
+    draw(mesh, axis, target);
 }
 
 void MeshDraw::drawExact(const DeviceMesh& mesh, Axis axis) const {
     TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
     if (drawsAllAxes_) range = mesh.allTriangles();
-    mesh.positions.bindStorage(kPositionBinding);
-    mesh.triangles.bindStorage(kTriangleBinding);
-    mesh.attributes.bindStorage(kAttributeBinding);
     noAttributes_.bind();
     // gl_VertexID must not pass 2³¹: 6 vertices a triangle.
     constexpr int kTrianglesPerDraw = 1 << 26;
     for (int first = 0; first < range.count; first += kTrianglesPerDraw) {
-        program_.set("firstTriangle", range.first + first);
+        pass_.set("firstTriangle", range.first + first);
         glDrawArrays(GL_TRIANGLES, 0, std::min(range.count - first, kTrianglesPerDraw) * 6);
     }
 }

@@ -8,8 +8,8 @@ namespace gfxrepro::voxelization {
 
 /// Where the fragments' voxels go.
 enum class DrawTarget {
-    FragmentList,  // bound at kRecordBinding and kCounterBinding
-    Grid,          // the z layout, bound as an image at kSheetUnit
+    FragmentList,  // the blocks Records and Counters
+    Grid,          // the z layout, the image `sheet`
     GridSlice,     // as Grid, one slice of the drawn axis at a time
 };
 
@@ -17,17 +17,17 @@ class MeshDraw {
   public:
     MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target);
 
-    const gl::Program& program() const { return program_; }
+    const gl::Pass& pass() const { return pass_; }
     /// Draws the triangles that the rule projects along `axis`, into an N × N framebuffer without
-    /// attachments.
-    void draw(const DeviceMesh& mesh, Axis axis) const;
+    /// attachments; `target` is what the DrawTarget names.
+    void draw(const DeviceMesh& mesh, Axis axis, const gl::Resources& target) const;
     /// As draw(), with the voxels of slice `slice` of the axis only.
-    void drawSlice(const DeviceMesh& mesh, Axis axis, int slice) const;
+    void drawSlice(const DeviceMesh& mesh, Axis axis, int slice, const gl::Resources& target) const;
 
   private:
     void drawExact(const DeviceMesh& mesh, Axis axis) const;
 
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray noAttributes_;
     glm::vec3 boxCentreWorld_;

@@ -23,21 +23,21 @@ class WorksheetMethod : public MeshMethod {
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope whole(profiler, "voxelization");
+        const gl::Resources tables = tables_ ? tables_->resources() : gl::Resources{};
         {
             gl::GpuScope scope(profiler, "rasterization");
             rasterization_.run(mesh);
         }
         {
             gl::GpuScope scope(profiler, "texelization");
-            if (tables_) tables_->bind();
-            texelization_.run(rasterization_.fragments(), sheets_, grid_);
+            texelization_.run(rasterization_.fragments(), sheets_, grid_, tables);
         }
         if (solidFill_) {
             gl::GpuScope scope(profiler, "fill");
             solidFill_->run(texelization_, sheets_, grid_, statistics_);
         }
         gl::GpuScope scope(profiler, "synthesis");
-        synthesis_.run(sheets_, grid_, texelization_.tiles(), statistics_);
+        synthesis_.run(sheets_, grid_, texelization_.tiles(), statistics_, tables);
     }
 
     const VoxelGrid* grid() const override { return &grid_; }

@@ -11,7 +11,6 @@ namespace gfxrepro::voxelization {
 
 namespace {
 
-enum Binding { kSheetsImage = 0, kPointsBuffer = 0 };
 constexpr int kGroupSize = 64;
 constexpr int kMaxSamples = 4096;  // a direction
 
@@ -111,10 +110,8 @@ ParametricSource::ParametricSource(config::Params& params, const GridSettings& s
 gl::Defines ParametricSource::defines() const {
     gl::Defines defines = settings_.layout.defines();
     defines["NORMALS"] = settings_.value == VoxelValue::Normal ? 1 : 0;
-    defines["POINTS_BUFFER"] = kPointsBuffer;
     defines["SAMPLES_U"] = sampleCounts_.x;
     defines["SAMPLES_V"] = sampleCounts_.y;
-    defines["SHEETS_IMAGE"] = kSheetsImage;
     return defines;
 }
 
@@ -125,16 +122,12 @@ std::map<std::string, std::string> ParametricSource::snippets() const {
 }
 
 std::vector<glm::vec3> ParametricSource::samplePoints(const gl::ShaderLibrary& shaders) const {
-    const gl::Program program(shaders, {"voxelization/parametric.comp.glsl"}, defines(),
-                              snippets());
+    const gl::Pass pass(shaders, {"voxelization/parametric.comp.glsl"}, defines(), snippets());
     const auto count =
         static_cast<std::size_t>(sampleCounts_.x) * static_cast<std::size_t>(sampleCounts_.y);
     const gl::Buffer points(count * sizeof(glm::vec3));
-    program.use();
-    program.set("domain", domain_);
-    points.bindStorage(kPointsBuffer);
-    glDispatchCompute(kit::groupsFor(count, kGroupSize), 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    pass.set("domain", domain_);
+    pass.dispatch({kit::groupsFor(count, kGroupSize), 1, 1}, {{"Points", points}});
     return points.read<glm::vec3>(count);
 }
 
@@ -149,9 +142,9 @@ void ParametricSource::setup(technique::SetupContext& context) {
     samplesOutside_ = static_cast<std::size_t>(std::ranges::count_if(
         points, [&](const glm::vec3& point) { return !isInside(grid_.box, point); }));
     grid_.sheets = makeSheets(grid_.layout);
-    program_ = gl::Program(
-        context.shaders, {"voxelization/parametric.vert.glsl", "voxelization/parametric.frag.glsl"},
-        defines(), snippets());
+    pass_ = gl::Pass(context.shaders,
+                     {"voxelization/parametric.vert.glsl", "voxelization/parametric.frag.glsl"},
+                     defines(), snippets());
     framebuffer_ = gl::Framebuffer::withoutAttachments(glm::ivec2(grid_.layout.resolution()));
     vertexArray_ = gl::VertexArray();
 }
@@ -163,14 +156,12 @@ void ParametricSource::render(gl::Profiler& profiler) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glEnable(GL_PROGRAM_POINT_SIZE);
-    program_.use();
-    program_.set("domain", domain_);
-    program_.set("boxMin", grid_.box.min);
-    program_.set("voxelSize", grid_.voxelSize());
-    grid_.sheets.bindImage(kSheetsImage, GL_READ_WRITE);
+    pass_.set("domain", domain_);
+    pass_.set("boxMin", grid_.box.min);
+    pass_.set("voxelSize", grid_.voxelSize());
+    pass_.use({{"sheets", grid_.sheets}});
     vertexArray_.bind();
     glDrawArrays(GL_POINTS, 0, sampleCounts_.x * sampleCounts_.y);
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
 void ParametricSource::record(technique::Recorder& recorder) {

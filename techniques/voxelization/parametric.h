@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/expression.h"
 #include "techniques/voxelization/grid_source.h"
 
@@ -45,7 +46,7 @@ class ParametricSource final : public GridSource {
     SampleStatistics statistics_;
     std::size_t samplesOutside_ = 0;
     VoxelGrid grid_;
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertexArray_ = gl::VertexArray::none();
 };

@@ -2,18 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "techniques/voxelization/bindings.h"
-
 namespace gfxrepro::voxelization {
 
 std::array<std::uint32_t, 3> FragmentList::counts() const {
     const auto read = counters.read<std::uint32_t>(3);
     return {read[0], read[1], read[2]};
-}
-
-void FragmentList::bind(Axis axis) const {
-    records[static_cast<std::size_t>(axis)].bindStorage(kRecordBinding);
-    counters.bindStorage(kCounterBinding);
 }
 
 std::size_t FragmentList::sizeBytes() const {
@@ -43,12 +36,12 @@ Rasterization::Rasterization(technique::SetupContext& context, const MeshRequest
 void Rasterization::run(const DeviceMesh& mesh) {
     fragments_.counters.clear();
     for (Axis axis : kAxes) {
-        fragments_.bind(axis);
-        draw_.program().set("fragmentCapacity",
-                            fragments_.capacities[static_cast<std::size_t>(axis)]);
-        draw_.draw(mesh, axis);
+        const auto index = static_cast<std::size_t>(axis);
+        draw_.pass().set("fragmentCapacity", fragments_.capacities[index]);
+        draw_.draw(mesh, axis,
+                   {{"Records", fragments_.records[index]},
+                    gl::Resource("Counters", fragments_.counters).unordered()});
     }
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 std::size_t Rasterization::checkedCount() const {

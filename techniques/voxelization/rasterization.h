@@ -5,7 +5,7 @@
 
 namespace gfxrepro::voxelization {
 
-/// The fragments of each axis, appended in any order; see shaders/fragment_list.glsl.
+/// The fragments of each axis, appended in any order; see shaders/emit_voxel.glsl.
 struct FragmentList {
     std::array<gl::Buffer, 3> records;
     gl::Buffer counters = gl::Buffer(3 * sizeof(std::uint32_t));
@@ -13,7 +13,6 @@ struct FragmentList {
 
     /// Fragments of each axis, those beyond the capacity too; waits for the device.
     std::array<std::uint32_t, 3> counts() const;
-    void bind(Axis axis) const;
     std::size_t sizeBytes() const;
 };
 

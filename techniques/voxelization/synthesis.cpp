@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "techniques/kit/draws.h"
-#include "techniques/voxelization/bindings.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -18,7 +17,7 @@ int tilesPerGroup(const WorksheetLayout& layout) {
 }
 
 gl::Defines synthesisDefines(const MeshRequest& request) {
-    gl::Defines defines = passDefines(request.settings.layout);
+    gl::Defines defines = request.settings.layout.defines();
     defines["TILES"] = tilesPerGroup(request.settings.layout);
     defines["GROUP_EDGE"] = kGroupEdge;
     if (request.merging == Merging::Sparse) defines["SPARSE"] = 1;
@@ -30,7 +29,7 @@ gl::Defines synthesisDefines(const MeshRequest& request) {
 }
 
 gl::Defines fillDefines(const MeshRequest& request) {
-    gl::Defines defines = passDefines(request.settings.layout);
+    gl::Defines defines = request.settings.layout.defines();
     if (!request.fillsByCrossings()) defines["FLIP_AT_VOXELS"] = 1;
     return defines;
 }
@@ -40,58 +39,46 @@ std::vector<std::string> synthesisFiles(Merging merging) {
                                          : "voxelization/synthesis.comp.glsl"};
 }
 
-void finishImages() {
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                    GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                    GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
 }  // namespace
 
 SolidFill::SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request)
-    : program_(shaders, {"voxelization/fill.comp.glsl"}, fillDefines(request)),
+    : pass_(shaders, {"voxelization/fill.comp.glsl"}, fillDefines(request)),
       groupsAcross_(static_cast<unsigned>(request.settings.layout.resolution() / kFillGroupSize)) {}
 
 void SolidFill::run(const Texelization& texelization, const DirectionalSheets& sheets,
                     const VoxelGrid& grid, gl::Buffer& statistics) {
     statistics.clear();
-    statistics.bindStorage(kStatisticsBinding);
-    program_.use();
     for (Axis axis : kAxes) {
         const gl::Texture& sheet = axis == Axis::X   ? sheets.x
                                    : axis == Axis::Y ? sheets.y
                                                      : grid.sheets;
-        sheet.bindImage(kSheetUnit, GL_READ_WRITE);
-        texelization.behind(axis).bindStorage(kBehindBinding);
-        glDispatchCompute(groupsAcross_, groupsAcross_, 1);
+        pass_.dispatch({groupsAcross_, groupsAcross_, 1},
+                       {{"sheet", sheet},
+                        {"Behind", texelization.behind(axis)},
+                        gl::Resource("Statistics", statistics).unordered()});
     }
-    finishImages();
 }
 
 Synthesis::Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request)
-    : program_(shaders, synthesisFiles(request.merging), synthesisDefines(request)),
+    : pass_(shaders, synthesisFiles(request.merging), synthesisDefines(request)),
       merging_(request.merging) {}
 
 void Synthesis::run(const DirectionalSheets& sheets, const VoxelGrid& grid, const TileList& tiles,
-                    const gl::Buffer& statistics) {
-    sheets.x.bindImage(kSheetXUnit, GL_READ_ONLY);
-    sheets.y.bindImage(kSheetYUnit, GL_READ_ONLY);
-    grid.sheets.bindImage(kSheetUnit, GL_READ_WRITE);
-    statistics.bindStorage(kStatisticsBinding);
-    program_.use();
+                    const gl::Buffer& statistics, const gl::Resources& tables) {
     const auto perGroup = static_cast<unsigned>(tilesPerGroup(grid.layout));
+    const auto slabs = static_cast<unsigned>(grid.layout.slabCount());
+    glm::uvec3 groups(slabs, slabs, slabs / perGroup);
     if (merging_ == Merging::PerVoxel) {
-        const glm::uvec2 groups(grid.layout.sheetSizePx() / kGroupEdge);
-        glDispatchCompute(groups.x, groups.y, static_cast<unsigned>(grid.layout.layers()));
+        groups = {grid.layout.sheetSizePx() / kGroupEdge, grid.layout.layers()};
     } else if (merging_ == Merging::Sparse) {
-        tiles.buffer.bindStorage(kTileBinding);
-        glDispatchCompute(std::min(kit::groupsFor(tiles.capacity, perGroup), kMaxSparseGroups), 1,
-                          1);
-    } else {
-        const auto slabs = static_cast<unsigned>(grid.layout.slabCount());
-        glDispatchCompute(slabs, slabs, slabs / perGroup);
+        groups = {std::min(kit::groupsFor(tiles.capacity, perGroup), kMaxSparseGroups), 1, 1};
     }
-    finishImages();
+    pass_.dispatch(groups, gl::Resources{{"sheetX", sheets.x},
+                                         {"sheetY", sheets.y},
+                                         {"sheet", grid.sheets},
+                                         {"Statistics", statistics}}
+                               .with({{"Tiles", tiles.buffer}})
+                               .with(tables));
 }
 
 }  // namespace gfxrepro::voxelization

@@ -15,7 +15,7 @@ class SolidFill {
              const VoxelGrid& grid, gl::Buffer& statistics);
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
     unsigned groupsAcross_;
 };
 
@@ -25,12 +25,12 @@ class Synthesis {
   public:
     Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request);
     /// `tiles` are texelization's (used by Merging::Sparse only), `statistics` holds
-    /// SolidStatistics (used by solid only); look-up tables, where they are used, are bound.
+    /// SolidStatistics (used by solid only), `tables` are as Texelization::run() takes them.
     void run(const DirectionalSheets& sheets, const VoxelGrid& grid, const TileList& tiles,
-             const gl::Buffer& statistics);
+             const gl::Buffer& statistics, const gl::Resources& tables);
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
     Merging merging_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "techniques/kit/draws.h"
-#include "techniques/voxelization/bindings.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -12,7 +11,7 @@ constexpr int kGroupSize = 64;
 constexpr unsigned kMaxGroups = 4096;  // beyond it an invocation takes several fragments
 
 gl::Defines texelizeDefines(const MeshRequest& request) {
-    gl::Defines defines = passDefines(request.settings.layout);
+    gl::Defines defines = request.settings.layout.defines();
     defines["GROUP_SIZE"] = kGroupSize;
     defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
     defines[request.fillsByCrossings() ? "ACCUMULATE_XOR"
@@ -38,7 +37,7 @@ TileList makeTileList(const WorksheetLayout& layout, const FragmentList& fragmen
 
 Texelization::Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request,
                            const FragmentList& fragments)
-    : program_(shaders, {"voxelization/texelize.comp.glsl"}, texelizeDefines(request)) {
+    : pass_(shaders, {"voxelization/texelize.comp.glsl"}, texelizeDefines(request)) {
     const auto n = static_cast<std::size_t>(request.settings.layout.resolution());
     for (gl::Buffer& lines : behind_) lines = gl::Buffer(request.isSolid() ? n * n / 8 : 4);
     if (request.merging == Merging::Sparse) {
@@ -46,26 +45,25 @@ Texelization::Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& 
     }
 }
 
-void Texelization::run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid) {
-    program_.use();
-    if (tiles_.capacity > 0) {
-        tiles_.buffer.clear();
-        tiles_.buffer.bindStorage(kTileBinding);
-    }
+void Texelization::run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid,
+                       const gl::Resources& tables) {
+    if (tiles_.capacity > 0) tiles_.buffer.clear();
     for (Axis axis : kAxes) {
+        const auto index = static_cast<std::size_t>(axis);
         gl::Texture& sheet = axis == Axis::X ? sheets.x : axis == Axis::Y ? sheets.y : grid.sheets;
-        gl::Buffer& behind = behind_[static_cast<std::size_t>(axis)];
-        const std::uint32_t capacity = fragments.capacities[static_cast<std::size_t>(axis)];
         sheet.clearToZero();
-        behind.clear();
-        behind.bindStorage(kBehindBinding);
-        sheet.bindImage(kSheetUnit, GL_READ_WRITE);
-        fragments.bind(axis);
-        program_.set("axis", static_cast<int>(axis));
-        program_.set("fragmentCapacity", capacity);
-        glDispatchCompute(std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1);
+        behind_[index].clear();
+        const std::uint32_t capacity = fragments.capacities[index];
+        pass_.set("axis", static_cast<int>(axis));
+        pass_.set("fragmentCapacity", capacity);
+        pass_.dispatch({std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1},
+                       gl::Resources{{"sheet", sheet},
+                                     {"Records", fragments.records[index]},
+                                     {"Counters", fragments.counters},
+                                     {"Behind", behind_[index]},
+                                     gl::Resource("Tiles", tiles_.buffer).unordered()}
+                           .with(tables));
     }
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 std::size_t Texelization::sizeBytes() const {

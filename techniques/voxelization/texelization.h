@@ -33,15 +33,17 @@ class Texelization {
     Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request,
                  const FragmentList& fragments);
 
-    /// Clears the three sheets (that of z is grid's) and writes every fragment's voxel.
-    void run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid);
+    /// Clears the three sheets (that of z is grid's) and writes every fragment's voxel. `tables`:
+    /// LookupTables::resources(), of Addressing::Tables only.
+    void run(const FragmentList& fragments, DirectionalSheets& sheets, VoxelGrid& grid,
+             const gl::Resources& tables);
     /// Solid: scan lines whose crossing lies behind the grid, one bit each, for each axis.
     const gl::Buffer& behind(Axis axis) const { return behind_[static_cast<std::size_t>(axis)]; }
     const TileList& tiles() const { return tiles_; }
     std::size_t sizeBytes() const;
 
   private:
-    gl::Program program_;
+    gl::Pass pass_;
     std::array<gl::Buffer, 3> behind_;
     TileList tiles_;
 };

@@ -12,8 +12,6 @@ namespace gfxrepro::voxelization {
 
 namespace {
 
-enum TextureUnit { kSheetsUnit = 0, kSecondUnit = 1, kHeadUnit = 2, kHitsUnit = 3 };
-
 /// Right, up and backwards, unit, world space.
 glm::mat3 frameOf(const scene::Camera& camera) {
     const glm::vec3 backwards = glm::normalize(camera.position - camera.target);
@@ -106,23 +104,19 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
     defines["CUT"] = settings.cut ? 1 : 0;
     defines["FRONT_TO_BACK"] = isOpaque ? 1 : 0;
     defines["HEAD"] = settings.mode == DrawMode::Mixed ? 1 : 0;
-    defines["HEAD_UNIT"] = kHeadUnit;
-    defines["HITS_UNIT"] = kHitsUnit;
     defines["NORMALS"] = settings.value == VoxelValue::Normal ? 1 : 0;
     defines["SECOND"] = settings.hasSecond ? 1 : 0;
-    defines["SECOND_UNIT"] = kSecondUnit;
-    defines["SHEETS_UNIT"] = kSheetsUnit;
-    planes_ = gl::Program(shaders,
-                          {"voxelization/proxy_plane.vert.glsl",
-                           isOpaque ? "voxelization/volume_opaque.frag.glsl"
-                                    : "voxelization/volume_transparent.frag.glsl"},
-                          defines);
+    planes_ = gl::Pass(shaders,
+                       {"voxelization/proxy_plane.vert.glsl",
+                        isOpaque ? "voxelization/volume_opaque.frag.glsl"
+                                 : "voxelization/volume_transparent.frag.glsl"},
+                       defines);
     color_ = gl::Texture::make2D(GL_RGBA16F, sizePx);
     const std::array<const gl::Texture*, 1> color{&color_};
     colorTarget_ = gl::Framebuffer(color);
     if (!isOpaque) return;
-    shade_ = gl::Program(
-        shaders, {"kit/whole_image.vert.glsl", "voxelization/volume_shade.frag.glsl"}, defines);
+    shade_ = gl::Pass(shaders, {"kit/whole_image.vert.glsl", "voxelization/volume_shade.frag.glsl"},
+                      defines);
     hits_ = gl::Texture::make2D(GL_R32UI, sizePx);
     depth_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
     const std::array<const gl::Texture*, 1> hits{&hits_};
@@ -131,21 +125,19 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
 
 void VolumeRenderer::draw(const gl::Texture& sheets, const gl::Texture* second,
                           const gl::Texture* head) {
-    sheets.bind(kSheetsUnit);
-    GFXREPRO_ASSERT(settings_.hasSecond == (second != nullptr));
-    if (second) second->bind(kSecondUnit);
-    GFXREPRO_ASSERT((settings_.mode == DrawMode::Mixed) == (head != nullptr));
-    if (head) head->bind(kHeadUnit);
+    gl::Resources volumes{{"sheets", sheets}};
+    if (second) volumes = volumes.with({{"secondSheets", *second}});
+    if (head) volumes = volumes.with({{"head", *head}});
     vertexArray_.bind();
     glDisable(GL_CULL_FACE);
     if (settings_.mode == DrawMode::Opaque) {
-        drawOpaque();
+        drawOpaque(volumes);
     } else {
-        drawTransparent();
+        drawTransparent(volumes);
     }
 }
 
-void VolumeRenderer::drawOpaque() {
+void VolumeRenderer::drawOpaque(const gl::Resources& volumes) {
     hits_.clearToZero();
     hitTarget_.clearDepth(1.0F);
     hitTarget_.bind();
@@ -153,36 +145,35 @@ void VolumeRenderer::drawOpaque() {
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
-    drawPlanes(planes_);
+    drawPlanes(volumes);
 
     colorTarget_.bind();
-    hits_.bind(kHitsUnit);
-    shade_.use();
     setView(shade_);
+    shade_.use(gl::Resources{{"hits", hits_}}.with(volumes));
     wholeImage_.draw();
 }
 
 // [zju2005] Sec. 2.4.2: alpha blending, back to front; premultiplied, since a slice may blend
 // several voxels.
-void VolumeRenderer::drawTransparent() {
+void VolumeRenderer::drawTransparent(const gl::Resources& volumes) {
     colorTarget_.clearColour(0, glm::vec4(1.0F));
     colorTarget_.bind();
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    drawPlanes(planes_);
+    drawPlanes(volumes);
     glDisable(GL_BLEND);
 }
 
-void VolumeRenderer::drawPlanes(const gl::Program& program) const {
-    program.use();
-    setView(program);
-    program.set("clipFromVoxel", view_.clipFromVoxel);
-    program.set("eye", view_.eye);
-    program.set("rayOrigin", view_.rayOrigin);
-    program.set("rayRight", view_.rayRight);
-    program.set("rayUp", view_.rayUp);
+void VolumeRenderer::drawPlanes(const gl::Resources& volumes) const {
+    setView(planes_);
+    planes_.set("clipFromVoxel", view_.clipFromVoxel);
+    planes_.set("eye", view_.eye);
+    planes_.set("rayOrigin", view_.rayOrigin);
+    planes_.set("rayRight", view_.rayRight);
+    planes_.set("rayUp", view_.rayUp);
+    planes_.use(volumes);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, planeCount());
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "runner/image/image.h"
 #include "runner/scene/scene.h"
 #include "techniques/kit/whole_image.h"
@@ -66,9 +66,9 @@ class VolumeRenderer {
     std::vector<std::uint32_t> readHits() const;
 
   private:
-    void drawPlanes(const gl::Program& program) const;
-    void drawOpaque();
-    void drawTransparent();
+    void drawPlanes(const gl::Resources& volumes) const;
+    void drawOpaque(const gl::Resources& volumes);
+    void drawTransparent(const gl::Resources& volumes);
     void setView(const gl::Program& program) const;
 
     WorksheetLayout layout_;
@@ -76,7 +76,7 @@ class VolumeRenderer {
     PlaneView view_;
     glm::vec3 eyeVolume_{0.0F};  // voxels
     glm::vec3 light_{0.0F};
-    gl::Program planes_, shade_;
+    gl::Pass planes_, shade_;
     gl::Texture hits_, depth_, color_;
     gl::Framebuffer hitTarget_, colorTarget_;
     gl::VertexArray vertexArray_;

@@ -2,13 +2,13 @@
 // OR-ed or XOR-ed, values take the largest.
 // Departure [zju2005] Sec. 2.3.2: the thesis adds the bit by alpha blending, which carries into the
 // next voxel when a voxel is hit twice; image atomics do not.
-// Defines: ACCUMULATE_OR, ACCUMULATE_XOR or ACCUMULATE_MAX; SHEET_UNIT.
+// Defines: ACCUMULATE_OR, ACCUMULATE_XOR or ACCUMULATE_MAX.
 
 #ifdef TABLES
 #include "voxelization/lookup_tables.glsl"
 #endif
 
-layout(binding = SHEET_UNIT, r32ui) uniform restrict coherent uimage2DArray sheet;
+layout(r32ui) uniform restrict coherent uimage2DArray sheet;
 
 void accumulate(ivec3 local, uint value) {
     ivec3 texel = worksheetTexel(local);

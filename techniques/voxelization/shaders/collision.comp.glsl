@@ -7,8 +7,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "voxelization/worksheet.glsl"
 
-layout(r32ui, binding = SHEETS_IMAGE) readonly uniform uimage2DArray sheets;
-layout(std430, binding = EXTENT_BUFFER) buffer Extent {
+layout(r32ui) readonly uniform uimage2DArray sheets;
+layout(std430) buffer Extent {
     uint count;
     uint lowest[3];   // x, y, z of voxels
     uint highest[3];  // inclusive

@@ -3,7 +3,7 @@
 //  COMBINE_MAX       surface, values: the largest
 //  COMBINE_MAJORITY  solid: what two axes of the three say; voxels on which they differ are counted
 #ifdef COMBINE_MAJORITY
-layout(std430, binding = STATISTICS_BINDING) restrict buffer Statistics {
+layout(std430) restrict buffer Statistics {
     uint ambiguousScanLines;
     uint disagreeingVoxels;
 };

@@ -8,9 +8,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "voxelization/worksheet.glsl"
 
-layout(r32ui, binding = LEFT_IMAGE) readonly uniform uimage2DArray left;
-layout(r32ui, binding = RIGHT_IMAGE) readonly uniform uimage2DArray right;
-layout(r32ui, binding = RESULT_IMAGE) writeonly uniform uimage2DArray result;
+layout(r32ui) readonly uniform uimage2DArray left;
+layout(r32ui) readonly uniform uimage2DArray right;
+layout(r32ui) writeonly uniform uimage2DArray result;
 
 // All bits of the voxels of `word` whose value is not 0.
 uint occupied(uint word) {

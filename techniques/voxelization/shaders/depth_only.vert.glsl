@@ -1,6 +1,6 @@
 #version 450 core
 // The yardstick of speed: the mesh seen along z, depth only; there is no fragment stage.
-layout(location = POSITION_LOCATION) in vec3 positionWorld;
+layout(location = kPosition) in vec3 positionWorld;
 
 uniform vec3 boxCentreWorld;
 uniform float clipFromWorldScale;  // 2 / edge of the box

@@ -22,6 +22,23 @@ uint encodedValue(vec3 meaning) {
 #include "voxelization/accumulate.glsl"
 void emitVoxel(ivec3 local, uint value) { accumulate(volumeFromLocal(axis, local), value); }
 #else
-#include "voxelization/fragment_list.glsl"
-void emitVoxel(ivec3 local, uint value) { appendFragment(axis, local, value); }
+// The list of fragments between rasterization and texelization, one list an axis. A record is one
+// word, local (u, v, w) in 10, 10 and 12 bits, and with VALUE other than occupancy a second, the
+// voxel's value.
+// Departure [zju2005] Sec. 2.2.1: the thesis blends in the fragment's own pixel, so it has to draw
+// slab by slab. The list lets a fragment reach any texel, and the mesh is drawn once.
+layout(std430) restrict writeonly buffer Records { uint records[]; };
+layout(std430) restrict buffer Counters { uint fragmentCounts[3]; };
+
+// Records that the axis's list can hold; what comes beyond is counted, not stored.
+uniform uint fragmentCapacity;
+
+void emitVoxel(ivec3 local, uint value) {
+    uint index = atomicAdd(fragmentCounts[axis], 1u);
+    if (index >= fragmentCapacity) return;
+    records[RECORD_WORDS * index] = uint(local.x) | uint(local.y) << 10 | uint(local.z) << 20;
+#if RECORD_WORDS == 2
+    records[2u * index + 1u] = value;
+#endif
+}
 #endif

@@ -27,7 +27,7 @@
 flat in uint triangleIndex;
 
 #if VALUE != 0
-layout(std430, binding = ATTRIBUTE_BINDING) restrict readonly buffer Attributes { float attributes[]; };
+layout(std430) restrict readonly buffer Attributes { float attributes[]; };
 vec3 cornerAttribute(uint corner) {
     uint vertex = 3u * corners[3u * triangleIndex + corner];
     return vec3(attributes[vertex], attributes[vertex + 1u], attributes[vertex + 2u]);

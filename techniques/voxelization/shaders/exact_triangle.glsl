@@ -1,8 +1,7 @@
 // A triangle of the lattice mesh, 256 units a voxel, in the local (u, v, w) of `axis`.
-// Defines: POSITION_BINDING, TRIANGLE_BINDING.
 
-layout(std430, binding = POSITION_BINDING) restrict readonly buffer Positions { int lattice[]; };
-layout(std430, binding = TRIANGLE_BINDING) restrict readonly buffer Triangles { uint corners[]; };
+layout(std430) restrict readonly buffer Positions { int lattice[]; };
+layout(std430) restrict readonly buffer Triangles { uint corners[]; };
 
 ivec3 cornerLocal(int projection, uint triangle, uint corner) {
     uint vertex = 3u * corners[3u * triangle + corner];

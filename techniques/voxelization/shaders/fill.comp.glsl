@@ -10,9 +10,9 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = SHEET_UNIT, r32ui) uniform restrict uimage2DArray sheet;
-layout(std430, binding = BEHIND_BINDING) restrict readonly buffer Behind { uint behind[]; };
-layout(std430, binding = STATISTICS_BINDING) restrict buffer Statistics {
+layout(r32ui) uniform restrict uimage2DArray sheet;
+layout(std430) restrict readonly buffer Behind { uint behind[]; };
+layout(std430) restrict buffer Statistics {
     uint ambiguousScanLines;
     uint disagreeingVoxels;
 };

@@ -2,7 +2,7 @@
 
 #include "voxelization/volume_lighting.glsl"
 
-layout(binding = HEAD_UNIT) uniform sampler3D head;  // outward normal · 0.5 + 0.5, density
+uniform sampler3D head;  // outward normal · 0.5 + 0.5, density
 
 // 1 between `low` and `high`, falling to 0 over `width` beside them.
 float band(float x, float low, float high, float width) {

@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #pragma snippet formula
 
-layout(r32ui, binding = SHEETS_IMAGE) writeonly uniform uimage2DArray sheets;
+layout(r32ui) writeonly uniform uimage2DArray sheets;
 
 uniform vec3 boxMin;        // world space
 uniform float voxelSize;    // world units

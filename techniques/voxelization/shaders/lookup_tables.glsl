@@ -1,11 +1,11 @@
 // The look-up textures of lookup_tables.h. A texel's four bytes are the channels of the thesis's
 // sheets; telling them apart takes an instruction here, as the sheets are of one channel.
-// [zju2005] Sec. 2.3.2. Defines: VOXEL_BITS, LANE_MASK and the units.
+// [zju2005] Sec. 2.3.2. Defines: VOXEL_BITS, LANE_MASK.
 
-layout(binding = BIT_OF_BYTE_UNIT) uniform usampler2D bitOfByte;
-layout(binding = POWER_OF_TWO_UNIT) uniform usampler2D powerOfTwo;
-layout(binding = X_FROM_Z_UNIT) uniform usampler2D xFromZ;
-layout(binding = Y_FROM_Z_UNIT) uniform usampler2D yFromZ;
+uniform usampler2D bitOfByte;
+uniform usampler2D powerOfTwo;
+uniform usampler2D xFromZ;
+uniform usampler2D yFromZ;
 
 // (1) The value of the voxel that begins at a bit of a byte of its texel.
 uint lookedUpVoxel(uint word, uint byteInTexel, uint bitInByte) {

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 #include "voxelization/parametric.glsl"
 
-layout(std430, binding = POINTS_BUFFER) writeonly buffer Points {
+layout(std430) writeonly buffer Points {
     float points[];  // x, y, z a sample, world space
 };
 

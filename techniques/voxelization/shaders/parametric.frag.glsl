@@ -5,7 +5,7 @@
 
 #include "voxelization/worksheet.glsl"
 
-layout(r32ui, binding = SHEETS_IMAGE) uniform uimage2DArray sheets;
+layout(r32ui) uniform uimage2DArray sheets;
 
 flat in ivec3 voxel;
 flat in uint value;

@@ -4,9 +4,9 @@
 // [zju2005] Sec. 2.2.1.
 #include "voxelization/worksheet.glsl"
 
-layout(location = POSITION_LOCATION) in vec3 positionWorld;
+layout(location = kPosition) in vec3 positionWorld;
 #if VALUE != 0
-layout(location = ATTRIBUTE_LOCATION) in vec3 meaning;  // normal or colour
+layout(location = kNormal) in vec3 meaning;  // normal or colour
 out vec3 vertexMeaning;
 #endif
 #ifdef SLICED

@@ -15,9 +15,9 @@
 
 layout(local_size_x = VOXELS_PER_TEXEL, local_size_y = TILES) in;
 
-layout(binding = SHEET_X_UNIT, r32ui) uniform restrict readonly uimage2DArray sheetX;
-layout(binding = SHEET_Y_UNIT, r32ui) uniform restrict readonly uimage2DArray sheetY;
-layout(binding = SHEET_UNIT, r32ui) uniform restrict uimage2DArray sheet;
+layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
+layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
+layout(r32ui) uniform restrict uimage2DArray sheet;
 
 const int C = VOXELS_PER_TEXEL;
 

@@ -11,9 +11,9 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-layout(binding = SHEET_X_UNIT, r32ui) uniform restrict readonly uimage2DArray sheetX;
-layout(binding = SHEET_Y_UNIT, r32ui) uniform restrict readonly uimage2DArray sheetY;
-layout(binding = SHEET_UNIT, r32ui) uniform restrict uimage2DArray sheet;
+layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
+layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
+layout(r32ui) uniform restrict uimage2DArray sheet;
 
 // Where a sheet has a texel's first voxel: the texel, and in its word the byte and bit of a byte.
 struct Place {

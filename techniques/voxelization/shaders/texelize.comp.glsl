@@ -7,7 +7,6 @@
 // With ACCUMULATE_XOR a toggle at w = N, behind the grid, goes to `behind`, one bit a scan line.
 #include "voxelization/worksheet.glsl"
 #include "voxelization/accumulate.glsl"
-#include "voxelization/fragment_list.glsl"
 #ifdef LIST_TILES
 #include "voxelization/tiles.glsl"
 #endif
@@ -16,15 +15,21 @@ layout(local_size_x = GROUP_SIZE) in;
 
 uniform int axis;
 
+// What emit_voxel.glsl wrote.
+layout(std430) restrict readonly buffer Records { uint records[]; };
+layout(std430) restrict readonly buffer Counters { uint fragmentCounts[3]; };
+uniform uint fragmentCapacity;
+
 #ifdef ACCUMULATE_XOR
-layout(std430, binding = BEHIND_BINDING) restrict buffer Behind { uint behind[]; };
+layout(std430) restrict buffer Behind { uint behind[]; };
 #endif
 
 void main() {
-    uint total = fragmentTotal(axis);
+    uint total = min(fragmentCounts[axis], fragmentCapacity);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
     for (uint i = gl_GlobalInvocationID.x; i < total; i += stride) {
-        ivec3 local = fragmentLocal(i);
+        uint word = records[RECORD_WORDS * i];
+        ivec3 local = ivec3(word & 1023u, (word >> 10) & 1023u, word >> 20);
 #ifdef ACCUMULATE_XOR
         if (local.z == RESOLUTION) {
             uint line = uint(local.y * RESOLUTION + local.x);
@@ -32,7 +37,11 @@ void main() {
             continue;
         }
 #endif
-        accumulate(local, fragmentValue(i));
+#if RECORD_WORDS == 2
+        accumulate(local, records[2u * i + 1u]);
+#else
+        accumulate(local, LANE_MASK);
+#endif
 #ifdef LIST_TILES
         listTileOf(volumeFromLocal(axis, local));
 #endif

@@ -1,11 +1,11 @@
 // The tiles of C³ voxels that hold a fragment: texelization lists each once, in any order, and
 // synthesis leaves out the others. The flags, one bit a tile, tell which are listed.
-// Beyond [zju2005], which merges every texel. Defines: TILE_BINDING, RESOLUTION, VOXELS_PER_TEXEL.
+// Beyond [zju2005], which merges every texel. Defines: RESOLUTION, VOXELS_PER_TEXEL.
 
 const int kTilesAcross = RESOLUTION / VOXELS_PER_TEXEL;
 const int kTileFlagWords = (kTilesAcross * kTilesAcross * kTilesAcross + 31) / 32;
 
-layout(std430, binding = TILE_BINDING) restrict coherent buffer Tiles {
+layout(std430) restrict coherent buffer Tiles {
     uint tileCount;
     uint tileFlags[kTileFlagWords];
     uint tiles[];

@@ -3,9 +3,9 @@
 #include "voxelization/voxel_value.glsl"
 #include "voxelization/worksheet.glsl"
 
-layout(binding = SHEETS_UNIT) uniform usampler2DArray sheets;
+uniform usampler2DArray sheets;
 #if SECOND
-layout(binding = SECOND_UNIT) uniform usampler2DArray secondSheets;
+uniform usampler2DArray secondSheets;
 #endif
 
 uniform ivec3 cutLow;   // voxels of the box [cutLow, cutHigh) are not drawn

@@ -3,7 +3,7 @@
 
 #include "voxelization/volume_lighting.glsl"
 
-layout(binding = HITS_UNIT) uniform usampler2D hits;
+uniform usampler2D hits;
 
 uniform vec3 eyeVolume;  // voxels
 

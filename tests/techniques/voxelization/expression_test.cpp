@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "runner/core/random.h"
+#include "runner/gl/pass.h"
 #include "tests/support/support.h"
 #include "tests/techniques/voxelization/gl_fixture.h"
 
@@ -162,16 +163,13 @@ std::vector<float> evaluateOnDevice(const gl::ShaderLibrary& shaders,
     folder.write("test/evaluate.comp.glsl",
                  "#version 450 core\nlayout(local_size_x = 1) in;\n"
                  "#include \"test/expression.glsl\"\n#pragma snippet functions\n"
-                 "layout(std430, binding = 0) writeonly buffer Values { float values[]; };\n"
+                 "layout(std430) writeonly buffer Values { float values[]; };\n"
                  "uniform vec3 point;\nvoid main() {\n#pragma snippet cases\n}\n");
-    const gl::Program program(gl::ShaderLibrary(folder.path()), {"test/evaluate.comp.glsl"}, {},
-                              {{"functions", functions}, {"cases", cases}});
+    const gl::Pass pass(gl::ShaderLibrary(folder.path()), {"test/evaluate.comp.glsl"}, {},
+                        {{"functions", functions}, {"cases", cases}});
     const gl::Buffer values(formulas.size() * sizeof(float));
-    program.use();
-    program.set("point", glm::vec3(at[0], at[1], at[2]));
-    values.bindStorage(0);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    pass.set("point", glm::vec3(at[0], at[1], at[2]));
+    pass.dispatch({1, 1, 1}, {{"Values", values}});
     return values.read<float>(formulas.size());
 }
 

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "runner/gl/pass.h"
 #include "techniques/voxelization/axis_split.h"
 #include "techniques/voxelization/voxel_value.h"
 #include "techniques/voxelization/voxelization.h"
@@ -20,8 +21,8 @@ class ShaderFolder {
                               folder_.path() / "voxelization");
         folder_.write("test.comp.glsl", text);
     }
-    gl::Program program(const gl::Defines& defines) const {
-        return gl::Program(gl::ShaderLibrary(folder_.path()), {"test.comp.glsl"}, defines);
+    gl::Pass pass(const gl::Defines& defines) const {
+        return gl::Pass(gl::ShaderLibrary(folder_.path()), {"test.comp.glsl"}, defines);
     }
 
   private:
@@ -118,7 +119,7 @@ TEST_F(WorksheetGlTest, ShaderAddressesEqualTheCpus) {
     const ShaderFolder folder(R"(#version 450 core
 #include "voxelization/worksheet.glsl"
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) buffer Out { ivec4 address[]; };
+layout(std430) buffer Out { ivec4 address[]; };
 void main() {
     int i = int(gl_GlobalInvocationID.x);
     ivec3 local = ivec3(i % RESOLUTION, i / RESOLUTION % RESOLUTION, i / RESOLUTION / RESOLUTION);
@@ -129,10 +130,7 @@ void main() {
         const WorksheetLayout layout(64, bits);
         const int count = 64 * 64 * 64;
         gl::Buffer buffer(static_cast<std::size_t>(count) * sizeof(glm::ivec4));
-        const gl::Program program = folder.program(layout.defines());
-        program.use();
-        buffer.bindStorage(0);
-        glDispatchCompute(count / 64, 1, 1);
+        folder.pass(layout.defines()).dispatch({count / 64, 1, 1}, {{"Out", buffer}});
         const auto addresses = buffer.read<glm::ivec4>(static_cast<std::size_t>(count));
         for (int i = 0; i < count; ++i) {
             const glm::ivec3 local(i % 64, i / 64 % 64, i / 64 / 64);
@@ -146,7 +144,7 @@ TEST_F(WorksheetGlTest, TransposesVoxelsOfWords) {
     const ShaderFolder folder(R"(#version 450 core
 #include "voxelization/transpose.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) buffer Words { uint data[]; };
+layout(std430) buffer Words { uint data[]; };
 void main() {
     uint words[VOXELS_PER_TEXEL];
     for (int i = 0; i < VOXELS_PER_TEXEL; ++i) words[i] = data[i];
@@ -161,10 +159,7 @@ void main() {
         std::vector<std::uint32_t> words;
         for (int i = 0; i < c; ++i) words.push_back(random.next());
         const gl::Buffer buffer = gl::Buffer::of(words);
-        const gl::Program program = folder.program(layout.defines());
-        program.use();
-        buffer.bindStorage(0);
-        glDispatchCompute(1, 1, 1);
+        folder.pass(layout.defines()).dispatch({1, 1, 1}, {{"Words", buffer}});
         const auto result = buffer.read<std::uint32_t>(static_cast<std::size_t>(c));
         for (int i = 0; i < c; ++i) {
             for (int j = 0; j < c; ++j) {
@@ -182,9 +177,9 @@ TEST_F(WorksheetGlTest, ShaderValuesEqualTheCpus) {
     const ShaderFolder folder(R"(#version 450 core
 #include "voxelization/voxel_value.glsl"
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) buffer In { float data[]; };
-layout(std430, binding = 1) buffer Out { uint codes[]; };
-layout(std430, binding = 2) buffer Decoded { float decoded[]; };
+layout(std430) readonly buffer In { float data[]; };
+layout(std430) buffer Out { uint codes[]; };
+layout(std430) buffer Decoded { float decoded[]; };
 void put(uint i, vec3 v) { for (int k = 0; k < 3; ++k) decoded[3u * i + k] = v[k]; }
 void main() {
     uint i = gl_GlobalInvocationID.x;
@@ -206,12 +201,8 @@ void main() {
         const gl::Buffer in = gl::Buffer::of(vectors);
         const gl::Buffer out(vectors.size() * 8);
         const gl::Buffer back(vectors.size() * 24);
-        const gl::Program program = folder.program(WorksheetLayout(32, bits).defines());
-        program.use();
-        in.bindStorage(0);
-        out.bindStorage(1);
-        back.bindStorage(2);
-        glDispatchCompute(static_cast<unsigned>(vectors.size()), 1, 1);
+        folder.pass(WorksheetLayout(32, bits).defines())
+            .dispatch({vectors.size(), 1, 1}, {{"In", in}, {"Out", out}, {"Decoded", back}});
         const auto codes = out.read<std::uint32_t>(2 * vectors.size());
         const auto decoded = back.read<glm::vec3>(2 * vectors.size());
         // Half a level h moves the point of the octahedron by up to (h, h, 2h), which normalizing,
