@@ -20,8 +20,6 @@ constexpr float kFixedOne = 512.0F;
 gl::Defines computeDefines(const DevicePoints& points, int pixelWords) {
     gl::Defines defines = points.defines();
     defines["GROUP_SIZE"] = kGroupSize;
-    defines["CHUNK_BINDING"] = static_cast<int>(kChunkBinding);
-    defines["PIXEL_BINDING"] = static_cast<int>(kPixelBinding);
     defines["PIXEL_WORDS"] = pixelWords;
     defines["FIXED_ONE"] = kFixedOne;
     return defines;
@@ -70,20 +68,18 @@ void ComputeSplatter::upload(std::span<const DrawnPatch> drawn) {
     if (!chunks.empty()) chunks_ = gl::Buffer::of(chunks);
 }
 
-void ComputeSplatter::dispatch(const gl::Program& program, const PatchView& view) const {
-    program.use();
-    setView(program, view);
-    program.setIfActive("depthTolerance", settings_.depthTolerance);
-    pixels_.bindStorage(kPixelBinding);
+void ComputeSplatter::dispatch(const gl::Pass& pass, const PatchView& view) const {
+    setView(pass, view);
+    pass.setIfActive("depthTolerance", settings_.depthTolerance);
     for (const Batch& batch : drawList_.batches) {
-        points_.bind(batch.piece);
-        chunks_.bindStorage(kChunkBinding);
+        const gl::Resources resources =
+            gl::Resources{{"Pixels", pixels_}, {"Chunks", chunks_}}.with(
+                points_.resources(batch.piece));
         for (std::uint32_t first = 0; first < batch.rangeCount; first += kMaxGroups) {
-            program.set("firstChunk", batch.firstRange + first);
-            glDispatchCompute(std::min(batch.rangeCount - first, kMaxGroups), 1, 1);
+            pass.set("firstChunk", batch.firstRange + first);
+            pass.dispatch({std::min(batch.rangeCount - first, kMaxGroups), 1, 1}, resources);
         }
     }
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void ComputeSplatter::render(std::span<const DrawnPatch> drawn, const PatchView& view,
@@ -92,6 +88,7 @@ void ComputeSplatter::render(std::span<const DrawnPatch> drawn, const PatchView&
     upload(drawn);
     {
         const gl::GpuScope scope(profiler, "visibility");
+        pixels_.awaitPasses(GL_BUFFER_UPDATE_BARRIER_BIT);
         glCopyNamedBufferSubData(emptyPixels_.id(), pixels_.id(), 0, 0,
                                  static_cast<GLsizeiptr>(pixels_.sizeBytes()));
         dispatch(nearest_, view);
@@ -102,9 +99,9 @@ void ComputeSplatter::render(std::span<const DrawnPatch> drawn, const PatchView&
     }
     const gl::GpuScope scope(profiler, "normalization");
     outputTarget_.bind();
-    resolve_.use();
     setView(resolve_, view);
     resolve_.set("lightDirectionView", settings_.lightDirectionView);
+    resolve_.use({{"Pixels", pixels_}});
     wholeImage_.draw();
 }
 

@@ -38,13 +38,13 @@ class ComputeSplatter {
     };
     static_assert(sizeof(Chunk) == 48);
     void upload(std::span<const DrawnPatch> drawn);
-    void dispatch(const gl::Program& program, const PatchView& view) const;
+    void dispatch(const gl::Pass& pass, const PatchView& view) const;
 
     ComputeSplatSettings settings_;
     glm::ivec2 sizePx_;
     DevicePoints points_;
     int pixelWords_;  // distance, count, normal, and colour where there is one
-    gl::Program nearest_, sum_, resolve_;
+    gl::Pass nearest_, sum_, resolve_;
     gl::Buffer chunks_, pixels_, emptyPixels_;
     gl::Texture output_;
     gl::Framebuffer outputTarget_;

@@ -67,18 +67,15 @@ void DevicePoints::cutIntoPieces(std::size_t pointBytes) {
 }
 
 gl::Defines DevicePoints::defines() const {
-    gl::Defines defines{{"POINT_BINDING", static_cast<int>(kPointBinding)},
-                        {"RADIUS_BINDING", static_cast<int>(kRadiusBinding)},
-                        {"COLOR_BINDING", static_cast<int>(kColorBinding)}};
+    gl::Defines defines;
     if (storage_ == PointStorage::Uncompressed) defines["UNCOMPRESSED"] = 1;
     if (hasColors_) defines["COLORS"] = 1;
     return defines;
 }
 
-void DevicePoints::bind(std::uint32_t piece) const {
-    pieces_[piece].points.bindStorage(kPointBinding);
-    radii_.bindStorage(kRadiusBinding);
-    if (hasColors_) pieces_[piece].colors.bindStorage(kColorBinding);
+gl::Resources DevicePoints::resources(std::uint32_t piece) const {
+    return {
+        {"Points", pieces_[piece].points}, {"Radii", radii_}, {"Colors", pieces_[piece].colors}};
 }
 
 std::size_t DevicePoints::sizeBytes() const {

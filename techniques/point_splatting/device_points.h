@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/point_splatting/model_file.h"
 #include "techniques/point_splatting/patch_selection.h"
 
@@ -26,7 +25,7 @@ class DevicePoints {
 
     /// Of decode_point.glsl.
     gl::Defines defines() const;
-    void bind(std::uint32_t piece) const;
+    gl::Resources resources(std::uint32_t piece) const;
     bool hasColors() const { return hasColors_; }
     std::size_t sizeBytes() const;
 
@@ -81,14 +80,6 @@ struct DrawList {
     /// Ranges have at most `maxRange` points, batches begin none beyond `maxBatch`.
     void assign(const DevicePoints& points, std::span<const DrawnPatch> drawn,
                 std::uint32_t maxRange, std::uint32_t maxBatch);
-};
-
-enum StorageBinding : unsigned {
-    kPointBinding = 0,
-    kRadiusBinding = 1,
-    kColorBinding = 2,
-    kChunkBinding = 3,
-    kPixelBinding = 4,
 };
 
 /// What a pass needs of the view, set where the program uses it.

@@ -2,30 +2,23 @@
 
 #include <vector>
 
-#include "runner/gl/gl.h"
+#include "runner/gpu_scene/gpu_mesh.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {
-
-namespace {
-
-constexpr GLuint kPositionLocation = 0;
-
-}  // namespace
 
 PlainPoints::PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& model,
                          glm::ivec2 sizePx)
     : patches_(model.patches()),
       levels_(model.levels()),
-      program_(shaders,
-               {"point_splatting/plain_point.vert.glsl", "point_splatting/sprite.frag.glsl"},
-               {{"POSITION_LOCATION", static_cast<int>(kPositionLocation)}}),
+      pass_(shaders, {"point_splatting/plain_point.vert.glsl", "point_splatting/sprite.frag.glsl"},
+            gpu_scene::attributeDefines()),
       positions_(gl::Buffer::of(model.positions())),
       depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       output_(gl::Texture::make2D(GL_RGBA8, sizePx)) {
     const std::vector<const gl::Texture*> output{&output_};
     target_ = gl::Framebuffer(output, &depth_);
-    array_.setAttribute(kPositionLocation, positions_, 3);
+    array_.setAttribute(gpu_scene::kPosition, positions_, 3);
 }
 
 void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& view,
@@ -39,8 +32,8 @@ void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& vie
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_TRUE);
-    program_.use();
-    program_.set("clipFromModel", view.clipFromWorld());
+    pass_.set("clipFromModel", view.clipFromWorld());
+    pass_.use({});
     array_.bind();
     std::vector<GLint> firsts;
     std::vector<GLsizei> counts;

@@ -3,9 +3,8 @@
 
 #include <span>
 
-#include "runner/gl/objects.h"
+#include "runner/gl/pass.h"
 #include "runner/gl/profiler.h"
-#include "runner/gl/program.h"
 #include "techniques/point_splatting/model_file.h"
 #include "techniques/point_splatting/patch_selection.h"
 
@@ -25,7 +24,7 @@ class PlainPoints {
   private:
     std::span<const Patch> patches_;  // the model's, which must live as long
     std::span<const Level> levels_;
-    gl::Program program_;
+    gl::Pass pass_;
     gl::Buffer positions_;
     gl::VertexArray array_;
     gl::Texture depth_, output_;

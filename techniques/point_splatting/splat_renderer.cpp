@@ -19,7 +19,6 @@ constexpr std::uint32_t kMaxRange = 1U << 14;
 constexpr float kVisibleShare = 0.5F;
 
 enum VertexLocation : GLuint { kBoxMinLocation = 0, kBoxSizeLocation = 1 };
-enum TextureUnit { kNormalSumUnit = 0, kColorSumUnit = 1 };
 
 /// DrawElementsIndirectCommand, or DrawArraysIndirectCommand with a word to spare.
 struct Command {
@@ -56,8 +55,6 @@ gl::Defines passDefines(const DevicePoints& points) {
     gl::Defines defines = points.defines();
     defines["BOX_MIN_LOCATION"] = static_cast<int>(kBoxMinLocation);
     defines["BOX_SIZE_LOCATION"] = static_cast<int>(kBoxSizeLocation);
-    defines["NORMAL_SUM_UNIT"] = kNormalSumUnit;
-    defines["COLOR_SUM_UNIT"] = kColorSumUnit;
     return defines;
 }
 
@@ -73,8 +70,8 @@ const char* colorOf(SplatMode mode) {
     }
 }
 
-gl::Program modeProgram(const gl::ShaderLibrary& shaders, const gl::Defines& common, SplatMode mode,
-                        bool isVisibility, bool showsModes) {
+gl::Pass modePass(const gl::ShaderLibrary& shaders, const gl::Defines& common, SplatMode mode,
+                  bool isVisibility, bool showsModes) {
     gl::Defines defines = common;
     if (showsModes) defines["MODE_COLOR"] = std::string(colorOf(mode));
     if (mode == SplatMode::Reconstruction) defines["DISC"] = 1;
@@ -142,9 +139,9 @@ SplatRenderer::SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& 
     if (hasColors_) defines["COLORS"] = 1;
     for (const SplatMode mode :
          {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass}) {
-        ModePrograms& programs = modes_[static_cast<std::size_t>(mode)];
-        programs.visibility = modeProgram(shaders, defines, mode, true, settings.showsModes);
-        programs.splats = modeProgram(shaders, defines, mode, false, settings.showsModes);
+        ModePasses& passes = modes_[static_cast<std::size_t>(mode)];
+        passes.visibility = modePass(shaders, defines, mode, true, settings.showsModes);
+        passes.splats = modePass(shaders, defines, mode, false, settings.showsModes);
     }
     sprites_ = {
         shaders, {"point_splatting/sprite.vert.glsl", "point_splatting/sprite.frag.glsl"}, defines};
@@ -252,19 +249,19 @@ void SplatRenderer::drawBatches(bool isVisibility, const PatchView& view) {
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, GL_ONE);
     }
-    const gl::Program* inUse = nullptr;
+    const gl::Pass* setUpPass = nullptr;
     kit::FlushedDraws flushes;
     for (const Batch& batch : drawList_.batches) {
-        const ModePrograms& programs = modes_[static_cast<std::size_t>(batch.mode)];
-        const gl::Program& program = isVisibility ? programs.visibility : programs.splats;
-        if (inUse != &program) {
-            setUp(program, view);
+        const ModePasses& passes = modes_[static_cast<std::size_t>(batch.mode)];
+        const gl::Pass& pass = isVisibility ? passes.visibility : passes.splats;
+        if (setUpPass != &pass) {
+            setUp(pass, view);
             if (isVisibility) {
-                program.setIfActive("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
+                pass.setIfActive("lowPassRadiusPx", kVisibleShare * settings_.lowPassRadiusPx);
             }
-            inUse = &program;
+            setUpPass = &pass;
         }
-        issue(batch);
+        issue(pass, batch);
         flushes.drawn(batch.pointCount);
     }
     glDisable(GL_BLEND);
@@ -279,7 +276,7 @@ void SplatRenderer::drawSprites(const PatchView& view) {
     setUp(sprites_, view);
     kit::FlushedDraws flushes;
     for (const Batch& batch : drawList_.batches) {
-        issue(batch);
+        issue(sprites_, batch);
         flushes.drawn(batch.pointCount);
     }
 }
@@ -287,13 +284,12 @@ void SplatRenderer::drawSprites(const PatchView& view) {
 void SplatRenderer::normalize(const PatchView& view) {
     outputTarget_.bind();
     setUp(normalization_, view);
-    normalSums_.bind(kNormalSumUnit);
-    if (hasColors_) colorSums_.bind(kColorSumUnit);
+    normalization_.use({{"normalSums", normalSums_}, {"colorSums", colorSums_}});
     wholeImage_.draw();
 }
 
-void SplatRenderer::issue(const Batch& batch) const {
-    points_.bind(batch.piece);
+void SplatRenderer::issue(const gl::Pass& pass, const Batch& batch) const {
+    pass.use(points_.resources(batch.piece));
     drawnArray_.bind();
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
     const auto* offset = reinterpret_cast<const void*>(batch.firstRange * sizeof(Command));
@@ -306,14 +302,13 @@ void SplatRenderer::issue(const Batch& batch) const {
     }
 }
 
-void SplatRenderer::setUp(const gl::Program& program, const PatchView& view) const {
-    program.use();
-    setView(program, view);
-    program.setIfActive("lowPassRadiusPx", settings_.lowPassRadiusPx);
-    program.setIfActive("splatRadiusPx", settings_.lowPassRadiusPx);
-    program.setIfActive("cutoff", settings_.cutoff);
-    program.setIfActive("visibilityOffset", settings_.visibilityOffset);
-    program.setIfActive("lightDirectionView", settings_.lightDirectionView);
+void SplatRenderer::setUp(const gl::Pass& pass, const PatchView& view) const {
+    setView(pass, view);
+    pass.setIfActive("lowPassRadiusPx", settings_.lowPassRadiusPx);
+    pass.setIfActive("splatRadiusPx", settings_.lowPassRadiusPx);
+    pass.setIfActive("cutoff", settings_.cutoff);
+    pass.setIfActive("visibilityOffset", settings_.visibilityOffset);
+    pass.setIfActive("lightDirectionView", settings_.lightDirectionView);
 }
 
 }  // namespace gfxrepro::point_splatting

@@ -20,7 +20,7 @@ struct SplatSettings {
     bool showsModes = false;  // colours by SplatMode instead of the model's
 };
 
-/// A model on the device. Each mode has programs of its own, so that it does its own work only.
+/// A model on the device. Each mode has passes of its own, so that it does its own work only.
 /// Splats turned away from the eye are not drawn.
 class SplatRenderer {
   public:
@@ -39,8 +39,8 @@ class SplatRenderer {
 
   private:
     /// Of one mode; ellipses are quads, the others GL points.
-    struct ModePrograms {
-        gl::Program visibility, splats;
+    struct ModePasses {
+        gl::Pass visibility, splats;
     };
     void upload(std::span<const DrawnPatch> drawn, const PatchView& view);
     /// Whether the discs of a patch are GL points of a size that the device draws.
@@ -48,15 +48,15 @@ class SplatRenderer {
     void drawBatches(bool isVisibility, const PatchView& view);
     void drawSprites(const PatchView& view);
     void normalize(const PatchView& view);
-    void issue(const Batch& batch) const;
-    void setUp(const gl::Program& program, const PatchView& view) const;
+    void issue(const gl::Pass& pass, const Batch& batch) const;
+    void setUp(const gl::Pass& pass, const PatchView& view) const;
 
     SplatSettings settings_;
     glm::ivec2 sizePx_;
     DevicePoints points_;
     bool hasColors_;
-    std::array<ModePrograms, 3> modes_;  // by SplatMode
-    gl::Program sprites_, normalization_;
+    std::array<ModePasses, 3> modes_;  // by SplatMode
+    gl::Pass sprites_, normalization_;
     gl::Texture normalSums_, colorSums_, depth_, output_;
     gl::Framebuffer visibilityTarget_, sumTarget_, outputTarget_, spriteTarget_;
 

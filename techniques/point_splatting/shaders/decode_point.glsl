@@ -8,7 +8,7 @@ struct SplatPoint {
 };
 
 #ifdef UNCOMPRESSED
-layout(std430, binding = POINT_BINDING) restrict readonly buffer Points { float pointValues[]; };
+layout(std430) restrict readonly buffer Points { float pointValues[]; };
 
 vec3 vectorAt(uint first) {
     return vec3(pointValues[first], pointValues[first + 1u], pointValues[first + 2u]);
@@ -22,8 +22,8 @@ SplatPoint pointAt(uint index, vec3 boxMin, vec3 boxSize) {
                       vectorAt(first + 9u), pointValues[first + 14u]);
 }
 #else
-layout(std430, binding = POINT_BINDING) restrict readonly buffer Points { uvec2 points[]; };
-layout(std430, binding = RADIUS_BINDING) restrict readonly buffer Radii { float radiusTable[]; };
+layout(std430) restrict readonly buffer Points { uvec2 points[]; };
+layout(std430) restrict readonly buffer Radii { float radiusTable[]; };
 
 // Sec. 3.3.2.1: the place in the grid of 256³, and the cell of 8 × 8 × 4 in it.
 vec3 decodedPosition(uint p, vec3 boxMin, vec3 boxSize) {
@@ -64,7 +64,7 @@ SplatPoint pointAt(uint index, vec3 boxMin, vec3 boxSize) {
 #ifdef MODE_COLOR
 vec3 colorAt(uint index) { return MODE_COLOR; }
 #elif defined(COLORS)
-layout(std430, binding = COLOR_BINDING) restrict readonly buffer Colors { uint colors[]; };
+layout(std430) restrict readonly buffer Colors { uint colors[]; };
 
 /// Linear.
 vec3 colorAt(uint index) {

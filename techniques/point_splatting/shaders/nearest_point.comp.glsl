@@ -3,7 +3,7 @@
 // Distances are positive, so that their bits have their order.
 #include "point_splatting/point_projection.glsl"
 
-layout(std430, binding = PIXEL_BINDING) restrict buffer Pixels { uint pixels[]; };
+layout(std430) restrict buffer Pixels { uint pixels[]; };
 
 void main() {
     Chunk chunk = chunks[firstChunk + gl_WorkGroupID.x];

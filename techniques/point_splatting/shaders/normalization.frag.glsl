@@ -3,9 +3,9 @@
 // not the light. Writes colour times coverage, and coverage.
 #include "point_splatting/shading.glsl"
 
-layout(binding = NORMAL_SUM_UNIT) uniform sampler2D normalSums;
+uniform sampler2D normalSums;
 #ifdef COLORS
-layout(binding = COLOR_SUM_UNIT) uniform sampler2D colorSums;
+uniform sampler2D colorSums;
 #endif
 layout(location = 0) out vec4 color;
 

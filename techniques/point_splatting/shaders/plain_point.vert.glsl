@@ -1,7 +1,7 @@
 #version 450 core
 // What sprites are measured against: a GL point of one pixel at a position in floats, neither
 // decoded, culled nor shaded.
-layout(location = POSITION_LOCATION) in vec3 position;
+layout(location = kPosition) in vec3 position;
 
 uniform mat4 clipFromModel;
 flat out vec3 color;

@@ -10,7 +10,7 @@ struct Chunk {
     uint first, count, padding0, padding1;
     vec4 boxMin, boxSize;
 };
-layout(std430, binding = CHUNK_BINDING) restrict readonly buffer Chunks { Chunk chunks[]; };
+layout(std430) restrict readonly buffer Chunks { Chunk chunks[]; };
 uniform uint firstChunk;
 uniform vec2 sizePx;
 

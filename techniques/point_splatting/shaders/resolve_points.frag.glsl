@@ -2,7 +2,7 @@
 // The compute splatter's last pass: averages shaded, for every pixel that a point fell into.
 #include "point_splatting/shading.glsl"
 
-layout(std430, binding = PIXEL_BINDING) restrict readonly buffer Pixels { int pixels[]; };
+layout(std430) restrict readonly buffer Pixels { int pixels[]; };
 layout(location = 0) out vec4 color;
 
 uniform vec2 sizePx;

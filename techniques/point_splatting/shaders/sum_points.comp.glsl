@@ -3,7 +3,7 @@
 // point since there are no atomics of floats. 64-bit atomics would keep depth and point in one pass.
 #include "point_splatting/point_projection.glsl"
 
-layout(std430, binding = PIXEL_BINDING) restrict buffer Pixels { int pixels[]; };
+layout(std430) restrict buffer Pixels { int pixels[]; };
 
 uniform float depthTolerance;  // of the least distance
 

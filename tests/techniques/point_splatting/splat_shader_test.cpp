@@ -8,8 +8,6 @@
 namespace gfxrepro::point_splatting {
 namespace {
 
-constexpr unsigned kOutBinding = 5, kInBinding = 6;
-
 class SplatShaderTest : public SplatTest {
   protected:
     SplatShaderTest() {
@@ -40,11 +38,10 @@ TEST_F(SplatShaderTest, DecodesAsTheHostDoes) {
         points.push_back(compressed(glm::mix(box.min, box.max, share), randomDirection(random),
                                     random.uniform(0.01F, 2.56F), box, table));
     }
-    const gl::Program decode =
-        program({{"decode.comp.glsl", R"(#version 450 core
+    const gl::Pass decode = pass({{"decode.comp.glsl", R"(#version 450 core
 #include "point_splatting/decode_point.glsl"
 layout(local_size_x = 64) in;
-layout(std430, binding = OUT_BINDING) writeonly buffer Out { vec4 result[]; };
+layout(std430) writeonly buffer Out { vec4 result[]; };
 uniform vec3 boxMin;
 uniform vec3 boxSize;
 void main() {
@@ -55,18 +52,12 @@ void main() {
     result[4u * i + 2u] = vec4(p.tangent, 0.0);
     result[4u * i + 3u] = vec4(p.bitangent, 0.0);
 }
-)"}},
-                {{"POINT_BINDING", 0}, {"RADIUS_BINDING", 1}, {"OUT_BINDING", 5}});
+)"}});
     const gl::Buffer pointBuffer = gl::Buffer::of(points), radii = gl::Buffer::of(table);
     const gl::Buffer out(kCount * 4 * sizeof(glm::vec4));
-    pointBuffer.bindStorage(0);
-    radii.bindStorage(1);
-    out.bindStorage(kOutBinding);
-    decode.use();
     decode.set("boxMin", box.min);
     decode.set("boxSize", box.size());
-    glDispatchCompute(kCount / 64, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    decode.dispatch({kCount / 64, 1, 1}, {{"Points", pointBuffer}, {"Radii", radii}, {"Out", out}});
     const auto found = out.read<glm::vec4>(kCount * 4);
     for (std::size_t i = 0; i < kCount; ++i) {
         const DecodedPoint expected = decoded(points[i], box, table);
@@ -101,12 +92,12 @@ TEST_F(SplatShaderTest, ScreenCovarianceIsThatOfTheHost) {
              glm::vec4(glm::cross(normal, tangent), 0.0F),
              glm::vec4(normal, 0.0F)});
     }
-    const gl::Program shapes = program({{"shapes.comp.glsl", R"(#version 450 core
+    const gl::Pass shapes = pass({{"shapes.comp.glsl", R"(#version 450 core
 #include "point_splatting/splat_shape.glsl"
 layout(local_size_x = 64) in;
 struct Splat { vec4 centreRadius, tangent, bitangent, normal; };
-layout(std430, binding = IN_BINDING) readonly buffer In { Splat splats[]; };
-layout(std430, binding = OUT_BINDING) writeonly buffer Out { vec4 result[]; };
+layout(std430) readonly buffer In { Splat splats[]; };
+layout(std430) writeonly buffer Out { vec4 result[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     Splat s = splats[i];
@@ -117,18 +108,13 @@ void main() {
     result[2u * i] = vec4(h[0][0], h[0][1], h[1][1], full.weight);
     result[2u * i + 1u] = vec4(lowPassWeight(splat));
 }
-)"}},
-                                       {{"IN_BINDING", 6}, {"OUT_BINDING", 5}});
+)"}});
     const gl::Buffer in = gl::Buffer::of(splats);
     const gl::Buffer out(kCount * 2 * sizeof(glm::vec4));
-    in.bindStorage(kInBinding);
-    out.bindStorage(kOutBinding);
-    shapes.use();
     shapes.set("focalPx", kFocalPx);
     shapes.set("lowPassRadiusPx", kLowPassPx);
     shapes.set("slopeLimit", glm::vec2(10.0F));
-    glDispatchCompute(kCount / 64, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    shapes.dispatch({kCount / 64, 1, 1}, {{"In", in}, {"Out", out}});
     const auto found = out.read<glm::vec4>(kCount * 2);
     for (std::size_t i = 0; i < kCount; ++i) {
         const EyeSplat splat{glm::dvec3(splats[i].centreRadius), glm::dvec3(splats[i].tangent),
