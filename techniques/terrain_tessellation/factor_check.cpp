@@ -14,23 +14,22 @@ FactorReplay::FactorReplay(const gl::ShaderLibrary& shaders, const DeviceTerrain
                            const RenderSettings& settings)
     : terrain_(&terrain),
       settings_(settings),
-      program_(shaders, {"terrain_tessellation/factor_replay.comp.glsl"},
-               terrainDefines(terrain, settings)) {}
+      pass_(shaders, {"terrain_tessellation/factor_replay.comp.glsl"},
+            terrainDefines(terrain, settings)) {}
 
 std::vector<PatchFactors> FactorReplay::run(std::span<const Tile> tiles, const kit::View& view) {
     const int side = settings_.factors.tile.patchesPerTile;
     const auto count = tiles.size() * static_cast<std::size_t>(side * side);
     if (count == 0) return {};
-    program_.use();
     const std::vector<int> noLayers(tiles.size(), 0);  // heights are not read
-    const gl::Buffer records = bindTiles(tiles, noLayers);
-    bindTerrain(program_, *terrain_, view);
-    bindFactors(program_, *terrain_, settings_, view);
-    program_.set("patchCount", static_cast<int>(count));
+    const gl::Buffer records = tileRecords(tiles, noLayers);
     const gl::Buffer factors(count * sizeof(PatchFactors));
-    factors.bindStorage(kCounterBinding);
-    glDispatchCompute(kit::groupsFor(count, 64), 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    setTerrain(pass_, *terrain_, view);
+    setFactors(pass_, settings_, view);
+    pass_.set("patchCount", static_cast<int>(count));
+    pass_.dispatch(
+        {kit::groupsFor(count, 64), 1, 1},
+        gl::Resources{{"Tiles", records}, {"Factors", factors}}.with(terrain_->resources()));
     return factors.read<PatchFactors>(count);
 }
 

@@ -20,7 +20,7 @@ class FactorReplay {
   private:
     const DeviceTerrain* terrain_;
     RenderSettings settings_;
-    gl::Program program_;
+    gl::Pass pass_;
 };
 
 struct EdgeAgreement {

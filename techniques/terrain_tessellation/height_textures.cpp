@@ -57,6 +57,10 @@ DeviceTerrain::DeviceTerrain(const scene::HeightMap& map, const TerrainMetadata&
       blocks_(gl::Buffer::of(metadata.blocks())),
       firstBlocks_(gl::Buffer::of(firstBlocksOf(metadata))) {}
 
+gl::Resources DeviceTerrain::resources() const {
+    return {{"heightPages", pages_.texture()}, {"Blocks", blocks_}, {"FirstBlocks", firstBlocks_}};
+}
+
 std::size_t DeviceTerrain::sizeBytes() const {
     return pages_.texture().sizeBytes() + blocks_.sizeBytes() + firstBlocks_.sizeBytes();
 }

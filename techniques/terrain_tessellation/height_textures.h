@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "runner/gl/objects.h"
+#include "runner/gl/pass.h"
 #include "techniques/terrain_tessellation/height_pages.h"
 #include "techniques/terrain_tessellation/terrain_metadata.h"
 
@@ -21,8 +21,8 @@ class DeviceTerrain {
     const TerrainMetadata& metadata() const { return *metadata_; }
     HeightPages& pages() { return pages_; }
     const HeightPages& pages() const { return pages_; }
-    const gl::Buffer& blocks() const { return blocks_; }
-    const gl::Buffer& firstBlocks() const { return firstBlocks_; }  // by level
+    /// Of terrain.glsl and factors.glsl.
+    gl::Resources resources() const;
     /// A texel t is the height x + y·t.
     glm::vec2 heightOfTexel() const { return heightOfTexel_; }
     float lowestM() const { return lowestM_; }
@@ -34,7 +34,8 @@ class DeviceTerrain {
     float lowestM_, highestM_;
     glm::vec2 heightOfTexel_;
     HeightPages pages_;
-    gl::Buffer blocks_, firstBlocks_;
+    gl::Buffer blocks_;
+    gl::Buffer firstBlocks_;  // by level
 };
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -12,9 +12,6 @@ namespace gfxrepro::terrain_tessellation {
 
 namespace {
 
-constexpr unsigned kHeightUnit = 0, kColourUnit = 1;
-constexpr unsigned kTileBinding = 0, kBlockBinding = 1, kFirstBlockBinding = 2;
-
 const char* spacingName(Spacing spacing) {
     if (spacing == Spacing::FractionalEven) return "fractional_even_spacing";
     return spacing == Spacing::FractionalOdd ? "fractional_odd_spacing" : "equal_spacing";
@@ -32,13 +29,7 @@ void DrawCounts::add(const DrawCounts& other) {
 
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings) {
     const FactorSettings& factors = settings.factors;
-    return {{"TILE_BINDING", int(kTileBinding)},
-            {"BLOCK_BINDING", int(kBlockBinding)},
-            {"FIRST_BLOCK_BINDING", int(kFirstBlockBinding)},
-            {"COUNTER_BINDING", int(kCounterBinding)},
-            {"HEIGHT_UNIT", int(kHeightUnit)},
-            {"COLOUR_UNIT", int(kColourUnit)},
-            {"PAGE_BORDER", HeightPages::kBorder},
+    return {{"PAGE_BORDER", HeightPages::kBorder},
             {"PATCHES_PER_TILE_SIDE", factors.tile.patchesPerTile},
             {"BLOCKS_PER_PATCH", factors.tile.blocksPerPatch},
             {"BLOCK_FLOATS", kBlockFloats},
@@ -53,42 +44,36 @@ gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& s
                                                                         : settings.shading)}};
 }
 
-gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers) {
+gl::Buffer tileRecords(std::span<const Tile> tiles, std::span<const int> layers) {
     GFXREPRO_ASSERT_EQ(tiles.size(), layers.size());
     std::vector<glm::ivec4> values;
     values.reserve(tiles.size());
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         values.emplace_back(tiles[i].originSample, tiles[i].level, layers[i]);
     }
-    gl::Buffer buffer = gl::Buffer::of(values);
-    buffer.bindStorage(kTileBinding);
-    return buffer;
+    return gl::Buffer::of(values);
 }
 
-void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain, const kit::View& view) {
-    terrain.pages().texture().bind(kHeightUnit);
-    program.setIfActive("heightOfTexel", terrain.heightOfTexel());
-    program.setIfActive("spacing", terrain.metadata().spacingM());
-    program.setIfActive("clipFromWorld", view.clipFromWorld());
+void setTerrain(const gl::Pass& pass, const DeviceTerrain& terrain, const kit::View& view) {
+    pass.setIfActive("heightOfTexel", terrain.heightOfTexel());
+    pass.setIfActive("spacing", terrain.metadata().spacingM());
+    pass.setIfActive("clipFromWorld", view.clipFromWorld());
 }
 
-void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
-                 const RenderSettings& settings, const kit::View& view) {
-    terrain.blocks().bindStorage(kBlockBinding);
-    terrain.firstBlocks().bindStorage(kFirstBlockBinding);
+void setFactors(const gl::Pass& pass, const RenderSettings& settings, const kit::View& view) {
     const glm::vec2 size(view.sizePx);
-    program.setIfActive("imageSize", size);
-    program.setIfActive("eye", view.eyeWorld);
-    program.setIfActive("focalPx",
-                        0.5F * size * glm::vec2(view.clipFromView[0].x, view.clipFromView[1].y));
-    program.setIfActive("segmentPx", settings.factors.segmentPx);
-    program.setIfActive("factorLimits",
-                        glm::vec2(settings.factors.smallest, settings.factors.greatest));
-    program.setIfActive("nearDistance", view.nearM);
-    program.setIfActive("isCulling", settings.cullsPatches ? 1 : 0);
+    pass.setIfActive("imageSize", size);
+    pass.setIfActive("eye", view.eyeWorld);
+    pass.setIfActive("focalPx",
+                     0.5F * size * glm::vec2(view.clipFromView[0].x, view.clipFromView[1].y));
+    pass.setIfActive("segmentPx", settings.factors.segmentPx);
+    pass.setIfActive("factorLimits",
+                     glm::vec2(settings.factors.smallest, settings.factors.greatest));
+    pass.setIfActive("nearDistance", view.nearM);
+    pass.setIfActive("isCulling", settings.cullsPatches ? 1 : 0);
     const std::array<glm::vec4, 6> planes = frustumPlanes(view);
     for (std::size_t i = 0; i < planes.size(); ++i) {
-        program.setIfActive(fmt::format("frustumPlanes[{}]", i).c_str(), planes[i]);
+        pass.setIfActive(fmt::format("frustumPlanes[{}]", i).c_str(), planes[i]);
     }
 }
 
@@ -101,21 +86,20 @@ TerrainRenderer::TerrainRenderer(const gl::ShaderLibrary& shaders, DeviceTerrain
     gl::Defines defines = terrainDefines(terrain, settings);
     const std::string folder = "terrain_tessellation/";
     const std::string fragment = folder + "surface.frag.glsl";
-    tessellated_ = gl::Program(shaders,
-                               {folder + "patch.vert.glsl", folder + "patch.tesc.glsl",
-                                folder + "patch.tese.glsl", fragment},
-                               defines);
+    tessellated_ = gl::Pass(shaders,
+                            {folder + "patch.vert.glsl", folder + "patch.tesc.glsl",
+                             folder + "patch.tese.glsl", fragment},
+                            defines);
     defines["MORPH"] = 0;
-    grid_ = gl::Program(shaders, {folder + "grid.vert.glsl", fragment}, defines);
+    grid_ = gl::Pass(shaders, {folder + "grid.vert.glsl", fragment}, defines);
     defines["MORPH"] = 1;
-    morphed_ = gl::Program(shaders, {folder + "grid.vert.glsl", fragment}, defines);
+    morphed_ = gl::Pass(shaders, {folder + "grid.vert.glsl", fragment}, defines);
     counters_ = gl::Buffer(sizeof(std::uint32_t));
     const std::array<const gl::Texture*, 1> colours{&nothing_};
     nowhere_ = gl::Framebuffer(colours, nullptr);
 }
 
-void TerrainRenderer::bindShading(const gl::Program& program) const {
-    program.use();
+void TerrainRenderer::setShading(const gl::Pass& pass) const {
     noAttributes_.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
@@ -125,25 +109,37 @@ void TerrainRenderer::bindShading(const gl::Program& program) const {
     settings_.showsUnderside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
-    if (hasColourMap(settings_.shading)) settings_.colourMap->bind(kColourUnit);
-    program.setIfActive("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
-    program.setIfActive("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
+    pass.setIfActive("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
+    pass.setIfActive("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
 }
 
 template <class Draw>
-DrawCounts TerrainRenderer::drawInTurns(std::span<const Tile> tiles, const Draw& draw) {
-    DrawCounts counts;
+void TerrainRenderer::inTurns(const gl::Pass& pass, std::span<const Tile> tiles, const Draw& draw) {
     const auto turn = static_cast<std::size_t>(terrain_->pages().capacity());
     for (std::size_t first = 0; first < tiles.size(); first += turn) {
         const auto some = tiles.subspan(first, std::min(turn, tiles.size() - first));
-        const std::vector<int> layers = terrain_->pages().load(some);
+        const gl::Buffer records = tileRecords(some, terrain_->pages().load(some));
+        gl::Resources resources = gl::Resources{{"Tiles", records}}
+                                      .with(terrain_->resources())
+                                      .with({gl::Resource("Counters", counters_).unordered()});
+        if (settings_.colourMap) resources = resources.with({{"colourMap", *settings_.colourMap}});
+        pass.use(resources);
+        draw(some);
+    }
+}
+
+template <class Draw>
+DrawCounts TerrainRenderer::drawInTurns(const gl::Pass& pass, std::span<const Tile> tiles,
+                                        const Draw& draw) {
+    DrawCounts counts;
+    inTurns(pass, tiles, [&](std::span<const Tile> some) {
         primitives_.begin();
-        DrawCounts drawn = draw(some, layers);
+        DrawCounts drawn = draw(some);
         primitives_.end();
         drawn.triangles = primitives_.result();
         drawn.tiles = static_cast<int>(some.size());
         counts.add(drawn);
-    }
+    });
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     glDisable(GL_CULL_FACE);
     return counts;
@@ -174,8 +170,8 @@ int TerrainRenderer::drawBatches(const PatchBatches& patches) const {
     return static_cast<int>(patches.batches.size());
 }
 
-DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                                        const kit::View& view, Parts parts) const {
+DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, const kit::View& view,
+                                        Parts parts) const {
     const int m = settings_.factors.tile.patchesPerTile;
     const bool hasSkirts = parts == Parts::Skirts || (parts == Parts::AsSet && settings_.hasSkirts);
     const int patchesPerTile = m * m + (hasSkirts ? 4 * m : 0);
@@ -183,7 +179,6 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<c
     const float relief = terrain_->highestM() - terrain_->lowestM();
     const float foot =
         terrain_->lowestM() - std::max(0.01F * relief, terrain_->metadata().spacingM());
-    const gl::Buffer records = bindTiles(tiles, layers);
     tessellated_.set("patchesPerTile", patchesPerTile);
     tessellated_.set("skirtFoot", foot);
     DrawCounts counts;
@@ -205,24 +200,20 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, std::span<c
     return counts;
 }
 
-void TerrainRenderer::bindTessellated(const kit::View& view) {
-    bindShading(tessellated_);
-    bindTerrain(tessellated_, *terrain_, view);
-    bindFactors(tessellated_, *terrain_, settings_, view);
+void TerrainRenderer::setTessellated(const kit::View& view) {
+    setShading(tessellated_);
+    setTerrain(tessellated_, *terrain_, view);
+    setFactors(tessellated_, settings_, view);
     counters_.clear();
-    counters_.bindStorage(kCounterBinding);
     glPatchParameteri(GL_PATCH_VERTICES, 4);
 }
 
 DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles, const kit::View& view,
                                             const gl::Framebuffer& target) {
     target.bind();
-    bindTessellated(view);
-    DrawCounts counts =
-        drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
-            return drawPatches(some, layers, view);
-        });
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    setTessellated(view);
+    DrawCounts counts = drawInTurns(
+        tessellated_, tiles, [&](std::span<const Tile> some) { return drawPatches(some, view); });
     counts.culledPatches = static_cast<int>(counters_.read<std::uint32_t>(1).front());
     return counts;
 }
@@ -236,55 +227,52 @@ void TerrainRenderer::bindNothing() const {
 
 std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
                                                    const kit::View& view) {
-    bindTessellated(view);
+    setTessellated(view);
     bindNothing();
-    const DrawCounts counts =
-        drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
-            return drawPatches(some, layers, view, Parts::Skirts);
-        });
+    const DrawCounts counts = drawInTurns(tessellated_, tiles, [&](std::span<const Tile> some) {
+        return drawPatches(some, view, Parts::Skirts);
+    });
     return counts.triangles;
 }
 
 std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles,
                                                      const kit::View& view) {
     GFXREPRO_ASSERT(settings_.capturesVertices);
-    bindTessellated(view);
+    setTessellated(view);
     bindNothing();
     std::vector<CapturedVertex> vertices;
     const int side = settings_.factors.tile.patchesPerTile;
-    const auto turn = static_cast<std::size_t>(terrain_->pages().capacity());
-    for (std::size_t first = 0; first < tiles.size(); first += turn) {
-        const auto some = tiles.subspan(first, std::min(turn, tiles.size() - first));
-        const std::vector<int> layers = terrain_->pages().load(some);
+    inTurns(tessellated_, tiles, [&](std::span<const Tile> some) {
         primitives_.begin();
-        drawPatches(some, layers, view, Parts::Surface);
+        drawPatches(some, view, Parts::Surface);
         primitives_.end();
         const std::size_t count = 3 * primitives_.result();
-        if (count == 0) continue;
+        if (count == 0) return;
         const gl::Buffer captured(count * sizeof(CapturedVertex));
         glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, captured.id());
         glBeginTransformFeedback(GL_TRIANGLES);
-        drawPatches(some, layers, view, Parts::Surface);
+        drawPatches(some, view, Parts::Surface);
         glEndTransformFeedback();
         glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+        const auto first = static_cast<int>(some.data() - tiles.data());
         for (CapturedVertex vertex : captured.read<CapturedVertex>(count)) {
-            vertex.patch += side * side * static_cast<int>(first);
+            vertex.patch += side * side * first;
             vertices.push_back(vertex);
         }
-    }
+    });
     glDisable(GL_CULL_FACE);
     return vertices;
 }
 
-int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
-    program.set("tileIndex", tile);
+int TerrainRenderer::drawGridTile(const gl::Pass& pass, int tile) const {
+    pass.set("tileIndex", tile);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
     const auto most = static_cast<int>(kit::FlushedDraws::kPrimitivesPerFlush);
     const int step = settings_.batches ? std::max(1, most / (2 * side)) : side;
     int draws = 0;
     for (int first = 0; first < side; first += step, ++draws) {
-        program.set("firstRow", first);
+        pass.set("firstRow", first);
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (side + 1), std::min(step, side - first));
         if (settings_.batches) glFlush();
     }
@@ -294,10 +282,9 @@ int TerrainRenderer::drawGridTile(const gl::Program& program, int tile) const {
 DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& view,
                                      const gl::Framebuffer& target) {
     target.bind();
-    bindShading(grid_);
-    bindTerrain(grid_, *terrain_, view);
-    return drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
-        const gl::Buffer records = bindTiles(some, layers);
+    setShading(grid_);
+    setTerrain(grid_, *terrain_, view);
+    return drawInTurns(grid_, tiles, [&](std::span<const Tile> some) {
         DrawCounts counts;
         for (int i = 0; i < static_cast<int>(some.size()); ++i) {
             counts.drawCalls += drawGridTile(grid_, i);
@@ -309,11 +296,10 @@ DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::Vie
 DrawCounts TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
                                         const kit::View& view, const gl::Framebuffer& target) {
     target.bind();
-    bindShading(morphed_);
-    bindTerrain(morphed_, *terrain_, view);
+    setShading(morphed_);
+    setTerrain(morphed_, *terrain_, view);
     morphed_.set("eye", view.eyeWorld);
-    return drawInTurns(tiles, [&](std::span<const Tile> some, std::span<const int> layers) {
-        const gl::Buffer records = bindTiles(some, layers);
+    return drawInTurns(morphed_, tiles, [&](std::span<const Tile> some) {
         DrawCounts counts;
         for (std::size_t i = 0; i < some.size(); ++i) {
             const float range = ranges.rangesM.at(static_cast<std::size_t>(some[i].level));

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/terrain_tessellation/edge_factors.h"
 #include "techniques/terrain_tessellation/height_textures.h"
 #include "techniques/terrain_tessellation/patch_batches.h"
@@ -69,13 +69,12 @@ struct MorphRanges {
     float startShare = 0.7F;
 };
 
-/// Sets up what terrain.glsl and factors.glsl read; the buffers must live until the draw is done.
-gl::Buffer bindTiles(std::span<const Tile> tiles, std::span<const int> layers);
-void bindTerrain(const gl::Program& program, const DeviceTerrain& terrain, const kit::View& view);
-void bindFactors(const gl::Program& program, const DeviceTerrain& terrain,
-                 const RenderSettings& settings, const kit::View& view);
+/// What terrain.glsl and factors.glsl read beside DeviceTerrain::resources(): the block Tiles,
+/// uniforms, defines.
+gl::Buffer tileRecords(std::span<const Tile> tiles, std::span<const int> layers);
+void setTerrain(const gl::Pass& pass, const DeviceTerrain& terrain, const kit::View& view);
+void setFactors(const gl::Pass& pass, const RenderSettings& settings, const kit::View& view);
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings);
-constexpr unsigned kCounterBinding = 3;
 
 /// `terrain` must outlive it. Draws go into `target`, which the caller has cleared. Heights that
 /// are not on the device are loaded; more tiles than there are pages are drawn in turns.
@@ -103,21 +102,24 @@ class TerrainRenderer {
     void setSegmentPx(float deltaS) { settings_.factors.segmentPx = deltaS; }
 
   private:
-    /// draw(tiles, layers) of as many tiles as there are pages at a time.
+    /// draw(tiles) of as many tiles as there are pages at a time, which `pass` is given.
     template <class Draw>
-    DrawCounts drawInTurns(std::span<const Tile> tiles, const Draw& draw);
+    void inTurns(const gl::Pass& pass, std::span<const Tile> tiles, const Draw& draw);
+    /// The same; what draw() counts, and primitives and tiles.
+    template <class Draw>
+    DrawCounts drawInTurns(const gl::Pass& pass, std::span<const Tile> tiles, const Draw& draw);
     enum class Parts { AsSet, Surface, Skirts };
-    DrawCounts drawPatches(std::span<const Tile> tiles, std::span<const int> layers,
-                           const kit::View& view, Parts parts = Parts::AsSet) const;
-    void bindTessellated(const kit::View& view);
+    DrawCounts drawPatches(std::span<const Tile> tiles, const kit::View& view,
+                           Parts parts = Parts::AsSet) const;
+    void setTessellated(const kit::View& view);
     void bindNothing() const;
     int drawBatches(const PatchBatches& patches) const;
-    int drawGridTile(const gl::Program& program, int tile) const;
-    void bindShading(const gl::Program& program) const;
+    int drawGridTile(const gl::Pass& pass, int tile) const;
+    void setShading(const gl::Pass& pass) const;
 
     DeviceTerrain* terrain_;
     RenderSettings settings_;
-    gl::Program tessellated_, grid_, morphed_;
+    gl::Pass tessellated_, grid_, morphed_;
     gl::Buffer counters_;
     gl::Texture nothing_ = gl::Texture::make2D(GL_R8, {1, 1});
     gl::Framebuffer nowhere_;

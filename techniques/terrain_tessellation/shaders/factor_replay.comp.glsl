@@ -5,7 +5,7 @@
 #include "terrain_tessellation/factors.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = COUNTER_BINDING) writeonly buffer Factors {
+layout(std430) writeonly buffer Factors {
     vec4 factors[];
 };
 uniform int patchCount;

@@ -5,7 +5,7 @@
 #include "terrain_tessellation/factors.glsl"
 
 layout(vertices = 4) out;
-layout(std430, binding = COUNTER_BINDING) buffer Counters {
+layout(std430) buffer Counters {
     uint culledPatches;
 };
 uniform int patchesPerTile;

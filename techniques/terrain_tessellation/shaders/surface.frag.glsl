@@ -7,7 +7,7 @@ in float surfaceHeight;
 #if SHADING == 2
 in vec2 surfaceSample;
 uniform vec2 lastSample;  // the south-eastern one
-layout(binding = COLOUR_UNIT) uniform sampler2D colourMap;
+uniform sampler2D colourMap;
 #elif SHADING == 4
 flat in ivec2 surfacePatch;  // on the chequer: 0 or 1; level
 #else

@@ -1,10 +1,10 @@
 // The terrain as all its passes see it: tiles, heights, and the way into the image. Samples count
 // columns (east, x) and rows (south, z) of the full-resolution height map.
-layout(std430, binding = TILE_BINDING) readonly buffer Tiles {
+layout(std430) readonly buffer Tiles {
     ivec4 tiles[];  // origin in samples, level, layer of its heights
 };
 // A layer has every 2^level-th sample of a tile and a border: HeightPages.
-layout(binding = HEIGHT_UNIT) uniform sampler2DArray heightPages;
+uniform sampler2DArray heightPages;
 uniform vec2 heightOfTexel;  // height = x + y · texel
 uniform float spacing;       // metres between samples
 uniform mat4 clipFromWorld;
