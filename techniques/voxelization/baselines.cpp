@@ -5,44 +5,26 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-/// The modern comparator: image atomics straight into the grid, no directional sheets.
-class DirectMethod : public MeshMethod {
-  public:
-    DirectMethod(technique::SetupContext& context, const MeshRequest& request)
-        : draw_(context.shaders, request, DrawTarget::Grid),
-          grid_{makeSheets(request.settings.layout), request.settings.layout, request.box} {}
-
-    void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
-        gl::GpuScope scope(profiler, "voxelization");
-        grid_.sheets.clearToZero();
-        const gl::Resources target{gl::Resource("sheet", grid_.sheets).unordered()};
-        for (Axis axis : kAxes) draw_.draw(mesh, axis, target);
-    }
-    const VoxelGrid* grid() const override { return &grid_; }
-    void record(technique::Recorder&) override {}
-    std::size_t sizeBytes() const override { return grid_.sheets.sizeBytes(); }
-
-  private:
-    MeshDraw draw_;
-    VoxelGrid grid_;
-};
-
-/// [zju2005] Sec. 2.5.3: the whole mesh is drawn once a slice, N times in all.
+/// Image atomics straight into the grid, no directional sheets: the modern comparator in one pass,
+/// or, as [zju2005] Sec. 2.5.3 has it, the whole mesh drawn once a slice, N times in all.
 /// Departure [zju2005] Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a
 /// fragment's depth decides; clipping would move the edges, and each triangle keeps its own axis,
 /// so that the result is the same grid.
-class SlicesMethod : public MeshMethod {
+class GridMethod : public MeshMethod {
   public:
-    SlicesMethod(technique::SetupContext& context, const MeshRequest& request)
-        : draw_(context.shaders, request, DrawTarget::GridSlice),
+    GridMethod(technique::SetupContext& context, const MeshRequest& request, DrawTarget target)
+        : draw_(context.shaders, request, target),
+          drawCount_(target == DrawTarget::GridSlice ? request.settings.layout.resolution() : 1),
           grid_{makeSheets(request.settings.layout), request.settings.layout, request.box} {}
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope scope(profiler, "voxelization");
         grid_.sheets.clearToZero();
-        const gl::Resources target{gl::Resource("sheet", grid_.sheets).unordered()};
-        for (int slice = 0; slice < grid_.layout.resolution(); ++slice) {
-            for (Axis axis : kAxes) draw_.drawSlice(mesh, axis, slice, target);
+        for (int slice = 0; slice < drawCount_; ++slice) {
+            draw_.pass().setIfActive("slice", slice);
+            for (Axis axis : kAxes) {
+                draw_.draw(mesh, axis, {gl::Resource("sheet", grid_.sheets).unordered()});
+            }
         }
     }
     const VoxelGrid* grid() const override { return &grid_; }
@@ -51,6 +33,7 @@ class SlicesMethod : public MeshMethod {
 
   private:
     MeshDraw draw_;
+    int drawCount_;
     VoxelGrid grid_;
 };
 
@@ -97,9 +80,9 @@ std::unique_ptr<MeshMethod> makeBaseline(technique::SetupContext& context,
                                          const MeshRequest& request, Method method) {
     switch (method) {
         case Method::Direct:
-            return std::make_unique<DirectMethod>(context, request);
+            return std::make_unique<GridMethod>(context, request, DrawTarget::Grid);
         case Method::Slices:
-            return std::make_unique<SlicesMethod>(context, request);
+            return std::make_unique<GridMethod>(context, request, DrawTarget::GridSlice);
         case Method::DepthOnly:
             return std::make_unique<DepthOnlyMethod>(context, request);
         case Method::Worksheet:

@@ -59,12 +59,6 @@ void MeshDraw::draw(const DeviceMesh& mesh, Axis axis, const gl::Resources& targ
                                    : mesh.ranges[static_cast<std::size_t>(axis)]);
 }
 
-void MeshDraw::drawSlice(const DeviceMesh& mesh, Axis axis, int slice,
-                         const gl::Resources& target) const {
-    pass_.set("slice", slice);
-    draw(mesh, axis, target);
-}
-
 void MeshDraw::drawExact(const DeviceMesh& mesh, Axis axis) const {
     TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
     if (drawsAllAxes_) range = mesh.allTriangles();

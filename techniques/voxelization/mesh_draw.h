@@ -19,10 +19,9 @@ class MeshDraw {
 
     const gl::Pass& pass() const { return pass_; }
     /// Draws the triangles that the rule projects along `axis`, into an N × N framebuffer without
-    /// attachments; `target` is what the DrawTarget names.
+    /// attachments; `target` is what the DrawTarget names. Slices: the pass's uniform `slice` says
+    /// which one.
     void draw(const DeviceMesh& mesh, Axis axis, const gl::Resources& target) const;
-    /// As draw(), with the voxels of slice `slice` of the axis only.
-    void drawSlice(const DeviceMesh& mesh, Axis axis, int slice, const gl::Resources& target) const;
 
   private:
     void drawExact(const DeviceMesh& mesh, Axis axis) const;
