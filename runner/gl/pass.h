@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runner/gl/objects.h"
@@ -28,7 +29,7 @@ struct Resource {
         return copy;
     }
 
-    std::string_view name;
+    std::string name;
     const Buffer* buffer = nullptr;
     const Texture* texture = nullptr;
     int layer = -1;  // -1: all
@@ -40,6 +41,8 @@ struct Resource {
 class Resources {
   public:
     Resources(std::initializer_list<Resource> resources) : all_(resources) {}
+    /// One more: an element of an array, whose name is put together.
+    void add(Resource resource) { all_.push_back(std::move(resource)); }
     /// These and `others`, which several passes share and not each of them declares.
     Resources with(const Resources& others) const;
     const std::vector<Resource>& all() const { return all_; }

@@ -71,6 +71,20 @@ TEST_F(PassTest, FindsEverySortOfResourceByItsName) {
                 ElementsAre(2, 2));
 }
 
+TEST_F(PassTest, TakesElementsOfArraysWhoseNamesArePutTogether) {
+    const gl::Pass sum = pass("sum.comp.glsl", kSum);
+    const SumResources r;
+    sum.set("first", 1);
+    gl::Resources all{{"Left", r.left}, {"Right", r.right}, {"Scale", r.scale}, {"Sum", r.sum}};
+    for (int i = 0; i < 2; ++i) {
+        all.add({"offsets[" + std::to_string(i) + "]", i == 0 ? r.seven : r.eight});
+    }
+    EXPECT_EQ(useError(sum, all), "sum.comp.glsl: the image picture is not given");
+    all.add({"picture", r.picture});
+    sum.dispatch({2, 1, 1}, all);
+    EXPECT_THAT(r.sum.read<std::uint32_t>(2), ElementsAre(3123, 4223));
+}
+
 TEST_F(PassTest, LeavesLowSlotsToNumberedCode) {
     const gl::Pass sum = pass("sum.comp.glsl", kSum);
     const SumResources r;
