@@ -8,54 +8,37 @@ using kit::DepthImage;
 
 namespace {
 
-// GL promises a stage 16 units; the test of 16 images takes 19. Every device of GL 4.5 that is
-// known has 32.
-enum TextureUnit {
-    kSampleIdsUnit = 0,
-    kSampleDepthsUnit = 1,
-    kMarkUnit = 2,
-    kFirstTriangleIdsUnit = 3
-};
-
-gl::Defines defines() {
-    return {{"SAMPLE_IDS_UNIT", kSampleIdsUnit},
-            {"SAMPLE_DEPTHS_UNIT", kSampleDepthsUnit},
-            {"MARK_UNIT", kMarkUnit},
-            {"FIRST_TRIANGLE_IDS_UNIT", kFirstTriangleIdsUnit}};
-}
-
-gl::Program wholeImageProgram(const gl::ShaderLibrary& shaders, const char* file,
-                              const gl::Defines& defines) {
-    return gl::Program(shaders, {"kit/whole_image.vert.glsl", file}, defines);
+gl::Pass wholeImagePass(const gl::ShaderLibrary& shaders, const char* file,
+                        const gl::Defines& defines = {}) {
+    return gl::Pass(shaders, {"kit/whole_image.vert.glsl", file}, defines);
 }
 
 /// What redundancy.glsl reads: the samples of `image` and what they are tested with.
-void bindTest(const gl::Program& program, const DepthImage& image, ImageSpan images) {
-    image.triangleId.bind(kSampleIdsUnit);
-    image.depth.bind(kSampleDepthsUnit);
+gl::Resources testOf(const gl::Pass& pass, const DepthImage& image, ImageSpan images) {
+    gl::Resources all{{"sampleTriangleIds", image.triangleId}, {"sampleDepths", image.depth}};
     for (std::size_t i = 0; i < images.size(); ++i) {
-        images[i]->triangleId.bind(static_cast<GLuint>(kFirstTriangleIdsUnit + i));
-        program.set(fmt::format("otherFromHere[{}]", i).c_str(),
-                    kit::reprojection(image.view, images[i]->view));
-        program.set(fmt::format("otherSizePx[{}]", i).c_str(), glm::vec2(images[i]->view.sizePx));
+        all.add({fmt::format("triangleIds[{}]", i), images[i]->triangleId});
+        pass.set(fmt::format("otherFromHere[{}]", i).c_str(),
+                 kit::reprojection(image.view, images[i]->view));
+        pass.set(fmt::format("otherSizePx[{}]", i).c_str(), glm::vec2(images[i]->view.sizePx));
     }
+    return all;
 }
 
 }  // namespace
 
 PixelMeasures::PixelMeasures(const gl::ShaderLibrary& shaders)
     : shaders_(shaders),
-      countProgram_(wholeImageProgram(shaders, "depth_sampling/count.frag.glsl", defines())),
-      samplesProgram_(wholeImageProgram(shaders, "depth_sampling/samples.frag.glsl", defines())) {}
+      countPass_(wholeImagePass(shaders, "depth_sampling/count.frag.glsl")),
+      samplesPass_(wholeImagePass(shaders, "depth_sampling/samples.frag.glsl")) {}
 
-const gl::Program& PixelMeasures::variant(Variants& variants, const char* file,
-                                          std::size_t imageCount) {
+const gl::Pass& PixelMeasures::variant(Variants& variants, const char* file,
+                                       std::size_t imageCount) {
     GFXREPRO_ASSERT(imageCount <= kMaxImages);
     auto found = variants.find(imageCount);
     if (found == variants.end()) {
-        gl::Defines all = defines();
-        all["IMAGE_COUNT"] = static_cast<int>(imageCount);
-        found = variants.emplace(imageCount, wholeImageProgram(shaders_, file, all)).first;
+        const gl::Defines defines{{"IMAGE_COUNT", static_cast<int>(imageCount)}};
+        found = variants.emplace(imageCount, wholeImagePass(shaders_, file, defines)).first;
     }
     return found->second;
 }
@@ -70,17 +53,14 @@ gl::Texture PixelMeasures::makeMarks(const DepthImage& image) {
 void PixelMeasures::mark(const DepthImage& image, gl::Texture& marks, ImageSpan images,
                          bool isRedundant, std::uint32_t among, Mark bit) {
     GFXREPRO_ASSERT(marks.size() == glm::ivec3(image.view.sizePx, 1));
-    const gl::Program& program =
-        variant(markPrograms_, "depth_sampling/mark.frag.glsl", images.size());
+    const gl::Pass& pass = variant(markPasses_, "depth_sampling/mark.frag.glsl", images.size());
     const gl::Texture* target[] = {&marks};
     const gl::Framebuffer framebuffer(target);
     framebuffer.bind();
-    program.use();
-    bindTest(program, image, images);
-    marks.bind(kMarkUnit);
-    program.set("isRedundant", isRedundant ? 1 : 0);
-    program.set("among", among);
-    program.set("bit", static_cast<unsigned>(bit));
+    pass.set("isRedundant", isRedundant ? 1 : 0);
+    pass.set("among", among);
+    pass.set("bit", static_cast<unsigned>(bit));
+    pass.use(gl::Resources{{"marks", marks}}.with(testOf(pass, image, images)));
     glTextureBarrier();  // before marks that were drawn are read
     wholeImage_.draw();
 }
@@ -88,9 +68,8 @@ void PixelMeasures::mark(const DepthImage& image, gl::Texture& marks, ImageSpan 
 std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits) {
     const auto framebuffer = gl::Framebuffer::withoutAttachments(glm::ivec2(marks.size()));
     framebuffer.bind();
-    countProgram_.use();
-    countProgram_.set("bits", bits);
-    marks.bind(kMarkUnit);
+    countPass_.set("bits", bits);
+    countPass_.use({{"marks", marks}});
     countQuery_.begin();
     wholeImage_.draw();
     countQuery_.end();
@@ -100,16 +79,14 @@ std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits)
 void PixelMeasures::beginAvailability(const DepthImage& frame, ImageSpan images) {
     const auto framebuffer = gl::Framebuffer::withoutAttachments(frame.view.sizePx);
     framebuffer.bind();
-    samplesProgram_.use();
-    frame.triangleId.bind(kSampleIdsUnit);
+    samplesPass_.use({{"sampleTriangleIds", frame.triangleId}});
     samplesQuery_.begin();
     wholeImage_.draw();
     samplesQuery_.end();
 
-    const gl::Program& program =
-        variant(availabilityPrograms_, "depth_sampling/availability.frag.glsl", images.size());
-    program.use();
-    bindTest(program, frame, images);
+    const gl::Pass& pass =
+        variant(availabilityPasses_, "depth_sampling/availability.frag.glsl", images.size());
+    pass.use(testOf(pass, frame, images));
     availableQuery_.begin();
     wholeImage_.draw();
     availableQuery_.end();

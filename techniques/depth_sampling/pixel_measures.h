@@ -6,7 +6,7 @@
 #include <span>
 
 #include "runner/gl/device.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "techniques/kit/depth_image.h"
 #include "techniques/kit/whole_image.h"
 
@@ -30,7 +30,8 @@ enum Mark : std::uint32_t {
 /// triangle of s. A sample outside of J or behind its eye is not.
 class PixelMeasures {
   public:
-    /// At most this many images in one test.
+    /// At most this many images in one test: with the samples and their marks nineteen textures.
+    /// GL promises a stage sixteen; every device of GL 4.5 that is known has 32.
     static constexpr std::size_t kMaxImages = 16;
 
     explicit PixelMeasures(const gl::ShaderLibrary& shaders);
@@ -61,12 +62,12 @@ class PixelMeasures {
 
   private:
     /// One variant for each number of images, so that the shader's loop over them is unrolled.
-    using Variants = std::map<std::size_t, gl::Program>;
-    const gl::Program& variant(Variants& variants, const char* file, std::size_t imageCount);
+    using Variants = std::map<std::size_t, gl::Pass>;
+    const gl::Pass& variant(Variants& variants, const char* file, std::size_t imageCount);
 
     const gl::ShaderLibrary& shaders_;
-    Variants markPrograms_, availabilityPrograms_;
-    gl::Program countProgram_, samplesProgram_;
+    Variants markPasses_, availabilityPasses_;
+    gl::Pass countPass_, samplesPass_;
     kit::WholeImage wholeImage_;
     gl::SampleQuery countQuery_, samplesQuery_, availableQuery_;
 };

@@ -1,7 +1,7 @@
 #version 450 core
 // Lets pixels pass that hold all of `bits`; a query counts them.
 
-layout(binding = MARK_UNIT) uniform usampler2D marks;
+uniform usampler2D marks;
 
 uniform uint bits;
 

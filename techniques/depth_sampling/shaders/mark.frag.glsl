@@ -5,7 +5,7 @@
 
 #include "depth_sampling/redundancy.glsl"
 
-layout(binding = MARK_UNIT) uniform usampler2D marks;
+uniform usampler2D marks;
 
 uniform bool isRedundant;  // marked are redundant samples (else the others)
 uniform uint among;        // only samples with all of these marks

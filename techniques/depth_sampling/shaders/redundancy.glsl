@@ -12,11 +12,11 @@
 
 #include "kit/pixel_redundancy.glsl"
 
-layout(binding = SAMPLE_IDS_UNIT) uniform usampler2D sampleTriangleIds;
+uniform usampler2D sampleTriangleIds;
 
 #if IMAGE_COUNT > 0
-layout(binding = SAMPLE_DEPTHS_UNIT) uniform sampler2D sampleDepths;
-layout(binding = FIRST_TRIANGLE_IDS_UNIT) uniform usampler2D triangleIds[IMAGE_COUNT];
+uniform sampler2D sampleDepths;
+uniform usampler2D triangleIds[IMAGE_COUNT];
 uniform mat4 otherFromHere[IMAGE_COUNT];
 uniform vec2 otherSizePx[IMAGE_COUNT];
 #endif
