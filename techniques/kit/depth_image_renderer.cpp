@@ -9,12 +9,6 @@ namespace gfxrepro::kit {
 
 namespace {
 
-/// Texture units of the fragment stage: the earlier images' ids, one each, then the base colours.
-/// Sixteen in all, as many as every OpenGL 4.5 has.
-constexpr unsigned kEarlierIdsUnit = 0;
-constexpr unsigned kBaseColorUnit = kMaxEarlierImages;
-static_assert(kBaseColorUnit < 16);
-
 /// Outputs in the order of the framebuffer's attachments.
 enum Target { kShadingTarget = 0, kDepthTarget = 1, kTriangleIdTarget = 2 };
 
@@ -55,14 +49,16 @@ void clear(const DepthImage& target, DepthFormat format) {
 }
 
 /// What [xie2017] Algorithm 3 reads of the earlier images.
-void bindEarlier(const gl::Program& program, const View& view,
-                 std::span<const DepthImage* const> earlier) {
+gl::Resources earlierIds(const gl::Pass& pass, const View& view,
+                         std::span<const DepthImage* const> earlier) {
+    gl::Resources ids{};
     for (std::size_t j = 0; j < earlier.size(); ++j) {
         const DepthImage& image = *earlier[j];
-        image.triangleId.bind(kEarlierIdsUnit + static_cast<unsigned>(j));
-        program.set(fmt::format("earlierFromHere[{}]", j).c_str(), reprojection(view, image.view));
-        program.set(fmt::format("earlierSizePx[{}]", j).c_str(), glm::vec2(image.view.sizePx));
+        ids.add({fmt::format("earlierIds[{}]", j), image.triangleId});
+        pass.set(fmt::format("earlierFromHere[{}]", j).c_str(), reprojection(view, image.view));
+        pass.set(fmt::format("earlierSizePx[{}]", j).c_str(), glm::vec2(image.view.sizePx));
     }
+    return ids;
 }
 
 }  // namespace
@@ -71,9 +67,9 @@ DepthImageRenderer::DepthImageRenderer(const gl::ShaderLibrary& shaders, Triangl
                                        DepthFormat format)
     : shaders_(shaders), ids_(ids), format_(format) {}
 
-const gl::Program& DepthImageRenderer::programFor(const Variant& variant) {
-    const auto found = programs_.find(variant);
-    if (found != programs_.end()) return found->second;
+const gl::Pass& DepthImageRenderer::passFor(const Variant& variant) {
+    const auto found = passes_.find(variant);
+    if (found != passes_.end()) return found->second;
     const bool hasGeometryStage = ids_ == TriangleIds::GeometryShader;
     gl::Defines defines = gpu_scene::attributeDefines();
     defines["ALPHA_TEST"] = variant.isAlphaTested ? 1 : 0;
@@ -81,30 +77,26 @@ const gl::Program& DepthImageRenderer::programFor(const Variant& variant) {
     defines["FLAT_PARTS"] = variant.hasFlatParts ? 1 : 0;
     defines["GEOMETRY_STAGE"] = hasGeometryStage ? 1 : 0;
     defines["TEXTURES"] = variant.hasTextures ? 1 : 0;
-    defines["kBaseColorUnit"] = static_cast<int>(kBaseColorUnit);
     defines["kDepthTarget"] = kDepthTarget;
-    defines["kEarlierIdsUnit"] = static_cast<int>(kEarlierIdsUnit);
     defines["kShadingTarget"] = kShadingTarget;
     defines["kTriangleIdTarget"] = kTriangleIdTarget;
     std::vector<std::string> files = {"kit/depth_image.vert.glsl", "kit/depth_image.frag.glsl"};
     if (hasGeometryStage) files.push_back("kit/depth_image.geom.glsl");
-    return programs_.emplace(variant, gl::Program(shaders_, files, defines)).first->second;
+    return passes_.emplace(variant, gl::Pass(shaders_, files, defines)).first->second;
 }
 
 void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
                                 std::span<const DepthImage* const> earlier) {
     GFXREPRO_ASSERT(earlier.size() <= kMaxEarlierImages);
     const View& view = target.view;
-    const gl::Program& program = programFor({static_cast<int>(earlier.size()), scene.hasTextures(),
-                                             scene.isAlphaTested(), scene.hasFlatParts()});
-    program.use();
+    const gl::Pass& pass = passFor({static_cast<int>(earlier.size()), scene.hasTextures(),
+                                    scene.isAlphaTested(), scene.hasFlatParts()});
     const glm::mat4 clipFromWorld = clipFromView(view, format_) * view.viewFromWorld;
-    program.set("clipFromWorld", clipFromWorld);
-    program.set("viewFromWorld", view.viewFromWorld);
-    program.set("lightDirectionView",
-                glm::normalize(glm::mat3(view.viewFromWorld) * kLightDirectionWorld));
-    program.setIfActive("viewFromPixels", viewFromPixels(view));
-    bindEarlier(program, view, earlier);
+    pass.set("clipFromWorld", clipFromWorld);
+    pass.set("viewFromWorld", view.viewFromWorld);
+    pass.set("lightDirectionView",
+             glm::normalize(glm::mat3(view.viewFromWorld) * kLightDirectionWorld));
+    pass.setIfActive("viewFromPixels", viewFromPixels(view));
 
     clear(target, format_);
     target.framebuffer.bind();
@@ -116,7 +108,7 @@ void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
     } else {
         glDepthFunc(GL_LESS);
     }
-    scene.draw(program, kBaseColorUnit);
+    scene.draw(pass, earlierIds(pass, view, earlier));
     // The defaults, which other passes take for granted.
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glDepthFunc(GL_LESS);

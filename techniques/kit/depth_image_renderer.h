@@ -16,7 +16,8 @@ enum class TriangleIds {
     GeometryShader,  // handed on by a geometry stage, as the thesis has it
 };
 
-/// At most this many earlier images can be tested against.
+/// At most this many earlier images can be tested against: with the base colours sixteen textures,
+/// as many as a stage of every OpenGL 4.5 takes.
 constexpr int kMaxEarlierImages = 15;
 
 /// Light of every depth image: colour · (0.3 + 0.7 · max(N·L, 0)), N turned towards the eye for
@@ -40,7 +41,7 @@ class DepthImageRenderer {
                 std::span<const DepthImage* const> earlier = {});
 
   private:
-    /// What the program for an image is made for; the rest is uniforms.
+    /// What the pass for an image is made for; the rest is uniforms.
     struct Variant {
         int earlierCount = 0;
         bool hasTextures = false;
@@ -48,12 +49,12 @@ class DepthImageRenderer {
         bool hasFlatParts = false;
         auto operator<=>(const Variant&) const = default;
     };
-    const gl::Program& programFor(const Variant& variant);
+    const gl::Pass& passFor(const Variant& variant);
 
     const gl::ShaderLibrary& shaders_;
     TriangleIds ids_;
     DepthFormat format_;
-    std::map<Variant, gl::Program> programs_;
+    std::map<Variant, gl::Pass> passes_;
 };
 
 }  // namespace gfxrepro::kit

@@ -50,7 +50,9 @@ void requireIdsFor(std::uint64_t triangleCount) {
                     triangleCount, kMaxTriangles));
 }
 
-DrawableScene::DrawableScene(const scene::Scene& scene) : triangleCount_(scene.triangleCount()) {
+DrawableScene::DrawableScene(const scene::Scene& scene)
+    : white_(gl::Texture::fromImage(image::Image8(1, 1, 4, 255), false)),
+      triangleCount_(scene.triangleCount()) {
     requireIdsFor(triangleCount_);
     if (triangleCount_ == 0) {
         throw Error(
@@ -109,12 +111,10 @@ bool DrawableScene::isAlphaTested() const {
                        [](const Part& part) { return part.alphaCutoff > 0.0F; });
 }
 
-void DrawableScene::draw(const gl::Program& program, unsigned baseColorUnit) const {
+void DrawableScene::draw(const gl::Pass& pass, const gl::Resources& resources) const {
     vertexArray_.bind();
     glCullFace(GL_BACK);
     glFrontFace(GL_CCW);
-    // Parts without a texture must not leave the unit to what other passes have bound there.
-    if (hasTextures()) textures_[0].bind(baseColorUnit);
     FlushedDraws draws;
     for (const Part& part : parts_) {
         if (part.isDoubleSided) {
@@ -122,14 +122,13 @@ void DrawableScene::draw(const gl::Program& program, unsigned baseColorUnit) con
         } else {
             glEnable(GL_CULL_FACE);
         }
-        program.setIfActive("hasTexture", part.texture >= 0 ? 1 : 0);
-        program.setIfActive("alphaCutoff", part.alphaCutoff);
-        if (part.texture >= 0) {
-            textures_[static_cast<std::size_t>(part.texture)].bind(baseColorUnit);
-        }
+        pass.setIfActive("alphaCutoff", part.alphaCutoff);
+        const gl::Texture& baseColor =
+            part.texture < 0 ? white_ : textures_[static_cast<std::size_t>(part.texture)];
+        pass.use(resources.with({{"baseColor", baseColor}}));
         draws.draw(part.firstTriangle, part.triangleCount,
                    [&](std::uint32_t first, std::uint32_t count) {
-                       program.setIfActive("firstTriangle", first);
+                       pass.setIfActive("firstTriangle", first);
                        drawTriangles(first, count);
                    });
     }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "runner/gl/pass.h"
 #include "runner/scene/scene.h"
 
 namespace gfxrepro::kit {
@@ -24,12 +24,12 @@ class DrawableScene {
     /// without triangles, std::bad_alloc when the device's memory does not hold it.
     explicit DrawableScene(const scene::Scene& scene);
 
-    /// Draws everything with `program`, which is in use and takes the attributes at
-    /// gpu_scene::Attribute (position, normal, texcoord, colour) and the uniforms, where active,
-    /// `firstTriangle` (uint: gl_PrimitiveID counts from it), `hasTexture` (int) and `alphaCutoff`
-    /// (float); the texture of base colours is bound to unit `baseColorUnit`. Sets culling for each
-    /// part; all other state is the caller's.
-    void draw(const gl::Program& program, unsigned baseColorUnit) const;
+    /// Draws everything with `pass` and `resources`. It takes the attributes at
+    /// gpu_scene::Attribute (position, normal, texcoord, colour) and, where it has them, the
+    /// uniforms `firstTriangle` (uint: gl_PrimitiveID counts from it) and `alphaCutoff` (float) and
+    /// the sampler `baseColor`: a part's texture, or white. Sets culling for each part; all other
+    /// state is the caller's.
+    void draw(const gl::Pass& pass, const gl::Resources& resources) const;
     /// Positions only, without culling or textures: depth passes.
     void drawDepthOnly() const;
 
@@ -56,6 +56,7 @@ class DrawableScene {
 
     std::vector<Part> parts_;
     std::vector<gl::Texture> textures_;
+    gl::Texture white_;
     gl::Buffer positions_, normals_, texcoords_, colors_, indices_;
     gl::VertexArray vertexArray_;
     std::uint64_t triangleCount_ = 0;

@@ -8,9 +8,6 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
-constexpr unsigned kBaseColorUnit = 0;
-constexpr int kShadowMapUnit = 1;  // and the following
-
 bool looksUpInVertices(const std::vector<LightKind>& kinds, const Bias& bias) {
     // A cube's face, and an offset along a triangle's normal, differ from fragment to fragment.
     for (const LightKind kind : kinds) {
@@ -61,9 +58,9 @@ ShadedView::ShadedView(const gl::ShaderLibrary& shaders, const ShadowMapSettings
       lighting_(lighting),
       step_(declaredSteps(settings).back()) {}
 
-const gl::Program& ShadedView::programFor(const Variant& variant) {
-    const auto found = programs_.find(variant);
-    if (found != programs_.end()) return found->second;
+const gl::Pass& ShadedView::passFor(const Variant& variant) {
+    const auto found = passes_.find(variant);
+    if (found != passes_.end()) return found->second;
     int viewCount = 0;
     int pointLights = 0;  // a bit each
     for (std::size_t i = 0; i < variant.kinds.size(); ++i) {
@@ -72,8 +69,6 @@ const gl::Program& ShadedView::programFor(const Variant& variant) {
         if (variant.kinds[i] == LightKind::Point) pointLights |= 1 << i;
     }
     gl::Defines defines = gpu_scene::attributeDefines();
-    defines["kBaseColorUnit"] = static_cast<int>(kBaseColorUnit);
-    defines["kShadowMapUnit"] = kShadowMapUnit;
     defines["LIGHT_COUNT"] = static_cast<int>(variant.kinds.size());
     defines["VIEW_COUNT"] = viewCount;
     defines["POINT_LIGHTS"] = pointLights;
@@ -89,44 +84,46 @@ const gl::Program& ShadedView::programFor(const Variant& variant) {
     defines["TEXTURES"] = variant.hasTextures ? 1 : 0;
     defines["ALPHA_TEST"] = variant.isAlphaTested ? 1 : 0;
     defines["FLAT_PARTS"] = variant.hasFlatParts ? 1 : 0;
-    return programs_
-        .emplace(variant, gl::Program(shaders_,
-                                      {"shadow_mapping/shaded_view.vert.glsl",
-                                       "shadow_mapping/shaded_view.frag.glsl"},
-                                      defines))
+    return passes_
+        .emplace(variant, gl::Pass(shaders_,
+                                   {"shadow_mapping/shaded_view.vert.glsl",
+                                    "shadow_mapping/shaded_view.frag.glsl"},
+                                   defines))
         .first->second;
 }
 
-void ShadedView::setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
-                             const kit::View& view) const {
-    program.setIfActive("clipFromWorld", view.clipFromWorld());
-    program.setIfActive("eyeWorld", view.eyeWorld);
-    program.setIfActive("ambient", lighting_.ambient);
-    program.setIfActive("diffuse", lighting_.diffuse);
-    program.setIfActive("specular", lighting_.specular);
-    program.setIfActive("shininess", lighting_.shininess);
-    program.setIfActive("epsilon", settings_.bias.constant);
-    program.setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
+gl::Resources ShadedView::setUp(const gl::Pass& pass, const ShadowMapRenderer& maps,
+                                const kit::View& view) const {
+    pass.setIfActive("clipFromWorld", view.clipFromWorld());
+    pass.setIfActive("eyeWorld", view.eyeWorld);
+    pass.setIfActive("ambient", lighting_.ambient);
+    pass.setIfActive("diffuse", lighting_.diffuse);
+    pass.setIfActive("specular", lighting_.specular);
+    pass.setIfActive("shininess", lighting_.shininess);
+    pass.setIfActive("epsilon", settings_.bias.constant);
+    pass.setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
+    gl::Resources lookups{};
     std::size_t firstView = 0;
     for (std::size_t i = 0; i < maps.maps().size(); ++i) {
         const ShadowMap& map = maps.maps()[i];
         const Light& light = maps.lights()[i];
-        setElement(program, "lightPlaces", i, placeOf(light));
-        setElement(program, "lightColors", i, light.color);
-        setElement(program, "lightSizes", i, light.size);
-        setElement(program, "firstViews", i, static_cast<int>(firstView));
-        map.lookup().bind(static_cast<unsigned>(kShadowMapUnit) + static_cast<unsigned>(i));
+        setElement(pass, "lightPlaces", i, placeOf(light));
+        setElement(pass, "lightColors", i, light.color);
+        setElement(pass, "lightSizes", i, light.size);
+        setElement(pass, "firstViews", i, static_cast<int>(firstView));
+        lookups.add({fmt::format("shadowMaps[{}]", i), map.lookup()});
         for (std::size_t j = 0; j < map.views.size(); ++j) {
             const LightView& from = map.views[j];
             const glm::ivec2 last = from.tilePx + from.tileSizePx - 1;
-            setElement(program, "lookupFromWorld", firstView + j,
+            setElement(pass, "lookupFromWorld", firstView + j,
                        from.lookupFromWorld(glm::ivec2(map.depth.size())));
-            setElement(program, "tiles", firstView + j, glm::vec4(from.tilePx, last));
-            setElement(program, "planes", firstView + j,
+            setElement(pass, "tiles", firstView + j, glm::vec4(from.tilePx, last));
+            setElement(pass, "planes", firstView + j,
                        glm::vec4(from.nearM, from.farM, from.texelPerDistance, from.isPerspective));
         }
         firstView += map.views.size();
     }
+    return lookups;
 }
 
 void ShadedView::render(const kit::DrawableScene& scene, const ShadowMapRenderer& maps,
@@ -135,7 +132,7 @@ void ShadedView::render(const kit::DrawableScene& scene, const ShadowMapRenderer
     Variant variant{
         {}, target.hasTerms(), scene.hasTextures(), scene.isAlphaTested(), scene.hasFlatParts()};
     for (const Light& light : maps.lights()) variant.kinds.push_back(light.kind);
-    const gl::Program& program = programFor(variant);
+    const gl::Pass& pass = passFor(variant);
     applyState(step_);
     target.framebuffer.bind();
     target.framebuffer.clearColour(0, glm::vec4(lighting_.background, 1.0F));
@@ -145,9 +142,7 @@ void ShadedView::render(const kit::DrawableScene& scene, const ShadowMapRenderer
         target.framebuffer.clearColour(3, glm::vec4(0.0F));
     }
     target.framebuffer.clearDepth(1.0F);
-    program.use();
-    setUniforms(program, maps, target.view);
-    scene.draw(program, kBaseColorUnit);
+    scene.draw(pass, setUp(pass, maps, target.view));
 }
 
 }  // namespace gfxrepro::shadow_mapping

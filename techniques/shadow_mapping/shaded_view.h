@@ -53,15 +53,16 @@ class ShadedView {
         bool hasFlatParts = false;
         auto operator<=>(const Variant&) const = default;
     };
-    const gl::Program& programFor(const Variant& variant);
-    void setUniforms(const gl::Program& program, const ShadowMapRenderer& maps,
-                     const kit::View& view) const;
+    const gl::Pass& passFor(const Variant& variant);
+    /// Sets all uniforms; gives the maps.
+    gl::Resources setUp(const gl::Pass& pass, const ShadowMapRenderer& maps,
+                        const kit::View& view) const;
 
     const gl::ShaderLibrary& shaders_;
     ShadowMapSettings settings_;
     Lighting lighting_;
     StepDeclaration step_;
-    std::map<Variant, gl::Program> programs_;
+    std::map<Variant, gl::Pass> passes_;
 };
 
 }  // namespace gfxrepro::shadow_mapping

@@ -11,8 +11,6 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
-constexpr int kMomentsUnit = 0;
-
 GLenum glFormatOf(DepthFormat format) {
     switch (format) {
         case DepthFormat::Unorm16:
@@ -53,11 +51,10 @@ ShadowMapRenderer::ShadowMapRenderer(const gl::ShaderLibrary& shaders,
       steps_(declaredSteps(settings)),
       depthProgram_(makeDepthProgram(shaders, steps_.front(), settings)) {
     if (settings.filter == Filter::Variance) {
-        blurProgram_.emplace(
-            shaders,
-            std::vector<std::string>{"kit/whole_image.vert.glsl",
-                                     "shadow_mapping/blur_moments.frag.glsl"},
-            gl::Defines{{"kMomentsUnit", kMomentsUnit}, {"FETCHES", settings.blurTexels}});
+        blur_.emplace(shaders,
+                      std::vector<std::string>{"kit/whole_image.vert.glsl",
+                                               "shadow_mapping/blur_moments.frag.glsl"},
+                      gl::Defines{{"FETCHES", settings.blurTexels}});
     }
 }
 
@@ -106,7 +103,7 @@ void ShadowMapRenderer::render(const kit::DrawableScene& scene, std::span<const 
         if (glm::ivec2(maps_[i].depth.size()) != sizePx) maps_[i] = makeMap(sizePx);
         maps_[i].views = std::move(views);
         drawDepth(scene, maps_[i]);
-        if (blurProgram_) blur(maps_[i]);
+        if (blur_) blur(maps_[i]);
     }
     glDisable(GL_POLYGON_OFFSET_FILL);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -136,17 +133,16 @@ void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowM
 }
 
 void ShadowMapRenderer::blur(const ShadowMap& map) const {
-    blurProgram_->use();
     const auto pass = [&](const StepDeclaration& step, const gl::Texture& from,
                           const gl::Framebuffer& to, glm::ivec2 along) {
         applyState(step);
         to.bind();
-        from.bind(kMomentsUnit);
-        blurProgram_->set("along", along);
+        blur_->use({{"moments", from}});
+        blur_->set("along", along);
         for (const LightView& view : map.views) {
             glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
-            blurProgram_->set("firstTexel", view.tilePx);
-            blurProgram_->set("lastTexel", view.tilePx + view.tileSizePx - 1);
+            blur_->set("firstTexel", view.tilePx);
+            blur_->set("lastTexel", view.tilePx + view.tileSizePx - 1);
             wholeImage_.draw();
         }
     };

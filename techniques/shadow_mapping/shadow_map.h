@@ -58,7 +58,7 @@ class ShadowMapRenderer {
     ShadowMapSettings settings_;
     std::vector<StepDeclaration> steps_;
     gl::Program depthProgram_;
-    std::optional<gl::Program> blurProgram_;
+    std::optional<gl::Pass> blur_;
     kit::WholeImage wholeImage_;
     std::vector<Light> lights_;
     std::vector<ShadowMap> maps_;

@@ -8,8 +8,6 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-constexpr unsigned kBaseColorUnit = 0;
-
 void setDepthState() {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
@@ -35,10 +33,9 @@ std::size_t Receivers::sizeBytes() const {
 
 Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,
                           const kit::View& view) {
-    gl::Defines defines = gpu_scene::attributeDefines();
-    defines["BASE_COLOR_UNIT"] = static_cast<int>(kBaseColorUnit);
-    const gl::Program program(
-        shaders, {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"}, defines);
+    const gl::Pass pass(shaders,
+                        {"soft_shadows/receivers.vert.glsl", "soft_shadows/receivers.frag.glsl"},
+                        gpu_scene::attributeDefines());
     Receivers receivers{view, gl::Texture::make2D(GL_RGBA32F, view.sizePx),
                         gl::Texture::make2D(GL_RGBA16F, view.sizePx),
                         gl::Texture::make2D(GL_RGBA8, view.sizePx)};
@@ -52,10 +49,9 @@ Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableS
     framebuffer.clearDepth(1.0F);
     setDepthState();
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    program.use();
-    program.set("clipFromWorld", view.clipFromWorld());
-    program.set("eyeWorld", view.eyeWorld);
-    scene.draw(program, kBaseColorUnit);
+    pass.set("clipFromWorld", view.clipFromWorld());
+    pass.set("eyeWorld", view.eyeWorld);
+    scene.draw(pass, {});
     return receivers;
 }
 

@@ -24,14 +24,13 @@ uniform vec3 lightDirectionView;
 uniform mat4 viewFromPixels;  // (x·d, y·d, d, 1) to view space
 #endif
 #if TEXTURES
-uniform int hasTexture;
-layout(binding = kBaseColorUnit) uniform sampler2D baseColorTexture;
+uniform sampler2D baseColor;
 #endif
 #if ALPHA_TEST
 uniform float alphaCutoff;  // 0: opaque
 #endif
 #if EARLIER_COUNT > 0
-layout(binding = kEarlierIdsUnit) uniform usampler2D earlierIds[EARLIER_COUNT];
+uniform usampler2D earlierIds[EARLIER_COUNT];
 uniform mat4 earlierFromHere[EARLIER_COUNT];
 uniform vec2 earlierSizePx[EARLIER_COUNT];
 #endif
@@ -63,8 +62,7 @@ void main() {
 #endif
     vec4 base = vertex.color;
 #if TEXTURES
-    vec4 texel = texture(baseColorTexture, vertex.uv);
-    if (hasTexture != 0) base *= texel;
+    base *= texture(baseColor, vertex.uv);
 #endif
     shading = vec4(base.rgb * (0.3 + 0.7 * max(dot(facingNormal(), lightDirectionView), 0.0)), 1.0);
 #if ALPHA_TEST

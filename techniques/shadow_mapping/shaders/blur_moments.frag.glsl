@@ -2,7 +2,7 @@
 // Variance shadow maps: mean of the moments along one axis of a view's tile; two passes make a square
 // ([Donnelly and Lauritzen 2006]: moments can be filtered, depths cannot).
 
-layout(binding = kMomentsUnit) uniform sampler2D moments;
+uniform sampler2D moments;
 uniform ivec2 along;
 uniform ivec2 firstTexel;  // of the tile: a cube's faces do not run into each other
 uniform ivec2 lastTexel;

@@ -17,15 +17,14 @@ uniform float diffuse;
 uniform float specular;
 uniform float shininess;
 #if TEXTURES
-uniform int hasTexture;
-layout(binding = kBaseColorUnit) uniform sampler2D baseColor;
+uniform sampler2D baseColor;
 #endif
 #if ALPHA_TEST
 uniform float alphaCutoff;
 #endif
 
 #if LIGHT_COUNT > 0
-layout(binding = kShadowMapUnit) uniform ShadowMap shadowMaps[LIGHT_COUNT];
+uniform ShadowMap shadowMaps[LIGHT_COUNT];
 uniform vec4 lightPlaces[LIGHT_COUNT];  // position, 1; parallel rays: towards the light, 0
 uniform vec3 lightColors[LIGHT_COUNT];
 uniform vec4 tiles[VIEW_COUNT];
@@ -79,7 +78,6 @@ void main() {
     vec4 texel = vec4(1.0);
 #if TEXTURES
     texel = texture(baseColor, uv);
-    if (hasTexture == 0) texel = vec4(1.0);
 #endif
 #if ALPHA_TEST
     if (texel.a < alphaCutoff) discard;

@@ -5,8 +5,7 @@ in vec3 surfacePositionWorld;
 in vec2 surfaceTexcoord;
 in vec3 surfaceColor;
 
-layout(binding = BASE_COLOR_UNIT) uniform sampler2D baseColor;
-uniform int hasTexture;
+uniform sampler2D baseColor;
 uniform float alphaCutoff;
 uniform vec3 eyeWorld;
 
@@ -15,7 +14,7 @@ layout(location = 1) out vec4 normal;
 layout(location = 2) out vec4 shading;
 
 void main() {
-    vec4 texel = hasTexture != 0 ? texture(baseColor, surfaceTexcoord) : vec4(1.0);
+    vec4 texel = texture(baseColor, surfaceTexcoord);
     if (texel.a < alphaCutoff) discard;
     vec3 n = normalize(cross(dFdx(surfacePositionWorld), dFdy(surfacePositionWorld)));
     position = vec4(surfacePositionWorld, 1.0);
