@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runner/gl/gl.h"
+#include "runner/gl/pass.h"
 
 namespace gfxrepro::gl {
 
@@ -49,7 +50,7 @@ DeviceBalance measureBalance(const ShaderLibrary& library) {
     constexpr std::size_t kCopyBytes = std::size_t{16} << 20;
     const Program fragments(library,
                             {"gl/balance_whole.vert.glsl", "gl/balance_arithmetic.frag.glsl"});
-    const Program compute(library, {"gl/balance_arithmetic.comp.glsl"});
+    const Pass compute(library, {"gl/balance_arithmetic.comp.glsl"});
     const Program fill(library, {"gl/balance_whole.vert.glsl", "gl/balance_constant.frag.glsl"});
     const Program small(library, {"gl/balance_small.vert.glsl", "gl/balance_constant.frag.glsl"});
     const Texture image = Texture::make2D(GL_RGBA32F, kSize);
@@ -69,8 +70,7 @@ DeviceBalance measureBalance(const ShaderLibrary& library) {
                                  fragments.set("rounds", n);
                                  glDrawArrays(GL_TRIANGLES, 0, 3);
                              });
-    compute.use();
-    image.bindImage(0, GL_WRITE_ONLY);
+    compute.use({{"colour", image}});
     balance.computeGflops = 1e-9 * perSecond(kPixels * kFlopsARound, [&](int n) {
                                 compute.set("rounds", n);
                                 glDispatchCompute(kSize.x / 8, kSize.y / 8, 1);

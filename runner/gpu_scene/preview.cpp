@@ -3,13 +3,13 @@
 #include <map>
 #include <optional>
 
+#include "runner/gl/pass.h"
 #include "runner/gpu_scene/gpu_mesh.h"
 
 namespace gfxrepro::gpu_scene {
 
 namespace {
 
-constexpr int kBaseColorTexture = 0;  // texture unit
 constexpr glm::vec4 kBackground{0.18F, 0.20F, 0.24F, 1.0F};
 
 /// What is uploaded once and drawn by every instance that uses it.
@@ -26,7 +26,9 @@ class Uploads {
         return found->second;
     }
 
+    /// White for none, an index of -1.
     const gl::Texture& texture(int index) {
+        if (index < 0) return white_;
         auto found = textures_.find(index);
         if (found == textures_.end()) {
             const image::Image8& image = scene_.textures[static_cast<std::size_t>(index)];
@@ -40,22 +42,22 @@ class Uploads {
     const scene::Scene& scene_;
     std::map<int, GpuMesh> meshes_;
     std::map<int, gl::Texture> textures_;
+    gl::Texture white_ = gl::Texture::fromImage(image::Image8(1, 1, 4, 255), false);
 };
 
 void drawInstance(const scene::Scene& scene, const scene::Instance& instance, Uploads& uploads,
-                  const gl::Program& program) {
+                  const gl::Pass& pass) {
     const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     const scene::Material material = materialOf(scene, mesh);
-    const bool hasTexture = material.baseColorTexture >= 0 && !mesh.texcoords.empty();
-    if (hasTexture) uploads.texture(material.baseColorTexture).bind(kBaseColorTexture);
+    const int texture = mesh.texcoords.empty() ? -1 : material.baseColorTexture;
+    pass.use({{"baseColorTexture", uploads.texture(texture)}});
 
     const glm::mat3 linear(instance.worldFromMesh);
-    program.set("worldFromMesh", instance.worldFromMesh);
-    program.set("normalWorldFromMesh", glm::mat4(glm::transpose(glm::inverse(linear))));
-    program.set("baseColor", material.baseColor);
-    program.set("emissive", material.emissive);
-    program.set("alphaCutoff", material.alphaCutoff);
-    program.set("hasTexture", hasTexture ? 1 : 0);
+    pass.set("worldFromMesh", instance.worldFromMesh);
+    pass.set("normalWorldFromMesh", glm::mat4(glm::transpose(glm::inverse(linear))));
+    pass.set("baseColor", material.baseColor);
+    pass.set("emissive", material.emissive);
+    pass.set("alphaCutoff", material.alphaCutoff);
     // What a mesh without normals gives every vertex: the shader then takes the triangle's.
     glVertexAttrib3f(kNormal, 0.0F, 0.0F, 0.0F);
     glVertexAttrib3f(kColor, 1.0F, 1.0F, 1.0F);  // without vertex colours
@@ -66,10 +68,8 @@ void drawInstance(const scene::Scene& scene, const scene::Instance& instance, Up
 
 image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
                             int height, const gl::ShaderLibrary& shaders) {
-    gl::Defines defines = attributeDefines();
-    defines["kBaseColorTexture"] = kBaseColorTexture;
-    const gl::Program program(
-        shaders, {"gpu_scene/preview.vert.glsl", "gpu_scene/preview.frag.glsl"}, defines);
+    const gl::Pass pass(shaders, {"gpu_scene/preview.vert.glsl", "gpu_scene/preview.frag.glsl"},
+                        attributeDefines());
     const gl::Texture colour = gl::Texture::make2D(GL_RGBA32F, {width, height});
     const gl::Texture depth = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, {width, height});
     const gl::Framebuffer framebuffer(std::array{&colour}, &depth);
@@ -86,14 +86,13 @@ image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& came
     glDisable(GL_SCISSOR_TEST);
 
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
-    program.use();
-    program.set("clipFromWorld",
-                glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
-                    glm::lookAt(camera.position, camera.target, camera.up));
-    program.set("cameraPositionWorld", camera.position);
+    pass.set("clipFromWorld",
+             glm::perspective(camera.verticalFovRad, aspect, camera.nearM, camera.farM) *
+                 glm::lookAt(camera.position, camera.target, camera.up));
+    pass.set("cameraPositionWorld", camera.position);
     Uploads uploads(scene);
     for (const scene::Instance& instance : scene.instances) {
-        drawInstance(scene, instance, uploads, program);
+        drawInstance(scene, instance, uploads, pass);
     }
     return colour.readImage(3);
 }

@@ -4,6 +4,7 @@
 
 #include "runner/core/files.h"
 #include "runner/gl/gl.h"
+#include "runner/gl/pass.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
@@ -18,7 +19,7 @@ TEST_F(Balance, FragmentsAndInvocationsDoTheSameArithmetic) {
     constexpr glm::ivec2 kSize{16, 16};
     const gl::Program fragments(shaders,
                                 {"gl/balance_whole.vert.glsl", "gl/balance_arithmetic.frag.glsl"});
-    const gl::Program compute(shaders, {"gl/balance_arithmetic.comp.glsl"});
+    const gl::Pass compute(shaders, {"gl/balance_arithmetic.comp.glsl"});
     const gl::Texture drawn = gl::Texture::make2D(GL_RGBA32F, kSize);
     const gl::Texture computed = gl::Texture::make2D(GL_RGBA32F, kSize);
     const gl::VertexArray noAttributes;
@@ -29,10 +30,8 @@ TEST_F(Balance, FragmentsAndInvocationsDoTheSameArithmetic) {
     fragments.use();
     fragments.set("rounds", 1000);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    compute.use();
     compute.set("rounds", 1000);
-    computed.bindImage(0, GL_WRITE_ONLY);
-    glDispatchCompute(2, 2, 1);
+    compute.dispatch({2, 2, 1}, {{"colour", computed}});
 
     const image::ImageF one = drawn.readImage(4), other = computed.readImage(4);
     float largest = 0.0F;

@@ -1,7 +1,7 @@
 #version 450 core
 #include "gl/balance_arithmetic.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform writeonly image2D colour;
+layout(rgba32f) uniform writeonly image2D colour;
 
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);

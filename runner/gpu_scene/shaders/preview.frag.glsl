@@ -10,9 +10,8 @@ in vec3 vertexColor;  // linear; 1 without
 uniform vec4 baseColor;  // linear
 uniform vec3 emissive;
 uniform float alphaCutoff;  // 0: opaque
-uniform int hasTexture;
 
-layout(binding = kBaseColorTexture) uniform sampler2D baseColorTexture;
+uniform sampler2D baseColorTexture;
 
 layout(location = 0) out vec4 radiance;
 
@@ -25,7 +24,7 @@ void main() {
 
     vec4 base = baseColor * vec4(vertexColor, 1.0);
     // One level without mipmaps: the ray traced look has no footprint to choose a level by.
-    if (hasTexture != 0) base *= textureLod(baseColorTexture, uv, 0.0);
+    base *= textureLod(baseColorTexture, uv, 0.0);
     if (base.a < alphaCutoff) discard;
     float facing = abs(dot(normalize(normal), normalize(toCameraWorld)));
     radiance = vec4(base.rgb * (0.15 + 0.85 * facing) + emissive, 1.0);
