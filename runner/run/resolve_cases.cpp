@@ -66,9 +66,9 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
 void requireOutputs(const config::Experiment& experiment,
                     std::span<const technique::TechniqueInfo> techniques) {
     if (!config::isMeasuredHere(experiment)) return;
-    const technique::TechniqueInfo& info =
-        technique::findTechnique(techniques, experiment.technique, {});
-    const config::Outputs outputs = technique::outputsOf(info, config::programOf(experiment));
+    const config::Outputs outputs =
+        technique::outputsOf(technique::findTechnique(techniques, experiment.technique, {}),
+                             config::programOf(experiment));
     const std::string owner = "technique '" + experiment.technique + "'";
     const auto require = [&](const config::Selection& selection) {
         const SourceLocation& where = selection.location;
