@@ -58,6 +58,8 @@ Shader compile(const std::string& file, const ShaderSource& source) {
 Program::Program(const ShaderLibrary& library, const std::vector<std::string>& files,
                  const Defines& defines, const std::map<std::string, std::string>& snippets)
     : name_(glCreateProgram()) {
+    // For whoever looks at it from outside; 255 characters are what every device takes.
+    glObjectLabel(GL_PROGRAM, id(), -1, joined(files, " + ").substr(0, 255).c_str());
     for (const std::string& file : files) {
         const Shader shader = compile(file, library.assemble(file, defines, snippets));
         glAttachShader(id(), shader.get());  // keeps the shader as long as the program

@@ -1,14 +1,15 @@
 """drivers_test.py WHAT PROGRAM SOURCE FOLDER [LIBRARY]: the smoke configs, and those of configs/ beside this file, on more
 than one driver.
 
-WHAT  software  runs them on the software device into FOLDER/software, and keeps every GL program that they link (LIBRARY:
-                keep_programs and test_gl)
+WHAT  software  runs them on the software device into FOLDER/software, keeps every GL program that they link, and looks for
+                hazards at every draw (LIBRARY: keep_programs, check_hazards, and test_gl)
       zink      runs them on zink, Mesa's OpenGL through Vulkan, on lavapipe: no quality may differ from software's by more
                 than a picture's last bits
       gpu       runs them on the software device that calls itself a GPU (LIBRARY: pretended_gpu): no quality
                 may differ
       glslang   compiles the kept programs by glslang, whose reading of the language is a strict one, for OpenGL and to
                 SPIR-V; every file of a stage is in one of them
+      hazards   of what draws and dispatches did, nothing is left to chance (hazards/hazards.h)
 Exit 77: skipped, the last line says why.
 """
 import csv
@@ -24,6 +25,7 @@ WHAT, PROGRAM = sys.argv[1:3]
 SOURCE, FOLDER = map(pathlib.Path, sys.argv[3:5])
 LIBRARY = sys.argv[5:]
 PROGRAMS = FOLDER / "programs"
+HAZARDS = FOLDER / "hazards.txt"
 LAVAPIPE = pathlib.Path("/usr/share/vulkan/icd.d")
 
 KEY = ["frame", "repeat", "process", "pass", "metric"]
@@ -118,12 +120,13 @@ def lines_of(file):
 if WHAT == "software":
     shutil.rmtree(PROGRAMS, ignore_errors=True)
     PROGRAMS.mkdir(parents=True)
-    keeping = {"LD_PRELOAD": LIBRARY[0], "KEPT_PROGRAMS": str(PROGRAMS)}
+    HAZARDS.unlink(missing_ok=True)
+    keeping = {"LD_PRELOAD": ":".join(LIBRARY[:2]), "KEPT_PROGRAMS": str(PROGRAMS), "HAZARDS": str(HAZARDS)}
     measure("software", "software", keeping)
     preview = [PROGRAM, "scene", "shapes/torus", "--device", "software", "--render", FOLDER / "preview.png"]
     subprocess.run(preview, env=os.environ | keeping, check=True)
     # What hardware alone is asked: its balance.
-    subprocess.run([LIBRARY[1], "--gtest_filter=Balance.*"], env=os.environ | keeping, check=True)
+    subprocess.run([LIBRARY[2], "--gtest_filter=Balance.*"], env=os.environ | keeping, check=True)
 elif WHAT == "zink":
     vulkan = list(LAVAPIPE.glob("lvp_icd*.json")) or skip("Mesa's lavapipe is not here (scripts/setup --tests installs it)")
     mesa = int(read("software", "manifest")["gl"]["mesa_version"].split(".")[0])
@@ -135,6 +138,12 @@ elif WHAT == "zink":
     assert "zink" in device, device
     # A last bit of a picture's values is the compiler's: means of them moved by up to 1e-6.
     compare("zink", without, tolerance=1e-5)
+elif WHAT == "hazards":
+    lines = set(HAZARDS.read_text().splitlines())
+    hazards = sorted(line for line in lines if line.startswith("hazard: "))
+    print(*hazards, sep="\n")
+    print(f"{len(lines) - len(hazards)} programs drew or were dispatched, {len(hazards)} hazards")
+    assert len(lines) > len(hazards) and not hazards
 elif WHAT == "gpu":
     device = measure("gpu", "gpu", {"LD_PRELOAD": LIBRARY[0]})
     assert "Pretended GPU" in device, device
