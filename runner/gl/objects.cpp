@@ -81,15 +81,25 @@ void Buffer::clear(std::uint32_t value) {
     glClearNamedBufferData(id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
+// Bound again and again within frames, so the device is asked only beyond what every one has (16
+// MiB of storage, 16 KiB of uniforms): a driver that has threads would wait for them.
+constexpr std::size_t kStorageBytesOfAll = std::size_t{1} << 24;
+constexpr std::size_t kUniformBytesOfAll = std::size_t{1} << 14;
+
 void Buffer::bindStorage(GLuint binding) const {
-    checkLimit("a storage buffer", static_cast<long long>(sizeBytes_), "bytes",
-               getInteger64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE), "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
+    if (sizeBytes_ > kStorageBytesOfAll) {
+        checkLimit("a storage buffer", static_cast<long long>(sizeBytes_), "bytes",
+                   getInteger64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
+                   "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
+    }
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id());
 }
 
 void Buffer::bindUniform(GLuint binding) const {
-    checkLimit("a uniform buffer", static_cast<long long>(sizeBytes_), "bytes",
-               getInteger(GL_MAX_UNIFORM_BLOCK_SIZE), "GL_MAX_UNIFORM_BLOCK_SIZE");
+    if (sizeBytes_ > kUniformBytesOfAll) {
+        checkLimit("a uniform buffer", static_cast<long long>(sizeBytes_), "bytes",
+                   getInteger(GL_MAX_UNIFORM_BLOCK_SIZE), "GL_MAX_UNIFORM_BLOCK_SIZE");
+    }
     glBindBufferBase(GL_UNIFORM_BUFFER, binding, id());
 }
 

@@ -82,12 +82,20 @@ void Program::use() const {
     glUseProgram(id());
 }
 
+GLint Program::findLocation(const char* name) const {
+    auto found = locations_.find(std::string_view(name));
+    if (found == locations_.end()) {
+        found = locations_.emplace(name, glGetUniformLocation(id(), name)).first;
+    }
+    return found->second;
+}
+
 bool Program::isActive(const char* name) const {
-    return glGetUniformLocation(id(), name) >= 0;
+    return findLocation(name) >= 0;
 }
 
 GLint Program::location(const char* name) const {
-    const GLint location = glGetUniformLocation(id(), name);
+    const GLint location = findLocation(name);
     if (location < 0) {
         const std::string program = fmt::format("uniform {}, program {}", name, id());
         gfxrepro::detail::assertionFailed("uniform is active", program, __FILE__, __LINE__);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
@@ -80,8 +81,11 @@ class Program {
     }
 
   private:
+    /// Asked for once a name; −1 for one that is not active.
+    GLint findLocation(const char* name) const;
     GLint location(const char* name) const;
     detail::Name<detail::deleteProgram> name_;
+    mutable std::map<std::string, GLint, std::less<>> locations_;
 };
 
 /// Translates the line numbers of a driver's log (Mesa "0:12(3):", NVIDIA "0(12) :") into
