@@ -281,7 +281,8 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
     run::MachineWatch watch(progress, run.directory, std::move(states), machineRoot(),
-                            run.manifest.at("gl").value("uuid", ""));
+                            run.manifest.at("gl").value("uuid", ""),
+                            run.manifest.at("gl").value("node", ""));
     const run::RunOutcome outcome =
         run::runUnits(units, rounds, run.directory, run.scheduler, phases, watch);
     progress.clear();

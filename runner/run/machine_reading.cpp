@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <numeric>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "runner/core/text.h"
+#include "runner/run/kernel_files.h"
 
 namespace gfxrepro::run {
 
@@ -29,28 +28,6 @@ std::vector<std::string> wordsOf(const std::string& line) {
     std::vector<std::string> words;
     for (std::string word; stream >> word;) words.push_back(word);
     return words;
-}
-
-std::vector<std::string> linesOf(const fs::path& path) {
-    std::ifstream file(path);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(file, line);) lines.push_back(line);
-    return lines;
-}
-
-std::optional<double> numberIn(const fs::path& path) {
-    const std::vector<std::string> lines = linesOf(path);
-    return lines.empty() ? std::nullopt : parseDouble(trimmed(lines.front()));
-}
-
-/// Entries of a folder whose names begin so; none where there is no such folder.
-std::vector<fs::path> entriesOf(const fs::path& folder, std::string_view begin) {
-    std::error_code isAbsent;
-    std::vector<fs::path> entries;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, isAbsent)) {
-        if (entry.path().filename().string().starts_with(begin)) entries.push_back(entry.path());
-    }
-    return entries;
 }
 
 double secondsOfTicks(double ticks) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include <unistd.h>
@@ -190,8 +191,14 @@ void MachineWatch::unitBegan(const Unit& unit) {
 }
 
 void MachineWatch::tick() {
-    if (before_ && !gpu_.empty()) {
-        if (const auto reading = gl::readGpu(gpu_)) {
+    if (before_) {
+        std::optional<gl::GpuReading> reading;
+        if (!gpu_.empty()) reading = gl::readGpu(gpu_);
+        if (!reading) {
+            const auto now = std::chrono::steady_clock::now().time_since_epoch();
+            reading = kernelGpu_.read(std::chrono::duration<double>(now).count());
+        }
+        if (reading) {
             const std::vector<int> own = processTree(::getpid());
             gpuState_.add(*reading, {own.begin(), own.end()});
         }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runner/run/gpu_state.h"
+#include "runner/run/kernel_gpu.h"
 #include "runner/run/machine_reading.h"
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
@@ -57,14 +58,16 @@ class MachineState {
 class MachineWatch : public Observer {
   public:
     /// Of a run with these states so far (machineStatesIn). `next` and the folder must outlive it;
-    /// `root` as readMachine's; `gpu` is the UUID of the device, where it has one.
+    /// `root` as readMachine's; `gpu` is the UUID of the device and `node` its file, where it has
+    /// them (DeviceInfo).
     MachineWatch(Observer& next, const RunDirectory& directory,
                  std::map<std::string, MachineState> states, std::filesystem::path root,
-                 std::string gpu)
+                 std::string gpu, const std::string& node)
         : next_(next),
           directory_(directory),
           root_(std::move(root)),
           gpu_(std::move(gpu)),
+          kernelGpu_(root_, node),
           tables_(std::move(states)) {}
 
     void unitsAdded(const std::vector<Unit>& units) override { next_.unitsAdded(units); }
@@ -83,6 +86,7 @@ class MachineWatch : public Observer {
     const RunDirectory& directory_;
     std::filesystem::path root_;
     std::string gpu_;
+    KernelGpu kernelGpu_;
     std::optional<MachineReading> before_;
     GpuState gpuState_;  // of the unit that runs
     std::map<std::string, MachineState> tables_;

@@ -12,15 +12,12 @@ namespace {
 using config::JsonKind;
 using config::JsonMember;
 
-constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
-                                  {"/platform", JsonKind::Text},
-                                  {"/vendor", JsonKind::Text},
-                                  {"/renderer", JsonKind::Text},
-                                  {"/version", JsonKind::Text},
-                                  {"/mesa_version", JsonKind::Text},
-                                  {"/uuid", JsonKind::Text},
-                                  {"/is_software", JsonKind::Boolean},
-                                  {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kDevice[] = {
+    {"/index", JsonKind::Int},           {"/platform", JsonKind::Text},
+    {"/vendor", JsonKind::Text},         {"/renderer", JsonKind::Text},
+    {"/version", JsonKind::Text},        {"/mesa_version", JsonKind::Text},
+    {"/uuid", JsonKind::Text},           {"/node", JsonKind::Text},
+    {"/is_software", JsonKind::Boolean}, {"/timer_resolution_ns", JsonKind::Number}};
 constexpr JsonMember kBalance[] = {{"/fragment_gflops", JsonKind::Number},
                                    {"/compute_gflops", JsonKind::Number},
                                    {"/fill_gpixels_per_s", JsonKind::Number},
@@ -86,6 +83,7 @@ Json toJson(const gl::DeviceInfo& info) {
                  {"version", info.version},
                  {"mesa_version", info.mesaVersion},
                  {"uuid", info.uuid},
+                 {"node", info.node},
                  {"is_software", info.isSoftware},
                  {"timer_resolution_ns", info.timerResolutionNs}};
     if (info.balance) json["balance"] = toJson(*info.balance);
@@ -102,6 +100,7 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("version").get_to(info.version);
     json.at("mesa_version").get_to(info.mesaVersion);
     json.at("uuid").get_to(info.uuid);
+    json.at("node").get_to(info.node);
     json.at("is_software").get_to(info.isSoftware);
     json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
     if (json.contains("balance")) info.balance = balanceFromJson(json["balance"]);

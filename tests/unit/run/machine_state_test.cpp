@@ -216,7 +216,7 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     Machine machine;
     machine.read();
     Told told;
-    run::MachineWatch watch(told, directory, {}, machine.root(), "");
+    run::MachineWatch watch(told, directory, {}, machine.root(), "", "");
     const auto run = [&](const run::Case& item, double othersS) {
         const run::Unit unit{&item, 0, {}};
         watch.unitBegan(unit);
