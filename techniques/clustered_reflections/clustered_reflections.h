@@ -7,10 +7,12 @@
 
 #include "runner/technique/technique.h"
 #include "techniques/clustered_reflections/reflection_params.h"
-#include "techniques/reflections/composite.h"
-#include "techniques/reflections/embree_tracer.h"
+#include "techniques/reflections/frame.h"
 
 namespace gfxrepro::clustered_reflections {
+
+/// What the technique records: each metric with its unit, each pass with its meaning.
+config::Outputs outputs();
 
 class ClusteredReflections final : public technique::Technique {
   public:
@@ -21,7 +23,7 @@ class ClusteredReflections final : public technique::Technique {
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override {
-        return composite_ ? &composite_->output() : nullptr;
+        return frame_ ? &frame_->composite.output() : nullptr;
     }
 
   private:
@@ -37,7 +39,6 @@ class ClusteredReflections final : public technique::Technique {
     std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders);
     /// Traced once for frames that are the same.
     const Truth& truthOf(const reflections::HostGBuffer& gbuffer);
-    image::ImageF pictureOf(const std::vector<reflections::TracedSample>& samples);
 
     void recordShares(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer) const;
     void recordMemory(technique::Recorder& recorder) const;
@@ -50,19 +51,13 @@ class ClusteredReflections final : public technique::Technique {
     std::vector<std::uint8_t> reflectorsOf(const std::string& name) const;
 
     ReflectionParams params_;
-    std::optional<reflections::ReflectiveScene> scene_;
-    glm::ivec2 outputSizePx_{0};
-    std::optional<reflections::GpuObjects> objects_;
-    std::optional<reflections::EnvironmentMap> map_;
+    std::optional<reflections::Frame> frame_;
     std::optional<reflections::GBufferRenderer> gbufferRenderer_;
     std::optional<reflections::GBuffer> gbuffer_;
     std::optional<reflections::ReflectionTarget> target_;
     std::unique_ptr<reflections::ReflectionTracer> tracer_;
     ClusteredTracer* clusteredTracer_ = nullptr;  // the same, of `method: clustered`
-    std::optional<reflections::Composite> composite_;
 
-    std::unique_ptr<gl::Profiler> untimed_;  // of the truth
-    std::optional<reflections::EmbreeTracer> truthTracer_;
     std::optional<reflections::EmbreeTracer> convergedTracer_;  // more rays for glossy samples
     std::optional<Truth> truth_;
     bool hasReflections_ = false;  // in the view that record() is at

@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "runner/core/error.h"
-#include "runner/metrics/flip.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
-#include "techniques/clustered_reflections/reflection_pictures.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
@@ -23,8 +22,29 @@ using reflections::HostGBuffer;
 
 namespace {
 
-double meanOf(const glm::dvec3& channels) {
-    return (channels.x + channels.y + channels.z) / 3.0;
+/// Neighbouring numbers get hues a golden section apart, and two strengths.
+glm::vec3 colorOf(std::uint16_t number) {
+    const glm::vec3 pure =
+        reflections::hue(std::fmod(0.61803399F * static_cast<float>(number), 1.0F));
+    const float strength = number % 2 == 0 ? 0.95F : 0.6F;
+    return strength * glm::mix(glm::vec3(1.0F), pure, 0.8F);
+}
+
+/// [xie2017] Fig. 22 and 23: a colour a number (a reflector or cluster), 0 is grey; of the
+/// samples, averaged to output pixels.
+image::ImageF numbersPicture(const HostGBuffer& gbuffer, const std::vector<std::uint16_t>& numbers,
+                             int supersampling) {
+    return reflections::averagedPicture(gbuffer, supersampling, [&](std::size_t i) {
+        return numbers[i] == 0 ? reflections::dimmed(gbuffer, i) : colorOf(numbers[i]);
+    });
+}
+
+std::vector<std::uint16_t> reflectorNumbers(const HostGBuffer& gbuffer) {
+    std::vector<std::uint16_t> numbers(gbuffer.surface.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        numbers[i] = static_cast<std::uint16_t>(gbuffer.reflector(i));
+    }
+    return numbers;
 }
 
 bool isSameView(const kit::View& a, const kit::View& b) {
@@ -39,12 +59,12 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
     // A view that reflects nothing has no errors: claims on them are left unmeasured.
     const auto isReflective = [&](std::uint32_t surface) { return (surface & 0xFFFFU) != 0; };
     hasReflections_ = std::ranges::any_of(gbuffer.surface, isReflective);
-    if (!hasReflections_) scene_->printEmptyView();
+    if (!hasReflections_) frame_->scene.printEmptyView();
     recordShares(recorder, gbuffer);
     recordMemory(recorder);
     if (!params_.measuresErrors && !params_.showsPictures && !clusteredTracer_) return;
 
-    const image::ImageF picture = composite_->read();
+    const image::ImageF picture = frame_->composite.read();
     if (params_.showsPictures) {
         kit::ImageLayers layers = reflections::surfaceLayers(gbuffer, params_.supersampling);
         if (params_.measuresErrors) layers.errors(picture, truthOf(gbuffer).picture);
@@ -52,8 +72,8 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
         recorder.image("reflectors",
                        numbersPicture(gbuffer, reflectorNumbers(gbuffer), params_.supersampling),
                        seenFrom(gbuffer.view));
-        composite_->render(*gbuffer_, *target_, true);
-        recorder.image("reflection", composite_->read(), seenFrom(gbuffer.view));
+        frame_->composite.render(*gbuffer_, *target_, true);
+        recorder.image("reflection", frame_->composite.read(), seenFrom(gbuffer.view));
     }
     if (params_.measuresErrors && hasReflections_ && params_.drawsReflections()) {
         recordErrors(recorder, gbuffer, picture);
@@ -63,10 +83,11 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
 
 void ClusteredReflections::recordShares(technique::Recorder& recorder,
                                         const HostGBuffer& gbuffer) const {
-    std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(frame_->scene.reflectorCount()) +
+                                       1);
     std::vector<std::size_t> wholes(isPlanar.size());  // by reflector: the object it is a part of
     std::uint64_t diffuseTriangles = 0, reflectiveTriangles = 0;
-    for (const reflections::Object& object : scene_->objects()) {
+    for (const reflections::Object& object : frame_->scene.objects()) {
         const auto reflector = static_cast<std::size_t>(object.reflector);
         isPlanar[reflector] = object.isPlanar ? 1 : 0;
         wholes[reflector] = static_cast<std::size_t>(object.wholeReflector);
@@ -90,8 +111,8 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
     // Objects, as the thesis counts them; parts are what the clusters are made of.
     recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
     recorder.metric("visible_parts", static_cast<double>(visibleParts.size()), "reflector");
-    recorder.metric("reflectors", scene_->wholeReflectorCount(), "reflector");
-    recorder.metric("parts", scene_->reflectorCount(), "reflector");
+    recorder.metric("reflectors", frame_->scene.wholeReflectorCount(), "reflector");
+    recorder.metric("parts", frame_->scene.reflectorCount(), "reflector");
     recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");
     recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles), "triangle");
 }
@@ -99,14 +120,14 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
 // Sec. 4.7.1 counts what holds colours and depths of the screen and of a cluster as frame buffers.
 void ClusteredReflections::recordMemory(technique::Recorder& recorder) const {
     const std::size_t ofScreen =
-        gbuffer_->sizeBytes() + target_->sizeBytes() + composite_->sizeBytes();
+        gbuffer_->sizeBytes() + target_->sizeBytes() + frame_->composite.sizeBytes();
     recorder.metric("memory_bytes", static_cast<double>(ofScreen + tracer_->sizeBytes()), "byte");
     recorder.metric("frame_buffer_bytes",
                     static_cast<double>(ofScreen + tracer_->frameBufferBytes()), "byte");
 }
 
 const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuffer& gbuffer) {
-    const auto poses = objects_->poses();
+    const auto poses = frame_->objects.poses();
     if (truth_ && isSameView(truth_->view, gbuffer.view) &&
         std::ranges::equal(truth_->poses, poses)) {
         return *truth_;
@@ -114,49 +135,31 @@ const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuff
     truth_.emplace();
     truth_->view = gbuffer.view;
     truth_->poses.assign(poses.begin(), poses.end());
-    truthTracer_->update(*objects_, *untimed_);
-    truth_->samples = truthTracer_->trace(gbuffer);
-    truth_->picture = pictureOf(truth_->samples);
+    frame_->truth->update(frame_->objects, *frame_->untimed);
+    truth_->samples = frame_->truth->trace(gbuffer);
+    truth_->picture = frame_->pictureOf(*gbuffer_, truth_->samples);
     if (convergedTracer_) {
-        convergedTracer_->update(*objects_, *untimed_);
-        truth_->converged = pictureOf(convergedTracer_->trace(gbuffer));
+        convergedTracer_->update(frame_->objects, *frame_->untimed);
+        truth_->converged = frame_->pictureOf(*gbuffer_, convergedTracer_->trace(gbuffer));
     }
     return *truth_;
-}
-
-// The same composite makes it, so that nothing but the reflections differs.
-image::ImageF ClusteredReflections::pictureOf(
-    const std::vector<reflections::TracedSample>& samples) {
-    std::vector<glm::vec4> radiance;
-    radiance.reserve(samples.size());
-    for (const reflections::TracedSample& sample : samples) {
-        radiance.emplace_back(sample.radiance, 1.0F);
-    }
-    reflections::ReflectionTarget target(gbuffer_->view.sizePx);
-    target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
-    composite_->render(*gbuffer_, target);
-    return composite_->read();
 }
 
 void ClusteredReflections::recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
                                         const image::ImageF& picture) {
     const Truth& known = truthOf(gbuffer);
     const image::ImageF& truth = known.picture;
-    const std::vector<std::uint8_t> reflective =
-        reflections::reflectivePixels(gbuffer, params_.supersampling);
-    const glm::dvec3 errors = kit::channelErrors(picture, truth, &reflective);
-    recorder.metric("channel_error", meanOf(errors), "level");
+    const glm::dvec3 errors = frame_->recordErrors(recorder, gbuffer, picture, truth);
     recorder.metric("channel_error_r", errors.r, "level");
     recorder.metric("channel_error_g", errors.g, "level");
     recorder.metric("channel_error_b", errors.b, "level");
     if (convergedTracer_) {
-        recorder.metric("channel_error_converged",
-                        meanOf(kit::channelErrors(picture, known.converged, &reflective)), "level");
+        const auto reflective = reflections::reflectivePixels(gbuffer, params_.supersampling);
+        recorder.metric(
+            "channel_error_converged",
+            reflections::meanOf(kit::channelErrors(picture, known.converged, &reflective)),
+            "level");
     }
-    recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, truth, nullptr)),
-                    "level");
-    recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
-    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truth), "dB");
     if (!params_.showsPictures) return;
     recorder.image("truth", truth, seenFrom(gbuffer.view, "result"));
     if (convergedTracer_)
@@ -190,22 +193,19 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
     if (params_.showsPictures) {
         recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
                        seenFrom(gbuffer.view));
-        recorder.image(
-            "environment",
-            reflections::markedPicture(picture, environment, gbuffer, params_.supersampling),
-            seenFrom(gbuffer.view));
+        frame_->recordMarks(recorder, "environment", gbuffer, picture, environment);
     }
 }
 
 /// By reflector id, 1 where its mesh has this name. Throws Error where none has.
 std::vector<std::uint8_t> ClusteredReflections::reflectorsOf(const std::string& name) const {
-    std::vector<std::uint8_t> isNamed(static_cast<std::size_t>(scene_->reflectorCount()) + 1);
+    std::vector<std::uint8_t> isNamed(static_cast<std::size_t>(frame_->scene.reflectorCount()) + 1);
     std::set<std::string> names;
-    for (std::size_t i = 0; i < scene_->objects().size(); ++i) {
-        const int reflector = scene_->objects()[i].reflector;
+    for (std::size_t i = 0; i < frame_->scene.objects().size(); ++i) {
+        const int reflector = frame_->scene.objects()[i].reflector;
         if (reflector == 0) continue;
-        const auto mesh = static_cast<std::size_t>(scene_->scene().instances[i].mesh);
-        const std::string& meshName = scene_->scene().meshes[mesh].name;
+        const auto mesh = static_cast<std::size_t>(frame_->scene.scene().instances[i].mesh);
+        const std::string& meshName = frame_->scene.scene().meshes[mesh].name;
         names.insert(meshName);
         isNamed[static_cast<std::size_t>(reflector)] = meshName == name ? 1 : 0;
     }
@@ -227,8 +227,8 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
         }
     }
     const OcclusionErrors errors = occlusionErrors(
-        {gbuffer, truthOf(gbuffer).samples, clusterOfSample, clusteredTracer_->cameras(), *scene_,
-         truthTracer_->rays(), params_.lobe, reflectorFamilies(*scene_)});
+        {gbuffer, truthOf(gbuffer).samples, clusterOfSample, clusteredTracer_->cameras(),
+         frame_->scene, frame_->truth->rays(), params_.lobe, reflectorFamilies(frame_->scene)});
     const auto share = [&](const char* name, std::size_t samples) {
         recorder.metric(name, kit::percent(samples, errors.reflective), "%");
     };
@@ -242,11 +242,9 @@ void ClusteredReflections::recordOcclusion(technique::Recorder& recorder,
         recorder.metric("occlusion_error_planar_pct",
                         kit::percent(errors.planarMissing, errors.planar), "%");
     }
-    if (!params_.showsPictures) return;
-    recorder.image(
-        "occlusion",
-        reflections::markedPicture(picture, errors.isMissing, gbuffer, params_.supersampling),
-        seenFrom(gbuffer.view));
+    if (params_.showsPictures) {
+        frame_->recordMarks(recorder, "occlusion", gbuffer, picture, errors.isMissing);
+    }
 }
 
 }  // namespace gfxrepro::clustered_reflections

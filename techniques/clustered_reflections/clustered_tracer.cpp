@@ -4,8 +4,6 @@
 #include <optional>
 
 #include "techniques/clustered_reflections/cluster_atlas.h"
-#include "techniques/clustered_reflections/cluster_concavity.h"
-#include "techniques/clustered_reflections/cluster_intersection.h"
 #include "techniques/clustered_reflections/visible_triangles.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -20,6 +18,31 @@ ClusteredSettings limited(ClusteredSettings settings) {
 TexelContent contentOf(ImageDrawing drawing) {
     return drawing == ImageDrawing::Visible ? TexelContent::Triangles : TexelContent::Colours;
 }
+
+/// Which clusters' images show their own reflector ([xie2017] Sec. 4.7.4). The second way: the
+/// concave ones. The thesis looks whether samples lie before the near plane. Here the normals
+/// decide: the sum of (P_i − P_c) · n_i over a cluster's samples is negative where they point
+/// together. The first way: all that are not planar.
+class ConcavityPass {
+  public:
+    ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex, bool showsBack) {
+        gl::Defines defines = imageDefines();
+        defines["MARKS_CONVEX"] = marksConvex ? 1 : 0;
+        defines["SHOWS_BACK"] = showsBack ? 1 : 0;
+        pass_ = gl::Pass(shaders, {"clustered_reflections/concavity.comp.glsl"}, defines);
+    }
+    /// Sets kShowsOwn in the flags of cameras.
+    void mark(const reflections::GBuffer& gbuffer, const Clusters& clusters,
+              const gl::Buffer& cameras) const {
+        pass_.dispatch({kMaxClusters, 1, 1}, gl::Resources{{"Cameras", cameras},
+                                                           {"Samples", clusters.samples},
+                                                           {"Ranges", clusters.ranges}}
+                                                 .with(gbuffer.resourcesFor(pass_)));
+    }
+
+  private:
+    gl::Pass pass_;
+};
 
 }  // namespace
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 #include <span>
-#include <tuple>
 
 namespace gfxrepro::clustered_reflections {
 namespace {

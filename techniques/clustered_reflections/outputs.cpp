@@ -1,4 +1,4 @@
-#include "techniques/clustered_reflections/outputs.h"
+#include "techniques/clustered_reflections/clustered_reflections.h"
 
 namespace gfxrepro::clustered_reflections {
 

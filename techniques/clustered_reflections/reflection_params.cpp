@@ -1,9 +1,6 @@
 #include "techniques/clustered_reflections/reflection_params.h"
 
-#include <fmt/format.h>
-
 #include <glm/trigonometric.hpp>
-#include <initializer_list>
 
 namespace gfxrepro::clustered_reflections {
 namespace {
@@ -46,10 +43,7 @@ float number(config::Params& params, const char* name, double fallback,
     return static_cast<float>(params.getDouble(name, fallback, spec));
 }
 
-reflections::LobeSettings readLobe(config::Params& params) {
-    reflections::LobeSettings lobe;
-    lobe.rays = params.getInt(
-        "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});
+void readLobe(config::Params& params, reflections::LobeSettings& lobe) {
     lobe.maxHalfAngleRad =
         glm::radians(number(params, "lobe_half_angle_deg", 34.4,
                             {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
@@ -57,7 +51,6 @@ reflections::LobeSettings readLobe(config::Params& params) {
         number(params, "far_exponent", static_cast<double>(lobe.farExponent),
                {"e of the distance where reflections of glossiness g end: diagonal · (1 − g)^e",
                 "1", 0.0, 64.0});
-    return lobe;
 }
 
 BinSettings readBins(config::Params& params) {
@@ -114,34 +107,18 @@ ClusteredSettings readClustered(config::Params& params) {
 
 ReflectionParams::ReflectionParams(config::Params& params)
     : method(
-          params.getEnum("method", Method::Clustered, kMethods, {"where reflections come from"})),
-      view(params.getText("view", "",
-                          {"a path or camera of the scene; none: its first path, else its first "
-                           "camera"})),
-      hasMotion(params.getBool("motion", false, {"objects move as the scene says"})),
-      supersampling(params.getInt("supersampling", 2,
-                                  {"samples along each edge of an output pixel", "samples", 1, 8})),
-      lobe(readLobe(params)),
-      clustered(readClustered(params)) {
-    const float given = number(params, "glossiness", -1.0,
-                               {"of all reflectors, 0 a mirror, 1 the widest lobe; -1: as their "
-                                "materials say",
-                                "1", -1.0, 1.0});
-    if (given >= 0.0F) {
-        glossiness = given;
-    } else if (given != -1.0F) {
-        throw Error(params.locationOf("glossiness"),
-                    fmt::format("technique 'clustered_reflections': glossiness is {}; allowed: -1, "
-                                "0 … 1",
-                                given));
-    }
-    reflectors.maxRoughness = number(params, "reflector_roughness", 0.4,
-                                     {"materials up to this roughness reflect", "1", 0.0, 1.0});
+          params.getEnum("method", Method::Clustered, kMethods, {"where reflections come from"})) {
+    readView(params);
+    readMotionAndSupersampling(params, 2);
+    readRays(params);
+    readLobe(params, lobe);
+    clustered = readClustered(params);
+    readGlossiness(params, "clustered_reflections");
+    readRoughness(params);
     reflectors.splitsParts = params.getBool(
         "reflector_parts", true,
         {"smooth parts of an object are reflectors of their own: foot and shell, in- and outside"});
-    textureFilter = params.getEnum("texture_filter", textureFilter, reflections::kTextureFilters,
-                                   reflections::kTextureFilterSpec);
+    readTextureFilter(params);
     thickness =
         number(params, "thickness", 0.02,
                {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});

@@ -1,11 +1,11 @@
 // Parameters of clustered_reflections.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "runner/config/params.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
+#include "techniques/reflections/frame.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -17,21 +17,12 @@ enum class Method {
     Embree,          // on the CPU: the truth
 };
 
-struct ReflectionParams {
+struct ReflectionParams : reflections::FrameSettings {
     Method method = Method::Clustered;
-    std::string view;  // a path or camera of the scene; empty: its first path, else first camera
-    bool hasMotion = false;
-    int supersampling = 2;
-    std::optional<float> glossiness;  // overrides the materials'
-    reflections::LobeSettings lobe;
-    reflections::ReflectorRule reflectors;
-    reflections::TextureFilter textureFilter = reflections::TextureFilter::Footprint;
     ClusteredSettings clustered;  // camera.diagonalM and camera.lobe are set up with the scene
     float thickness = 0.02F;      // screen space: of what the eye sees, in diagonals of the box
-    bool measuresErrors = true;   // against Embree
     std::string errorsOf;         // name of the mesh whose samples' occlusion counts; empty: all
     int convergedRays = 0;        // of a second truth of glossy samples; 0: there is none
-    bool showsPictures = false;
 
     /// Whether there are reflections to look at: not where clusters are only counted.
     bool drawsReflections() const {

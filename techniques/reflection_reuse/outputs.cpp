@@ -1,4 +1,4 @@
-#include "techniques/reflection_reuse/outputs.h"
+#include "techniques/reflection_reuse/reflection_reuse.h"
 
 namespace gfxrepro::reflection_reuse {
 

@@ -8,9 +8,11 @@
 #include "runner/technique/technique.h"
 #include "techniques/reflection_reuse/reflection_reuse_params.h"
 #include "techniques/reflection_reuse/resting_tracer.h"
-#include "techniques/reflections/embree_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
+
+/// What the technique records: each metric with its unit, each pass with its meaning.
+config::Outputs outputs();
 
 class ReflectionReuse final : public technique::Technique {
   public:
@@ -22,7 +24,7 @@ class ReflectionReuse final : public technique::Technique {
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override {
-        return composite_ ? &composite_->output() : nullptr;
+        return frame_ ? &frame_->composite.output() : nullptr;
     }
 
   private:
@@ -53,16 +55,12 @@ class ReflectionReuse final : public technique::Technique {
                         const image::ImageF& picture, const image::ImageF& truth);
 
     ReuseParams params_;
-    std::optional<reflections::ReflectiveScene> scene_;
-    glm::ivec2 outputSizePx_{0};
-    std::optional<reflections::GpuObjects> objects_;
-    std::optional<reflections::EnvironmentMap> map_;
+    std::optional<reflections::Frame> frame_;
     std::unique_ptr<reflections::ReflectionTracer> tracer_;
     std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
     std::optional<FullTracing> fullTracing_;  // of `ray_traced`
-    std::optional<reflections::Composite> composite_;
     kit::View view_;
-    int frame_ = -1;         // last rendered
+    int frameIndex_ = -1;    // last rendered
     int lastKeyFrame_ = -1;  // last recorded key frame
     int frameCount_ = 0;
 
@@ -70,8 +68,6 @@ class ReflectionReuse final : public technique::Technique {
     std::optional<double> leastRecomputeMs_;      // of the frame at hand
     std::vector<glm::dvec2> recomputed_;          // (samples, ms) of frames that are not key frames
 
-    std::unique_ptr<gl::Profiler> untimed_;  // of the truth
-    std::optional<reflections::EmbreeTracer> truthTracer_;
     PoseWatch truthPoses_;
 };
 

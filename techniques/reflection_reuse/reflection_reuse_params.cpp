@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <initializer_list>
-
 namespace gfxrepro::reflection_reuse {
 namespace {
 
@@ -39,21 +37,6 @@ constexpr config::Choice<Resampling> kResamplings[] = {
 float number(config::Params& params, const char* name, float fallback,
              const config::ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
-}
-
-std::optional<float> readGlossiness(config::Params& params) {
-    const float given = number(params, "glossiness", -1.0F,
-                               {"of all reflectors, 0 a mirror, 1 the widest lobe; -1: as their "
-                                "materials say",
-                                "1", -1.0, 1.0});
-    if (given == -1.0F) return std::nullopt;
-    if (given < 0.0F) {
-        throw Error(params.locationOf("glossiness"),
-                    fmt::format("technique 'reflection_reuse': glossiness is {}; allowed: -1, "
-                                "0 … 1",
-                                given));
-    }
-    return given;
 }
 
 ReuseSettings readReuse(config::Params& params) {
@@ -101,28 +84,21 @@ ReuseSettings readReuse(config::Params& params) {
 ReuseParams::ReuseParams(config::Params& params)
     : method(params.getEnum("method", Method::Reuse, kMethods, {"where reflections come from"})),
       tracer(params.getEnum("tracer", Tracer::Compute, kTracers,
-                            {"what traces key frames and recomputed samples"})),
-      view(params.getText("view", "",
-                          {"a path or camera of the scene; none: its first path, else its first "
-                           "camera"})),
-      pathFrames(params.getInt("path_frames", 500,
-                               {"of the whole path: the speed along it", "frames", 1, 1000000})),
-      firstFrame(
-          params.getInt("first_frame", 0,
-                        {"of the path: where the first measured frame lies", "frame", 0, 999999})),
-      hasMotion(params.getBool("motion", false, {"objects move as the scene says"})),
-      supersampling(params.getInt("supersampling", 1,
-                                  {"samples along each edge of an output pixel", "samples", 1, 8})),
-      blend(params.getEnum("blend", reflections::Blend::Fresnel, kBlends,
-                           {"what weighs the reflected colour"})),
-      reuse(readReuse(params)) {
-    reflectors.maxRoughness = static_cast<float>(params.getDouble(
-        "reflector_roughness", 0.4, {"materials up to this roughness reflect", "1", 0.0, 1.0}));
-    textureFilter = params.getEnum("texture_filter", textureFilter, reflections::kTextureFilters,
-                                   reflections::kTextureFilterSpec);
-    glossiness = readGlossiness(params);
-    lobe.rays = params.getInt(
-        "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});
+                            {"what traces key frames and recomputed samples"})) {
+    readView(params);
+    pathFrames = params.getInt("path_frames", pathFrames,
+                               {"of the whole path: the speed along it", "frames", 1, 1000000});
+    firstFrame =
+        params.getInt("first_frame", firstFrame,
+                      {"of the path: where the first measured frame lies", "frame", 0, 999999});
+    readMotionAndSupersampling(params, 1);
+    blend = params.getEnum("blend", reflections::Blend::Fresnel, kBlends,
+                           {"what weighs the reflected colour"});
+    reuse = readReuse(params);
+    readRoughness(params);
+    readTextureFilter(params);
+    readGlossiness(params, "reflection_reuse");
+    readRays(params);
     measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
     showsPictures = params.getBool(
         "pictures", false, {"result, truth, errors, recomputed samples, key frame, offsets"});

@@ -1,13 +1,9 @@
 // Parameters of reflection_reuse.
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "runner/config/params.h"
 #include "techniques/reflection_reuse/reuse_renderer.h"
-#include "techniques/reflections/composite.h"
-#include "techniques/reflections/surfaces.h"
+#include "techniques/reflections/frame.h"
 
 namespace gfxrepro::reflection_reuse {
 
@@ -23,22 +19,12 @@ enum class Tracer {
     Clustered,  // chapter 4: "any tracer that returns radiance and distance" (Sec. 5.1)
 };
 
-struct ReuseParams {
+struct ReuseParams : reflections::FrameSettings {
     Method method = Method::Reuse;
     Tracer tracer = Tracer::Compute;
-    std::string view;  // a path or camera of the scene; empty: its first path, else first camera
     int pathFrames = 500;
     int firstFrame = 0;
-    bool hasMotion = false;
-    int supersampling = 1;
-    reflections::Blend blend = reflections::Blend::Fresnel;
-    reflections::ReflectorRule reflectors;
-    reflections::TextureFilter textureFilter = reflections::TextureFilter::Footprint;
-    std::optional<float> glossiness;  // of all reflectors, instead of their materials'
-    reflections::LobeSettings lobe;
     ReuseSettings reuse;  // isDirect is set, too
-    bool measuresErrors = true;
-    bool showsPictures = false;
     bool fitsRecompute = false;
     int exhaustiveSamples = 0;  // searched over their whole reflector; 0: none
 

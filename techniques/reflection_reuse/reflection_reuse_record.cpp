@@ -1,17 +1,17 @@
 // What is recorded of a frame: shares, choice of key frames, memory, errors, pictures.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <glm/gtc/constants.hpp>
 
 #include "runner/image/srgb.h"
-#include "runner/metrics/flip.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/reflection_reuse/linear_fit.h"
 #include "techniques/reflection_reuse/match_check.h"
 #include "techniques/reflection_reuse/reflection_reuse.h"
-#include "techniques/reflection_reuse/reuse_pictures.h"
 #include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -20,10 +20,6 @@ using kit::seenFrom;
 using reflections::HostGBuffer;
 
 namespace {
-
-double meanOf(const glm::dvec3& channels) {
-    return (channels.x + channels.y + channels.z) / 3.0;
-}
 
 std::vector<glm::vec2> readOffsets(const Offsets& offsets) {
     const std::vector<float> values = offsets.offset.read<float>(GL_RG, GL_FLOAT, 2);
@@ -78,6 +74,43 @@ std::vector<std::uint8_t> undetectedErrors(const HostGBuffer& gbuffer,
     return marks;
 }
 
+/// White where `strength` is 0, the pure hue of a direction where it is 1.
+glm::vec3 colorOf(const glm::vec2& direction, float strength) {
+    const float turn = std::atan2(direction.y, direction.x) / glm::two_pi<float>();
+    return glm::mix(glm::vec3(1.0F), reflections::hue(turn < 0.0F ? turn + 1.0F : turn), strength);
+}
+
+/// [xie2017] Fig. 36 B: hue by direction, stronger the longer an offset is beside the longest;
+/// samples without a match are black, without a reflection grey. `key` is the key frame's.
+image::ImageF offsetsPicture(const HostGBuffer& key, const std::vector<glm::vec2>& offsets,
+                             int supersampling) {
+    std::vector<float> lengthsPx;
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+        if (!key.isReflective(i) || !isValid(offsets[i])) continue;
+        lengthsPx.push_back(glm::length(offsets[i]));
+    }
+    const auto middle = lengthsPx.begin() + static_cast<std::ptrdiff_t>(lengthsPx.size() / 2);
+    std::nth_element(lengthsPx.begin(), middle, lengthsPx.end());
+    const float medianPx = middle == lengthsPx.end() ? 1.0F : std::max(*middle, 1.0F);
+    return reflections::averagedPicture(key, supersampling, [&](std::size_t i) {
+        if (!key.isReflective(i)) return reflections::dimmed(key, i);
+        if (!isValid(offsets[i])) return glm::vec3(0.0F);
+        // Half of the hue at the median: few samples go far, and neither do they clip nor do they
+        // leave the others white.
+        const float lengthPx = glm::length(offsets[i]);
+        return colorOf(offsets[i], lengthPx / (lengthPx + medianPx));
+    });
+}
+
+/// Fig. 36 C: radiance of the shifted image, red where a reflective sample got nothing valid.
+image::ImageF shiftedPicture(const HostGBuffer& key, const std::vector<glm::vec4>& radiance,
+                             int supersampling) {
+    return reflections::averagedPicture(key, supersampling, [&](std::size_t i) {
+        if (!key.isReflective(i)) return reflections::dimmed(key, i);
+        return radiance[i].a > 0.5F ? glm::vec3(radiance[i]) : glm::vec3(1.0F, 0.0F, 0.0F);
+    });
+}
+
 }  // namespace
 
 void ReflectionReuse::record(technique::Recorder& recorder) {
@@ -86,21 +119,22 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
     for (std::size_t i = 0; i < host.surface.size(); ++i)
         reflective += host.isReflective(i) ? 1 : 0;
     recorder.metric("reflective_pct", kit::percent(reflective, host.surface.size()), "%");
-    if (reflective == 0) scene_->printEmptyView();
+    if (reflective == 0) frame_->scene.printEmptyView();
     const std::size_t frameBytes =
         renderer_ ? renderer_->sizeBytes()
                   : fullTracing_->gbuffer.sizeBytes() + fullTracing_->target.sizeBytes();
     recorder.metric(
         "memory_bytes",
-        static_cast<double>(frameBytes + composite_->sizeBytes() + tracer_->sizeBytes()), "byte");
+        static_cast<double>(frameBytes + frame_->composite.sizeBytes() + tracer_->sizeBytes()),
+        "byte");
     if (renderer_) recordReuse(recorder);
     // A key frame is traced, and has nothing to be judged by; the next frame shows it
     // (`key_frame`).
     const bool isKeyFrame = renderer_ && renderer_->counts().isKeyFrame;
     const bool isJudged = params_.measuresErrors && !isKeyFrame && reflective > 0;
-    const bool isShown = params_.showsPictures && !(isKeyFrame && frame_ + 1 < frameCount_);
+    const bool isShown = params_.showsPictures && !(isKeyFrame && frameIndex_ + 1 < frameCount_);
     if (!isJudged && !isShown) return;
-    const image::ImageF picture = composite_->read();
+    const image::ImageF picture = frame_->composite.read();
     const image::ImageF truth = params_.measuresErrors ? truthOf(host) : image::ImageF();
     if (isJudged) recordErrors(recorder, host, picture, truth);
     if (isShown) recordPictures(recorder, host, picture, truth);
@@ -114,10 +148,10 @@ void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
     if (counts.reflectiveSamples > 0) recorder.metric("saved_pct", 100.0 - recomputedPct, "%");
     recordRecomputeFit(recorder, counts);
     if (counts.isKeyFrame) {
-        if (lastKeyFrame_ >= 0 && frame_ > lastKeyFrame_) {
-            recorder.metric("key_frame_interval", frame_ - lastKeyFrame_, "frame");
+        if (lastKeyFrame_ >= 0 && frameIndex_ > lastKeyFrame_) {
+            recorder.metric("key_frame_interval", frameIndex_ - lastKeyFrame_, "frame");
         }
-        lastKeyFrame_ = frame_;
+        lastKeyFrame_ = frameIndex_;
         return;
     }
     if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct, "%");
@@ -131,7 +165,7 @@ void ReflectionReuse::recordRecomputeFit(technique::Recorder& recorder, const Re
     keepLeastRecomputeTime();
     if (leastRecomputeMs_) recomputed_.emplace_back(counts.recomputedSamples, *leastRecomputeMs_);
     leastRecomputeMs_.reset();
-    if (frame_ + 1 < frameCount_) return;
+    if (frameIndex_ + 1 < frameCount_) return;
     const std::optional<LinearFit> fit = linearFit(recomputed_);
     if (!fit) return;
     recorder.metric("recompute_time_r_squared", fit->rSquared, "1");
@@ -165,31 +199,15 @@ void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
     recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked), "%");
 }
 
-/// The same composite makes a picture of Embree's rays, so that nothing but the reflections
-/// differs.
 image::ImageF ReflectionReuse::truthOf(const HostGBuffer& host) {
-    if (truthPoses_.hasChanged(objects_->poses())) truthTracer_->update(*objects_, *untimed_);
-    std::vector<glm::vec4> radiance;
-    radiance.reserve(host.surface.size());
-    for (const reflections::TracedSample& sample : truthTracer_->trace(host)) {
-        radiance.emplace_back(sample.radiance, 1.0F);
-    }
-    reflections::ReflectionTarget target(host.view.sizePx);
-    target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
-    composite_->render(gbuffer(), target);
-    return composite_->read();
+    if (truthPoses_.hasChanged(frame_->objects.poses()))
+        frame_->truth->update(frame_->objects, *frame_->untimed);
+    return frame_->pictureOf(gbuffer(), frame_->truth->trace(host));
 }
 
 void ReflectionReuse::recordErrors(technique::Recorder& recorder, const HostGBuffer& host,
                                    const image::ImageF& picture, const image::ImageF& truth) {
-    const std::vector<std::uint8_t> reflective =
-        reflections::reflectivePixels(host, params_.supersampling);
-    recorder.metric("channel_error", meanOf(kit::channelErrors(picture, truth, &reflective)),
-                    "level");
-    recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, truth, nullptr)),
-                    "level");
-    recorder.metric("flip_mean", metrics::flip(truth, picture), "1");
-    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truth), "dB");
+    frame_->recordErrors(recorder, host, picture, truth);
     if (renderer_) recordUndetected(recorder, host, picture, truth);
 }
 
@@ -200,10 +218,7 @@ void ReflectionReuse::recordUndetected(technique::Recorder& recorder, const Host
     const auto undetected = static_cast<std::size_t>(std::ranges::count(marks, 1));
     recorder.metric("undetected_pct",
                     kit::percent(undetected, renderer_->counts().reflectiveSamples), "%");
-    if (!params_.showsPictures) return;
-    recorder.image("undetected",
-                   reflections::markedPicture(picture, marks, host, params_.supersampling),
-                   seenFrom(host.view));
+    if (params_.showsPictures) frame_->recordMarks(recorder, "undetected", host, picture, marks);
 }
 
 void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGBuffer& host,
@@ -216,17 +231,14 @@ void ReflectionReuse::recordPictures(technique::Recorder& recorder, const HostGB
         recorder.image("error", kit::errorPicture(picture, truth, 1), seenFrom(host.view));
         recorder.image("error_60", kit::errorPicture(picture, truth, 60), seenFrom(host.view));
     }
-    composite_->render(gbuffer(), reflection(), true);
-    recorder.image("reflection", composite_->read(), seenFrom(host.view));
+    frame_->composite.render(gbuffer(), reflection(), true);
+    recorder.image("reflection", frame_->composite.read(), seenFrom(host.view));
     if (!renderer_) return;
-    recorder.image("recomputed",
-                   reflections::markedPicture(picture, readRecomputed(*renderer_), host,
-                                              params_.supersampling),
-                   seenFrom(host.view));
+    frame_->recordMarks(recorder, "recomputed", host, picture, readRecomputed(*renderer_));
     if (renderer_->counts().isKeyFrame) return;
     const ReflectionDepthImage& key = renderer_->keyFrame();
-    composite_->render(key.gbuffer, key.reflection);
-    recorder.image("key_frame", composite_->read(), seenFrom(key.gbuffer.view));
+    frame_->composite.render(key.gbuffer, key.reflection);
+    recorder.image("key_frame", frame_->composite.read(), seenFrom(key.gbuffer.view));
     if (params_.method != Method::Reuse) return;
     const HostGBuffer hostKey = reflections::readGBuffer(key.gbuffer);
     recorder.image(

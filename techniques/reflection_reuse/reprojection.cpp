@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "runner/core/error.h"
-
 namespace gfxrepro::reflection_reuse {
 
 namespace {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/error.h"
-#include "techniques/kit/whole_image.h"
 #include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::reflections {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/error.h"
 #include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::reflections {

@@ -1,7 +1,6 @@
 #include "techniques/reflections/reflector_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>

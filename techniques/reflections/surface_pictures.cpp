@@ -1,5 +1,7 @@
 #include "techniques/reflections/surface_pictures.h"
 
+#include <cmath>
+
 namespace gfxrepro::reflections {
 
 std::vector<std::uint8_t> reflectivePixels(const HostGBuffer& gbuffer, int supersampling) {
@@ -30,6 +32,18 @@ image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
         }
     }
     return picture;
+}
+
+glm::vec3 dimmed(const HostGBuffer& gbuffer, std::size_t index) {
+    constexpr glm::vec3 kLuminance{0.2126F, 0.7152F, 0.0722F};
+    return glm::vec3(0.05F + 0.3F * glm::dot(gbuffer.diffuse[index], kLuminance));
+}
+
+glm::vec3 hue(float turn) {
+    const float sixth = 6.0F * turn;
+    return glm::clamp(glm::vec3(std::abs(sixth - 3.0F) - 1.0F, 2.0F - std::abs(sixth - 2.0F),
+                                2.0F - std::abs(sixth - 4.0F)),
+                      0.0F, 1.0F);
 }
 
 kit::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling) {

@@ -18,6 +18,12 @@ std::vector<std::uint8_t> reflectivePixels(const HostGBuffer& gbuffer, int super
 image::ImageF averagedPicture(const HostGBuffer& gbuffer, int supersampling,
                               const std::function<glm::vec3(std::size_t)>& colorOf);
 
+/// Grey, after the luminance of what a sample shows itself: for what a picture is not about.
+glm::vec3 dimmed(const HostGBuffer& gbuffer, std::size_t index);
+
+/// Red, yellow, green, cyan, blue, magenta and red again, at turns of 0 to 1.
+glm::vec3 hue(float turn);
+
 /// Depths, normals and reflectors ("id", 0: none) for the EXR file of a frame's picture.
 kit::ImageLayers surfaceLayers(const HostGBuffer& gbuffer, int supersampling);
 

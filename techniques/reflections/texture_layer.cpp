@@ -1,9 +1,7 @@
 #include "techniques/reflections/texture_layer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
 
 #include "runner/core/error.h"
 #include "runner/image/srgb.h"
