@@ -5,8 +5,8 @@
 #include <map>
 
 #include "runner/claims/claims.h"
-#include "runner/report/junit.h"
 #include "runner/report/markup.h"
+#include "runner/report/writers.h"
 
 namespace gfxrepro::report {
 

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
-#include "runner/report/latex.h"
 #include "runner/report/markup.h"
 #include "runner/tables/printed_parameters.h"
 

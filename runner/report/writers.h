@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "runner/claims/claims.h"
-#include "runner/report/junit.h"
+#include "runner/records/case_result.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {
@@ -23,5 +24,17 @@ void writeTables(const std::filesystem::path& runDir, const std::vector<tables::
 void writeClaims(const std::filesystem::path& runDir, const std::vector<records::CaseResult>& cases,
                  const std::vector<claims::ClaimResult>& results,
                  const claims::ReportContext& context);
+
+/// The text of junit.xml.
+std::string junitXml(const std::vector<records::CaseResult>& cases,
+                     const std::vector<claims::ClaimResult>& results);
+
+/// A table as LaTeX: a macro for each number, and a tabular of these macros. Its head says how the
+/// numbers are cited.
+std::string tableLatex(const tables::Table& table);
+
+/// Part of a macro's key: letters, digits and . + - _ stay, anything else becomes "-". They hold
+/// nothing that LaTeX would expand.
+std::string latexKeyPart(const std::string& label);
 
 }  // namespace gfxrepro::report

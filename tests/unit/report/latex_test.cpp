@@ -1,4 +1,4 @@
-#include "runner/report/latex.h"
+#include "runner/report/writers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
-#include "runner/report/junit.h"
 #include "runner/report/writers.h"
 #include "runner/tables/table.h"
 #include "tests/support/support.h"
