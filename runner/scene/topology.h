@@ -1,4 +1,4 @@
-// How triangles hang together: shared edges, boundaries, components, enclosed volume.
+// How triangles hang together: which corners share a vertex, and which an edge.
 #pragma once
 
 #include <cstdint>
@@ -27,27 +27,5 @@ struct EdgeTable {
     std::vector<std::uint32_t> firstCorner;   // of each edge
 };
 EdgeTable edgesOf(std::span<const glm::uvec3> triangles, const Welding& welding);
-
-/// Counts over the mesh welded by position.
-struct Topology {
-    std::size_t vertices = 0;
-    std::size_t edges = 0;
-    std::size_t triangles = 0;            // without the degenerate ones
-    std::size_t degenerateTriangles = 0;  // two corners at one position
-    std::size_t boundaryEdges = 0;        // one triangle
-    std::size_t nonManifoldEdges = 0;     // three triangles or more
-    std::size_t misorientedEdges = 0;     // two triangles that run along it the same way
-    std::size_t nonManifoldVertices = 0;  // triangles around it form more than one fan
-    std::size_t components = 0;           // joined by edges
-
-    bool isClosed() const { return boundaryEdges == 0; }
-    bool isManifold() const { return nonManifoldEdges == 0 && nonManifoldVertices == 0; }
-    bool isOriented() const { return misorientedEdges == 0; }
-};
-Topology topologyOf(const Mesh& mesh);
-
-/// Enclosed volume by the divergence theorem; positive when triangles face outwards. Meaningful for
-/// closed meshes only.
-double signedVolume(const Mesh& mesh);
 
 }  // namespace gfxrepro::scene

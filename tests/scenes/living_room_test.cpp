@@ -8,10 +8,10 @@
 
 #include "runner/core/hash.h"
 #include "runner/scene/animation.h"
-#include "runner/scene/topology.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -154,15 +154,14 @@ TEST(LivingRoom, NothingButTheWindowsLeavesTheRoom) {
 }
 
 TEST(LivingRoom, BallIsASphere) {
-    const Scene& scene = theRoom();
-    for (const Mesh& mesh : scene.meshes) {
-        if (mesh.name != "ball") continue;
-        const glm::vec3 centre = mesh.bounds().centre();
-        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-            const glm::vec3 out = mesh.positions[i] - centre;
-            ASSERT_NEAR(glm::length(out), 0.3F, 1e-3F);
-            ASSERT_GT(glm::dot(glm::normalize(out), mesh.normals[i]), 0.999F);
-        }
+    const auto& meshes = theRoom().meshes;
+    const auto ball = std::ranges::find(meshes, "ball", &Mesh::name);
+    ASSERT_NE(ball, meshes.end());
+    const glm::vec3 centre = ball->bounds().centre();
+    for (std::size_t i = 0; i < ball->positions.size(); ++i) {
+        const glm::vec3 out = ball->positions[i] - centre;
+        ASSERT_NEAR(glm::length(out), 0.3F, 1e-3F);
+        ASSERT_GT(glm::dot(glm::normalize(out), ball->normals[i]), 0.999F);
     }
 }
 

@@ -5,9 +5,8 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 
-#include "runner/scene/topology.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {

@@ -1,14 +1,12 @@
 // The outdoor generators bird_nest and grass.
-#include "scenes/outdoor/outdoor.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 #include <string>
 
-#include "runner/scene/topology.h"
 #include "tests/scenes/generated_scene.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "runner/core/hash.h"
-#include "runner/scene/topology.h"
 #include "scenes/models/shapes.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {

@@ -1,8 +1,7 @@
 // The generators object_on_plane and town_square.
-#include "scenes/shadows/shadow_scenes.h"
 
-#include "runner/scene/topology.h"
 #include "tests/scenes/generated_scene.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {

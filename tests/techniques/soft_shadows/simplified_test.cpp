@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "runner/scene/topology.h"
+#include "tests/support/topology.h"
 #include "tests/techniques/voxelization/shapes.h"
 
 namespace gfxrepro::soft_shadows {

@@ -7,9 +7,9 @@
 #include <cstdlib>
 
 #include "runner/image/png_io.h"
-#include "runner/scene/topology.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "runner/scene/topology.h"
 #include "tests/support/support.h"
+#include "tests/support/topology.h"
 
 namespace gfxrepro::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "runner/scene/topology.h"
+#include "tests/support/topology.h"
 
 #include <gtest/gtest.h>
 
