@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <set>
 
 #include "runner/cli/console.h"
 #include "runner/config/imported.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/results/report_runs.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/expectations.h"
 #include "runner/run/scheduler.h"
@@ -22,16 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kSeed = 1;
-
-/// One with tables, figures or sections.
-bool isPaperFolder(const fs::path& folder) {
-    if (!fs::is_directory(folder)) return false;
-    return std::ranges::any_of(fs::directory_iterator(folder), [](const auto& file) {
-        const std::string name = file.path().filename().string();
-        return name.starts_with("table-") || name.starts_with("figure-") ||
-               name.starts_with("section-");
-    });
-}
 
 std::string paperOf(const fs::path& file) {
     return file.parent_path().filename().string();
@@ -89,7 +79,7 @@ bool isYamlFile(const fs::path& name) {
 std::vector<fs::path> paperConfigs() {
     std::vector<fs::path> files;
     for (const fs::directory_entry& folder : fs::directory_iterator(dataFolder("configs"))) {
-        if (!isPaperFolder(folder.path())) continue;
+        if (!results::isPaperFolder(folder.path())) continue;
         for (const fs::directory_entry& file : fs::directory_iterator(folder.path())) {
             if (isConfig(file.path())) files.push_back(fs::absolute(file.path()));
         }

@@ -44,8 +44,7 @@ std::string contentOf(const run::Case& item) {
 }
 
 std::string methodOf(const run::Case& item) {
-    const config::Node* method = item.params.find("method");
-    return item.technique + '/' + (method ? method->text() : "");
+    return item.technique + '/' + item.method();
 }
 
 double medianOf(std::vector<double> values) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runner/core/atomic_file.h"
+#include "runner/core/descriptor.h"
 #include "runner/core/error.h"
 #include "runner/core/temporary.h"
 
@@ -20,21 +21,6 @@ namespace gfxrepro {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Closes a file descriptor when it goes out of scope.
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    ~Descriptor() {
-        if (fd_ >= 0) ::close(fd_);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    int get() const { return fd_; }
-
-  private:
-    int fd_;
-};
 
 [[noreturn]] void fail(const char* what, const fs::path& path) {
     throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));

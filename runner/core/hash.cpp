@@ -18,14 +18,14 @@ namespace {
 class Sha256 {
   public:
     Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-        GFXREPRO_ASSERT(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+        require(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
     }
     void update(const void* data, std::size_t sizeBytes) {
-        GFXREPRO_ASSERT(EVP_DigestUpdate(context_.get(), data, sizeBytes) == 1);
+        require(EVP_DigestUpdate(context_.get(), data, sizeBytes));
     }
     std::string hexDigest() {
         std::array<unsigned char, 32> digest{};
-        GFXREPRO_ASSERT(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) == 1);
+        require(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
         constexpr char kDigits[] = "0123456789abcdef";
         std::string text;
         for (const unsigned char byte : digest) {
@@ -36,6 +36,8 @@ class Sha256 {
     }
 
   private:
+    static void require(int done) { GFXREPRO_ASSERT(done == 1); }
+
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 

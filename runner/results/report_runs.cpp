@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
-#include <set>
-#include <sstream>
 
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/results/results.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/run_files.h"
@@ -18,6 +16,15 @@
 namespace gfxrepro::results {
 
 namespace fs = std::filesystem;
+
+bool isPaperFolder(const fs::path& folder) {
+    if (!fs::is_directory(folder)) return false;
+    return std::ranges::any_of(fs::directory_iterator(folder), [](const auto& file) {
+        const std::string name = file.path().filename().string();
+        return name.starts_with("table-") || name.starts_with("figure-") ||
+               name.starts_with("section-");
+    });
+}
 
 namespace {
 
@@ -64,9 +71,8 @@ std::string configName(const fs::path& file) {
     const fs::path folder = file.parent_path();
     std::error_code isAbsent;
     const bool isShipped = fs::equivalent(folder.parent_path(), dataFolder("configs"), isAbsent);
-    static const std::set<std::string> kNamedByFile = {"calibration", "nightly", "smoke", "sweeps"};
-    const bool isPaper = isShipped && !kNamedByFile.contains(folder.filename().string());
-    return isPaper ? (folder.filename() / file.stem()).string() : file.string();
+    return isShipped && isPaperFolder(folder) ? (folder.filename() / file.stem()).string()
+                                              : file.string();
 }
 
 /// "gfxrepro COMMAND CONFIG" with what else the run was asked for, but for `--only`.

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "runner/report/report.h"
 #include "runner/results/results.h"
 #include "runner/run/run.h"
 
 namespace gfxrepro::results {
+
+/// Whether it is the configs of a document: of tables, figures or sections.
+bool isPaperFolder(const std::filesystem::path& folder);
 
 /// What the shipped configs say of documents, for every report.
 report::ReportOptions reportOptions(bool embeds = false);

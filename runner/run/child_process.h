@@ -70,8 +70,4 @@ struct ProgramEnd {
 inline constexpr std::size_t kMostPrintedBytes = std::size_t{64} << 20;
 ProgramEnd runToEnd(const std::vector<std::string>& arguments, std::chrono::seconds limit);
 
-/// Appends what can be read now to `text`, some MiB of it at most, lest one that never ceases to
-/// write is all that is looked after; false at the end of the stream.
-bool readAvailable(int fd, std::string& text);
-
 }  // namespace gfxrepro::run

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 
+#include "runner/core/descriptor.h"
 #include "runner/core/text.h"
 #include "runner/run/process_memory.h"
 

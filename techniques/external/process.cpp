@@ -14,6 +14,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "runner/core/descriptor.h"
 #include "runner/core/error.h"
 
 namespace gfxrepro::external {
@@ -23,23 +24,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMetricsFd = 3;  // in the program
-
-/// Closes itself.
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    ~Descriptor() { close(); }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    int get() const { return fd_; }
-    void close() {
-        if (fd_ >= 0) ::close(fd_);
-        fd_ = -1;
-    }
-
-  private:
-    int fd_;
-};
 
 [[noreturn]] void fail(const std::string& what) {
     throw Error(what + ": " + std::strerror(errno));
@@ -96,22 +80,6 @@ ExecTexts environmentOf(const ProcessStart& start) {
     [[maybe_unused]] ssize_t said = ::write(STDERR_FILENO, "cannot start: ", 14);
     said = ::write(STDERR_FILENO, reason, std::strlen(reason));
     ::_exit(127);
-}
-
-/// Appends what is there; false at the end of the stream.
-bool readAvailable(int fd, std::string& text) {
-    char buffer[65536];
-    while (text.size() <= kMostOutputBytes) {
-        const ssize_t count = ::read(fd, buffer, sizeof(buffer));
-        if (count > 0) {
-            text.append(buffer, static_cast<std::size_t>(count));
-        } else if (count == 0) {
-            return false;
-        } else if (errno != EINTR) {
-            return errno == EAGAIN;
-        }
-    }
-    return true;
 }
 
 /// Ends the processes that came to this one when what started them ended (PR_SET_CHILD_SUBREAPER);

@@ -1,0 +1,31 @@
+// File descriptors.
+#pragma once
+
+#include <unistd.h>
+
+#include <string>
+
+namespace gfxrepro {
+
+/// Closes itself; below 0 there is nothing to close.
+class Descriptor {
+  public:
+    explicit Descriptor(int fd) : fd_(fd) {}
+    ~Descriptor() { close(); }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    int get() const { return fd_; }
+    void close() {
+        if (fd_ >= 0) ::close(fd_);
+        fd_ = -1;
+    }
+
+  private:
+    int fd_;
+};
+
+/// Appends what can be read now to `text`, some MiB of it at most, lest one that never ceases to
+/// write is all that is looked after; false at the end of the stream.
+bool readAvailable(int fd, std::string& text);
+
+}  // namespace gfxrepro
