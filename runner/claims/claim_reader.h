@@ -18,14 +18,14 @@ using Rows = std::vector<std::size_t>;
 /// A claim made ready to be read off a table.
 class ClaimReader {
   public:
-    /// Throws Error with the claim's place for operands and axes that the table has not. The claim
-    /// and the table must outlive the reader.
+    /// Throws Error with the claim's place for operands and axes that the table does not have. The
+    /// claim and the table must outlive the reader.
     ClaimReader(const config::ClaimSpec& claim, const tables::Table& table);
 
     /// The rows that `at` leaves, parted into the groups that the claim is judged in.
     std::vector<Rows> groups();
-    /// What `part` reads of a group, or why it cannot be read. Rows that the sweep has not, or
-    /// whose printed number is lost, are passed over.
+    /// What `part` reads of a group, or why it cannot be read. Rows that the sweep does not have,
+    /// or whose printed number is lost, are passed over.
     struct Reading {
         Group group;
         Rows rows;  // those that were read

@@ -1,4 +1,4 @@
-// Claims about times: judged on rounds, in which all that is compared was measured by turns.
+// Claims about times: judged on rounds, in which all that is compared was measured alternately.
 //
 // A quantity is computed in each round of its own: what slows a whole round, an hour or a
 // neighbour, falls out of a ratio of two times of that round. The interval is over rounds, by

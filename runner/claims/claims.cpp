@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
-#include <optional>
 #include <set>
-#include <utility>
 
 #include "runner/claims/claim_parts.h"
 #include "runner/claims/claim_reader.h"

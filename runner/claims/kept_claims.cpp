@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/config/schema.h"
 #include "runner/core/files.h"

@@ -17,7 +17,6 @@
 #include "runner/cli/image_commands.h"
 #include "runner/cli/man_page.h"
 #include "runner/cli/parse.h"
-#include "runner/cluster/submission.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/run/manifest.h"

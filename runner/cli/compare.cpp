@@ -203,7 +203,7 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
 }
 
 /// What two runs say that were measured for themselves. Where the older has no pictures (kept
-/// results have not), none is compared: a note tells it instead.
+/// results do not have), none is compared: a note tells it instead.
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
                                     const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);

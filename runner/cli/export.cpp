@@ -1,5 +1,4 @@
 // A run as a folder for others.
-#include <filesystem>
 
 #include "runner/cli/console.h"
 #include "runner/cli/data_commands.h"

@@ -9,6 +9,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/results.h"
+#include "runner/run/manifest.h"
 
 namespace gfxrepro::cli {
 

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"

@@ -1,4 +1,5 @@
 #include "runner/run/run.h"
+#include "runner/run/manifest.h"
 
 #include <fmt/core.h>
 

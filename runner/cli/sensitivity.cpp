@@ -1,5 +1,5 @@
 // How tables' claims depend on their assumptions: each table is measured once for each of their
-// values, by turns, so that a budget serves all tables alike.
+// values, alternately, so that a budget serves all tables alike.
 #include "runner/studies/sensitivity.h"
 #include "runner/results/results.h"
 
@@ -18,7 +18,6 @@
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/run/child_process.h"
-#include "runner/run/manifest.h"
 #include "runner/run/run.h"
 #include "runner/studies/budget.h"
 #include "runner/tables/table.h"

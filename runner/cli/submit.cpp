@@ -14,11 +14,11 @@
 #include "runner/cli/history.h"
 #include "runner/cli/slurm.h"
 #include "runner/cluster/kept_program.h"
-#include "runner/cluster/merge.h"
 #include "runner/cluster/shards.h"
 #include "runner/config/json_shape.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/run/run.h"
 #include "runner/run/twins.h"
 
 namespace gfxrepro::cli {

@@ -11,7 +11,7 @@
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/records/images.h"
-#include "runner/run/run_files.h"
+#include "runner/run/manifest.h"
 
 namespace gfxrepro::cluster {
 

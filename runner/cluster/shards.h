@@ -13,7 +13,7 @@ namespace gfxrepro::cluster {
 run::Shard parseShard(std::string_view text);
 
 /// What is not cut: the timing cases of an experiment, whose times stand in one table and are
-/// measured by turns on one device; and twins, which are measured once where they are together.
+/// measured alternately on one device; and twins, which are measured once where they are together.
 /// Every other case is alone. Indices into `cases`.
 std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const run::Case> cases);
 

@@ -1,6 +1,5 @@
 // Whose claim it is, where its bound comes from, and what is known of it.
 #include <array>
-#include <utility>
 
 #include "runner/config/checks.h"
 #include "runner/config/schema.h"

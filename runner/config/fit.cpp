@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "runner/config/checks.h"
-#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 

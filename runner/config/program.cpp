@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <regex>
-#include <utility>
 
 #include "runner/config/checks.h"
 #include "runner/config/program_parts.h"

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
-#include <optional>
 #include <set>
 #include <utility>
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runner/core/error.h"
 #include "runner/gl/objects.h"
 

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "runner/core/error.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 

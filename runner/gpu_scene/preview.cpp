@@ -1,7 +1,6 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
-#include <optional>
 
 #include "runner/gl/pass.h"
 #include "runner/gpu_scene/gpu_mesh.h"

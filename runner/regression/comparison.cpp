@@ -7,7 +7,6 @@
 #include <map>
 #include <numeric>
 
-#include "runner/core/error.h"
 #include "runner/regression/rank_tests.h"
 
 namespace gfxrepro::regression {
@@ -84,7 +83,7 @@ std::optional<Difference> voidTime(const SeriesKey& key, const Series& before,
 struct TestedTime {
     Difference difference;
     RankTest test;
-    std::size_t rounds[2] = {0, 0};  // by turns: of pairs, twice the same
+    std::size_t rounds[2] = {0, 0};  // alternate: of pairs, twice the same
 };
 
 TestedTime testTime(const SeriesKey& key, const Series& allBefore, const Series& allAfter,

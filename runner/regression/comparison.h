@@ -21,8 +21,8 @@ namespace gfxrepro::regression {
 enum class Verdict { Faster, Slower, Same, CannotTell, Changed, Missing, Lost, Void, Failed };
 std::string_view verdictName(Verdict verdict);
 
-/// Whether the sides were measured by turns (round i of one beside round i of the other), so that
-/// what a machine does over hours touches both.
+/// Whether the sides were measured alternately (round i of one beside round i of the other), so
+/// that what a machine does over hours touches both.
 enum class Pairing { ByTurns, Apart };
 
 struct Rules {
@@ -79,7 +79,7 @@ double detectableChange(const Series& values, const Rules& rules);
 
 /// Every series of both sides, after matchParams and chooseTimes, in the order of their keys.
 /// Times: the exact chance of such a difference without a change (signed ranks of the log ratios of
-/// rounds by turns, rank sums apart) is held against familyError / looks over all series [Holm
+/// alternate rounds, rank sums apart) is held against familyError / looks over all series [Holm
 /// 1979]; slower and faster, when the ratio lies beyond the floor too. Otherwise same, where the
 /// interval says so, or cannot tell.
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
@@ -111,7 +111,7 @@ struct Sides {
     std::vector<Difference> pictures{};  // those of the first round held against each other
     bool isSoftware = false;             // the device, as in Rules
 };
-/// Appends further rounds by turns; of `tables` alone where there are some.
+/// Appends further alternate rounds; of `tables` alone where there are some.
 using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;
 
 /// Measures and compares, up to `rules.looks` times, until every time is slower, faster or the

@@ -1,7 +1,6 @@
 // The medians of every night, and the steps in them.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>

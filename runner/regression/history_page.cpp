@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
 #include <utility>
 
 #include "runner/core/files.h"
@@ -12,7 +11,6 @@
 #include "runner/regression/chart.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
-#include "runner/tables/figure.h"
 
 namespace gfxrepro::regression {
 

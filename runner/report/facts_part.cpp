@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"

@@ -8,13 +8,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <thread>
-#include <vector>
 
 #include "runner/core/text.h"
 

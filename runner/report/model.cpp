@@ -2,15 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "runner/claims/claims.h"
-#include "runner/core/files.h"
 #include "runner/records/records.h"
-#include "runner/report/gnuplot.h"
-#include "runner/report/plot.h"
-#include "runner/tables/fit.h"
-#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 

@@ -1,7 +1,6 @@
 // What the pages show, gathered: for every table, each run's part of it.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

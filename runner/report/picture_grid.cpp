@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "runner/core/text.h"
 #include "runner/report/labels.h"

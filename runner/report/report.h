@@ -57,7 +57,7 @@ struct ReportOptions {
 };
 
 /// One file that asks no network and no other file but images: what reproduced and what did not,
-/// then a page a table; of one table its page first. Images lie inside up to 20 MB; beyond, the
+/// then a page per table; of one table its page first. Images lie inside up to 20 MB; beyond, the
 /// page shows thumbnails, and links
 /// both, relative to `file`. With `embeds` they always lie inside, beyond 20 MB at 512 pixels at
 /// most, and nothing else is written. What else is made for it (FLIP maps, thumbnails) goes into

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "runner/report/labels.h"
@@ -189,7 +188,7 @@ std::string smallPrintHtml(const Page& page) {
         "<p class=\"soft small\">{}Point at a row for its cases; click to keep them.</p>\n", says);
 }
 
-/// Printed rows that this run has not, folded.
+/// Printed rows that this run does not have, folded.
 std::string absentRowsHtml(const Page& page) {
     const RunPart* shown = page.shown();
     if (!shown || shown->table.printedRows.empty()) return "";

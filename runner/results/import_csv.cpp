@@ -8,14 +8,12 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <tuple>
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
-#include "runner/tables/case_records.h"
 
 namespace gfxrepro::results {
 
@@ -87,7 +85,7 @@ class NamedCsv {
     bool has(const std::string& column) const { return places_.contains(column); }
     SourceLocation where() const { return reader_.location(); }
 
-    /// Throws Error where the header has not got the column.
+    /// Throws Error where the header does not have the column.
     void require(const std::string& column, const std::string& needed) const {
         if (has(column)) return;
         throw Error({name_, 1, 0}, fmt::format("no column '{}' (columns: {}); needed: {}", column,

@@ -15,6 +15,7 @@
 #include "runner/results/tidy.h"
 #include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
+#include "runner/run/manifest.h"
 #include "runner/run/plan_hash.h"
 
 namespace gfxrepro::results {

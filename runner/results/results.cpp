@@ -3,7 +3,6 @@
 #include <chrono>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "runner/core/files.h"
 #include "runner/report/gnuplot.h"
@@ -16,7 +15,6 @@
 #include "runner/run/plan.h"
 #include "runner/studies/sensitivity.h"
 #include "runner/tables/fit.h"
-#include "runner/tables/table.h"
 
 namespace gfxrepro::results {
 

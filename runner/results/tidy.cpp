@@ -1,9 +1,7 @@
 #include "runner/results/tidy.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include "runner/records/csv.h"
 #include "runner/results/made_from.h"
 #include "runner/results/results.h"
+#include "runner/run/manifest.h"
 
 namespace gfxrepro::results {
 

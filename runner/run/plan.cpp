@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "runner/config/imported.h"
 #include "runner/config/scene_reference.h"

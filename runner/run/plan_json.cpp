@@ -181,8 +181,8 @@ config::Outputs outputsFrom(const config::Node& metrics) {
 
 /// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
 /// had fewer entries and no hash of all of them. (The plan's own hash has neither assumptions nor
-/// published parameters, and with --only it is that of all cases, which the plan has not.) Gives
-/// whether all could be verified.
+/// published parameters, and with --only it is that of all cases, which the plan does not have.)
+/// Gives whether all could be verified.
 bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
     const auto fail = [&](const std::string& what) {
         throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +

@@ -3,17 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <unordered_map>
 #include <utility>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
-#include "runner/records/case_result.h"
-#include "runner/records/records.h"
+#include "runner/run/manifest.h"
 #include "runner/run/run_files.h"
-#include "runner/tables/table.h"
 
 namespace gfxrepro::run {
 
@@ -102,7 +97,7 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
 
 namespace {
 
-/// Throws Error for a record of a case that the plan has not, or has in another table.
+/// Throws Error for a record of a case that the plan does not have, or has in another table.
 void requirePlanned(const fs::path& file, const Plan& plan,
                     const std::vector<records::Record>& records) {
     std::unordered_map<std::string_view, std::string_view> tables;

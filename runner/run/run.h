@@ -4,17 +4,15 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "runner/records/case_result.h"
 #include "runner/records/records.h"
-#include "runner/run/manifest.h"
+#include "runner/run/expectations.h"
 #include "runner/run/plan.h"
+#include "runner/run/rounds.h"
 #include "runner/run/run_directory.h"
-#include "runner/run/scheduler.h"
-#include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::run {
 

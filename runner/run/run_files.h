@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "runner/run/protocol.h"

@@ -8,9 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <map>
 #include <memory>
-#include <set>
 #include <string_view>
 
 #include "runner/run/twins.h"

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "runner/run/expectations.h"
 #include "runner/run/phase_clock.h"
-#include "runner/run/plan.h"
 #include "runner/run/protocol.h"
 #include "runner/run/rounds.h"
 #include "runner/run/run_directory.h"

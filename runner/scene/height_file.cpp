@@ -13,9 +13,6 @@
 #include <cstring>
 #include <limits>
 #include <utility>
-#include <vector>
-
-#include "runner/core/error.h"
 
 namespace gfxrepro::scene {
 

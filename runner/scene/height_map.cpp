@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <utility>
 
 #include "runner/core/error.h"
 #include "runner/scene/scene.h"

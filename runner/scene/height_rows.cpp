@@ -14,7 +14,6 @@
 
 #include "runner/config/node.h"
 #include "runner/core/error.h"
-#include "runner/core/text.h"
 #include "runner/image/png_io.h"
 #include "runner/scene/height_map.h"
 

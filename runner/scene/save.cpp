@@ -2,7 +2,6 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <sstream>

@@ -9,7 +9,6 @@
 
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
-#include "runner/report/markup.h"
 #include "runner/run/ledger.h"
 
 namespace gfxrepro::studies {

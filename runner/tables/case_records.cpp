@@ -5,7 +5,6 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "runner/core/text.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::tables {

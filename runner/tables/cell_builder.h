@@ -1,11 +1,8 @@
 // One cell: which records it takes, and what they give.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "runner/config/experiment.h"
 #include "runner/tables/cell_format.h"

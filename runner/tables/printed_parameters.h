@@ -13,7 +13,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "runner/config/experiment.h"

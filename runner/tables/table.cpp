@@ -1,7 +1,6 @@
 #include "runner/tables/table.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "runner/core/text.h"
@@ -76,7 +75,7 @@ PrintedColumns findColumns(const config::Printed& printed, const Table& table) {
     return found;
 }
 
-/// The columns of `printed` that the table has not: a profile or a sweep took them away.
+/// The columns of `printed` that the table does not have: a profile or a sweep took them away.
 std::vector<std::string> absentColumns(const config::Printed& printed, const Table& table) {
     std::vector<std::string> absent;
     for (const std::string& name : printed.header) {

@@ -1,7 +1,6 @@
 #include "runner/tables/table_axes.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "runner/core/error.h"

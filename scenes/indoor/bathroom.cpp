@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "runner/core/error.h"
 #include "runner/core/random.h"
 #include "scenes/indoor/lofts.h"
 #include "scenes/indoor/parts.h"

@@ -1,8 +1,5 @@
 #include "techniques/soft_shadows/light_visibility.h"
 
-#include <array>
-#include <cmath>
-
 #include "runner/gpu_scene/gpu_mesh.h"
 
 namespace gfxrepro::soft_shadows {

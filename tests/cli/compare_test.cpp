@@ -1,4 +1,4 @@
-// Two builds measured by turns, and two runs compared.
+// Two builds measured alternately, and two runs compared.
 #include <gtest/gtest.h>
 
 #include <filesystem>

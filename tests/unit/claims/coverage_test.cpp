@@ -51,7 +51,7 @@ double shareOf(const char* name, int processes, const std::function<bool(Random&
     return share;
 }
 
-/// Rows that are measured by turns in `processes` rounds.
+/// Rows that are measured alternately in `processes` rounds.
 Group groupOf(const std::vector<std::vector<double>>& truths, const std::vector<double>& x,
               int processes, Random& random) {
     Group group;

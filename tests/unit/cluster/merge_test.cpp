@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "runner/run/manifest.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
 
