@@ -3,6 +3,7 @@
 import collections
 import csv
 import dataclasses
+import io
 import json
 import pathlib
 import typing
@@ -91,8 +92,9 @@ def _case(item):
 def _records(file, case_ids):
     if not file.is_file():
         return []
-    with open(file, newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    content = file.read_bytes()
+    whole = content[:content.rfind(b"\n") + 1].decode()  # without a last row that was cut
+    rows = list(csv.DictReader(io.StringIO(whole, newline="")))
     counts = collections.Counter((row["case"], row["process"]) for row in rows)
     records = []
     for line, row in enumerate(rows, 2):

@@ -120,6 +120,10 @@ class Load(unittest.TestCase):
             whole = len(gfxrepro.load(self.run_folder, as_frames=False).records)
             (copy / "records.csv").write_text("".join(lines[:3]))
             self.assertEqual(gfxrepro.load(copy, as_frames=False).records, [])
+            content = "".join(lines[:4]).encode()  # a write may end within any row
+            for size in range(len(lines[0]), len(content)):
+                (copy / "records.csv").write_bytes(content[:size])
+                self.assertEqual(gfxrepro.load(copy, as_frames=False).records, [], content[:size][-30:])
             (copy / "records.csv").write_text("".join([lines[0], *lines[2:]]))
             with self.assertRaisesRegex(ValueError, r"records.csv:2: case [0-9a-f]{12}, process 0 has \d+ of \d+ rows"):
                 gfxrepro.load(copy, as_frames=False)
