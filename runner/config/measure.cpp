@@ -63,6 +63,10 @@ Measure readMeasure(Params& params, bool isOwn) {
         {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
          "to 14, 16 or 19; with 6 processes or more in the timing lane; 0: they do not",
          "", 0, 1});
+    // Who asks how well a time is known wants times.
+    if (measure.relativeError > 0.0 && !params.isGiven("lane")) {
+        measure.lane = Measure::Lane::Timing;
+    }
     measure.processesAtMost = params.getInt("processes_at_most", measure.processesAtMost,
                                             {"rounds, where they go on", "", 1, kMax});
     measure.timeBudgetS = params.getDouble(

@@ -294,7 +294,10 @@ SchemaSection until() {
             "",
             {{"relative_error", "1 % | fraction", "0",
               "half of each 95 % interval ÷ time is no more: measure.relative_error", text()},
-             {"at_most_s", "number seconds", "60", "measure.time_budget_s", number()},
+             {"at_most_s", "number seconds", "60",
+              "measure.time_budget_s, where only the first round is measured whatever it takes "
+              "(processes_at_least)",
+              number()},
              {"processes", "1 … 1000000", "20", "measure.processes_at_most", count()},
              {"repeats", "0 … 1000000", "0", "measure.repeats_at_most", number()}}};
 }

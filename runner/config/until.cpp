@@ -32,6 +32,13 @@ void spreadUntil(Node& document) {
     measure->erase("until");
     if (until.isNull()) return measure->set("relative_error", until, where);  // they do not go on
     requireKeys(until, "measure: until", keysOf("until"));
+    const Node* lane = measure->find("lane");
+    if (lane && lane->isScalar() && lane->text() == "quality" &&
+        lane->location().file == until.location().file) {
+        throw Error(where,
+                    "measure: until: times alone are known to an error, and 'lane: quality' beside "
+                    "it takes none; allowed: lane: timing");
+    }
     for (const auto& [name, meant] : kUntilKeys) {
         const Node* value = until.find(name);
         if (!value) continue;
@@ -40,6 +47,11 @@ void spreadUntil(Node& document) {
         if (same && same->location().file == value->location().file) {
             throw Error(until.keyLocation(name),
                         what + ": '" + meant + "' beside it says the same; allowed: one of them");
+        }
+        // Else as many as an interval takes would be measured first, however long they are.
+        if (name == std::string_view("at_most_s") && !value->isNull() &&
+            !measure->find("processes_at_least")) {
+            measure->set("processes_at_least", Node::number(1), until.keyLocation(name));
         }
         const bool isShare = !value->isNull() && name == std::string_view("relative_error");
         measure->set(meant, isShare ? shareOf(*value, what) : *value, until.keyLocation(name));

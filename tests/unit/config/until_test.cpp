@@ -14,8 +14,16 @@ TEST_F(Until, StandsForTheKeysOfMeasure) {
             .measure;
     EXPECT_DOUBLE_EQ(measure.relativeError, 0.01);
     EXPECT_EQ(measure.timeBudgetS, 60.0);
+    EXPECT_EQ(measure.certainRounds(), 1);
     EXPECT_EQ(measure.processes, kFewestRounds);  // those that an interval takes
     EXPECT_TRUE(measure.mayContinue());
+    // Nor is it of no effect where a layout is given and no lane.
+    const Measure shown = load(kHead +
+                               "measure: {until: {relative_error: 1 %}}\n"
+                               "layout: {rows: frame, columns: {t: {metric: wall_time_ms}}}\n")
+                              .measure;
+    EXPECT_EQ(shown.lane, Measure::Lane::Timing);
+    EXPECT_TRUE(shown.mayContinue());
     const Measure both = load(kHead +
                               "measure: {lane: timing, processes: 8, until: {relative_error: 0.02, "
                               "processes: 12, repeats: 40}}")
@@ -62,6 +70,10 @@ TEST_F(Until, RefusesWhatIsWrongInIt) {
               head +
                   "33: measure: until: unknown key 'relative_eror'; did you mean "
                   "'relative_error'?");
+    EXPECT_EQ(errorWith("measure: {lane: quality, until: {relative_error: 1 %}}"),
+              head +
+                  "26: measure: until: times alone are known to an error, and 'lane: quality' "
+                  "beside it takes none; allowed: lane: timing");
     EXPECT_EQ(untilError("1 %"), head +
                                      "32: measure: until is 1 %; allowed: a map of "
                                      "relative_error, at_most_s, processes, repeats");
