@@ -9,6 +9,7 @@
 #include "runner/config/program_parts.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
+#include "runner/config/time_names.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::config {
@@ -107,6 +108,10 @@ void readMetrics(const Node& metrics, Program& program) {
         requireKeys(map, what, keysOf("program_metric"));
         const Node* unit = map.find("unit");
         if (!unit) throw Error(metrics.keyLocation(name), what + " needs 'unit'; \"1\" for none");
+        if (const std::string why = whyNoTimeName(name, lineOf(*unit, what + ": unit"));
+            !why.empty()) {
+            throw Error(unit->location(), "program: metric " + why);
+        }
         program.outputs.metrics.push_back({name, lineOf(*unit, what + ": unit"),
                                            optionalLine(map, "doc", what), betterOf(map, what)});
         const Node* optional = map.find("optional");
@@ -184,6 +189,11 @@ void readTruth(const Node& truth, const std::string& what, const Names& known, P
     Params values(given, what);
     program.declare(values);
     values.finish();
+    const Node* frame = truth.find(placeholder::kFrame);
+    if (frame && !truth.find(placeholder::kFrames) && !program.uses(placeholder::kFrame)) {
+        throw Error(frame->location(),
+                    what + ": 'frame', and the program's command has no {frame}");
+    }
     picture.truthParams = truth;
     picture.truthParams.erase(placeholder::kFrames);
     if (truth.find(placeholder::kFrames)) readTruthFrames(truth, what, program, picture);

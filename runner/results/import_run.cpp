@@ -9,6 +9,7 @@
 #include <set>
 
 #include "runner/config/imported.h"
+#include "runner/config/time_names.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
@@ -201,21 +202,15 @@ std::string laneName(config::Measure::Lane lane) {
 
 /// Claims know a time by its name: one of another name would be judged as what never varies.
 void requireTimeNames(const ImportedNumbers& numbers, const run::Plan& plan, const fs::path& file) {
-    static const std::set<std::string> kUnits = {"ns", "us", "µs", "ms", "s", "min", "h"};
     std::set<std::string> own;  // of experiments whose metrics no technique declares
     for (const Experiment& experiment : plan.experiments) {
         if (!config::isMeasuredHere(experiment)) own.insert(experiment.id);
     }
     for (const ImportedRow& row : numbers.rows) {
         const records::Record& record = row.record;
-        const bool isInMs = record.metric.ends_with("_ms");
-        const bool isTime = kUnits.contains(record.unit);
-        const bool isRight = isTime ? isInMs && record.unit == "ms" : !isInMs;
-        if (isRight || !own.contains(plan.cases[row.caseIndex].experiment)) continue;
-        throw Error({file.string(), row.line, 0},
-                    fmt::format("'{}' has the unit '{}'; a time has a name that ends in _ms and "
-                                "the unit ms, by which claims know it, and nothing else has",
-                                record.metric, record.unit));
+        if (!own.contains(plan.cases[row.caseIndex].experiment)) continue;
+        const std::string why = config::whyNoTimeName(record.metric, record.unit);
+        if (!why.empty()) throw Error({file.string(), row.line, 0}, why);
     }
 }
 

@@ -186,6 +186,16 @@ TEST(Program, DeclaresWhatItSays) {
     EXPECT_TRUE(program.outputs.hasPass("result"));
     EXPECT_FALSE(program.outputs.hasPass("depth"));
     EXPECT_EQ(program.pictures.at(1).truthFile, "{here}/truth.exr");
+    // A claim would judge a time of another name from one sample, as what never varies.
+    EXPECT_EQ(errorOf("command: t\nmetrics: {render_ms: ms, rays_per_second: ray/s}"), "no error");
+    EXPECT_EQ(
+        errorOf("command: t\nmetrics: {render: ms}"),
+        "c.yaml:2:19: program: metric 'render' has the unit 'ms'; a time has a name that ends "
+        "in _ms and the unit ms, by which claims know it, and nothing else has");
+    EXPECT_EQ(
+        errorOf("command: t\nmetrics: {fps: {unit: 1/s}}"),
+        "c.yaml:2:23: program: metric 'fps' has the unit '1/s'; what is per second has a name "
+        "that ends in _per_second, by which claims know that it varies");
     EXPECT_EQ(errorOf("command: t\nmetrics: {a: {doc: x}}"),
               "c.yaml:2:11: program: metric 'a' needs 'unit'; \"1\" for none");
     EXPECT_EQ(
@@ -196,7 +206,7 @@ TEST(Program, DeclaresWhatItSays) {
 }
 
 TEST(Program, ATruthMayBeMadeByOtherParameters) {
-    const std::string head = "command: t {n}\nparams: {n: {default: 4, max: 64}}\n";
+    const std::string head = "command: t {n} {frame}\nparams: {n: {default: 4, max: 64}}\n";
     const Program program =
         programOf(head + "images: {result: {file: r.exr, truth: {n: 64, frame: 9}}}");
     EXPECT_EQ(program.pictures.at(0).truthParams.toFlowText(), "{n: 64, frame: 9}");
@@ -204,6 +214,10 @@ TEST(Program, ATruthMayBeMadeByOtherParameters) {
               "c.yaml:3:43: program: image 'result': truth: n is 65; allowed: at most 64");
     EXPECT_EQ(errorOf(head + "images: {result: {file: r.exr, truth: {m: 6}}}"),
               "c.yaml:3:40: program: image 'result': truth: unknown key 'm'; did you mean 'n'?");
+    // It would be the picture itself, and every error 0.
+    EXPECT_EQ(errorOf("command: t\nimages: {result: {file: r.exr, truth: {frame: 9}}}"),
+              "c.yaml:2:47: program: image 'result': truth: 'frame', and the program's command has "
+              "no {frame}");
 }
 
 TEST(Program, ATruthMayBeOfSeveralSeeds) {
