@@ -307,22 +307,6 @@ fs::path configNamed(const Node& name, const fs::path& file, const fs::path& con
                 what + ": no file '" + name.text() + "' in " + configsFolder.string());
 }
 
-/// A swept axis wins over a value of a file that is extended; of one file, or of the command line,
-/// the value would be ignored.
-void requireNotFixed(const Experiment& experiment) {
-    if (!experiment.sweep.isMap()) return;
-    for (const auto& [axis, values] : experiment.sweep.entries()) {
-        if (values.isNull() || !experiment.params.find(axis)) continue;
-        const SourceLocation swept = experiment.sweep.keyLocation(axis);
-        const SourceLocation fixed = experiment.params.find(axis)->location();
-        const bool isTyped = fixed.file.text().starts_with(kCommandLine);
-        if (!isTyped && !(fixed.file == swept.file && fixed.line > 0)) continue;
-        throw Error(fixed, "'" + axis + "' is swept, too, in " + toString(swept) +
-                               (isTyped ? "; use --sweep " + axis + "=… instead"
-                                        : "; allowed: in 'params' or in 'sweep'"));
-    }
-}
-
 /// The experiment, with the printed cells that its fit names.
 Experiment readWhole(const Node& document, const fs::path& file, bool isComplete,
                      const fs::path& configsFolder) {

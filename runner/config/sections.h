@@ -73,6 +73,11 @@ const std::vector<std::string>& identityKeys();
 /// other. Throws Error for what is wrong in it, and for a key that says the same in the same file.
 void spreadUntil(Node& document);
 
+/// Throws Error for a value (but of params_by_scene) of which no case would know, as its axis is
+/// swept in every one: it stands in the file of the sweep, in the experiment's own or on the
+/// command line. One of a file that is extended may be swept.
+void requireNotFixed(const Experiment& experiment);
+
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 

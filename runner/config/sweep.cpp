@@ -6,6 +6,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
+#include "runner/config/sections.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::config {
@@ -157,6 +158,12 @@ class Factors {
     }
 
     const std::vector<std::string>& axes() const { return axes_; }
+    /// Where the sweep names the axis first; null where it does not.
+    const SourceLocation* placeOf(std::string_view axis) const {
+        const auto found = std::ranges::find(axes_, axis);
+        if (found == axes_.end()) return nullptr;
+        return &places_[static_cast<std::size_t>(found - axes_.begin())];
+    }
 
     std::vector<AxisPoint> product(const SourceLocation& where) const {
         double count = 1;
@@ -183,10 +190,12 @@ class Factors {
             throw Error(where, "axis '" + axis + "' stands in the sweep twice");
         }
         axes_.push_back(axis);
+        places_.push_back(where);
     }
 
     std::vector<Factor> factors_;
     std::vector<std::string> axes_;
+    std::vector<SourceLocation> places_;  // beside `axes_`
 };
 
 const Node* valueAt(const AxisPoint& point, std::string_view axis) {
@@ -230,11 +239,7 @@ void dropDuplicates(std::vector<AxisPoint>& points) {
     });
 }
 
-}  // namespace
-
-std::vector<AxisPoint> expandSweep(const Node& sweep) {
-    if (sweep.isNull()) return {{}};
-    if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
+Factors factorsOf(const Node& sweep) {
     Factors factors;
     for (const auto& [key, node] : sweep.entries()) {
         if (key == "zip") {
@@ -245,6 +250,58 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
             factors.addAxis(key, node, sweep.keyLocation(key));
         }
     }
+    return factors;
+}
+
+/// A value that a config fixes.
+struct Fixed {
+    std::string axis;  // by which a sweep would name it
+    const char* section;
+    SourceLocation where;
+};
+
+std::vector<Fixed> fixedOf(const Experiment& experiment) {
+    std::vector<Fixed> all;
+    const auto add = [&](const char* section, const Node& values, std::string_view prefix) {
+        for (const auto& [name, value] : values.entries()) {
+            all.push_back({std::string(prefix) + name, section, value.location()});
+        }
+    };
+    add("params", experiment.params, "");
+    add("scene_params", experiment.sceneParams, kSceneAxisPrefix);
+    const Node* output = experiment.document.find("output");
+    if (output && output->isMap()) add("output", *output, "output.");
+    if (!experiment.scene.isNull()) all.push_back({"scene", "scene", experiment.scene.location()});
+    return all;
+}
+
+}  // namespace
+
+void requireNotFixed(const Experiment& experiment) {
+    if (!experiment.sweep.isMap()) return;
+    const Factors factors = factorsOf(experiment.sweep);
+    std::vector<AxisPoint> points;
+    for (const auto& [axis, section, fixed] : fixedOf(experiment)) {
+        const SourceLocation* swept = factors.placeOf(axis);
+        if (!swept) continue;
+        const bool isTyped = fixed.file.text().starts_with(kCommandLine);
+        const bool isOwn = fixed.file == swept->file || fixed.file.text() == experiment.file;
+        if (!isTyped && !(isOwn && fixed.line > 0)) continue;
+        if (points.empty()) points = expandSweep(experiment.sweep);
+        // Where the sweep leaves the axis out, a case takes the fixed value.
+        const auto isIn = [&](const AxisPoint& point) { return valueAt(point, axis) != nullptr; };
+        if (!std::ranges::all_of(points, isIn)) continue;
+        throw Error(fixed,
+                    "'" + axis + "' is swept, too, in " + toString(*swept) +
+                        (isTyped ? "; use --sweep " + axis + "=… instead"
+                                 : std::string("; allowed: in '") + section + "' or in 'sweep'"));
+    }
+}
+
+std::vector<AxisPoint> expandSweep(const Node& sweep) {
+    if (sweep.isNull()) return {{}};
+    if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
+    const Factors factors = factorsOf(sweep);
     const Node* when = sweep.find("when");
     const Node* exclude = sweep.find("exclude");
     if (when) {

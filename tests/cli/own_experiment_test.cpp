@@ -192,6 +192,45 @@ TEST(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
               "allowed: in 'params' or in 'sweep'\n");
 }
 
+TEST(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
+    const TemporaryFolder folder;
+    const std::string scene = "technique: voxelization\nscene: shapes/torus\n";
+    const std::string allowed = "allowed: in 'params' or in 'sweep'\n";
+    EXPECT_EQ(checked(folder, scene + "params: {resolution: 64}\n"
+                                      "sweep: {zip: [{resolution: [32, 64], voxel_bits: [1, 8]}]}"),
+              "gfxrepro: DIR/mine.yaml:5:22: 'resolution' is swept, too, in DIR/mine.yaml:6:16; " +
+                  allowed);
+    EXPECT_EQ(checked(folder, scene + "params: {resolution: 64}\n"
+                                      "sweep: {list: [[{resolution: 32}, {resolution: 128}]]}"),
+              "gfxrepro: DIR/mine.yaml:5:22: 'resolution' is swept, too, in DIR/mine.yaml:6:18; " +
+                  allowed);
+    EXPECT_EQ(checked(folder,
+                      "technique: soft_shadows\nscene: outdoor/city\n"
+                      "scene_params: {building_height: 2}\nsweep: {scene.building_height: [1, 2]}"),
+              "gfxrepro: DIR/mine.yaml:5:33: 'scene.building_height' is swept, too, in "
+              "DIR/mine.yaml:6:9; "
+              "allowed: in 'scene_params' or in 'sweep'\n");
+    EXPECT_EQ(checked(folder, scene + "output: {width: 64}\nsweep: {output.width: [32, 64]}"),
+              "gfxrepro: DIR/mine.yaml:5:17: 'output.width' is swept, too, in DIR/mine.yaml:6:9; "
+              "allowed: in 'output' or in 'sweep'\n");
+    EXPECT_EQ(checked(folder, scene + "sweep: {scene: [shapes/torus, shapes/sphere]}"),
+              "gfxrepro: DIR/mine.yaml:4:8: 'scene' is swept, too, in DIR/mine.yaml:5:9; "
+              "allowed: in 'scene' or in 'sweep'\n");
+    folder.write("preset.yaml", "sweep: {resolution: [32, 64]}\n");
+    EXPECT_EQ(checked(folder, "extends: preset.yaml\n" + scene + "params: {resolution: 64}\n"),
+              "gfxrepro: DIR/mine.yaml:6:22: 'resolution' is swept, too, in DIR/preset.yaml:1:9; " +
+                  allowed);
+}
+
+TEST(OwnExperiment, AFixedValueIsThatOfTheCasesThatASweepLeavesItTo) {
+    const TemporaryFolder folder;
+    const std::string config = folder.write(
+        "mine.yaml",
+        "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
+        "params: {resolution: 64}\nsweep: {list: [[{resolution: 32}, {voxel_bits: 8}]]}\n");
+    EXPECT_EQ(gfxrepro({"check", config}).exitCode, 0);
+}
+
 TEST(OwnExperiment, ThePageRunsAgainWhatTheRunWasAskedFor) {
     const TemporaryFolder folder;
     const std::string config = folder.write(

@@ -363,7 +363,7 @@ TEST(Cases, TakeParametersOfTheGeneratedScene) {
     EXPECT_THAT(scenes("scene: grass\nscene_params: {triangles: 40000}\n"),
                 ElementsAre(Pair("grass?triangles=40000 for grass", "40000")));
     EXPECT_THAT(scenes("sweep: {scene: [grass, tree], scene.triangles: [40000]}\n"
-                       "scene_params: {triangles: 50000}\nscene_seed: 8\n"),
+                       "scene_seed: 8\n"),
                 ElementsAre(Pair("grass?triangles=40000@8 for grass", "40000"),
                             Pair("tree?triangles=40000@8 for tree", "40000")));
     const std::vector<Case> cases =
