@@ -4,19 +4,14 @@
 #include <map>
 #include <set>
 
-#include "runner/report/labels.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
 #include "runner/report/picture_grid.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::report {
 
 namespace {
-
-/// "scene=models/duck" of "zju2005/2.1 scene=models/duck": the page says the table.
-std::string withoutTable(const std::string& title, const std::string& table) {
-    return title.starts_with(table + ' ') ? title.substr(table.size() + 1) : title;
-}
 
 /// The pictures of one run on a page. The viewer reads what it needs from the data attributes.
 class Pictures {
@@ -81,7 +76,7 @@ class Pictures {
         collect(grid, shown);
         std::vector<std::string> names;
         for (const std::size_t i : shown) {
-            const std::string& name = shots_[i].baseName;
+            const std::string name = tables::shownName(shots_[i].baseName, words_);
             if (std::ranges::find(names, name) == names.end()) names.push_back(name);
         }
         return fmt::format("{}", fmt::join(names, ", "));
@@ -97,8 +92,8 @@ class Pictures {
         if (!grid.others.empty()) {
             html += "<div class=\"gallery\">\n";
             for (const std::size_t i : grid.others) {
-                html += figureHtml(i, fmt::format("{} · {}", shownName(shots_[i].name, words_),
-                                                  withoutTable(shots_[i].caseTitle, page_.id)));
+                html += figureHtml(
+                    i, fmt::format("{} · {}", nameOf(shots_[i].name), caseOf(shots_[i])));
             }
             html += "</div>\n";
         }
@@ -127,16 +122,26 @@ class Pictures {
         }
     }
 
+    /// "soft shadow, frame 2" of "soft_shadow, frame 2".
+    std::string nameOf(const std::string& name) const {
+        const std::size_t end = std::min(name.find(", frame "), name.size());
+        return tables::shownName(name.substr(0, end), words_) + name.substr(end);
+    }
+
+    std::string caseOf(const Shot& shot) const {
+        return tables::shownCase(shot.caseTitle, page_.id, words_);
+    }
+
     std::string idOf(std::size_t i) const { return fmt::format("{}-{}", prefix_, i); }
 
     /// A picture, what it shows, and below it how far it is from its truth.
     std::string figureHtml(std::size_t i, const std::string& says) const {
         const Shot& shot = shots_[i];
-        const std::string title = withoutTable(shot.caseTitle, page_.id);
+        const std::string title = caseOf(shot);
         std::string data = fmt::format(
             " id=\"{}\" data-run=\"{}\" data-case=\"{}\" data-title=\"{}\" data-name=\"{}\"",
             escapeXml(idOf(i)), letter_, escapeXml(shot.caseId), escapeXml(title),
-            escapeXml(shot.name));
+            escapeXml(nameOf(shot.name)));
         if (!shot.full.empty()) data += fmt::format(" data-full=\"{}\"", shot.full);
         const auto truth = truths_.find(i);
         if (truth != truths_.end()) {
@@ -145,16 +150,17 @@ class Pictures {
         std::string html = fmt::format(
             "<figure><button class=\"shot\"{}><img src=\"{}\" alt=\"{}\" width=\"{}\" "
             "height=\"{}\" loading=\"lazy\"></button><figcaption>{}</figcaption>\n",
-            data, shot.thumbnail, escapeXml(title + " · " + shot.name), shot.width, shot.height,
-            escapeXml(says));
+            data, shot.thumbnail, escapeXml(title + " · " + nameOf(shot.name)), shot.width,
+            shot.height, escapeXml(says));
         if (!shot.flip.empty()) {
             html += fmt::format(
                 "<button class=\"error\" data-of=\"{}\"><img src=\"{}\" alt=\"where {} differs "
                 "from "
                 "{}\" width=\"{}\" height=\"{}\" loading=\"lazy\"></button><figcaption>error: FLIP "
                 "{:.4f} to {}</figcaption>\n",
-                escapeXml(idOf(i)), shot.flip, escapeXml(shot.name), escapeXml(shot.truth),
-                shot.width, shot.height, shot.flipMean, escapeXml(shownName(shot.truth, words_)));
+                escapeXml(idOf(i)), shot.flip, escapeXml(nameOf(shot.name)),
+                escapeXml(nameOf(shot.truth)), shot.width, shot.height, shot.flipMean,
+                escapeXml(nameOf(shot.truth)));
         }
         return html + "</figure>\n";
     }
@@ -166,17 +172,16 @@ class Pictures {
             return shots_[other].name == shots_[i].name;
         };
         const bool isOne = std::ranges::count_if(cell, isNamedAlike) == 1;
-        const std::string name = shownName(shots_[i].name, words_);
+        const std::string name = nameOf(shots_[i].name);
         std::string says = column.empty() ? name : fmt::format("{}: {}", column, name);
-        if (!isOne) says += " · " + withoutTable(shots_[i].caseTitle, page_.id);
+        if (!isOne) says += " · " + caseOf(shots_[i]);
         return says;
     }
 
     /// One row: as many beside each other as the window has place for.
     std::string flowHtml(const PictureGrid& grid, const PictureLine& line) const {
         std::string html = "<div class=\"gallery\">\n";
-        for (const std::size_t i : line.truth)
-            html += figureHtml(i, shownName(shots_[i].name, words_));
+        for (const std::size_t i : line.truth) html += figureHtml(i, nameOf(shots_[i].name));
         for (std::size_t c = 0; c < line.cells.size(); ++c) {
             for (const std::size_t i : line.cells[c]) {
                 html += figureHtml(i, saysOf(i, line.cells[c], grid.columns[c]));
@@ -228,7 +233,7 @@ class Pictures {
 
     const Page& page_;
     const std::vector<Shot>& shots_;
-    const Words& words_;
+    const tables::Words& words_;
     PictureGrid main_;  // what the page shows first
     PictureGrid rest_;
     std::string letter_;
@@ -261,8 +266,8 @@ std::string casesHtml(const Page& page, const Model& model) {
                 "</h4>\n<pre class=\"command\">{}</pre>\n",
                 escapeXml(caseAnchor(run, item->id)),
                 model.isComparison() ? Model::letter(run) + ": " : "",
-                escapeXml(withoutTable(item->title, page.id)), escapeXml(item->id),
-                escapeXml(item->command));
+                escapeXml(tables::shownCase(item->title, page.id, page.parts[run].table.words)),
+                escapeXml(item->id), escapeXml(item->command));
             std::string log;
             for (const std::string& line : item->log) log += escapeXml(line) + '\n';
             html += fmt::format("<pre class=\"log\">{}</pre></article>\n",

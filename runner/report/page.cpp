@@ -136,7 +136,12 @@ std::string pageHtml(const Page& page, const Model& model) {
     html += tableHtml(page, model);
     html += paragraph("small", "Printed numbers: ", shown->table.hardware);
     html += paragraph("small", "Remark: ", shown->table.remark);
-    for (const std::string& note : shown->table.notes) html += paragraph("small soft", "", note);
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const std::string whose = model.isComparison() ? Model::letter(run) + ": " : "";
+        for (const std::string& note : page.parts[run].table.notes) {
+            html += paragraph("small soft", whose.c_str(), note);
+        }
+    }
     html += curvesHtml(page, model);
     html += claims;
     html += failuresHtml(page, model);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "runner/core/text.h"
-#include "runner/report/labels.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::report {
 
@@ -53,7 +53,7 @@ std::map<std::string, Place> placesOf(const tables::Table& table,
         for (std::size_t i = 0; i < item.row->size(); ++i) {  // a number says nothing alone
             auto& label = (*item.row)[i];
             if (label && parseDouble(*label))
-                label = shownName(table.rowAxes[i], table.words) + ' ' + *label;
+                label = tables::shownValue(table.rowAxes[i], *label, table.words);
         }
         places.emplace(id, Place{*item.row, *item.column, item.firstRow, item.firstColumn});
     }
@@ -92,10 +92,10 @@ void layAlongColumns(std::map<std::string, Place>& places) {
     }
 }
 
-std::string textOf(const Labels& labels, const Words& words) {
+std::string textOf(const Labels& labels, const tables::Words& words) {
     std::vector<std::string> said;
     for (const auto& label : labels) {
-        if (label && !label->empty()) said.push_back(shownName(*label, words));
+        if (label && !label->empty()) said.push_back(tables::shownName(*label, words));
     }
     return joined(said);
 }

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
-#include "runner/report/labels.h"
 #include "runner/report/markup.h"
 #include "runner/report/overlay.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::report {
 
@@ -50,15 +49,7 @@ struct Head {
     std::string own;
 };
 
-/// "draw" of "draw_ms" and "ms": the unit stands beside it.
-std::string withoutUnit(const std::string& name, const std::string& unit) {
-    std::string ending = "_" + unit;  // psnr_db is in dB
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    return !unit.empty() && name.ends_with(ending) ? name.substr(0, name.size() - ending.size())
-                                                   : name;
-}
-
-Head headOf(const tables::TableColumn& column, const Words& words) {
+Head headOf(const tables::TableColumn& column, const tables::Words& words) {
     Head head;
     head.above = column.parts;
     std::string name = column.label;
@@ -66,12 +57,10 @@ Head headOf(const tables::TableColumn& column, const Words& words) {
         name = head.above.back();
         head.above.pop_back();
     }
-    // "triangles" says its unit already.
-    const bool isSaid = column.unit == "1" || name == column.unit;
-    const bool isInWords = words.contains(name);
-    head.own = escapeXml(shownName(isInWords ? name : withoutUnit(name, column.unit), words));
-    if (!isSaid && !column.unit.empty()) {
-        head.own += fmt::format(" <span class=\"sub\">{}</span>", escapeXml(column.unit));
+    const tables::Quantity quantity = tables::quantityOf(name, words, column.unit);
+    head.own = escapeXml(quantity.words);
+    if (!quantity.unit.empty()) {
+        head.own += fmt::format(" <span class=\"sub\">[{}]</span>", escapeXml(quantity.unit));
     }
     head.own += directionHtml(column.better);
     return head;
@@ -105,8 +94,9 @@ std::string sharedHeadsHtml(const Overlay& overlay, const std::vector<Head>& hea
         while (last < heads.size() && isUnder(last)) {
             width += overlay.widthOf(overlay.columns()[last++].label);
         }
-        html += fmt::format("<th class=\"group\" scope=\"colgroup\" colspan=\"{}\">{}</th>", width,
-                            escapeXml(shownName(partsOf(first)[level], overlay.first().words)));
+        html +=
+            fmt::format("<th class=\"group\" scope=\"colgroup\" colspan=\"{}\">{}</th>", width,
+                        escapeXml(tables::shownName(partsOf(first)[level], overlay.first().words)));
         first = last;
     }
     return html;
@@ -115,7 +105,7 @@ std::string sharedHeadsHtml(const Overlay& overlay, const std::vector<Head>& hea
 }  // namespace
 
 std::string headHtml(const Overlay& overlay, bool isComparison) {
-    const Words& words = overlay.first().words;
+    const tables::Words& words = overlay.first().words;
     std::vector<Head> heads;
     std::size_t levels = 0;
     for (const tables::TableColumn& column : overlay.columns()) {
@@ -128,9 +118,10 @@ std::string headHtml(const Overlay& overlay, bool isComparison) {
     std::string html = "<thead><tr>";
     bool isFirst = true;
     for (const std::string& axis : overlay.first().rowAxes) {
-        html += fmt::format(
-            "<th class=\"axis{}\" scope=\"col\" rowspan=\"{}\" title=\"{}\">{}</th>",
-            isFirst ? " first" : "", height, escapeXml(axis), escapeXml(shownName(axis, words)));
+        html +=
+            fmt::format("<th class=\"axis{}\" scope=\"col\" rowspan=\"{}\" title=\"{}\">{}</th>",
+                        isFirst ? " first" : "", height, escapeXml(axis),
+                        escapeXml(tables::shownName(axis, words)));
         isFirst = false;
     }
     for (std::size_t level = 0; level < levels; ++level) {

@@ -4,10 +4,10 @@
 #include <map>
 #include <set>
 
-#include "runner/report/labels.h"
 #include "runner/report/markup.h"
 #include "runner/report/overlay.h"
 #include "runner/report/parts.h"
+#include "runner/tables/labels.h"
 #include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
@@ -93,14 +93,15 @@ std::size_t heightOf(const Overlay& overlay, std::size_t row, std::size_t axis) 
 
 using ShownLabels = std::vector<std::map<std::string, std::string>>;  // beside the row axes
 
-ShownLabels shownLabels(const std::vector<std::vector<std::string>>& rows, const Words& words) {
+ShownLabels shownLabels(const std::vector<std::vector<std::string>>& rows,
+                        const tables::Words& words) {
     std::vector<std::set<std::string>> names;
     for (const std::vector<std::string>& labels : rows) {
         names.resize(std::max(names.size(), labels.size()));
         for (std::size_t i = 0; i < labels.size(); ++i) names[i].insert(labels[i]);
     }
     ShownLabels shown;
-    for (const auto& axis : names) shown.push_back(shownNames(axis, words));
+    for (const auto& axis : names) shown.push_back(tables::shownNames(axis, words));
     return shown;
 }
 
@@ -199,18 +200,18 @@ std::string absentRowsHtml(const Page& page) {
         table.printedRows.size(), table.printedRows.size() == 1 ? " is" : "s are");
     for (const std::string& axis : table.rowAxes) {
         html += fmt::format("<th class=\"axis\" scope=\"col\">{}</th>",
-                            escapeXml(shownName(axis, table.words)));
+                            escapeXml(tables::shownName(axis, table.words)));
     }
     for (const tables::TableColumn& column : table.columns) {
         html += fmt::format("<th scope=\"col\">{}</th>",
-                            escapeXml(shownName(column.label, table.words)));
+                            escapeXml(tables::quantityOf(column, table.words).text()));
     }
     html += "</tr></thead>\n<tbody>\n";
     for (const TableRow& row : table.printedRows) {
         html += "<tr>";
         for (const std::string& label : row.labels) {
-            html +=
-                fmt::format("<th scope=\"row\">{}</th>", escapeXml(shownName(label, table.words)));
+            html += fmt::format("<th scope=\"row\">{}</th>",
+                                escapeXml(tables::shownName(label, table.words)));
         }
         for (const Cell& cell : row.cells) {
             html += fmt::format("<td class=\"num printed\">{}</td>",

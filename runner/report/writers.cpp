@@ -8,6 +8,7 @@
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/report/markup.h"
+#include "runner/tables/labels.h"
 #include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
@@ -142,7 +143,7 @@ std::string tableMarkdown(const tables::Table& table) {
     text += "\n\n|";
     std::string rule = "|";
     for (const std::string& axis : table.rowAxes) {
-        text += fmt::format(" {} |", escapeMarkdown(axis));
+        text += fmt::format(" {} |", escapeMarkdown(tables::shownName(axis, table.words)));
         rule += " --- |";
     }
     if (table.hasSources()) {
@@ -150,7 +151,8 @@ std::string tableMarkdown(const tables::Table& table) {
         rule += " --- |";
     }
     for (const tables::TableColumn& column : table.columns) {
-        text += fmt::format(" {} |", escapeMarkdown(column.label));
+        text +=
+            fmt::format(" {} |", escapeMarkdown(tables::quantityOf(column, table.words).text()));
         rule += " ---: |";
     }
     text += "\n" + rule + "\n";

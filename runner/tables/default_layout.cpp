@@ -12,6 +12,7 @@
 
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::tables {
 
@@ -154,7 +155,8 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         const bool isConstant = series.least == series.most && !isTime && measured.size() > 1 &&
                                 series.cases.size() == measured.size();
         if (isConstant) {
-            result.constants.push_back(series.label() + ' ' + series.shown(series.most));
+            result.constants.push_back(quantityOf(series.label(), experiment.labels, series.unit)
+                                           .with(series.shown(series.most)));
             continue;
         }
         config::Selection selection;
@@ -232,7 +234,10 @@ std::vector<config::PlotSpec> defaultPlots(const Table& table) {
         const auto first = std::ranges::find(table.columns, columns[0], &TableColumn::label);
         plot.y = columns;
         plot.isLogY = isWide(table, columns);
-        plot.title = fmt::format("{} over {}", columns.size() > 1 ? "Times" : columns[0], plot.x);
+        plot.title = fmt::format(
+            "{} over {}",
+            columns.size() > 1 ? "Times" : quantityOf(columns[0], table.words, first->unit).text(),
+            quantityOf(plot.x, table.words).words);
         if (const auto better = config::betterText(first->better); !better.empty()) {
             plot.title += fmt::format(" ({})", better);
         }

@@ -4,49 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "runner/core/text.h"
 #include "runner/tables/case_records.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::tables {
 
 namespace {
-
-struct Suffix {
-    std::string_view name;
-    std::string_view unit;
-    std::string_view quantity;  // that is measured in it; empty where it may be anything
-};
-/// The units that names of configs end with.
-constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
-                                {"_us", "µs", "time"},
-                                {"_pct", "%", ""},
-                                {"_px", "px", ""},
-                                {"_db", "dB", ""},
-                                {"_mb", "MB", "memory"},
-                                {"_bytes", "bytes", "memory"},
-                                {"_fps", "fps", "frame rate"},
-                                {"_deg", "°", "angle"}};
-
-const Suffix* suffixOf(std::string_view name) {
-    for (const Suffix& suffix : kSuffixes) {
-        if (name.size() > suffix.name.size() && name.ends_with(suffix.name)) return &suffix;
-    }
-    return nullptr;
-}
-
-std::string words(std::string_view name) {
-    std::string text(name);
-    std::replace(text.begin(), text.end(), '_', ' ');
-    return text;
-}
-
-std::string withoutSuffix(std::string_view name) {
-    const Suffix* suffix = suffixOf(name);
-    return words(name.substr(0, name.size() - (suffix ? suffix->name.size() : 0)));
-}
 
 /// What all names begin with, up to a blank: "intensity mean ".
 std::string sharedHead(const std::vector<std::string>& names) {
@@ -63,24 +29,18 @@ std::string sharedHead(const std::vector<std::string>& names) {
     return head;
 }
 
-/// Without what they share: the unit that all end with stands at the axis, and words that all
-/// begin with tell none from another.
-std::vector<std::string> columnNames(const std::vector<std::string>& columns) {
-    std::set<const Suffix*> suffixes;
-    for (const std::string& column : columns) suffixes.insert(suffixOf(column));
+/// Without what they share: the unit of all stands at the axis, and words that all begin with tell
+/// none from another.
+std::vector<std::string> columnNames(const std::vector<Quantity>& columns) {
+    const auto isAlike = [&](const Quantity& one) { return one.unit == columns[0].unit; };
+    const bool haveOneUnit = std::ranges::all_of(columns, isAlike);
     std::vector<std::string> names;
-    for (const std::string& column : columns) {
-        names.push_back(suffixes.size() == 1 ? withoutSuffix(column) : words(column));
+    for (const Quantity& column : columns) {
+        names.push_back(haveOneUnit ? column.words : column.text());
     }
     const std::string head = names.size() > 1 ? sharedHead(names) : "";
     for (std::string& name : names) name.erase(0, head.size());
     return names;
-}
-
-/// "outdoor/bird_nest", "near mirror", "reference size 512": a number alone would not say of what.
-std::string valueName(const std::string& axis, const std::string& value) {
-    if (parseDouble(value)) return words(axis) + " " + value;
-    return value.find('/') == std::string::npos ? words(value) : value;
 }
 
 /// Makes the figure of one table row by row.
@@ -89,8 +49,12 @@ class FigureMaker {
     FigureMaker(const config::PlotSpec& plot, const Table& table) : plot_(plot), table_(table) {
         xAxis_ = axisOf(plot.x);
         if (!xAxis_) xColumn_ = columnOf(plot.x);
-        for (const std::string& name : plot.y) columns_.push_back(columnOf(name));
+        for (const std::string& name : plot.y) {
+            columns_.push_back(columnOf(name));
+            quantityOfColumn_.push_back(quantityOf(table.columns[columns_.back()], table.words));
+        }
         if (plot.by) byAxis_ = axisOf(*plot.by);
+        nameValues();
     }
 
     Figure make() {
@@ -137,9 +101,26 @@ class FigureMaker {
         return rows;
     }
 
+    void nameValues() {
+        for (std::size_t axis = 0; axis < table_.rowAxes.size(); ++axis) {
+            std::set<std::string> values;
+            for (const auto* rows : {&table_.rows, &table_.printedRows}) {
+                for (const TableRow& row : *rows) values.insert(row.labels[axis]);
+            }
+            shownValues_.push_back(shownNames(values, table_.words));
+        }
+    }
+
+    /// "bird nest", "reference size 512".
+    std::string valueName(std::size_t axis, const std::string& value) const {
+        const bool isNumber = parseDouble(value).has_value();
+        return isNumber ? shownValue(table_.rowAxes[axis], value, table_.words)
+                        : shownValues_[axis].at(value);
+    }
+
     /// The curves are the columns, of each value of `by` in turn.
     void nameCurves(const std::vector<const TableRow*>& rows) {
-        const std::vector<std::string> names = columnNames(plot_.y);
+        const std::vector<std::string> names = columnNames(quantityOfColumn_);
         if (!byAxis_) {
             figure_.curveNames = names;
             return;
@@ -149,7 +130,7 @@ class FigureMaker {
             const auto [place, isNew] = firstCurve_.try_emplace(value, figure_.curveNames.size());
             if (!isNew) continue;
             for (const std::string& name : names) {
-                const std::string group = valueName(*plot_.by, value);
+                const std::string group = valueName(*byAxis_, value);
                 figure_.curveNames.push_back(
                     names.size() == 1 ? group : fmt::format("{}, {}", group, name));
             }
@@ -159,7 +140,7 @@ class FigureMaker {
     std::string panelTitle(const TableRow& row) const {
         std::vector<std::string> parts;
         for (const std::string& axis : plot_.panels) {
-            if (const auto at = axisOf(axis)) parts.push_back(valueName(axis, row.labels[*at]));
+            if (const auto at = axisOf(axis)) parts.push_back(valueName(*at, row.labels[*at]));
         }
         return joined(parts);
     }
@@ -267,23 +248,23 @@ class FigureMaker {
     /// What a panel's y axis stands for: the metric if there is one for all, else a unit.
     std::string yLabel(const std::set<std::pair<std::string, std::string>>& quantities) const {
         if (plot_.y.size() == 1) {
+            const TableColumn& column = table_.columns[columns_[0]];
+            if (column.parts.size() > 1) return quantityOfColumn_[0].text();
             const std::string unit = quantities.size() == 1 ? quantities.begin()->second : "";
-            return quantityLabel(plot_.y[0], unit);
+            return quantityOf(column.label, table_.words, unit).text();
         }
         if (quantities.size() == 1 && !quantities.begin()->first.empty()) {
-            return quantityLabel(quantities.begin()->first, quantities.begin()->second);
+            const auto& [metric, unit] = *quantities.begin();
+            return quantityOf(metric, table_.words, unit).text();
         }
-        std::set<const Suffix*> suffixes;
-        for (const std::string& column : plot_.y) suffixes.insert(suffixOf(column));
-        const Suffix* suffix = *suffixes.begin();
-        if (suffixes.size() > 1 || !suffix) return "";
-        return suffix->quantity.empty() ? std::string(suffix->unit)
-                                        : fmt::format("{} ({})", suffix->quantity, suffix->unit);
+        std::set<std::string> units;
+        for (const std::string& column : plot_.y) units.insert(quantityOf(column).unit);
+        return units.size() > 1 ? "" : unitLabel(*units.begin());
     }
 
     void finish() {
         const std::string xUnit = xAxis_ ? "" : table_.columns[xColumn_].unit;
-        figure_.xLabel = quantityLabel(plot_.x, xUnit);
+        figure_.xLabel = quantityOf(plot_.x, table_.words, xUnit).text();
         const auto byX = [](const FigurePoint& a, const FigurePoint& b) { return a.x < b.x; };
         for (std::size_t i = 0; i < figure_.panels.size(); ++i) {
             FigurePanel& panel = figure_.panels[i];
@@ -314,7 +295,8 @@ class FigureMaker {
                             notPositive_ == 1 ? "value" : "values"));
         }
         if (withoutX_ > 0) {
-            figure_.notes.push_back(fmt::format("left out: {} without {}", withoutX_, plot_.x));
+            figure_.notes.push_back(fmt::format("left out: {} without {}", withoutX_,
+                                                quantityOf(plot_.x, table_.words).words));
         }
         if (notFinite_ > 0) {
             figure_.notes.push_back(fmt::format("left out: {} not finite", notFinite_));
@@ -326,6 +308,8 @@ class FigureMaker {
     std::optional<std::size_t> xAxis_;
     std::size_t xColumn_ = 0;  // where x is no row axis
     std::vector<std::size_t> columns_;
+    std::vector<Quantity> quantityOfColumn_;                       // beside `columns_`
+    std::vector<std::map<std::string, std::string>> shownValues_;  // beside Table::rowAxes
     std::optional<std::size_t> byAxis_;
     std::map<std::string, std::size_t> firstCurve_;  // by value of `by`
     /// Beside the panels: the metrics and units of their cells.
@@ -337,17 +321,6 @@ class FigureMaker {
     int withoutX_ = 0;
     Figure figure_;
 };
-
-/// "bird nest" for "outdoor/bird_nest", where the panels are told apart by that, too.
-void leaveFoldersAway(std::vector<FigurePanel>& panels) {
-    static const std::regex kFolder(R"((^|, )[A-Za-z][\w.-]*/([\w.-]+)(?=$|, ))");
-    std::vector<std::string> titles;
-    for (const FigurePanel& panel : panels) {
-        titles.push_back(words(std::regex_replace(panel.title, kFolder, "$1$2")));
-    }
-    if (std::set(titles.begin(), titles.end()).size() != panels.size()) return;
-    for (std::size_t i = 0; i < panels.size(); ++i) panels[i].title = titles[i];
-}
 
 }  // namespace
 
@@ -371,30 +344,7 @@ std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table) {
 }
 
 Figure makeFigure(const config::PlotSpec& plot, const Table& table) {
-    Figure figure = FigureMaker(plot, table).make();
-    leaveFoldersAway(figure.panels);
-    return figure;
-}
-
-std::string quantityLabel(const std::string& name, const std::string& unit) {
-    // The two axes that the runner itself has.
-    if (name == "output.width") return "width of the image (px)";
-    if (name == "output.height") return "height of the image (px)";
-    for (const Suffix& suffix : kSuffixes) {
-        if (suffix.quantity.empty()) continue;
-        if (name == suffix.name.substr(1)) {
-            return fmt::format("{} ({})", suffix.quantity, suffix.unit);
-        }
-    }
-    if (const Suffix* suffix = suffixOf(name)) {
-        return fmt::format("{} ({})", withoutSuffix(name), suffix->unit);
-    }
-    // "clusters (cluster)" would say nothing more; 1 and enum are no units to read.
-    const std::string text = words(name);
-    if (unit.empty() || unit == "1" || unit == "enum" || text.find(unit) != std::string::npos) {
-        return text;
-    }
-    return fmt::format("{} ({})", text, unit);
+    return FigureMaker(plot, table).make();
 }
 
 }  // namespace gfxrepro::tables

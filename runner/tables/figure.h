@@ -54,8 +54,4 @@ Figure makeFigure(const config::PlotSpec& plot, const Table& table);
 /// built from no records.
 std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table);
 
-/// A name of a config, as an axis is labelled: "gpu_time_ms" → "gpu time (ms)". `unit` is used
-/// where the name does not carry its own.
-std::string quantityLabel(const std::string& name, const std::string& unit);
-
 }  // namespace gfxrepro::tables

@@ -8,6 +8,7 @@
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/tables/cell_builder.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::tables {
 
@@ -229,7 +230,7 @@ std::string valuesText(const std::vector<std::string>& values) {
     return fmt::format("{} / {} / … / {}", values[0], values[1], values.back());
 }
 
-std::string sentence(const Tally& tally) {
+std::string sentence(const Tally& tally, const Words& words) {
     if (tally.alone == tally.count()) {
         return "Measured where the profile paper has no case";
     }
@@ -242,10 +243,10 @@ std::string sentence(const Tally& tally) {
     add(tally.same, "the printed parameters");
     if (tally.same > 0 && tally.asGiven > 0) text += ", ";
     add(tally.asGiven, fmt::format("the printed parameters as far as they are given (not: {})",
-                                   openText(tally.open)));
+                                   openText(tally.open, words)));
     if (tally.different > 0) {
         text += (tally.same + tally.asGiven > 0 ? ", in the others at " : "") +
-                departuresText(tally.departures);
+                departuresText(tally.departures, words);
     }
     if (tally.alone > 0) {
         text += fmt::format("; {} cell{} where the profile paper has no case", tally.alone,
@@ -254,39 +255,36 @@ std::string sentence(const Tally& tally) {
     return text;
 }
 
-void putInWords(const std::map<std::string, std::string>& words, std::string& name) {
-    if (const auto known = words.find(name); known != words.end()) name = known->second;
-}
-
 std::string line(const Table& table, std::span<const TableRow> rows) {
     if (!table.isPublished) return "";
-    Tally tally = tallyOf(rows);
+    const Tally tally = tallyOf(rows);
     if (tally.count() == 0) return "";
-    for (Departure& departure : tally.departures) putInWords(table.words, departure.parameter);
-    for (std::string& parameter : tally.open) putInWords(table.words, parameter);
     if (!table.knowsPrintedParameters) {
         return "Whether it was measured at the printed parameters is not known: the run's plan "
                "does not have them";
     }
-    return sentence(tally);
+    return sentence(tally, table.words);
 }
 
 }  // namespace
 
-std::string openText(const std::vector<std::string>& parameters) {
-    if (parameters.size() <= kSaidValues + 1) return joined(parameters);
-    const std::vector<std::string> said(parameters.begin(), parameters.begin() + kSaidValues);
+std::string openText(const std::vector<std::string>& parameters, const Words& words) {
+    std::vector<std::string> said;
+    for (const std::string& name : parameters) said.push_back(quantityOf(name, words).words);
+    if (said.size() <= kSaidValues + 1) return joined(said);
+    said.resize(kSaidValues);
     return fmt::format("{} and {} more", joined(said), parameters.size() - kSaidValues);
 }
 
-std::string departuresText(const std::vector<Departure>& departures) {
+std::string departuresText(const std::vector<Departure>& departures, const Words& words) {
     std::vector<std::string> parts;
     std::string_view said;  // holds for what follows
     for (const Departure& departure : departures) {
         const std::string_view whose = departure.isOpen ? "paper profile " : "printed ";
-        parts.push_back(fmt::format("{} {} ({}{})", departure.parameter,
-                                    valuesText(departure.measured), whose == said ? "" : whose,
-                                    valuesText(departure.printed)));
+        Quantity quantity = quantityOf(departure.parameter, words);
+        if (departure.measured.empty()) quantity.unit.clear();
+        parts.push_back(fmt::format("{} ({}{})", quantity.with(valuesText(departure.measured)),
+                                    whose == said ? "" : whose, valuesText(departure.printed)));
         said = whose;
     }
     return joined(parts);
@@ -356,11 +354,18 @@ PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
 
 std::string printedCellsLine(const PrintedCells& count) {
     if (count.printed == 0) return "";
-    const auto of = [&](int cells) { return fmt::format("{} of {}", cells, count.printed); };
-    return fmt::format(
-        "cells measured at the printed parameters: {}, as far as they are given: {}, beside a "
-        "measurement: {}",
-        of(count.atPrinted), of(count.asGiven), of(count.measured));
+    std::vector<std::string> parts;
+    const auto add = [&](int cells, const char* at) {
+        if (cells > 0) parts.push_back(fmt::format("{} {}", cells, at));
+    };
+    add(count.atPrinted, "at the printed parameters");
+    add(count.asGiven, "at those that the document gives, which leaves some open");
+    add(count.measured - count.atPrinted - count.asGiven, "at others, which each table names");
+    const std::string how = parts.empty() ? "" : ": " + joined(parts, "; ");
+    return fmt::format("Of {} printed number{} {} {} measured again{}.", count.printed,
+                       count.printed == 1 ? "" : "s",
+                       count.measured == 0 ? "none" : std::to_string(count.measured),
+                       count.measured < 2 ? "was" : "were", how);
 }
 
 std::string parametersLine(const Table& table) {

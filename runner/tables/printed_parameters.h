@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/tables/labels.h"
 #include "runner/tables/table.h"
 #include "runner/tables/table_axes.h"
 
@@ -53,18 +54,19 @@ struct PrintedCells {
 };
 PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
                                std::span<const Table> tables);
-/// "cells measured at the printed parameters: 120 of 897, as far as they are given: 300 of 897,
-/// beside a measurement: 691 of 897"; empty when nothing is printed.
+/// "Of 897 printed numbers 691 were measured again: 120 at the printed parameters; 300 at those
+/// that the document gives, which leaves some open; 271 at others, which each table names."; empty
+/// when nothing is printed.
 std::string printedCellsLine(const PrintedCells& count);
 
-/// "output 128×128 (printed 512×512), light_grid 4 (16), frames 3 (paper profile 50)".
-std::string departuresText(const std::vector<Departure>& departures);
+/// "output 128×128 (printed 512×512), light grid 4 (16), frames 3 (paper profile 50)".
+std::string departuresText(const std::vector<Departure>& departures, const Words& words = {});
 
-/// "output, view_spread, view_distance, frame_size and 3 more": Cell::openParameters.
-std::string openText(const std::vector<std::string>& parameters);
+/// "output, view spread, view distance, frame size and 3 more": Cell::openParameters.
+std::string openText(const std::vector<std::string>& parameters, const Words& words = {});
 
 /// At which parameters the table was measured, and which of them differ from the printed ones:
-/// "Measured at output 128×128 (printed 512×512), light_grid 4 (16)." Of the cells beside a printed
+/// "Measured at output 128×128 (printed 512×512), light grid 4 (16)." Of the cells beside a printed
 /// value or, where there are none, of all that were measured. Empty for what is not published.
 std::string parametersLine(const Table& table);
 /// The same of one row, without the full stop; empty where nothing of it is measured.

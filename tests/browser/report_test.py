@@ -213,9 +213,9 @@ class Report(unittest.TestCase):
         self.open()
         text = "return document.querySelector(arguments[0]).textContent"
         self.assertEqual(self.browser.script(text, "#overview .parameters"),
-                         "cells measured at the printed parameters: 2 of 4, as far as they are given: 0 of 4, beside a measurement: 4 of 4")
+                         "Of 4 printed numbers 4 were measured again: 2 at the printed parameters; 2 at others, which each table names.")
         for slug, line, ratios in (("demo2026-1", "Measured at the printed parameters.", 2),
-                                   ("demo2026-2", "Measured at pause_ms 1 (printed 0).", 0)):
+                                   ("demo2026-2", "Measured at pause 1 ms (printed 0).", 0)):
             self.open("#" + slug)
             self.assertEqual(self.browser.script(text, f"#{slug} .parameters"), line)
             self.assertEqual(self.shown(f"#{slug} .ratio"), ratios)

@@ -9,6 +9,7 @@
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/records/images.h"
+#include "runner/tables/labels.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -99,7 +100,7 @@ TEST_P(OwnExperimentOf, FiveLinesGivesTimesPicturesAndACurve) {
     EXPECT_THAT(page, HasSubstr("<h1 tabindex=\"-1\">Mine</h1>"));
     if (runProgram({"/bin/sh", "-c", "command -v gnuplot"}).exitCode == 0) {
         EXPECT_THAT(page, HasSubstr("<figure class=\"curve\"><svg"));
-        EXPECT_THAT(page, HasSubstr("Times over " + std::string(lines.swept)));
+        EXPECT_THAT(page, HasSubstr("Times over " + tables::quantityOf(lines.swept).words));
     }
 }
 

@@ -123,12 +123,11 @@ TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
     EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the printed parameters.");
     EXPECT_EQ(gfxrepro({"table", whole}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "cells measured at the printed parameters: 2 of 2, as far as they are given: 0 of 2, "
-              "beside a measurement: 2 of 2\n");
+              "Of 2 printed numbers 2 were measured again: 2 at the printed parameters.\n");
     EXPECT_EQ(parametersOf(config, folder.path() / "quick", {"--profile", "quick"}),
-              "Measured at output 4×8 (printed 8×8), pause\\_ms 1 (2).");
+              "Measured at output 4×8 (printed 8×8), pause 1 ms (2).");
     EXPECT_EQ(parametersOf(config, folder.path() / "set", {"--set", "pause_ms=3"}),
-              "Measured at pause\\_ms 3 (printed 2).");
+              "Measured at pause 3 ms (printed 2).");
     EXPECT_EQ(parametersOf(config, folder.path() / "swept", {"--sweep", "number=2,3"}),
               "Measured at the printed parameters.")
         << "the printed cell; 3 is not printed";
@@ -153,8 +152,7 @@ TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
     writeFileAtomic(dir + "/plan.json", plan.dump());
     EXPECT_EQ(gfxrepro({"table", dir}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "cells measured at the printed parameters: 0 of 2, as far as they are given: 0 of 2, "
-              "beside a measurement: 2 of 2\n"
+              "Of 2 printed numbers 2 were measured again: 2 at others, which each table names.\n"
               "warning: plan.json has no frozen_hash, as those of older versions have none: that "
               "its assumptions and published parameters are those that were planned cannot be "
               "verified\n");

@@ -12,6 +12,7 @@
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/records/images.h"
+#include "runner/tables/labels.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -104,7 +105,7 @@ TEST(Report, IsOneSafeFile) {
     const std::string html = readFile(folder.path() / "report.html");
     for (const char* part : {
              "src=\"data:image/png;base64,iVBORw0KGgo",
-             "alt=\"scene=&lt;img onerror=x&gt; · surface\"",
+             "alt=\"&lt;img, x&gt; · surface\"",
              "<td>Xeon &lt;script&gt;</td>",
              "<td>1 stand-in <span class=\"soft\">(models/duck)</span></td>",
              "title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>",
@@ -117,9 +118,8 @@ TEST(Report, IsOneSafeFile) {
              "gfxrepro reproduce zju2005/9.9 --profile quick",
              "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
              "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
-             "<p class=\"parameters\">cells measured at the printed parameters: 2 of 2, as far as "
-             "they are given: 0 of 2, beside a "
-             "measurement: 2 of 2</p>",
+             "<p class=\"parameters\">Of 2 printed numbers 2 were measured again: 2 at the printed "
+             "parameters.</p>",
              "<p class=\"parameters\">Measured at the printed parameters.</p>\n<div",
          }) {
         EXPECT_THAT(html, HasSubstr(part));
@@ -162,14 +162,12 @@ TEST(Report, NoRatioAtOtherParameters) {
     writeReport(folder.path() / "report.html", {&run, 1});
     std::string html = readFile(folder.path() / "report.html");
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
-    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light_grid none (printed "
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (printed "
                                 "16).</p>\n<div"));
-    EXPECT_THAT(html, HasSubstr(" title=\"at light_grid none (printed 16)\">8.0"));
-    EXPECT_THAT(
-        html,
-        HasSubstr(
-            "printed parameters: 0 of 2, as far as they are given: 0 of 2, beside a measurement: "
-            "2 of 2</p>"));
+    EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (printed 16)\">8.0"));
+    EXPECT_THAT(html,
+                HasSubstr("Of 2 printed numbers 2 were measured again: 2 at others, which each "
+                          "table names.</p>"));
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
     judge(run, records());
@@ -270,7 +268,7 @@ TEST(Report, EmbedsEveryPictureWhereItIsAsked) {
     }
     EXPECT_EQ(images, 21U) << "with the error map of the second";
     EXPECT_THAT(html, Not(HasSubstr("data-full=")));
-    EXPECT_THAT(html, HasSubstr("width=\"495\" height=\"512\""));
+    EXPECT_THAT(html, HasSubstr("width=\"309\" height=\"320\""));
     int files = 0;
     for (const auto& file : std::filesystem::directory_iterator(out.path())) {
         EXPECT_EQ(file.path().filename(), "one.html");
@@ -354,7 +352,7 @@ TEST(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
         const std::string html = readFile(folder.path() / "report.html");
         std::map<std::size_t, std::string> order;
         for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
-            order[html.find(fmt::format("data-name=\"{}\"", name))] = name;
+            order[html.find(fmt::format("data-name=\"{}\"", tables::shownName(name)))] = name;
         }
         order[html.find("<summary>Further pictures")] = "|";
         std::string text;
@@ -392,7 +390,7 @@ layout:
     for (const char* part : {
              "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">one layer</th>"
              "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">two layers</th>",
-             "title=\"one_layer_draw_ms\">draw <span class=\"sub\">ms</span>",
+             "title=\"one_layer_draw_ms\">draw <span class=\"sub\">[ms]</span>",
              "<th scope=\"rowgroup\" class=\"first\" rowspan=\"2\" "
              "title=\"outdoor/bird_nest\">bird "
              "nest</th>",
@@ -471,6 +469,7 @@ TEST(Report, RunsStandSideBySide) {
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
     runs[1].experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
     judge(runs[1], records(12.0));
+    runs[1].tables[0].notes.emplace_back("Noise of this one.");
     writeReport(out.path() / "both.html", runs);
     const std::string html = readFile(out.path() / "both.html");
     EXPECT_THAT(html, HasSubstr("<th class=\"sub\">printed</th><th class=\"sub\">A</th>"
@@ -479,11 +478,14 @@ TEST(Report, RunsStandSideBySide) {
                 HasSubstr("<li class=\"claim uncounted differs\" data-verdict=\"holds fails\""))
         << "claim A, 8 against 12";
     for (const char* part : {
-             "<p class=\"parameters\"><b>A</b> cells measured at the printed parameters: 2 of 2",
-             "<p class=\"parameters\"><b>B</b> cells measured at the printed parameters: 0 of 2",
+             "<p class=\"parameters\"><b>A</b> Of 2 printed numbers 2 were measured again: 2 at "
+             "the printed parameters.</p>",
+             "<p class=\"parameters\"><b>B</b> Of 2 printed numbers 2 were measured again: 2 at "
+             "others, which each table names.</p>",
              "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
-             "<p class=\"parameters\"><b>B</b> Measured at light_grid none (printed 16).</p>",
+             "<p class=\"parameters\"><b>B</b> Measured at light grid none (printed 16).</p>",
              "×0.5</span>",  // 8 of 16
+             "<span class=\"soft\">B: </span>Noise of this one.</p>",
          }) {
         EXPECT_THAT(html, HasSubstr(part));
     }

@@ -48,7 +48,7 @@ TEST(Figure, OrdersPointsAndLeavesGaps) {
     EXPECT_EQ(figure.xLabel, "size");
     ASSERT_EQ(figure.panels.size(), 1U);  // of scene b there is nothing
     EXPECT_EQ(figure.panels[0].title, "a");
-    EXPECT_EQ(figure.panels[0].yLabel, "draw (ms)");
+    EXPECT_EQ(figure.panels[0].yLabel, "draw [ms]");
     const FigureCurve& curve = figure.panels[0].curves.at(0);
     EXPECT_EQ(curve.name, "draw");
     ASSERT_EQ(curve.points.size(), 4U);
@@ -124,7 +124,7 @@ TEST(Figure, PrintedStandsOverThePrintedX) {
     EXPECT_EQ(over.panels[0].curves[0].printed[0].y, 25.0);
     const Figure column =
         figureOf(sized("[{x: count, y: draw_ms, by: scene}]", printed), sizedRecords());
-    EXPECT_EQ(column.xLabel, "count (triangle)");
+    EXPECT_EQ(column.xLabel, "count [triangle]");
     EXPECT_EQ(column.panels.at(0).curves.at(0).printed.at(0).x, 1000.0);
     ASSERT_EQ(column.panels[0].curves[0].points.size(), 3U);  // where there is a count
     EXPECT_EQ(column.panels[0].curves[0].points[1].x, 102.0);
@@ -134,22 +134,11 @@ TEST(Figure, CurvesAreColumnsOfEachValue) {
     const Figure figure =
         figureOf(sized("[{x: size, y: [draw_ms, load_ms], by: scene}]"), sizedRecords());
     EXPECT_THAT(figure.curveNames, ElementsAre("a, draw", "a, load", "b, draw", "b, load"));
-    EXPECT_EQ(figure.panels.at(0).yLabel, "time (ms)");  // two metrics, one unit
+    EXPECT_EQ(figure.panels.at(0).yLabel, "time [ms]");  // two metrics, one unit
     EXPECT_TRUE(figure.panels[0].curves[2].points[0].remark == "missing");
     const Figure sizes =
         figureOf(sized("[{x: count, y: draw_ms, by: size, at: {scene: a}}]"), sizedRecords());
     EXPECT_EQ(sizes.curveNames.at(0), "size 4");
-}
-
-TEST(Figure, Labels) {
-    EXPECT_EQ(quantityLabel("gpu_time_ms", "ms"), "gpu time (ms)");
-    EXPECT_EQ(quantityLabel("clusters", "cluster"), "clusters");
-    EXPECT_EQ(quantityLabel("flip_mean", "1"), "flip mean");
-    EXPECT_EQ(quantityLabel("frame_rate", "1/s"), "frame rate (1/s)");
-    EXPECT_EQ(quantityLabel("output.width", ""), "width of the image (px)");
-    EXPECT_EQ(quantityLabel("fps", "1/s"), "frame rate (fps)");
-    EXPECT_EQ(quantityLabel("delta_s", ""), "delta s");  // no seconds
-    EXPECT_EQ(quantityLabel("_ms", ""), " ms");          // nothing would be left
 }
 
 }  // namespace

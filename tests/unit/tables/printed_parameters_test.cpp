@@ -102,15 +102,15 @@ TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
     const std::string frames = "frames: {value: some, why: not said}";
     EXPECT_EQ(
         lineAt("", frames),
-        "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (paper profile "
+        "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (paper profile "
         "50).");
     EXPECT_EQ(lineAt("measure.frames: 60", frames),
-              "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (60).");
+              "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (60).");
     EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"),
-              "Measured at output 8×8 (paper profile 512×512), light_grid 4 (printed 16), frames 3 "
+              "Measured at output 8×8 (paper profile 512×512), light grid 4 (printed 16), frames 3 "
               "(50).");
     EXPECT_EQ(lineAt("output.width: 512", "output: {range: [8, 512], why: not said}"),
-              "Measured at output 8×8 (printed 512×512), light_grid 4 (16), frames 3 (50).");
+              "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (50).");
 }
 
 TEST(PrintedParameters, AreNamedInTheConfigsWords) {
@@ -148,8 +148,8 @@ TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     EXPECT_EQ(parametersLine(table),
               "Measured at the printed parameters as far as they are given (not: output, bias).");
     EXPECT_EQ(printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
-              "cells measured at the printed parameters: 0 of 1, as far as they are given: 1 of 1, "
-              "beside a measurement: 1 of 1");
+              "Of 1 printed number 1 was measured again: 1 at those that the document gives, which "
+              "leaves some open.");
 }
 
 constexpr const char* kGrid = R"(
@@ -183,8 +183,8 @@ TEST(PrintedParameters, RowsAreComparedWithTheSameRow) {
     PrintedCells count;
     count.add(experimentFrom(kGrid), table);
     EXPECT_EQ(printedCellsLine(count),
-              "cells measured at the printed parameters: 1 of 3, as far as they are given: 0 of 3, "
-              "beside a measurement: 2 of 3");
+              "Of 3 printed numbers 2 were measured again: 1 at the printed parameters; 1 at "
+              "others, which each table names.");
 }
 
 /// A table of one row of measured cells beside printed values, which depart so.
@@ -231,12 +231,12 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
         frames{"frames", {"10"}, {"1000"}};
     EXPECT_EQ(lineOf({{}, {}}), "Measured at the printed parameters.");
     EXPECT_EQ(lineOf({{output, grid, frames}}),
-              "Measured at output 128×128 (printed 512×512), light_grid 4 (16), frames 10 (1000).");
+              "Measured at output 128×128 (printed 512×512), light grid 4 (16), frames 10 (1000).");
     EXPECT_EQ(lineOf({{}, {grid}, {}, {frames}}),
-              "Measured at the printed parameters in 2 of 4 cells, in the others at light_grid 4 "
+              "Measured at the printed parameters in 2 of 4 cells, in the others at light grid 4 "
               "(printed 16), frames 10 (1000).");
     EXPECT_EQ(lineOf({{grid}, {{"light_grid", {"8"}, {"16"}}}}),
-              "Measured at light_grid 4 / 8 (printed 16).");
+              "Measured at light grid 4 / 8 (printed 16).");
     EXPECT_EQ(lineOf({{{"n", {"1", "2", "3", "4", "5"}, {}}}}),
               "Measured at n 1 / 2 / … / 5 (printed none).");
     EXPECT_EQ(openText({"a", "b", "c", "d", "e"}), "a, b, c, d, e");
@@ -244,7 +244,7 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
     const Departure open{"frames", {"3"}, {"50"}, true}, view{"view", {"a"}, {"b"}, true};
     EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (paper profile 50).");
     EXPECT_EQ(lineOf({{output, grid, view, open}}),
-              "Measured at output 128×128 (printed 512×512), light_grid 4 (16), view a (paper "
+              "Measured at output 128×128 (printed 512×512), light grid 4 (16), view a (paper "
               "profile b), frames 3 (50).");
     EXPECT_EQ(lineOf({{view, output}}),
               "Measured at view a (paper profile b), output 128×128 (printed 512×512).");
@@ -363,8 +363,7 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     const Table table = buildTable(experiment, maker.records());
     PrintedCells count = countPrintedCells({{experiment, experiment}}, {{table, table}});
     EXPECT_EQ(printedCellsLine(count),
-              "cells measured at the printed parameters: 2 of 2, as far as they are given: 0 of 2, "
-              "beside a measurement: 2 of 2");
+              "Of 2 printed numbers 2 were measured again: 2 at the printed parameters.");
     experiment.kind = config::Experiment::Kind::Figure;
     count.add(experiment, table);
     EXPECT_EQ(count.printed, 2) << "a figure's";
@@ -376,9 +375,7 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     alone.printed.rows = {{"x", "1", ""}, {"y", "2", "3"}};
     count = {};
     count.add(alone, buildTable(alone, {}));
-    EXPECT_EQ(printedCellsLine(count),
-              "cells measured at the printed parameters: 0 of 3, as far as they are given: 0 of 3, "
-              "beside a measurement: 0 of 3");
+    EXPECT_EQ(printedCellsLine(count), "Of 3 printed numbers none was measured again.");
 }
 
 }  // namespace

@@ -1,0 +1,190 @@
+#include "runner/tables/labels.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/core/text.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+struct Suffix {
+    std::string_view name;
+    std::string_view unit;
+    std::string_view quantity;  // that is measured in it; empty where it may be anything
+};
+/// The units that names of configs end with. No "_s": delta_s is no number of seconds.
+constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
+                                {"_us", "µs", "time"},
+                                {"_pct", "%", ""},
+                                {"_px", "px", ""},
+                                {"_db", "dB", ""},
+                                {"_mb", "MB", "memory"},
+                                {"_mib", "MiB", "memory"},
+                                {"_bytes", "bytes", "memory"},
+                                {"_fps", "fps", "frame rate"},
+                                {"_deg", "°", "angle"},
+                                {"_m", "m", ""}};
+/// The axes that the runner itself has.
+constexpr Suffix kOwn[] = {{"output.width", "px", "width of the image"},
+                           {"output.height", "px", "height of the image"}};
+
+bool isWordCharacter(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
+}
+
+/// "outdoor/bird_nest", "draw_ms": words joined by _, perhaps in a folder.
+bool isName(std::string_view name) {
+    if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) return false;
+    if (std::ranges::count(name, '/') > 1 || name.back() == '/') return false;
+    return std::ranges::all_of(name, [](char c) { return isWordCharacter(c) || c == '/'; });
+}
+
+std::string withBlanks(std::string_view name) {
+    std::string text(name);
+    std::ranges::replace(text, '_', ' ');
+    return text;
+}
+
+/// 1 and enum are no units to read, and "clusters [cluster]" would say nothing more.
+bool isWorthReading(std::string_view unit, std::string_view words) {
+    if (unit.empty() || unit == "1" || unit == "enum") return false;
+    const std::string said = fmt::format(" {} ", words);
+    return said.find(fmt::format(" {} ", unit)) == said.npos &&
+           said.find(fmt::format(" {}s ", unit)) == said.npos;
+}
+
+Quantity withUnit(std::string words, std::string_view unit) {
+    const bool isRead = isWorthReading(unit, words);
+    return {std::move(words), isRead ? std::string(unit) : ""};
+}
+
+/// The unit that a name ends with, as "_level" of "rmse_level" where levels were recorded.
+bool endsWithUnit(std::string_view name, std::string_view unit) {
+    std::string ending = fmt::format("_{}", unit);
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    return !unit.empty() && name.size() > ending.size() && name.ends_with(ending);
+}
+
+}  // namespace
+
+std::string Quantity::text() const {
+    return unit.empty() ? words : fmt::format("{} [{}]", words, unit);
+}
+
+std::string Quantity::with(std::string_view value) const {
+    return fmt::format("{} {}{}{}", words, value, unit.empty() || unit == "°" ? "" : " ", unit);
+}
+
+Quantity quantityOf(std::string_view name, const Words& words, std::string_view unit) {
+    std::string_view own = name.substr(name.find('/') == name.npos ? 0 : name.find('/') + 1);
+    if (own.starts_with(config::kSceneAxisPrefix))
+        own.remove_prefix(config::kSceneAxisPrefix.size());
+    const auto suffix = std::ranges::find_if(kSuffixes, [&](const Suffix& one) {
+        return own == one.name.substr(1) ||
+               (own.size() > one.name.size() && own.ends_with(one.name));
+    });
+    const bool hasSuffix = isName(name) && suffix != std::end(kSuffixes);
+    if (const auto known = words.find(std::string(name)); known != words.end()) {
+        return withUnit(known->second, hasSuffix ? suffix->unit : unit);
+    }
+    for (const Suffix& one : kOwn) {
+        if (name == one.name) return {std::string(one.quantity), std::string(one.unit)};
+    }
+    if (!isName(name)) return withUnit(std::string(name), unit);
+    if (hasSuffix && own.size() > suffix->name.size()) {
+        return {withBlanks(own.substr(0, own.size() - suffix->name.size())),
+                std::string(suffix->unit)};
+    }
+    if (hasSuffix && !suffix->quantity.empty()) {
+        return {std::string(suffix->quantity), std::string(suffix->unit)};
+    }
+    if (endsWithUnit(own, unit)) {
+        return {withBlanks(own.substr(0, own.size() - unit.size() - 1)), std::string(unit)};
+    }
+    return withUnit(withBlanks(own), unit);
+}
+
+Quantity quantityOf(const TableColumn& column, const Words& words) {
+    if (column.parts.size() < 2 || words.contains(column.label)) {
+        return quantityOf(column.label, words, column.unit);
+    }
+    std::vector<std::string> before;
+    std::string_view unit = column.unit;
+    for (std::size_t i = 0; i + 1 < column.parts.size(); ++i) {
+        const Quantity part = quantityOf(column.parts[i], words);
+        if (!part.unit.empty()) unit = {};  // it is said
+        before.push_back(part.text());
+    }
+    const Quantity last = quantityOf(column.parts.back(), words, unit);
+    return withUnit(joined(before) + ", " + last.words, last.unit);
+}
+
+std::string unitLabel(const std::string& unit) {
+    const auto suffix = std::ranges::find(kSuffixes, unit, &Suffix::unit);
+    const bool isNamed = suffix != std::end(kSuffixes) && !suffix->quantity.empty();
+    return isNamed ? fmt::format("{} [{}]", suffix->quantity, unit) : unit;
+}
+
+std::string shownName(std::string_view name, const Words& words) {
+    return quantityOf(name, words).text();
+}
+
+std::map<std::string, std::string> shownNames(const std::set<std::string>& names,
+                                              const Words& words) {
+    std::map<std::string, int> uses;
+    for (const std::string& name : names) ++uses[shownName(name, words)];
+    std::map<std::string, std::string> shown;
+    for (const std::string& name : names) {
+        const std::string text = shownName(name, words);
+        shown[name] = uses[text] == 1 ? text : isName(name) ? withBlanks(name) : name;
+    }
+    return shown;
+}
+
+std::string shownValue(const std::string& axis, const std::string& value, const Words& words) {
+    if (words.contains(value)) return words.at(value);
+    if (parseDouble(value) || value == "true" || value == "false") {
+        return quantityOf(axis, words).with(value);
+    }
+    return shownName(value, words);
+}
+
+std::string shownCase(const std::string& title, const std::string& table, const Words& words) {
+    if (!title.starts_with(table + ' ')) return title;
+    std::string_view settings = std::string_view(title).substr(table.size() + 1);
+    std::string_view other;  // " (outdoor/grass@2)": another scene than its axis says
+    if (const std::size_t at = settings.rfind(" (");
+        settings.ends_with(')') && at != settings.npos) {
+        other = settings.substr(at);
+        settings = settings.substr(0, at);
+    }
+    /// The next " name=" from there on; values may have blanks.
+    const auto nextAxis = [&](std::size_t from) {
+        for (std::size_t blank = from; (blank = settings.find(' ', blank)) != settings.npos;) {
+            std::size_t end = ++blank;
+            while (end < settings.size() && isWordCharacter(settings[end])) ++end;
+            if (end > blank && end < settings.size() && settings[end] == '=') return blank - 1;
+        }
+        return settings.size();
+    };
+    std::vector<std::string> said;
+    for (std::size_t begin = 0; begin < settings.size();) {
+        const std::size_t end = nextAxis(begin);
+        const std::string_view setting = settings.substr(begin, end - begin);
+        const std::size_t equals = setting.find('=');
+        said.push_back(equals == setting.npos
+                           ? std::string(setting)
+                           : shownValue(std::string(setting.substr(0, equals)),
+                                        std::string(setting.substr(equals + 1)), words));
+        begin = end + 1;
+    }
+    return joined(said).append(other);
+}
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,59 @@
+// Names of configs in words, wherever a report shows them.
+#include "runner/tables/labels.h"
+
+#include <gtest/gtest.h>
+
+#include "runner/tables/table.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using namespace tables;
+
+TEST(Labels, ANameIsItsWordsAndTheUnitThatItEndsWith) {
+    EXPECT_EQ(shownName("light_grid"), "light grid");
+    EXPECT_EQ(shownName("memory_mib"), "memory [MiB]");
+    EXPECT_EQ(shownName("reflective_pct"), "reflective [%]");
+    EXPECT_EQ(shownName("frame_ms"), "frame [ms]");
+    EXPECT_EQ(shownName("outdoor/bird_nest"), "bird nest");
+    EXPECT_EQ(shownName("scene.building_height"), "building height");
+    EXPECT_EQ(shownName("output.width"), "width of the image [px]");
+    EXPECT_EQ(shownName("fps"), "frame rate [fps]");
+    EXPECT_EQ(shownName("delta_s"), "delta s");  // no seconds
+    EXPECT_EQ(shownName("m"), "m");              // no metres
+    EXPECT_EQ(shownName("Two words, as_they are"), "Two words, as_they are");
+    EXPECT_EQ(shownName("light_grid", {{"light_grid", "light samples a side"}}),
+              "light samples a side");
+}
+
+TEST(Labels, TheRecordedUnitIsThatOfANameWithoutOne) {
+    EXPECT_EQ(quantityOf("gpu_time_ms", {}, "ms").text(), "gpu time [ms]");
+    EXPECT_EQ(quantityOf("clusters", {}, "cluster").text(), "clusters");
+    EXPECT_EQ(quantityOf("flip_mean", {}, "1").text(), "flip mean");
+    EXPECT_EQ(quantityOf("frame_rate", {}, "1/s").text(), "frame rate [1/s]");
+    EXPECT_EQ(quantityOf("rmse_level", {}, "level").text(), "rmse [level]");
+    EXPECT_EQ(quantityOf("draw_ms", {{"draw_ms", "drawing"}}, "ms").text(), "drawing [ms]");
+    EXPECT_EQ(quantityOf("memory_mib").with("12.5"), "memory 12.5 MiB");
+    EXPECT_EQ(quantityOf("silhouette_deg").with("20"), "silhouette 20°");
+    EXPECT_EQ(quantityOf("light_grid").with("4 / 8"), "light grid 4 / 8");
+}
+
+TEST(Labels, AColumnOfSeveralAxesIsItsPartsInWords) {
+    const TableColumn column{"draw_ms_non_redundant", "ms", {}, {}, {"draw_ms", "non_redundant"}};
+    EXPECT_EQ(quantityOf(column, {{"non_redundant", "non-redundant"}}).text(),
+              "draw [ms], non-redundant");
+}
+
+TEST(Labels, ACaseIsTheValuesOfItsAxes) {
+    EXPECT_EQ(shownCase("sweep/mine scene=shapes/torus light_ratio=0.25 method=depth_peeling",
+                        "sweep/mine"),
+              "torus, light ratio 0.25, depth peeling");
+    EXPECT_EQ(shownCase("sweep/mine offset=[1, 2, 3] skirts=true (outdoor/grass@2)", "sweep/mine"),
+              "[1, 2, 3], skirts true (outdoor/grass@2)");
+    EXPECT_EQ(shownCase("sweep/mine share_pct=20 n=3", "sweep/mine", {{"n", "samples"}}),
+              "share 20 %, samples 3");
+    EXPECT_EQ(shownCase("sweep/mine", "sweep/mine"), "sweep/mine");
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
