@@ -202,8 +202,25 @@ void requireNoOtherRun(const fs::path& folder, const std::vector<report::ReportR
     throw Error(folder.string() + ": holds another run; give another folder");
 }
 
-void sayReport(const fs::path& runDir) {
-    say("report: {}\n", (runDir / "report.html").string());
+void sayReport(const fs::path& file) {
+    say("report: {}\n", file.string());
+}
+
+/// Of a file that is to be sent its size, too.
+void saySentReport(const fs::path& file) {
+    const auto bytes = fs::file_size(file);
+    say("report: {} ({:.1f} MB)\n", file.string(), static_cast<double>(bytes) / 1e6);
+    if (bytes <= report::kSentBytes) return;
+    tell(
+        "warning: {} is larger than the {} MB that most mail takes; send one table's: `gfxrepro "
+        "reproduce TABLE`, then `report --embed` of that run, or pack the run's folder\n",
+        file.string(), report::kSentBytes / 1'000'000);
+}
+
+/// Says now and then how far the pictures of a large run are.
+void sayPictures(std::size_t done, std::size_t all) {
+    constexpr std::size_t kEvery = 250;
+    if (done % kEvery == 0 && done < all) tell("report: {} of {} pictures\n", done, all);
 }
 
 }  // namespace
@@ -232,7 +249,7 @@ int conclude(const fs::path& runDir) {
     annotate(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
     say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
-    sayReport(runDir);
+    sayReport(runDir / "report.html");
     return failing > 0 ? kExitClaimFailed : kExitOk;
 }
 
@@ -265,10 +282,11 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
         const run::StoredRun run = run::readRun(runDirs.front());
-        results::writeResults(runDirs.front(), run,
-                              {.tables = false, .claims = false, .embeds = embeds});
+        results::writeResults(
+            runDirs.front(), run,
+            {.tables = false, .claims = false, .embeds = embeds, .progress = sayPictures});
         sayNotes(run.manifest);
-        sayReport(runDirs.front());
+        (embeds ? saySentReport : sayReport)(fs::path(runDirs.front()) / "report.html");
         return completenessCode(run);
     }
     std::vector<report::ReportRun> runs;
@@ -301,9 +319,9 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
         const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[i].folder, i, file);
         runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments, patience);
     }
-    report::writeReport(file, runs, results::reportOptions(embeds));
+    report::writeReport(file, runs, results::reportOptions(embeds, sayPictures));
     if (!embeds && fs::exists(made)) results::noteMadeFrom(made, from);
-    say("report: {}\n", file.string());
+    (embeds ? saySentReport : sayReport)(file);
     return code;
 }
 

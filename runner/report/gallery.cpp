@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <set>
 #include <string_view>
@@ -162,7 +163,9 @@ class Gallery {
     fs::path shownFile(const fs::path& file, const image::Image8& image,
                        const fs::path& made) const {
         if (place_.embedding == Embedding::Whole) return file;
-        return reducedFile(file, image, kShownPx, place_.madeDir / made);
+        const bool isReduced = place_.embedding == Embedding::Reduced;
+        return reducedFile(file, image, isReduced ? place_.reducedPx : kShownPx,
+                           place_.madeDir / made);
     }
 
     /// A frame is named only where a case has several.
@@ -201,13 +204,50 @@ class Gallery {
 
 }  // namespace
 
-std::vector<Shot> gatherShots(const GalleryPlace& place) {
+int reducedPxOf(std::span<const fs::path> runDirs, std::uintmax_t mostBytes) {
+    // By the header of each: what a file has of bytes goes by its pixels.
+    struct Picture {
+        double bytes;
+        int longerPx;
+    };
+    std::vector<Picture> pictures;
+    for (const fs::path& runDir : runDirs) {
+        for (const records::ImageEntry& entry : records::readImages(runDir)) {
+            const fs::path file = runDir / entry.png;
+            std::error_code isAbsent;
+            if (entry.png.empty() || !fs::is_regular_file(file, isAbsent)) continue;
+            const image::PngRows rows(file, image::kMaxSidePx, image::ImageUse::Picture);
+            pictures.push_back(
+                {static_cast<double>(fs::file_size(file)), std::max(rows.width(), rows.height())});
+        }
+    }
+    constexpr double kMapsAndText =
+        2.0;  // error maps are as large as their pictures, base64 a third
+    for (const int longestPx : kReducedPx) {
+        double bytes = 0.0;
+        for (const Picture& picture : pictures) {
+            const double share = std::min(1.0, static_cast<double>(longestPx) / picture.longerPx);
+            bytes += kMapsAndText * picture.bytes * share * share;
+        }
+        if (bytes <= static_cast<double>(mostBytes)) return longestPx;
+    }
+    return kReducedPx.back();
+}
+
+std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& progress) {
     const Gallery gallery(place);
     const std::vector<records::ImageEntry>& entries = gallery.entries();
     std::vector<Shot> shots(entries.size());
+    std::mutex mutex;
+    std::size_t done = 0;
     metrics::forEachPicture(
         shots.size(), [&](std::size_t i) { return gallery.pixelsOf(entries[i]); },
-        [&](std::size_t i) { shots[i] = gallery.shotOf(entries[i]); });
+        [&](std::size_t i) {
+            shots[i] = gallery.shotOf(entries[i]);
+            if (!progress) return;
+            const std::scoped_lock lock(mutex);
+            progress(++done, shots.size());
+        });
     return shots;
 }
 
@@ -215,7 +255,9 @@ std::string smallPicture(const Shot& shot, const GalleryPlace& place) {
     if (std::int64_t{shot.width} * shot.height > metrics::kMaxFlipPixels) return shot.thumbnail;
     const fs::path file = place.runDir / shot.png;
     const fs::path made = place.madeDir / besides(shot.png, "thumbnails", "-small");
-    return addressOf(reducedFile(file, image::readPng8(file), kSmallPx, made), place);
+    const bool isReduced = place.embedding == GalleryPlace::Embedding::Reduced;
+    const int longestPx = isReduced ? std::min(kSmallPx, place.reducedPx) : kSmallPx;
+    return addressOf(reducedFile(file, image::readPng8(file), longestPx, made), place);
 }
 
 }  // namespace gfxrepro::report

@@ -1,8 +1,11 @@
 // The images of a run as the pages use them: inside the file or beside it, with their error maps.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,22 +13,23 @@
 
 namespace gfxrepro::report {
 
+/// The longer side of the pictures on a page, and of those of the overview.
+inline constexpr int kShownPx = 512;
+inline constexpr int kSmallPx = 320;
+
 /// How the pictures of a run come onto a page.
 struct GalleryPlace {
     enum class Embedding {
         None,    // files beside the page; what is longer than kShownPx is shown by a thumbnail
         Whole,   // inside the page
-        Reduced  // inside the page, the longer ones as their thumbnails alone
+        Reduced  // inside the page, those longer than reducedPx as their thumbnails alone
     };
     std::filesystem::path runDir;
     std::filesystem::path madeDir;  // for FLIP maps and thumbnails
     std::filesystem::path page;     // the file
     Embedding embedding = Embedding::None;
+    int reducedPx = kShownPx;  // of Reduced: the longer side at most
 };
-
-/// The longer side of the pictures on a page, and of those of the overview.
-inline constexpr int kShownPx = 512;
-inline constexpr int kSmallPx = 320;
 
 /// One image: what an <img> shows of it, and what the viewer opens.
 struct Shot {
@@ -48,10 +52,18 @@ struct Shot {
     bool isTruth() const { return !content.empty(); }
 };
 
+/// To how many pixels a side the pictures of runs inside of one file are reduced: the largest of
+/// these of which they are likely to stay below `mostBytes` with their error maps, else the least.
+inline constexpr std::array kReducedPx = {kShownPx, kSmallPx, 192, 128};
+int reducedPxOf(std::span<const std::filesystem::path> runDirs, std::uintmax_t mostBytes);
+
+/// Told after each picture how many of how many are done; never by two threads at once.
+using PicturesDone = std::function<void(std::size_t done, std::size_t all)>;
+
 /// The images of a run. Makes below `madeDir` what is not there yet: FLIP maps of those that have a
 /// truth of their size (images/…-flip.png, judged as displayed), and thumbnails. Throws Error for
 /// an image that is no PNG.
-std::vector<Shot> gatherShots(const GalleryPlace& place);
+std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& progress = {});
 
 /// A shot's picture for the overview, as `thumbnail`; made if it is not there.
 std::string smallPicture(const Shot& shot, const GalleryPlace& place);

@@ -250,9 +250,15 @@ std::string imagesHtml(const Page& page, const Model& model) {
         html += Pictures(page, run, model).html();
     }
     if (html.empty()) return "";
-    return "<h3>Images</h3>\n<p class=\"soft small\">A click on a picture lays it beside its truth "
-           "or another one.</p>\n" +
-           html;
+    std::string says = "A click on a picture lays it beside its truth or another one.";
+    const GalleryPlace& place = model.places.front();
+    if (place.embedding == GalleryPlace::Embedding::Reduced) {
+        says += fmt::format(
+            " Of larger pictures this file has copies of {} pixels a side at most; errors are of "
+            "the whole ones.",
+            place.reducedPx);
+    }
+    return fmt::format("<h3>Images</h3>\n<p class=\"soft small\">{}</p>\n", says) + html;
 }
 
 std::string casesHtml(const Page& page, const Model& model) {

@@ -62,10 +62,11 @@ Page& pageOf(const std::string& id, Model& model) {
     return model.pages.emplace_back(std::move(page));
 }
 
-void addRun(std::size_t index, const GalleryPlace& place, Model& model) {
+void addRun(std::size_t index, const GalleryPlace& place, const PicturesDone& progress,
+            Model& model) {
     const ReportRun& run = model.runs[index];
     GFXREPRO_ASSERT_EQ(run.experiments.size(), run.tables.size());
-    const std::vector<Shot> shots = gatherShots(place);
+    const std::vector<Shot> shots = gatherShots(place, progress);
     for (std::size_t i = 0; i < run.experiments.size(); ++i) {
         const config::Experiment& experiment = run.experiments[i];
         Page& page = pageOf(experiment.id, model);
@@ -168,12 +169,16 @@ Model buildModel(std::span<const ReportRun> runs, const fs::path& file,
     const Embedding embedding = bytes <= kEmbeddedImagesBytes ? Embedding::Whole
                                 : options.embeds              ? Embedding::Reduced
                                                               : Embedding::None;
+    std::vector<fs::path> folders;
+    for (const ReportRun& run : runs) folders.push_back(run.folder);
+    const int reducedPx =
+        embedding == Embedding::Reduced ? reducedPxOf(folders, kSentBytes) : kShownPx;
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const fs::path& folder = runs[i].folder;
         model.places.push_back(
             {folder, made.empty() ? madeFolder(folder, i, file) : made / Model::letter(i), file,
-             embedding});
-        addRun(i, model.places.back(), model);
+             embedding, reducedPx});
+        addRun(i, model.places.back(), options.progress, model);
     }
     return model;
 }

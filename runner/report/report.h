@@ -13,6 +13,7 @@
 #include "runner/config/documents.h"
 #include "runner/config/experiment.h"
 #include "runner/records/records.h"
+#include "runner/report/gallery.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {
@@ -51,16 +52,20 @@ struct ReportRun {
     std::map<std::string, std::string> commands = {};  // that measure a table again, by its id
 };
 
+/// A file that is to be sent is no larger, if its pictures can be small enough: mail takes no more.
+inline constexpr std::uintmax_t kSentBytes = 25'000'000;
+
 struct ReportOptions {
     std::vector<config::Document> documents = {};  // titles and chapters, for the first screen
     bool embeds = false;                           // every picture inside of the file
+    PicturesDone progress = {};                    // of each run
 };
 
 /// One file that asks no network and no other file but images: what reproduced and what did not,
 /// then a page per table; of one table its page first. Images lie inside up to 20 MB; beyond, the
-/// page shows thumbnails, and links
-/// both, relative to `file`. With `embeds` they always lie inside, beyond 20 MB at 512 pixels at
-/// most, and nothing else is written. What else is made for it (FLIP maps, thumbnails) goes into
+/// page shows thumbnails, and links both, relative to `file`. With `embeds` they always lie inside,
+/// beyond 20 MB reduced so that the file can be sent (reducedPxOf), which the page says, and
+/// nothing else is written. What else is made for it (FLIP maps, thumbnails) goes into
 /// madeFolder(). Several runs are lettered A, B, … and stand side by side. Throws Error when a file
 /// cannot be written.
 void writeReport(const std::filesystem::path& file, std::span<const ReportRun> runs,

@@ -136,8 +136,9 @@ void addWords(std::vector<claims::ClaimResult>& claims) {
 
 }  // namespace
 
-report::ReportOptions reportOptions(bool embeds) {
-    return {config::readDocuments(dataFolder("configs") / "documents.yaml"), embeds};
+report::ReportOptions reportOptions(bool embeds, report::PicturesDone progress) {
+    return {config::readDocuments(dataFolder("configs") / "documents.yaml"), embeds,
+            std::move(progress)};
 }
 
 report::ReportRun reportRun(const fs::path& runDir, const run::StoredRun& run,

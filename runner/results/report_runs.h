@@ -13,7 +13,7 @@ namespace gfxrepro::results {
 bool isPaperFolder(const std::filesystem::path& folder);
 
 /// What the shipped configs say of documents, for every report.
-report::ReportOptions reportOptions(bool embeds = false);
+report::ReportOptions reportOptions(bool embeds = false, report::PicturesDone progress = {});
 
 /// With the plan's cases: the command that runs each again, and what log.jsonl says of it. Its
 /// curves are not drawn.

@@ -93,7 +93,8 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
     if (which.report) {
         report::ReportRun shown = reportRun(runDir, run, results);
         shown.curves = std::move(curves);
-        report::writeReport(out / "report.html", {&shown, 1}, reportOptions(which.embeds));
+        report::writeReport(out / "report.html", {&shown, 1},
+                            reportOptions(which.embeds, which.progress));
     }
     return results;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runner/claims/claims.h"
+#include "runner/report/gallery.h"
 #include "runner/run/run.h"
 #include "runner/tables/printed_parameters.h"
 #include "runner/tables/table.h"
@@ -29,7 +30,8 @@ struct ResultFiles {
     bool tables = true;  // with their curves
     bool claims = true;
     bool report = true;
-    bool embeds = false;             // every picture inside of the report
+    bool embeds = false;  // every picture inside of the report
+    report::PicturesDone progress = {};
     std::filesystem::path out = {};  // where they go; empty: the run's folder
 };
 /// Makes tables/ and plots/, claims.csv with junit.xml, report.html again from the records. With
