@@ -43,6 +43,13 @@ bool hasCalibrated(const tables::Table& table, std::size_t column) {
         table.rows, [&](const tables::TableRow& row) { return row.cells[column].isCalibrated; });
 }
 
+/// Of an experiment of one's own a column without printed values says nothing of print.
+bool saysPrinted(const tables::Table& table, std::size_t column) {
+    return table.isPublished || std::ranges::any_of(table.rows, [&](const tables::TableRow& row) {
+               return row.cells[column].printed.has_value();
+           });
+}
+
 std::string tableCsv(const tables::Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
@@ -52,7 +59,7 @@ std::string tableCsv(const tables::Table& table) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const std::string& label = table.columns[i].label;
         statistics.push_back(statisticsOf(table, i));
-        header.text(label + "_printed");
+        if (saysPrinted(table, i)) header.text(label + "_printed");
         for (const std::string& statistic : statistics[i]) {
             const std::string name = label + (statistics[i].size() > 1 ? "_" + statistic : "");
             header.text(name + "_measured").text(name + "_low").text(name + "_high");
@@ -70,7 +77,7 @@ std::string tableCsv(const tables::Table& table) {
         if (table.hasSources()) line.text(tables::sceneSourceName(row.source));
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
             const tables::Cell& cell = row.cells[i];
-            line.text(cell.printed.value_or(""));
+            if (saysPrinted(table, i)) line.text(cell.printed.value_or(""));
             for (const std::string& statistic : statistics[i]) {
                 const tables::Measured* measured = cell.find(statistic);
                 if (measured) {

@@ -10,6 +10,7 @@
 #include "runner/core/hash.h"
 #include "runner/image/exr_io.h"
 #include "runner/image/png_io.h"
+#include "runner/run/file_stem.h"
 #include "runner/run/image_attributes.h"
 
 namespace gfxrepro::run {
@@ -41,12 +42,11 @@ std::string shortName(std::string_view name) {
 }
 
 /// Makes a folder below the run's, which is not made again where it was moved or removed.
-fs::path madeBelow(const fs::path& runDir, const fs::path& folder) {
+void makeBelow(const fs::path& runDir, const fs::path& folder) {
     if (!fs::is_directory(runDir)) {
         throw Error(runDir.string() + ": was removed or moved while a case wrote to it");
     }
     fs::create_directories(runDir / folder);
-    return runDir / folder;
 }
 
 }  // namespace
@@ -91,9 +91,8 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
                     " channels; 1, 3 or 4 are allowed");
     }
     checkFileName(name);
-    const std::string folder = "images/" + item_.slug();
-    madeBelow(runDir_, folder);
-    std::string stem = folder + "/" + item_.id + "-" + shortName(name);
+    makeBelow(runDir_, "images/" + item_.slug());
+    std::string stem = "images/" + fileStem(item_) + shortName(name);
     if (item_.measure.frames > 1) {
         char frame[16];
         std::snprintf(frame, sizeof(frame), "-f%04d", frame_);
@@ -124,7 +123,8 @@ void RunRecorder::checkTruths() const {
 
 fs::path RunRecorder::artifact(std::string_view fileName) {
     checkFileName(fileName);
-    return madeBelow(runDir_, "artifacts/" + item_.slug()) / (item_.id + "-" + shortName(fileName));
+    makeBelow(runDir_, "artifacts/" + item_.slug());
+    return runDir_ / ("artifacts/" + fileStem(item_) + shortName(fileName));
 }
 
 }  // namespace gfxrepro::run

@@ -5,6 +5,7 @@
 
 #include "runner/core/error.h"
 #include "runner/core/hash.h"
+#include "runner/run/file_stem.h"
 
 namespace gfxrepro::run {
 
@@ -31,13 +32,8 @@ void share(const fs::path& from, const fs::path& to) {
     }
 }
 
-/// The beginning of the names of a case's files below images/ and artifacts/.
-fs::path stemOf(const Case& item) {
-    return fs::path(item.slug()) / (item.id + '-');
-}
-
 void shareArtifacts(const fs::path& runDir, const Case& measured, const Case& twin) {
-    const fs::path from = runDir / "artifacts" / stemOf(measured);
+    const fs::path from = runDir / ("artifacts/" + fileStem(measured));
     if (!fs::exists(from.parent_path())) return;
     const std::string prefix = from.filename().string();
     std::vector<fs::path> files;  // first: the twin's may lie in the same folder
@@ -45,7 +41,7 @@ void shareArtifacts(const fs::path& runDir, const Case& measured, const Case& tw
         if (entry.path().filename().string().starts_with(prefix)) files.push_back(entry.path());
     }
     for (const fs::path& file : files) {
-        const fs::path to = runDir / "artifacts" / stemOf(twin);
+        const fs::path to = runDir / ("artifacts/" + fileStem(twin));
         share(file, to.string() + file.filename().string().substr(prefix.size()));
     }
 }
@@ -100,7 +96,7 @@ std::vector<records::ImageEntry> shareFiles(const fs::path& runDir, const Case& 
                                             const std::vector<records::ImageEntry>& images) {
     shareArtifacts(runDir, measured, twin);
     if (savesPictures(measured) && !savesPictures(twin)) return {};
-    const std::string stem = (fs::path("images") / stemOf(measured)).string();
+    const std::string stem = "images/" + fileStem(measured);
     std::vector<records::ImageEntry> shared = images;
     for (records::ImageEntry& image : shared) {
         image.caseId = twin.id;
@@ -110,7 +106,7 @@ std::vector<records::ImageEntry> shareFiles(const fs::path& runDir, const Case& 
             if (file->empty()) continue;
             GFXREPRO_ASSERT(file->starts_with(stem));
             const std::string from = *file;
-            *file = (fs::path("images") / stemOf(twin)).string() + from.substr(stem.size());
+            *file = "images/" + fileStem(twin) + from.substr(stem.size());
             share(runDir / from, runDir / *file);
         }
     }

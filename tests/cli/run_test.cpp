@@ -32,8 +32,10 @@ TEST(Run, SmokeFromConfigToReport) {
     EXPECT_NEAR(rows[1].value, 0.5, 1e-6);
     EXPECT_EQ(rows[0].method, "gradient");
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 2U);
-    EXPECT_TRUE(fs::exists(dir + "/images/sweep-smoke-template/" + rows[0].caseId + "-result.exr"));
-    EXPECT_TRUE(fs::exists(dir + "/images/sweep-smoke-template/" + rows[0].caseId + "-result.png"));
+    const std::string picture =
+        dir + "/images/sweep-smoke-template/brightness=0.5-" + rows[0].caseId + "-result";
+    EXPECT_TRUE(fs::exists(picture + ".exr"));
+    EXPECT_TRUE(fs::exists(picture + ".png"));
 
     const ProcessResult table = gfxrepro({"table", dir});
     EXPECT_EQ(table.exitCode, 0) << table.err;

@@ -1,5 +1,6 @@
 // Which cases are measured once, and what the others get.
 #include "runner/run/twins.h"
+#include "runner/run/file_stem.h"
 
 #include <gmock/gmock.h>
 
@@ -124,9 +125,9 @@ TEST(Twins, FilesAreSharedUnderTheTwinsNames) {
     twin.id = "222222222222";
     twin.axes = Node::map({});
     const fs::path run = folder.path();
-    writeFileAtomic(run / "images/t-1/111111111111-result-f0002.png", "png");
-    writeFileAtomic(run / "images/t-1/111111111111-result-f0002.exr", "exr");
-    writeFileAtomic(run / "artifacts/t-1/111111111111-mesh.ply", "ply");
+    writeFileAtomic(run / "images/t-1/method=a,size=1-111111111111-result-f0002.png", "png");
+    writeFileAtomic(run / "images/t-1/method=a,size=1-111111111111-result-f0002.exr", "exr");
+    writeFileAtomic(run / "artifacts/t-1/method=a,size=1-111111111111-mesh.ply", "ply");
     writeFileAtomic(run / "artifacts/t-1/333333333333-mesh.ply", "another's");
     // Of a try that ended before it was recorded.
     writeFileAtomic(run / "images/t-1/222222222222-result-f0002.png", "old");
@@ -135,8 +136,8 @@ TEST(Twins, FilesAreSharedUnderTheTwinsNames) {
                                     "t/1",
                                     2,
                                     "result",
-                                    "images/t-1/111111111111-result-f0002.png",
-                                    "images/t-1/111111111111-result-f0002.exr",
+                                    "images/t-1/method=a,size=1-111111111111-result-f0002.png",
+                                    "images/t-1/method=a,size=1-111111111111-result-f0002.exr",
                                     measured.title(),
                                     "truth"};
     records::ImageEntry expected = image;
@@ -164,6 +165,19 @@ TEST(Twins, FilesAreSharedUnderTheTwinsNames) {
     EXPECT_EQ(errorText([&] { run::shareFiles(run, measured, twin, {image}); }),
               "cannot write " + (run / "images/t-2/222222222222-result-f0002.png").string() +
                   ": No such file or directory");
+}
+
+TEST(FileStem, BeginsWithWhatVariesAndKeepsTheId) {
+    Case item = makeCase("t/1", "a", 64);
+    item.id = "111111111111";
+    item.axes = Node::map({});
+    EXPECT_EQ(run::fileStem(item), "t-1/111111111111-");
+    item.axes.set("scene", Node::scalar("/home/me/my models/duck two.glb"));
+    item.axes.set("light_ratio", Node::scalar("0.25"));
+    EXPECT_EQ(run::fileStem(item), "t-1/scene=duck_two.glb,light_ratio=0.25-111111111111-");
+    item.axes.set("note", Node::scalar(std::string(300, 'x')));
+    EXPECT_LT(run::fileStem(item).size(), 120U);
+    EXPECT_TRUE(run::fileStem(item).ends_with("xxx-111111111111-"));
 }
 
 }  // namespace
