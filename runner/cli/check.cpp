@@ -97,14 +97,24 @@ void requireNamedSweeps(const config::Node& node) {
     }
 }
 
-/// Reads the user's own files, each once: what is wrong in one would be found by the first case.
+/// Reads the user's own files, each once: what is wrong in one would be found by the first case,
+/// and what may be is said.
 void requireReadable(const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
     std::set<std::string> read;
     for (const run::Case& item : cases) {
         const bool isOwn = !item.scene.isNull() && config::isSceneFile(item.scene.text());
         if (!isOwn || !read.insert(item.scene.text()).second) continue;
         try {
-            catalog.load(item.scene);
+            const scene::Scene scene = catalog.load(item.scene);
+            for (const std::string& line : scene.warnings) {
+                tell("warning: {}: {}\n", config::sceneName(item.scene.text()), line);
+            }
+            if (scene.triangleCount() == 0 && !scene.points.positions.empty()) {
+                tell(
+                    "warning: {}: {} points and no triangles, which only a technique that draws "
+                    "points can take\n",
+                    config::sceneName(item.scene.text()), scene.points.positions.size());
+            }
         } catch (const Error& error) {
             throw Error(item.scene.location(), error.what());
         }

@@ -19,6 +19,7 @@
 #include "runner/cli/progress.h"
 #include "runner/cli/results.h"
 #include "runner/cluster/shards.h"
+#include "runner/config/scene_reference.h"
 #include "runner/core/files.h"
 #include "runner/core/processors.h"
 #include "runner/results/import_run.h"
@@ -26,6 +27,7 @@
 #include "runner/run/not_survived.h"
 #include "runner/run/run_files.h"
 #include "runner/run/twins.h"
+#include "runner/scene/height_map.h"
 #include "runner/studies/budget.h"
 
 namespace gfxrepro::cli {
@@ -97,6 +99,20 @@ run::Request withinBudget(const run::Plan& plan, const run::Request& request,
     return result;
 }
 
+/// Of the user's own height maps: at a wrong scale one sees it after the run, in every picture.
+void warnOfSteepTerrain(const run::Plan& plan, const scene::Catalog& catalog) {
+    std::set<std::string> seen;
+    for (const run::Case& item : plan.cases) {
+        if (item.scene.isNull()) continue;
+        const std::string name = config::sceneName(item.scene.text());
+        const bool isOwnMap = config::isSceneFile(name) && scene::isHeightMapFile(name);
+        if (!isOwnMap || !seen.insert(item.scene.text()).second) continue;
+        for (const std::string& line : catalog.load(item.scene).warnings) {
+            tell("warning: {}: {}\n", name, line);
+        }
+    }
+}
+
 /// `submitted`: the plan that was frozen then; else one is made of what is asked for.
 Prepared prepareNew(const Context& context, const RunOptions& options, const run::Request& request,
                     std::optional<run::Plan> submitted, run::PhaseClock& phases) {
@@ -120,6 +136,7 @@ Prepared prepareNew(const Context& context, const RunOptions& options, const run
             tell("warning: {}\n", unknown.what());
         }
     }
+    warnOfSteepTerrain(plan, openCatalog(context, selection.assets));
     if (plan.deviceClass != deviceClassOf(device)) run::rebind(plan, deviceClassOf(device));
     if (!options.budget.empty()) {
         const run::Request affordable =

@@ -11,6 +11,7 @@
 #include "runner/image/png_io.h"
 #include "runner/metrics/image_error.h"
 #include "runner/raycast/ray_tracer.h"
+#include "runner/scene/height_map.h"
 #include "runner/scene/load.h"
 
 namespace gfxrepro::cli {
@@ -20,7 +21,9 @@ namespace fs = std::filesystem;
 namespace {
 
 scene::Scene loadNamed(const Context& context, const SceneOptions& options) {
-    if (config::isSceneFile(options.name)) return scene::loadScene(options.name);
+    const bool isModel = config::isSceneFile(options.name) &&
+                         !scene::isHeightMapFile(config::sceneName(options.name));
+    if (isModel) return scene::loadScene(options.name);
     return openCatalog(context, options.assets).load(config::Node::scalar(options.name));
 }
 

@@ -54,6 +54,19 @@ Box HeightMap::bounds() const {
     return box;
 }
 
+std::string steepnessWarning(const HeightMap& map) {
+    constexpr float kMostSteepness = 0.5F;  // of the highest mountains seen from end to end: 0.3
+    const HeightMap::Extremes ends = map.extremes();
+    const float longerM =
+        static_cast<float>(std::max(map.sizeSamples.x, map.sizeSamples.y) - 1) * map.spacingM;
+    if (ends.highestM - ends.lowestM <= kMostSteepness * longerM) return "";
+    return fmt::format(
+        "heights from {:g} to {:g} m over {:g} m of ground ({} x {} samples, {:g} m apart) look "
+        "like spikes; `scene_params: {{spacing_m: …, height_scale_m: …}}` says how far its samples "
+        "stand apart and how many metres a value is",
+        ends.lowestM, ends.highestM, longerM, map.sizeSamples.x, map.sizeSamples.y, map.spacingM);
+}
+
 void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const UnwritableError& why) {
     if (std::max(sizeSamples.x, sizeSamples.y) > kMaxHeightMapSide) {
         throw Error(

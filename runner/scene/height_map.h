@@ -100,6 +100,10 @@ HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::u
 HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
                           const std::filesystem::path& folder, const std::string& key);
 
+/// What to say of a map whose heights differ by more than half of its longer side, as they do where
+/// nobody said how far its samples stand apart; empty of others.
+std::string steepnessWarning(const HeightMap& map);
+
 /// Where the file of a map cannot be written: says in the log that the map is held in memory
 /// instead, or throws Error where its sides are longer than kMaxHeightMapSide.
 void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const UnwritableError& why);

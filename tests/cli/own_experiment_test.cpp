@@ -223,6 +223,53 @@ TEST(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
                   allowed);
 }
 
+/// Stands at `name`: 17 × 17 samples that rise by `step` a column.
+void writeRamp(const TemporaryFolder& folder, const std::string& name, int step) {
+    image::Image16 heights(17, 17, 1);
+    for (int y = 0; y < 17; ++y) {
+        for (int x = 0; x < 17; ++x) heights.at(x, y, 0) = static_cast<std::uint16_t>(x * step);
+    }
+    image::writePng(folder.path() / name, heights);
+}
+
+TEST(OwnExperiment, HeightsThatStandAsSpikesAreSaidBeforeTheyAreMeasured) {
+    const TemporaryFolder folder;
+    writeRamp(folder, "steep.png", 100);
+    const std::string head =
+        "sweep_of: mine\ntitle: Mine\ntechnique: terrain_tessellation\n"
+        "scene: steep.png\noutput: {width: 32, height: 32}\n"
+        "params: {cache: false}\nmeasure: {lane: quality}\n";
+    const std::string config = folder.write("mine.yaml", head);
+    const std::string warning =
+        "steep.png: heights from 0 to 1600 m over 16 m of ground (17 x 17 samples, 1 m apart) look "
+        "like spikes; `scene_params: {spacing_m: …, height_scale_m: …}` says how far its samples "
+        "stand apart and how many metres a value is\n";
+    const ProcessResult check = gfxrepro({"check", config});
+    EXPECT_EQ(check.exitCode, 0) << check.err;
+    EXPECT_THAT(check.err, HasSubstr(warning));
+    const ProcessResult run = gfxrepro(
+        {"run", config, "--device", "software", "--out", (folder.path() / "run").string()});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(warning));
+    const std::string flat =
+        folder.write("flat.yaml", head + "scene_params: {spacing_m: 30, height_scale_m: 0.1}\n");
+    EXPECT_EQ(gfxrepro({"check", flat}).err, "");
+    const ProcessResult shown = gfxrepro({"scene", (folder.path() / "steep.png").string()});
+    EXPECT_EQ(shown.exitCode, 0) << shown.err;
+    EXPECT_THAT(shown.out, HasSubstr("heights    17 x 17 samples, 1 m apart, 0 filled"));
+    EXPECT_THAT(shown.out, HasSubstr("warning    heights from 0 to 1600 m"));
+}
+
+TEST(OwnExperiment, CheckSaysThatAModelHasPointsAlone) {
+    const TemporaryFolder folder;
+    folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\np 1 2 3\n");
+    const std::string config = folder.write(
+        "mine.yaml", "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: points.obj\n");
+    EXPECT_THAT(gfxrepro({"check", config}).err,
+                HasSubstr("points.obj: 3 points and no triangles, which only a technique that "
+                          "draws points can take\n"));
+}
+
 TEST(OwnExperiment, AFixedValueIsThatOfTheCasesThatASweepLeavesItTo) {
     const TemporaryFolder folder;
     const std::string config = folder.write(
