@@ -55,20 +55,23 @@ void readLobe(config::Params& params, reflections::LobeSettings& lobe) {
 
 BinSettings readBins(config::Params& params) {
     BinSettings bins;
-    bins.maxThetaBins =
-        params.getInt("theta_bins", bins.maxThetaBins,
-                      {"most bins of a reflector's normals around y", "bins", 1, 64});
-    bins.maxPhiBins = params.getInt("phi_bins", bins.maxPhiBins,
-                                    {"most bins of their angles from y", "bins", 1, 64});
+    bins.maxThetaBins = params.getInt(
+        "theta_bins", bins.maxThetaBins,
+        {"most bins of a reflector's normals, by their angle around y", "bins", 1, 64});
+    bins.maxPhiBins =
+        params.getInt("phi_bins", bins.maxPhiBins,
+                      {"most bins of a reflector's normals, by their angle from y", "bins", 1, 64});
     bins.exponent = number(params, "bin_exponent", static_cast<double>(bins.exponent),
                            {"e of the share of the most bins that a reflector gets: (a_R / n_v · "
                             "bin_gain)^e, at most 1",
                             "1", 0.0, 8.0});
-    bins.gain = number(params, "bin_gain", static_cast<double>(bins.gain),
-                       {"more: finer clusters", "1", 1e-6, 1e6});
-    bins.leastSamples = params.getInt(
-        "least_samples", bins.leastSamples,
-        {"clusters of fewer join a neighbour of their reflector", "samples", 1, 1 << 20});
+    bins.gain =
+        number(params, "bin_gain", static_cast<double>(bins.gain),
+               {"factor on the number of bins: the more, the finer the clusters", "1", 1e-6, 1e6});
+    bins.leastSamples =
+        params.getInt("least_samples", bins.leastSamples,
+                      {"clusters of fewer samples join a neighbour on the same reflector",
+                       "samples", 1, 1 << 20});
     return bins;
 }
 

@@ -49,11 +49,11 @@ ReuseSettings readReuse(config::Params& params) {
                                                 {"how matches are found"});
     settings.matching.maxSteps =
         params.getInt("max_steps", settings.matching.maxSteps,
-                      {"of a search; longer ones are invalid", "steps", 1, 65536});
-    settings.matching.widestRingPx =
-        params.getInt("widest_ring", settings.matching.widestRingPx,
-                      {"around a minimum, where the search looks for a better one; 1: algorithm 9",
-                       "pixels", 1, 64});
+                      {"most steps of a search; a longer one finds no match", "steps", 1, 65536});
+    settings.matching.widestRingPx = params.getInt(
+        "widest_ring", settings.matching.widestRingPx,
+        {"widest ring around a minimum in which the search looks for a better one; 1: algorithm 9",
+         "pixels", 1, 64});
     const double silhouette = params.getDouble(
         "silhouette", 0.05,
         {"neighbours whose eye depths differ by more of the nearer one are not connected", "1", 0.0,
@@ -65,9 +65,9 @@ ReuseSettings readReuse(config::Params& params) {
     settings.reprojection.resampling =
         params.getEnum("resampling", settings.reprojection.resampling, kResamplings,
                        {"how often reflections are resampled on their way"});
-    settings.reprojection.maxGrowth =
-        number(params, "max_growth", settings.reprojection.maxGrowth,
-               {"of a grid triangle's area; beyond, it is invalid", "1", 1.0, 1e6});
+    settings.reprojection.maxGrowth = number(
+        params, "max_growth", settings.reprojection.maxGrowth,
+        {"how much a grid triangle's area may grow; a larger one is left out", "1", 1.0, 1e6});
     settings.reprojection.depthTolerance = static_cast<float>(params.getDouble(
         "depth_tolerance", 0.01,
         {"ε: share by which the depth of a reused sample may be off", "1", 0.0, 1.0}));
@@ -86,11 +86,11 @@ ReuseParams::ReuseParams(config::Params& params)
       tracer(params.getEnum("tracer", Tracer::Compute, kTracers,
                             {"what traces key frames and recomputed samples"})) {
     readView(params);
-    pathFrames = params.getInt("path_frames", pathFrames,
-                               {"of the whole path: the speed along it", "frames", 1, 1000000});
-    firstFrame =
-        params.getInt("first_frame", firstFrame,
-                      {"of the path: where the first measured frame lies", "frame", 0, 999999});
+    pathFrames = params.getInt(
+        "path_frames", pathFrames,
+        {"frames of the whole path, which give the speed along it", "frames", 1, 1000000});
+    firstFrame = params.getInt("first_frame", firstFrame,
+                               {"frame of the path where measuring begins", "frame", 0, 999999});
     readMotionAndSupersampling(params, 1);
     blend = params.getEnum("blend", reflections::Blend::Fresnel, kBlends,
                            {"what weighs the reflected colour"});
@@ -104,8 +104,8 @@ ReuseParams::ReuseParams(config::Params& params)
         "pictures", false, {"result, truth, errors, recomputed samples, key frame, offsets"});
     exhaustiveSamples = params.getInt(
         "exhaustive_samples", 0,
-        {"of a frame's matches, compared with a search of the whole reflector; 0: none", "samples",
-         0, 1000000});
+        {"matches of a frame that are compared with a search of the whole reflector; 0: none",
+         "samples", 0, 1000000});
     fitsRecompute = params.getBool(
         "recompute_fit", false,
         {"a line through recomputing's times over the samples, of all frames but key frames"});

@@ -56,7 +56,7 @@ void readLights(config::Params& params, ShadowMappingParams& p) {
     p.lightKind = params.getEnum("light_kind", LightKind::Spot, kLightKinds, {"of all lights"});
     p.lightPlace =
         params.getEnum("light_place", LightPlace::Orbit, kLightPlaces, {"where lights stand"});
-    p.lightCount = params.getInt("lights", 1, {"how many", "lights", 1, kMaxLights});
+    p.lightCount = params.getInt("lights", 1, {"number of lights", "lights", 1, kMaxLights});
     p.lightDistance = number(params, "light_distance", 1.2,
                              {"from the centre of the scene's box", "diagonals", 0.0, 100.0});
     p.azimuthRad = glm::radians(
@@ -97,7 +97,7 @@ ShadowMappingParams::ShadowMappingParams(config::Params& params) {
     maps.storage =
         params.getEnum("method", Storage::Hardware, kMethods, {"how depths are compared"});
     const FilterKind filter =
-        params.getEnum("filter", FilterKind::Nearest, kFilters, {"of the comparisons"});
+        params.getEnum("filter", FilterKind::Nearest, kFilters, {"how comparisons are filtered"});
     const int filterSize = params.getInt(
         "filter_size", 5, {"side of the square of texels; 3, 5 or 7", "texels", 3, 7});
     if (filterSize % 2 == 0) {
@@ -106,14 +106,18 @@ ShadowMappingParams::ShadowMappingParams(config::Params& params) {
     }
     maps.filter = filterOf(filter, filterSize);
     maps.blurTexels = filterSize;
-    maps.sizePx = params.getInt("shadow_map_size", 1024,
-                                {"of a map, or of a side of a point light's", "pixels", 16, 16384});
+    maps.sizePx =
+        params.getInt("shadow_map_size", 1024,
+                      {"side of a shadow map; a point light has six of them", "pixels", 16, 16384});
     maps.format = params.getEnum("depth_format", DepthFormat::Unorm24, kFormats,
                                  {"of the depth test; of the map where it is hardware's"});
-    maps.bias.constant = number(params, "bias", 0.0005,
-                                {"taken from the receiver's window depth (ε)", "1", 0.0, 1.0});
-    maps.bias.slopeScale = number(params, "slope_bias", 1.0,
-                                  {"times the caster's change of depth a texel", "1", 0.0, 100.0});
+    maps.bias.constant =
+        number(params, "bias", 0.0005,
+               {"ε: how much is taken from the receiver's window depth", "1", 0.0, 1.0});
+    maps.bias.slopeScale = number(
+        params, "slope_bias", 1.0,
+        {"how many times the caster's change of depth from texel to texel is added to the bias",
+         "1", 0.0, 100.0});
     maps.bias.normalOffsetTexels =
         number(params, "normal_bias", 0.0,
                {"how far the receiver is moved along its normal", "texels", 0.0, 100.0});

@@ -71,8 +71,9 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
     : method(params.getEnum("method", Method::NonRedundant, kMethods, {"where shadows come from"})),
       referenceImages(params.getInt("reference_images", 4,
                                     {"depth images, or layers of depth_peeling", "images", 1, 16})),
-      referenceSizePx(params.getInt("reference_size", 512,
-                                    {"of a depth image; the thesis has 1024", "pixels", 1, 32768})),
+      referenceSizePx(
+          params.getInt("reference_size", 512,
+                        {"side of a depth image; the thesis has 1024", "pixels", 1, 32768})),
       reconstruction(readReconstruction(params)),
       simplifyTo(number(params, "simplify_to", 1.0,
                         {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
@@ -89,7 +90,7 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
           number(params, "ground_size", 1.5, {"side of the floor", "diagonals", 0.0, 100.0})),
       measured(params.getEnum("measured", Measured::SoftShadow, kMeasured, {"what is timed"})),
       measuresErrors(
-          params.getBool("errors", true, {"compares with shadow maps of the original geometry"})),
+          params.getBool("errors", true, {"compare with shadow maps of the original geometry"})),
       tracesTruth(params.getBool("traced_truth", false, {"compares with shadow rays, too"})),
       seesFromLight(params.getBool(
           "light_views", false,
@@ -98,7 +99,7 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
           params.getBool("pictures", false, {"shadows, errors, and what light_views compares"})),
       exportsMesh(params.getBool("export_mesh", false, {"writes the meshes as PLY files"})) {
     shadowMap.sizePx =
-        params.getInt("shadow_map_size", 1024, {"of a shadow map", "pixels", 1, 16384});
+        params.getInt("shadow_map_size", 1024, {"side of a shadow map", "pixels", 1, 16384});
     shadowMap.biasTexels =
         number(params, "shadow_bias", 1.0,
                {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});

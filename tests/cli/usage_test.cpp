@@ -201,7 +201,26 @@ TEST(Usage, DescribeListsMetricsAndPassesOnAScreen) {
     }
     EXPECT_THAT(
         gfxrepro({"describe", "voxelization"}).out,
-        HasSubstr("  memory_bytes              mesh, fragments and worksheets on the device"));
+        HasSubstr("  memory_bytes              memory of mesh, fragments and worksheets on the\n"));
+}
+
+/// "of the mesh" asks a reader to begin the sentence with the metric's name.
+TEST(Usage, MetricsSayInWordsOfTheirOwnWhatTheyAre) {
+    for (const char* technique :
+         {"voxelization", "point_splatting", "shadow_mapping", "depth_sampling", "soft_shadows",
+          "clustered_reflections", "reflection_reuse", "terrain_tessellation"}) {
+        const auto json = nlohmann::json::parse(gfxrepro({"describe", technique, "--json"}).out);
+        for (const char* list : {"metrics", "metrics_of_every_technique"}) {
+            for (const auto& metric : json.at(list)) {
+                const auto doc = metric.at("doc").get<std::string>();
+                for (const char* begin : {"of the ", "of a ", "that ", "whose ", "likewise",
+                                          "with ", "within ", "less ", "a frame,", "a pass"}) {
+                    EXPECT_FALSE(doc.starts_with(begin))
+                        << technique << ' ' << metric.at("name") << ": " << doc;
+                }
+            }
+        }
+    }
 }
 
 TEST(Usage, DescribesForProgramsToo) {
