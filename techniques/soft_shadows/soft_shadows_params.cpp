@@ -99,7 +99,9 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
           params.getBool("pictures", false, {"shadows, errors, and what light_views compares"})),
       exportsMesh(params.getBool("export_mesh", false, {"writes the meshes as PLY files"})) {
     shadowMap.sizePx =
-        params.getInt("shadow_map_size", 1024, {"side of a shadow map", "pixels", 1, 16384});
+        // As a depth image: the bias of one texel covers a quad that stands a pixel before its
+        // surface.
+        params.getInt("shadow_map_size", 512, {"side of a shadow map", "pixels", 1, 16384});
     shadowMap.biasTexels =
         number(params, "shadow_bias", 1.0,
                {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
