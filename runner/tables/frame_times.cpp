@@ -259,8 +259,13 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
     if (rounds < metrics::kFewestForInterval) {
         notes.push_back(fmt::format(
             "Times of {} process{}: bounds are a range, no interval (which takes {}), and no claim "
-            "about a time is decided.",
-            rounds, rounds == 1 ? "" : "es", metrics::kFewestForInterval));
+            "about a time is decided.{}",
+            rounds, rounds == 1 ? "" : "es", metrics::kFewestForInterval,
+            endOfRounds(measure, times) == "time_budget_s"
+                ? fmt::format(" All rounds together have {:g} s; `--set "
+                              "measure.time_budget_s=…` allows more.",
+                              measure.timeBudgetS)
+                : ""));
     } else if (error) {
         const std::string target =
             measure.mayContinue()

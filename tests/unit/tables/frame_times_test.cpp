@@ -141,6 +141,12 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
     EXPECT_EQ(first({10, 11}, measureOf(2)),
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
               "about a time is decided.");
+    config::Measure own = measureOf(6);  // of who names no lane
+    own.processesAtLeast = 1;
+    EXPECT_EQ(first({10, 11}, own),
+              "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
+              "about a time is decided. All rounds together have 60 s; `--set "
+              "measure.time_budget_s=…` allows more.");
     EXPECT_EQ(
         first({9, 10, 10, 10, 10, 11}, measureOf(6)),
         "Times of 6 alternating rounds, ended by processes; the CPU time of a frame is known to "
