@@ -20,11 +20,10 @@ class GridMethod : public MeshMethod {
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope scope(profiler, "voxelization");
         grid_.sheets.clearToZero();
+        draw_.use(mesh, {{"sheet", grid_.sheets}});
         for (int slice = 0; slice < drawCount_; ++slice) {
             draw_.pass().setIfActive("slice", slice);
-            for (Axis axis : kAxes) {
-                draw_.draw(mesh, axis, {gl::Resource("sheet", grid_.sheets).unordered()});
-            }
+            for (Axis axis : kAxes) draw_.draw(mesh, axis);
         }
     }
     const VoxelGrid* grid() const override { return &grid_; }

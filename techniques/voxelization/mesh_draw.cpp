@@ -43,12 +43,15 @@ MeshDraw::MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request,
       isExact_(request.isExact()),
       drawsAllAxes_(request.drawsAllAxes()) {}
 
-void MeshDraw::draw(const DeviceMesh& mesh, Axis axis, const gl::Resources& target) const {
+void MeshDraw::use(const DeviceMesh& mesh, const gl::Resources& target) const {
+    pass_.use(target.with(mesh.resources()));
+}
+
+void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
     framebuffer_.bind();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     pass_.set("axis", static_cast<int>(axis));
-    pass_.use(target.with(mesh.resources()));
     if (isExact_) {
         drawExact(mesh, axis);
         return;

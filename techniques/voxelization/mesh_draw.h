@@ -18,10 +18,12 @@ class MeshDraw {
     MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target);
 
     const gl::Pass& pass() const { return pass_; }
+    /// For the draws that follow; `target` is what the DrawTarget names. Not before each of them
+    /// where it stays: llvmpipe finishes what was drawn when an image is bound again.
+    void use(const DeviceMesh& mesh, const gl::Resources& target) const;
     /// Draws the triangles that the rule projects along `axis`, into an N × N framebuffer without
-    /// attachments; `target` is what the DrawTarget names. Slices: the pass's uniform `slice` says
-    /// which one.
-    void draw(const DeviceMesh& mesh, Axis axis, const gl::Resources& target) const;
+    /// attachments. Slices: the pass's uniform `slice` says which one.
+    void draw(const DeviceMesh& mesh, Axis axis) const;
 
   private:
     void drawExact(const DeviceMesh& mesh, Axis axis) const;

@@ -38,9 +38,9 @@ void Rasterization::run(const DeviceMesh& mesh) {
     for (Axis axis : kAxes) {
         const auto index = static_cast<std::size_t>(axis);
         draw_.pass().set("fragmentCapacity", fragments_.capacities[index]);
-        draw_.draw(mesh, axis,
-                   {{"Records", fragments_.records[index]},
-                    gl::Resource("Counters", fragments_.counters).unordered()});
+        draw_.use(mesh, {{"Records", fragments_.records[index]},
+                         gl::Resource("Counters", fragments_.counters).unordered()});
+        draw_.draw(mesh, axis);
     }
 }
 
