@@ -22,11 +22,11 @@ class Cases {
         for (const auto& [key, text] : before) addParamNames(key, ofBefore);
         for (const auto& [key, text] : after) addParamNames(key, ofAfter);
         for (const ParamNames* side : {&ofDifferences, &ofBefore, &ofAfter}) {
-            for (const auto& [technique, names] : *side) {
-                const auto [found, isNew] = common_.try_emplace(technique, names);
+            for (const auto& one : *side) {
+                const auto [found, isNew] = common_.insert(one);
                 if (isNew) continue;
                 std::erase_if(found->second,
-                              [&](const std::string& name) { return !names.contains(name); });
+                              [&](const std::string& name) { return !one.second.contains(name); });
             }
         }
     }

@@ -66,17 +66,17 @@ std::string laneName(const run::Case& item) {
 
 /// The parameters of `cases` as a row each, for more of them than a table of SQLite has columns.
 Frame parameterFrame(const Frame& cases) {
-    const std::size_t first = std::size(kCaseColumns);
-    const std::size_t count = cases.columns.size() - first;
+    constexpr std::size_t kFirst = std::size(kCaseColumns);
+    const std::size_t count = cases.columns.size() - kFirst;
     // Of one case after another each row is made once.
     const auto row = std::make_shared<std::pair<std::size_t, std::vector<FrameValue>>>(
         cases.rowCount, std::vector<FrameValue>{});
     return {"case_params",
             {"case_id", "param", "value"},
             cases.rowCount * count,
-            [cases, first, count, row](std::size_t i) {
+            [cases, count, row](std::size_t i) {
                 if (row->first != i / count) *row = {i / count, cases.row(i / count)};
-                const std::size_t column = first + i % count;
+                const std::size_t column = kFirst + i % count;
                 return std::vector<FrameValue>{row->second.front(), cases.columns[column],
                                                row->second[column]};
             }};

@@ -181,10 +181,11 @@ Variations variationsOf(const config::Experiment& experiment, const std::vector<
         }
         byAssumption.push_back(variationsOf(assumption, cases, points));
     }
-    std::ranges::stable_partition(byAssumption, [](const std::vector<Variation>& variations) {
-        return !variations.empty() &&
-               variations.front().assumption.starts_with(config::kSceneAssumption);
-    });
+    std::stable_partition(
+        byAssumption.begin(), byAssumption.end(), [](const std::vector<Variation>& variations) {
+            return !variations.empty() &&
+                   variations.front().assumption.starts_with(config::kSceneAssumption);
+        });
     std::size_t most = 0;
     for (const auto& variations : byAssumption) most = std::max(most, variations.size());
     for (std::size_t i = 0; i < most; ++i) {

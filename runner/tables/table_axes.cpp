@@ -127,7 +127,7 @@ std::vector<std::size_t> CaseIndex::placesOf(std::size_t axis,
         places.insert(places.end(), found->second.begin(), found->second.end());
     }
     std::ranges::sort(places);
-    places.erase(std::ranges::unique(places).begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
     return places;
 }
 
