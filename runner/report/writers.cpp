@@ -53,13 +53,16 @@ bool saysPrinted(const tables::Table& table, std::size_t column) {
 std::string tableCsv(const tables::Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
+    std::vector<bool> isPrinted, isCalibrated;  // asked once a column: both look at every row
     records::CsvRow header(text);
     for (const std::string& axis : table.rowAxes) header.text(axis);
     if (table.hasSources()) header.text("source");
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const std::string& label = table.columns[i].label;
         statistics.push_back(statisticsOf(table, i));
-        if (saysPrinted(table, i)) header.text(label + "_printed");
+        isPrinted.push_back(saysPrinted(table, i));
+        isCalibrated.push_back(hasCalibrated(table, i));
+        if (isPrinted[i]) header.text(label + "_printed");
         for (const std::string& statistic : statistics[i]) {
             const std::string name = label + (statistics[i].size() > 1 ? "_" + statistic : "");
             header.text(name + "_measured").text(name + "_low").text(name + "_high");
@@ -67,7 +70,7 @@ std::string tableCsv(const tables::Table& table) {
         }
         header.text(label + "_status");
         if (table.isPublished) header.text(label + "_at_printed");
-        if (hasCalibrated(table, i)) header.text(label + "_calibrated");
+        if (isCalibrated[i]) header.text(label + "_calibrated");
     }
     if (table.isPublished) header.text("parameters");
     header.end();
@@ -77,7 +80,7 @@ std::string tableCsv(const tables::Table& table) {
         if (table.hasSources()) line.text(tables::sceneSourceName(row.source));
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
             const tables::Cell& cell = row.cells[i];
-            if (saysPrinted(table, i)) line.text(cell.printed.value_or(""));
+            if (isPrinted[i]) line.text(cell.printed.value_or(""));
             for (const std::string& statistic : statistics[i]) {
                 const tables::Measured* measured = cell.find(statistic);
                 if (measured) {
@@ -90,7 +93,7 @@ std::string tableCsv(const tables::Table& table) {
             }
             line.text(cell.isPlanned ? records::statusName(cell.status) : "");
             if (table.isPublished) line.text(atPrintedWord(table, cell));
-            if (hasCalibrated(table, i)) line.text(cell.isCalibrated ? "yes" : "no");
+            if (isCalibrated[i]) line.text(cell.isCalibrated ? "yes" : "no");
         }
         if (table.isPublished) line.text(tables::parametersLine(table, row));
         line.end();

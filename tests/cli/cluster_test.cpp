@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -136,8 +138,12 @@ TEST(Shards, MergeToTheTablesOfOneRun) {
                               merged + "/report.html\n");
     expectSameTables(merged, whole);
     EXPECT_EQ(rowsOf(merged, "number").size(), 10U);
+    const std::vector<records::ImageEntry> images = records::readImages(merged);
     for (const records::Record& row : rowsOf(merged, "number")) {
-        EXPECT_TRUE(fs::exists(merged + "/images/sweep-mock/" + row.caseId + "-flat.exr"));
+        EXPECT_TRUE(std::ranges::any_of(images, [&](const records::ImageEntry& image) {
+            return image.caseId == row.caseId && image.name == "flat" &&
+                   fs::exists(merged + '/' + image.exr);
+        }));
     }
     const std::string list = readFile(merged + "/images/index.csv");
     EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 21);  // two images a case

@@ -268,7 +268,7 @@ TEST(Report, EmbedsEveryPictureWhereItIsAsked) {
     }
     EXPECT_EQ(images, 21U) << "with the error map of the second";
     EXPECT_THAT(html, Not(HasSubstr("data-full=")));
-    EXPECT_THAT(html, HasSubstr("width=\"309\" height=\"320\""));
+    EXPECT_THAT(html, HasSubstr("width=\"309\" height=\"319\""));
     int files = 0;
     for (const auto& file : std::filesystem::directory_iterator(out.path())) {
         EXPECT_EQ(file.path().filename(), "one.html");
