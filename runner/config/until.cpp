@@ -1,4 +1,6 @@
 // `measure: {until: {…}}`: the keys that it stands for.
+#include <fmt/format.h>
+
 #include "runner/config/checks.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
@@ -22,6 +24,21 @@ Node shareOf(const Node& value, const std::string& what) {
     throwNotAllowed(value, what, "a percentage as 1 %, or a fraction, above 0 and to 1");
 }
 
+/// Below as many rounds as an interval takes none follow, and those that are there would be all.
+void requireRounds(const Node& measure, const Node& until) {
+    const Node* error = until.find("relative_error");
+    const Node* repeats = until.find("repeats");
+    if (!error || error->isNull() || (repeats && !repeats->isNull())) return;
+    if (measure.find("repeats_at_most")) return;
+    const Node* processes = measure.find("processes");
+    const std::optional<long long> count = processes ? processes->tryInteger() : std::nullopt;
+    if (!count || *count >= kFewestRounds) return;
+    throw Error(processes->location(),
+                fmt::format("measure: processes is {}, from which 'until' does not go on, as an "
+                            "interval takes {}; allowed: {} or more, none, or 'repeats' in 'until'",
+                            *count, kFewestRounds, kFewestRounds));
+}
+
 }  // namespace
 
 void spreadUntil(Node& document) {
@@ -39,6 +56,7 @@ void spreadUntil(Node& document) {
                     "measure: until: times alone are known to an error, and 'lane: quality' beside "
                     "it takes none; allowed: lane: timing");
     }
+    requireRounds(*measure, until);
     for (const auto& [name, meant] : kUntilKeys) {
         const Node* value = until.find(name);
         if (!value) continue;

@@ -77,6 +77,15 @@ TEST_F(Until, RefusesWhatIsWrongInIt) {
     EXPECT_EQ(untilError("1 %"), head +
                                      "32: measure: until is 1 %; allowed: a map of "
                                      "relative_error, at_most_s, processes, repeats");
+    for (const std::string few : {"1", "5"}) {
+        EXPECT_EQ(errorWith("measure: {until: {relative_error: 1 %}, processes: " + few + "}"),
+                  head + "52: measure: processes is " + few +
+                      ", from which 'until' does not go on, as an interval takes 6; allowed: 6 or "
+                      "more, none, or 'repeats' in 'until'");
+    }
+    EXPECT_TRUE(load(kHead + "measure: {until: {relative_error: 1 %, repeats: 40}, processes: 1}")
+                    .measure.mayRepeat())
+        << "repeats go on";
     EXPECT_EQ(untilError("{at_most_s: x}").substr(0, head.size()), head);
     EXPECT_EQ(untilError("{at_most_s: 1}, time_budget_s: 2"),
               head +
