@@ -1,8 +1,9 @@
-#include <algorithm>
-
 #include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
 
 #include "runner/config/checks.h"
+#include "runner/config/reference_slope.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
@@ -49,6 +50,7 @@ class PlotReader {
         if (const Node* at = node_.find("at"))
             plot_.at = readRowFilter(*at, what_ + ": at", names_);
         if (const Node* log = node_.find("log")) readLog(*log);
+        if (const Node* slope = node_.find("slope")) requireSlope(*slope);
         requirePlaces();
         return std::move(plot_);
     }
@@ -143,6 +145,18 @@ class PlotReader {
         }
     }
 
+    void requireSlope(const Node& node) const {
+        const std::optional<double> slope = node.tryDouble();
+        if (!slope || !std::isfinite(*slope)) {
+            throwNotAllowed(node, what_ + ": slope", "a number, the exponent of x");
+        }
+        if (plot_.isLogX && plot_.isLogY) return;
+        throw Error(node.location(),
+                    what_ +
+                        ": slope is a straight line on logarithmic axes alone; allowed: with "
+                        "log: [x, y]");
+    }
+
     /// Two rows at one place of a curve would be drawn over each other.
     void requirePlaces() const {
         if (!contains(names_.rowAxes, plot_.x)) return;
@@ -169,6 +183,13 @@ class PlotReader {
 };
 
 }  // namespace
+
+std::optional<double> referenceSlope(const Experiment& experiment, std::size_t plot) {
+    const Node* plots = experiment.document.find("plots");
+    if (!plots || !plots->isSequence() || plot >= plots->items().size()) return std::nullopt;
+    const Node* slope = plots->items()[plot].find("slope");
+    return slope ? slope->tryDouble() : std::nullopt;
+}
 
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names) {
     if (!node.isSequence()) throwNotAllowed(node, "plots", "a list of plots");

@@ -243,6 +243,10 @@ SchemaSection plot() {
              {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
              {"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
               oneOrMore(choice({"x", "y"}))},
+             {"slope", "number", "none",
+              "exponent of x that is expected: a dashed line through the mean of each curve's "
+              "points, on two logarithmic axes",
+              number()},
              {"title", "line", "the file's", "above the curves", text()}},
             false};
 }

@@ -123,6 +123,17 @@ std::string adaptedLine(std::string line, const std::string& name) {
 
 }  // namespace
 
+std::string gnuplotQuoted(const std::string& text) {
+    std::string quoted = "'";
+    const bool beginsWithQuote = text.starts_with('\'');  // gnuplot 5.4 takes it for an empty text
+    if (beginsWithQuote) quoted += "’";
+    for (const char c : text.substr(beginsWithQuote ? 1 : 0)) {
+        if (c == '\'') quoted += '\'';
+        quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    return quoted + "'";
+}
+
 Drawn runGnuplot(const std::filesystem::path& script, std::chrono::milliseconds limit) {
     const File output = temporaryFile();
     const File errors = temporaryFile();

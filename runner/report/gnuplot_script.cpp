@@ -8,6 +8,7 @@
 #include "runner/records/csv.h"
 #include "runner/report/gnuplot.h"
 #include "runner/report/gnuplot_axis.h"
+#include "runner/tables/reference_line.h"
 
 namespace gfxrepro::report {
 
@@ -41,6 +42,7 @@ constexpr double kTicWidth = 48;
 constexpr double kEdge = 14;
 constexpr double kLine = 18;  // what gnuplot counts as a character's height, in offsets
 
+constexpr std::string_view kReference = "dashtype 2 linewidth 1.2";
 constexpr std::string_view kInterval = "heads size screen 0.004,90 fixed linewidth 1.2";
 
 std::string number(double value) {
@@ -135,8 +137,8 @@ class ScriptWriter {
 
     static const CurveStyle& styleOf(std::size_t curve) { return kStyles[curve % kStyles.size()]; }
 
-    static std::string block(std::size_t panel, std::size_t curve, bool isPrinted) {
-        return fmt::format("$panel{}_curve{}{}", panel + 1, curve + 1, isPrinted ? "_printed" : "");
+    static std::string block(std::size_t panel, std::size_t curve, const char* what = "") {
+        return fmt::format("$panel{}_curve{}{}", panel + 1, curve + 1, what);
     }
 
     /// A line alone needs no name: its axis has it.
@@ -166,6 +168,11 @@ class ScriptWriter {
             entries_.push_back(fmt::format("keyentry with vectors {} linecolor {} title '{}'",
                                            kInterval, colour, namesOf(bounds_)));
         }
+        if (figure_.slope) {
+            entries_.push_back(fmt::format("keyentry with lines {} linecolor black title {}",
+                                           kReference,
+                                           gnuplotQuoted(tables::slopeName(*figure_.slope))));
+        }
         longest_ = std::max<std::size_t>(longest_, 13);
         constexpr double kLetter = 6.6, kSample = 52;
         const double entry = kSample + kLetter * static_cast<double>(longest_);
@@ -182,20 +189,30 @@ class ScriptWriter {
                 text_ += fmt::format("# {}{}{}: x, measured, ends of its {}\n{} << EOD\n",
                                      oneLine(panel.title), panel.title.empty() ? "" : ", ",
                                      oneLine(curve.name), namesOf(boundsOf(curve)),
-                                     block(panelIndex, i, false));
+                                     block(panelIndex, i));
                 for (const tables::FigurePoint& point : curve.points) writePoint(point);
                 text_ += "EOD\n";
             }
             if (!curve.printed.empty()) {
                 text_ += fmt::format("# likewise as printed: x, y\n{} << EOD\n",
-                                     block(panelIndex, i, true));
-                for (const tables::FigurePoint& point : curve.printed) {
-                    text_ += fmt::format("{} {}\n", number(point.x), number(*point.y));
-                }
-                text_ += "EOD\n";
+                                     block(panelIndex, i, "_printed"));
+                writePairs(curve.printed);
+            }
+            if (!curve.reference.empty()) {
+                text_ +=
+                    fmt::format("# a line of {}: x, y\n{} << EOD\n",
+                                tables::slopeName(*figure_.slope), block(panelIndex, i, "_slope"));
+                writePairs(curve.reference);
             }
         }
         text_ += "\n";
+    }
+
+    void writePairs(const std::vector<tables::FigurePoint>& points) {
+        for (const tables::FigurePoint& point : points) {
+            text_ += fmt::format("{} {}\n", number(point.x), number(*point.y));
+        }
+        text_ += "EOD\n";
     }
 
     void writePoint(const tables::FigurePoint& point) {
@@ -237,7 +254,7 @@ class ScriptWriter {
     void gather(const tables::FigurePanel& panel, std::vector<double>& x,
                 std::vector<double>& y) const {
         for (const tables::FigureCurve& curve : panel.curves) {
-            for (const auto* points : {&curve.points, &curve.printed}) {
+            for (const auto* points : {&curve.points, &curve.printed, &curve.reference}) {
                 for (const tables::FigurePoint& point : *points) {
                     x.push_back(point.x);
                     if (point.y) y.push_back(*point.y);
@@ -317,7 +334,15 @@ class ScriptWriter {
                   std::vector<std::string>& parts) const {
         const tables::FigureCurve& curve = figure_.panels[panel].curves[index];
         const CurveStyle& style = styleOf(index);
-        const std::string data = block(panel, index, false);
+        const std::string data = block(panel, index);
+        if (!curve.reference.empty()) {  // below the curve
+            const std::string colour =
+                figure_.curveNames.size() > 1 ? fmt::format("rgb '{}'", style.colour) : "black";
+            parts.push_back(
+                fmt::format("{} using 1:2 with lines {} linecolor {} title {}",
+                            block(panel, index, "_slope"), kReference, colour,
+                            gnuplotQuoted(curve.name + ", " + tables::slopeName(*figure_.slope))));
+        }
         if (!curve.points.empty()) {
             parts.push_back(fmt::format(
                 "{} using 1:2 with linespoints linecolor rgb '{}' linewidth 1.8 pointtype {} "
@@ -338,7 +363,7 @@ class ScriptWriter {
             parts.push_back(fmt::format(
                 "{} using 1:2 with points linecolor rgb '{}' linewidth 1.4 pointtype {} "
                 "pointsize 1.0 title {}",
-                block(panel, index, true), style.colour, style.hollow,
+                block(panel, index, "_printed"), style.colour, style.hollow,
                 gnuplotQuoted(curve.name + ", printed")));
         }
     }
@@ -361,17 +386,6 @@ class ScriptWriter {
 };
 
 }  // namespace
-
-std::string gnuplotQuoted(const std::string& text) {
-    std::string quoted = "'";
-    const bool beginsWithQuote = text.starts_with('\'');  // gnuplot 5.4 takes it for an empty text
-    if (beginsWithQuote) quoted += "’";
-    for (const char c : text.substr(beginsWithQuote ? 1 : 0)) {
-        if (c == '\'') quoted += '\'';
-        quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    return quoted + "'";
-}
 
 std::string gnuplotScript(const tables::Figure& figure, const std::string& name,
                           const std::string& source) {

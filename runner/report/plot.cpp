@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cctype>
 
+#include "runner/config/reference_slope.h"
 #include "runner/core/files.h"
 #include "runner/report/gnuplot.h"
 #include "runner/tables/default_layout.h"
 #include "runner/tables/figure.h"
+#include "runner/tables/reference_line.h"
 
 namespace gfxrepro::report {
 
@@ -35,14 +37,15 @@ Drawn runPatiently(const fs::path& script, std::chrono::milliseconds& patience) 
 }
 
 PlotFile writePlot(const fs::path& runDir, const tables::Table& table, const config::PlotSpec& plot,
-                   const std::string& stem, std::chrono::milliseconds& patience) {
+                   std::optional<double> slope, const std::string& stem,
+                   std::chrono::milliseconds& patience) {
     PlotFile file;
     file.table = table.id;
     file.title = plot.title.empty() ? table.title : plot.title;
     const std::string svg = fmt::format("plots/{}.svg", stem);
     const std::string absent = tables::whatIsAbsent(plot, table);
-    const tables::Figure figure =
-        absent.empty() ? tables::makeFigure(plot, table) : tables::Figure();
+    tables::Figure figure = absent.empty() ? tables::makeFigure(plot, table) : tables::Figure();
+    if (slope) tables::addReference(figure, *slope);
     file.notes = figure.notes;
     if (figure.panels.empty()) {
         file.problem =
@@ -72,13 +75,15 @@ std::vector<PlotFile> writePlots(const fs::path& runDir, const std::vector<table
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<PlotFile> files;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        const std::vector<config::PlotSpec> plots = experiments[i].hasDefaultLayout()
-                                                        ? tables::defaultPlots(tables[i])
-                                                        : experiments[i].plots;
+        const bool areOwn = !experiments[i].hasDefaultLayout();
+        const std::vector<config::PlotSpec> plots =
+            areOwn ? experiments[i].plots : tables::defaultPlots(tables[i]);
         for (std::size_t n = 0; n < plots.size(); ++n) {
             const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
+            const auto slope =
+                areOwn ? config::referenceSlope(experiments[i], n) : std::optional<double>();
             files.push_back(
-                writePlot(runDir, tables[i], plots[n], tables[i].slug + suffix, patience));
+                writePlot(runDir, tables[i], plots[n], slope, tables[i].slug + suffix, patience));
         }
     }
     return files;

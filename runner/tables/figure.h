@@ -21,9 +21,10 @@ struct FigurePoint {
 };
 
 struct FigureCurve {
-    std::string name;                  // in the legend
-    std::vector<FigurePoint> points;   // by x
-    std::vector<FigurePoint> printed;  // by x; each has its y
+    std::string name;                         // in the legend
+    std::vector<FigurePoint> points;          // by x
+    std::vector<FigurePoint> printed;         // by x; each has its y
+    std::vector<FigurePoint> reference = {};  // the ends of a line (addReference), or none
 };
 
 /// `curves` lies beside those of the other panels: the same place is the same curve.
@@ -38,6 +39,7 @@ struct Figure {
     std::string xLabel;
     bool isLogX = false;
     bool isLogY = false;
+    std::optional<double> slope;  // of the references: exponent of x
     std::vector<std::string> curveNames;
     std::vector<FigurePanel> panels;  // those that have a point
     std::vector<std::string> notes;   // what was left out and why, a sentence each

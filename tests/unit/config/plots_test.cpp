@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "runner/config/experiment.h"
+#include "runner/config/reference_slope.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
@@ -44,6 +45,23 @@ TEST_F(PlotTest, Reads) {
     EXPECT_TRUE(table.plots[2].isLogY);
 }
 
+TEST_F(PlotTest, ASlopeIsOfLogarithmicAxes) {
+    const Experiment table = load(
+        body("\n  - {x: aa, y: bb}\n  - {x: size, y: aa, by: scene, log: [x, y], slope: -0.5}\n"));
+    EXPECT_EQ(referenceSlope(table, 0), std::nullopt);
+    EXPECT_EQ(referenceSlope(table, 1), -0.5);
+    EXPECT_EQ(referenceSlope(table, 2), std::nullopt);
+    const std::string head = "DIR/zju/a.yaml:6:";
+    EXPECT_EQ(plotError("{x: aa, y: bb, log: x, slope: 2}"),
+              head +
+                  "39: plot 1: slope is a straight line on logarithmic axes alone; allowed: with "
+                  "log: [x, y]");
+    for (const std::string bad : {"half", "nan", "[1]", ".inf"}) {
+        EXPECT_EQ(plotError("{x: aa, y: bb, slope: " + bad + "}"),
+                  head + "31: plot 1: slope is " + bad + "; allowed: a number, the exponent of x");
+    }
+}
+
 TEST_F(PlotTest, BadAxes) {
     const std::string head = "DIR/zju/a.yaml:6:";
     EXPECT_EQ(plotError("{y: aa}"), head + "9: plot 1 needs 'x'");
@@ -69,8 +87,9 @@ TEST_F(PlotTest, BadAxes) {
                                                  "list");
     EXPECT_EQ(plotError("{x: size, y: aa, log: [z]}"),
               head + "32: plot 1: log is z; allowed: x, y");
-    EXPECT_EQ(plotError("{x: size, y: aa, zoom: 2}"),
-              head + "26: plot 1: unknown key 'zoom'; allowed: x, y, by, panels, at, log, title");
+    EXPECT_EQ(
+        plotError("{x: size, y: aa, zoom: 2}"),
+        head + "26: plot 1: unknown key 'zoom'; allowed: x, y, by, panels, at, log, slope, title");
     EXPECT_EQ(loadError(body("{x: size}\n")),
               head + "8: plots is {x: size}; allowed: a list of plots");
 }

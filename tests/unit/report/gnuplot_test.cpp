@@ -159,6 +159,20 @@ TEST(GnuplotScript, NamesOnlyWhatIsThere) {
     EXPECT_THAT(script, HasSubstr("set logscale x\nset logscale y\n"));
 }
 
+TEST(GnuplotScript, DrawsAReferenceAndNamesItsSlope) {
+    tables::Figure figure = twoCurves();
+    EXPECT_THAT(gnuplotScript(figure, "p", "s"), Not(HasSubstr("slope")));
+    figure.isLogX = figure.isLogY = true;
+    figure.slope = -0.5;
+    figure.panels[0].curves[0].reference = {point(1, 20), point(4, 10)};
+    const std::string script = gnuplotScript(figure, "p", "s");
+    EXPECT_THAT(script, HasSubstr("$panel1_curve1_slope << EOD\n1 20\n4 10\nEOD\n"));
+    EXPECT_THAT(script, HasSubstr("keyentry with lines dashtype 2 linewidth 1.2 linecolor black "
+                                  "title 'slope −0.5'"));
+    EXPECT_THAT(script, HasSubstr("$panel1_curve1_slope using 1:2 with lines dashtype 2"));
+    EXPECT_THAT(script, Not(HasSubstr("$panel1_curve2_slope")));
+}
+
 /// Of two luminances, as WCAG 2 has it; 3 is asked of graphics.
 double contrast(double a, double b) {
     return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);

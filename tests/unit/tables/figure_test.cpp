@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "runner/tables/reference_line.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::tables {
@@ -61,6 +64,23 @@ TEST(Figure, OrdersPointsAndLeavesGaps) {
     EXPECT_EQ(curve.points[3].bounds, Bounds::Range) << "of three processes";
     EXPECT_EQ(curve.points[3].interval.low, 39.0);
     EXPECT_THAT(figure.notes, ElementsAre("left out: 5 of 8 values (1 crash, 4 missing)"));
+}
+
+TEST(Figure, AReferenceGoesThroughTheMeanOfThePoints) {
+    const config::Experiment experiment =
+        sized("[{x: size, y: draw_ms, panels: scene, log: [x, y], slope: 2}]");
+    const Table table = buildTable(experiment, sizedRecords());
+    Figure figure = makeFigure(experiment.plots[0], table);
+    EXPECT_TRUE(figure.panels[0].curves[0].reference.empty());
+    addReference(figure, 2.0);
+    EXPECT_EQ(figure.slope, 2.0);
+    // 20 at size 2 and 40 at 4: √800 at √8, of which the line's ends are a factor of √2 away.
+    const std::vector<FigurePoint>& ends = figure.panels[0].curves[0].reference;
+    ASSERT_EQ(ends.size(), 2U);
+    EXPECT_EQ(ends[0].x, 2.0);
+    EXPECT_NEAR(*ends[0].y, std::sqrt(800.0) / 2.0, 1e-9);
+    EXPECT_EQ(ends[1].x, 4.0);
+    EXPECT_NEAR(*ends[1].y, std::sqrt(800.0) * 2.0, 1e-9);
 }
 
 TEST(Figure, PanelsAreNamedWithoutFoldersThatAllCanDoWithout) {
