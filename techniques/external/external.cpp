@@ -161,10 +161,30 @@ class External : public technique::Technique {
         std::fwrite(output.data() + begin, 1, output.size() - begin, stderr);
     }
 
+    /// Errors of pictures, its memory and its times are the runner's to say; what nobody has is
+    /// refused by the recorder.
+    void requireItsOwn(const GivenMetric& given) const {
+        const bool isTimeOfPass =
+            !given.pass.empty() && (given.metric == "cpu_time_ms" || given.metric == "gpu_time_ms");
+        if (isTimeOfPass || program_.outputs.find(given.metric)) return;
+        const auto isCommon = [&](const config::MetricInfo& info) {
+            return info.name == given.metric;
+        };
+        if (!errorOutputs().find(given.metric) &&
+            std::ranges::none_of(technique::commonMetrics(), isCommon)) {
+            return;
+        }
+        throw Error(fmt::format(
+            "metric '{}' is taken by the runner; a program gives those of its 'metrics', and "
+            "cpu_time_ms and gpu_time_ms of a pass",
+            given.metric));
+    }
+
     void recordMetrics(technique::Recorder& recorder) const {
         std::vector<std::string> given;
         for (const GivenMetric& one : given_) {
             if (one.frame != frame_) continue;
+            requireItsOwn(one);
             recorder.metric(one.metric, one.value, one.unit, one.pass);
             given.push_back(one.metric);
         }

@@ -41,6 +41,7 @@ case $1 in
     deep) head -c 3000000 /dev/zero | tr '\0' '[' >>"$GFXREPRO_METRICS_FILE" ;;
     no_json) echo "number: 1" >>"$GFXREPRO_METRICS_FILE" ;;
     twice) say number "$2" 1; say number "$2" 1 ;;
+    flatters) say number "$2" 1; say peak_memory_bytes 1 byte ;;
     no_picture) say number "$2" 1; rm "$3/result.png" ;;
     half_picture) say number "$2" 1; head -c 200 "$here/picture.png" >"$3/result.png" ;;
     other_size) say number "$2" 1; cp "$here/small.png" "$3/result.png" ;;
@@ -96,37 +97,40 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     const std::string config =
         write(kPicture +
               "sweep: {behaviour: [ok, crash, fails, hangs, silent, not_a_number, wrong_unit, "
-              "undeclared, deep, no_json, twice, no_picture, half_picture, other_size]}\n"
+              "undeclared, deep, no_json, twice, no_picture, half_picture, other_size, flatters]}\n"
               "measure: {lane: quality, time_limit_s: 2}\n");
     const ProcessResult result = run(config, {"--jobs", "2"});
     EXPECT_EQ(result.exitCode, 4);
-    EXPECT_THAT(result.out, HasSubstr("1 of 14 finished, 13 failed; "));
+    EXPECT_THAT(result.out, HasSubstr("1 of 15 finished, 14 failed; "));
     std::vector<std::string> lines = statusLines(dir);
     std::ranges::sort(lines);
     const std::string program = "program '" + folder.path().string() + "/renderer.sh'";
-    ASSERT_EQ(lines.size(), 14U);
+    ASSERT_EQ(lines.size(), 15U);
     EXPECT_EQ(lines[0], "crash: crash (" + program + " ended with SIGSEGV: drawing crash)");
     EXPECT_THAT(lines[1], testing::StartsWith(
                               "deep: error (line 1 of its metrics has more than 200 brackets in "
                               "each other: [["));
     EXPECT_EQ(lines[2], "fails: error (" + program + " ended with exit code 3: no such scene)");
-    EXPECT_THAT(lines[3],
+    EXPECT_EQ(lines[3],
+              "flatters: error (metric 'peak_memory_bytes' is taken by the runner; a program gives "
+              "those of its 'metrics', and cpu_time_ms and gpu_time_ms of a pass)");
+    EXPECT_THAT(lines[4],
                 testing::MatchesRegex("half_picture: error .image 'result': .*result.png: .*"));
-    EXPECT_EQ(lines[4], "hangs: timeout (not finished after 2 s (in render))");
-    EXPECT_EQ(lines[5], "no_json: error (line 1 of its metrics is no JSON object: number: 1)");
-    EXPECT_EQ(lines[6], "no_picture: error (image 'result': there is no file result.png)");
-    EXPECT_EQ(lines[7],
+    EXPECT_EQ(lines[5], "hangs: timeout (not finished after 2 s (in render))");
+    EXPECT_EQ(lines[6], "no_json: error (line 1 of its metrics is no JSON object: number: 1)");
+    EXPECT_EQ(lines[7], "no_picture: error (image 'result': there is no file result.png)");
+    EXPECT_EQ(lines[8],
               "not_a_number: error (line 1 of its metrics is no JSON object, which has no NaN and "
               "no Infinity: {\"metric\": \"number\", \"value\": NaN, \"unit\": \"1\"})");
-    EXPECT_EQ(lines[8], "ok: ok");
-    EXPECT_EQ(lines[9],
+    EXPECT_EQ(lines[9], "ok: ok");
+    EXPECT_EQ(lines[10],
               "other_size: error (image 'result': has 8 × 8 pixels; 32 × 16 were asked for)");
-    EXPECT_EQ(lines[10], "silent: error (metric 'number': the program gave no value of it)");
-    EXPECT_EQ(lines[11], "twice: error (metric 'number' is given twice for frame 0, repeat 0)");
-    EXPECT_EQ(lines[12],
+    EXPECT_EQ(lines[11], "silent: error (metric 'number': the program gave no value of it)");
+    EXPECT_EQ(lines[12], "twice: error (metric 'number' is given twice for frame 0, repeat 0)");
+    EXPECT_EQ(lines[13],
               "undeclared: error (technique 'external' has no metric 'nmuber'; did you mean "
               "'number'?)");
-    EXPECT_EQ(lines[13],
+    EXPECT_EQ(lines[14],
               "wrong_unit: error (metric 'number' is recorded in 'm', but declared in '1')");
     // What it printed is in the log.
     EXPECT_THAT(readFile(dir + "/log.jsonl"),
