@@ -96,7 +96,10 @@ Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
     for (const Case& item : plan.cases) {
         if (item.measure.lane != Lane::Timing || !plan.measures(item)) continue;
         const auto [table, isNew] = tables_.try_emplace(item.experiment);
-        if (isNew) order_.push_back(item.experiment);
+        if (isNew) {
+            order_.push_back(item.experiment);
+            table->second.times = tables::FrameTimes(!item.program.isNull());
+        }
         table->second.cases.push_back(&item);
     }
     add(records);

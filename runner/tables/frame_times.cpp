@@ -120,21 +120,24 @@ bool FrameTimes::hasRounds(const std::string& caseId, int rounds) const {
     return true;
 }
 
-Clock FrameTimes::judgedClock() const {
+std::vector<Clock> FrameTimes::judgedClocks() const {
     const bool hasAll = std::ranges::all_of(
         cases_, [](const CaseTimes& times) { return times.cpu.size() == times.wall.size(); });
-    return hasAll ? Clock::Process : Clock::Wall;
+    if (!hasAll) return {Clock::Wall};
+    return isOfProgram_ ? std::vector{Clock::Wall, Clock::Process} : std::vector{Clock::Process};
 }
 
 std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
     std::optional<double> largest;
-    for (const std::map<int, double>& processes : times(judgedClock())) {
-        std::vector<double> values = valuesOf(processes);
-        if (values.size() < rounds) continue;
-        values.resize(rounds);
-        const auto interval = metrics::medianInterval(values);
-        if (!interval) continue;
-        largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
+    for (const Clock clock : judgedClocks()) {
+        for (const std::map<int, double>& processes : times(clock)) {
+            std::vector<double> values = valuesOf(processes);
+            if (values.size() < rounds) continue;
+            values.resize(rounds);
+            const auto interval = metrics::medianInterval(values);
+            if (!interval) continue;
+            largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
+        }
     }
     return largest;
 }
@@ -225,6 +228,13 @@ bool isRepeated(const config::Measure& measure, std::span<const double> timesMs)
 
 namespace {
 
+/// "the CPU time of a frame", "the time of a frame, on the wall and of the CPU,".
+std::string_view judgedName(const FrameTimes& times) {
+    const std::vector<Clock> clocks = times.judgedClocks();
+    if (clocks.size() > 1) return "the time of a frame, on the wall and of the CPU,";
+    return clocks[0] == Clock::Process ? "the CPU time of a frame" : "the time of a frame";
+}
+
 /// How often frames were repeated, and what ended that.
 std::string repeatsNote(const FrameTimes& times, const config::Measure& measure) {
     const std::vector<std::size_t> counts = times.repeatCounts();
@@ -272,10 +282,8 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
                 ? fmt::format(" (asked for: {})", percentText(measure.relativeError))
                 : "";
         notes.push_back(fmt::format(
-            "Times of {} alternating rounds, ended by {}; the {}time of a frame is known to ±{} or "
-            "better{}.",
-            rounds, endOfRounds(measure, times),
-            times.judgedClock() == Clock::Process ? "CPU " : "", percentText(*error), target));
+            "Times of {} alternating rounds, ended by {}; {} is known to ±{} or better{}.", rounds,
+            endOfRounds(measure, times), judgedName(times), percentText(*error), target));
     }
     if (measure.mayRepeat()) notes.push_back(repeatsNote(times, measure));
     if (const auto noise = times.noise(Clock::Wall)) {

@@ -25,6 +25,11 @@ struct Outlier {
 
 class FrameTimes {
   public:
+    /// `isOfProgram`: of a program that is measured from outside, which may wait: its tables show
+    /// the clock, which its CPU time does not tell.
+    explicit FrameTimes(bool isOfProgram) : isOfProgram_(isOfProgram) {}
+    FrameTimes() = default;
+
     /// Takes wall and process times of whole frames; other records, void times and the quality
     /// lane's are passed over.
     void add(const records::Record& record);
@@ -37,9 +42,9 @@ class FrameTimes {
     /// Whether the case has a time in each of the first `rounds` processes.
     bool hasRounds(const std::string& caseId, int rounds) const;
 
-    /// The process's, where it was recorded of all cases.
-    Clock judgedClock() const;
-    /// By the judged clock, the largest of all cases: half the 95 % interval of the time of its
+    /// The process's, where it was recorded of all cases; of a program the wall's, too.
+    std::vector<Clock> judgedClocks() const;
+    /// By the judged clocks, the largest of all cases: half the 95 % interval of the time of its
     /// frames (medianInterval) ÷ the time. Cases that miss a round are left out; none where there
     /// are too few rounds for an interval.
     std::optional<double> relativeError() const { return relativeErrorOf(roundCount()); }
@@ -81,6 +86,7 @@ class FrameTimes {
     std::optional<double> relativeErrorOf(std::size_t rounds) const;
     std::vector<CaseTimes> cases_;
     std::map<std::string, std::size_t> indices_;
+    bool isOfProgram_ = false;
 };
 
 /// Whether another repeat follows where a frame took these times in a process so far: while there

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "runner/config/program.h"
 #include "runner/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/tables/cell_builder.h"
@@ -48,7 +49,7 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
 void addTimes(const config::Experiment& experiment, const std::vector<records::Record>& records,
               Table& table) {
     if (experiment.measure.lane != config::Measure::Lane::Timing) return;
-    FrameTimes times;
+    FrameTimes times(!config::programOf(experiment).isNull());
     for (const records::Record& record : records) {
         if (record.table == table.id) times.add(record);
     }

@@ -124,6 +124,25 @@ TEST(Rounds, GoOnWhileTheErrorIsLarge) {
     EXPECT_EQ(rounds.ending("t/1")["ended_by"], "processes_at_most");
 }
 
+TEST(Rounds, OfAProgramGoOnWhileItsClockIsUnknown) {
+    for (const bool isProgram : {false, true}) {
+        run::Plan plan = timedPlan();
+        std::vector<records::Record> records;
+        for (std::size_t i = 2; i < plan.cases.size(); ++i) {
+            plan.cases[i].measure.processesAtMost = 20;
+            if (isProgram) plan.cases[i].program = config::Node::map({});
+            for (int process = 0; process < 14; ++process) {
+                records.push_back(
+                    timeRow(plan.cases[i], process % 2 == 0 ? 500.0 : 750.0, process));
+                records.push_back(timeRow(plan.cases[i], 2.0, process));
+                records.back().metric = "process_time_ms";
+            }
+        }
+        run::Rounds rounds(plan, records, {});
+        EXPECT_EQ(rounds.next("t/1", after(1)).size(), isProgram ? 3U : 0U);
+    }
+}
+
 TEST(Rounds, EndBeforeTheBudgetIsOverdrawn) {
     const run::Plan plan = timedPlan();
     run::Rounds rounds(plan, {}, {});

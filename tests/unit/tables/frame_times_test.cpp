@@ -99,6 +99,29 @@ TEST(FrameTimes, EndsAtARelativeErrorWithNewValuesInTheInterval) {
     EXPECT_FALSE(timesOf(RecordMaker()).isKnownTo(0.1, 6));
 }
 
+/// A program that waits: its CPU time is known, and the clock that its table shows is not.
+TEST(FrameTimes, OfAProgramTheClockIsKnownToo) {
+    const auto known = [](bool isOfProgram, bool isWallEven, bool isCpuEven) {
+        FrameTimes times(isOfProgram);
+        RecordMaker maker;
+        maker.beginCase("models/duck");
+        for (int process = 0; process < 14; ++process) {
+            const double uneven = process % 2 == 0 ? 1.0 : 1.5;
+            maker.process(process).add("wall_time_ms", {isWallEven ? 500.0 : 500.0 * uneven});
+            maker.add("process_time_ms", {isCpuEven ? 2.0 : 2.0 * uneven});
+        }
+        for (const records::Record& record : maker.records()) times.add(record);
+        EXPECT_THAT(timeNotes(times, measureOf(6, 0.1)).at(0),
+                    HasSubstr(isOfProgram ? "; the time of a frame, on the wall and of the CPU, is "
+                                          : "; the CPU time of a frame is "));
+        return times.isKnownTo(0.1, 6);
+    };
+    EXPECT_TRUE(known(true, true, true));
+    EXPECT_FALSE(known(true, false, true));
+    EXPECT_FALSE(known(true, true, false));
+    EXPECT_TRUE(known(false, false, true)) << "what draws on all cores is judged by its work";
+}
+
 TEST(FrameTimes, NoiseIsOfPairsMeasuredByTurns) {
     RecordMaker maker;
     const double drift[] = {1.0, 1.5, 2.0, 1.2, 3.0, 1.1};  // of the machine, alike for both
