@@ -156,7 +156,11 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     std::vector<tables::Table> tables =
         tables::buildTables(experiments, run::plannedCases(run.plan.cases), run.records);
     const std::string mark = "judged after the run, by a config that it did not know";
-    for (tables::Table& table : tables) table.notes.insert(table.notes.begin(), mark);
+    std::vector<std::string> notes = run::notesOf(run.manifest);
+    notes.insert(notes.begin(), mark);
+    for (tables::Table& table : tables) {
+        table.notes.insert(table.notes.begin(), notes.begin(), notes.end());
+    }
     const claims::ReportContext context = results::reportContext(run.manifest);
     std::vector<claims::ClaimResult> claims = claims::evaluateClaims(experiments, tables, context);
     for (claims::ClaimResult& claim : claims) {
@@ -165,7 +169,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     results::takeFolder(out, runDir, run.manifest);
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
-    report::writeTables(folder, tables);
+    report::writeTables(folder, tables, notes);
     report::writeClaims(folder, run::caseResults(run), claims, context);
     const int verdict = sayClaims(claims);
     sayNotes(run.manifest);

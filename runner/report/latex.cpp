@@ -44,7 +44,8 @@ std::string cite(const std::string& key) {
 
 class LatexWriter {
   public:
-    explicit LatexWriter(const tables::Table& table) : table_(table) {
+    LatexWriter(const tables::Table& table, const std::vector<std::string>& runNotes)
+        : table_(table), runNotes_(runNotes) {
         std::set<std::string> rows, columns;
         for (const tables::TableRow& row : table.rows) {
             std::vector<std::string> parts;
@@ -71,6 +72,9 @@ class LatexWriter {
         if (table_.hasCalibrated()) {
             text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kMark,
                                  tables::kCalibratedLegend);
+        }
+        for (const std::string& note : runNotes_) {
+            text_ += fmt::format("\\par{{\\footnotesize Note: {}.\\par}}\n", escapeLatex(note));
         }
         return std::move(text_);
     }
@@ -186,6 +190,7 @@ class LatexWriter {
     }
 
     const tables::Table& table_;
+    const std::vector<std::string>& runNotes_;
     const std::string parameters_ = tables::parametersLine(table_);
     std::vector<std::string> rowKeys_;     // beside the rows
     std::vector<std::string> columnKeys_;  // beside the columns
@@ -206,8 +211,8 @@ std::string latexKeyPart(const std::string& label) {
     return part.empty() ? "none" : part;
 }
 
-std::string tableLatex(const tables::Table& table) {
-    return LatexWriter(table).write();
+std::string tableLatex(const tables::Table& table, const std::vector<std::string>& runNotes) {
+    return LatexWriter(table, runNotes).write();
 }
 
 }  // namespace gfxrepro::report

@@ -216,13 +216,14 @@ std::string claimsCsv(const std::vector<claims::ClaimResult>& results,
 
 }  // namespace
 
-void writeTables(const fs::path& runDir, const std::vector<tables::Table>& tables) {
+void writeTables(const fs::path& runDir, const std::vector<tables::Table>& tables,
+                 const std::vector<std::string>& runNotes) {
     for (const tables::Table& table : tables) {
         if (table.columns.empty()) continue;
         const fs::path folder = runDir / "tables";
         writeFileAtomic(folder / (table.slug + ".csv"), tableCsv(table));
         writeFileAtomic(folder / (table.slug + ".md"), tableMarkdown(table));
-        writeFileAtomic(folder / (table.slug + ".tex"), tableLatex(table));
+        writeFileAtomic(folder / (table.slug + ".tex"), tableLatex(table, runNotes));
     }
 }
 

@@ -15,8 +15,10 @@ namespace gfxrepro::report {
 /// at full precision), .md
 /// (printed beside measured) and .tex (booktabs, a macro a number) for each. All say at which
 /// parameters was measured and which differ from the printed ones: the CSV of each row (column
-/// `parameters`) and of each cell (`…_at_printed`: yes or no).
-void writeTables(const std::filesystem::path& runDir, const std::vector<tables::Table>& tables);
+/// `parameters`) and of each cell (`…_at_printed`: yes or no). `runNotes`, which are among each
+/// table's notes, stand in the .tex, too.
+void writeTables(const std::filesystem::path& runDir, const std::vector<tables::Table>& tables,
+                 const std::vector<std::string>& runNotes = {});
 
 /// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
 /// its own. A case or claim that failed is a failure; a case that was left out and a claim that
@@ -30,8 +32,9 @@ std::string junitXml(const std::vector<records::CaseResult>& cases,
                      const std::vector<claims::ClaimResult>& results);
 
 /// A table as LaTeX: a macro for each number, and a tabular of these macros. Its head says how the
-/// numbers are cited.
-std::string tableLatex(const tables::Table& table);
+/// numbers are cited. `runNotes` stand below the table: what holds of all numbers of the run, as
+/// that they were imported.
+std::string tableLatex(const tables::Table& table, const std::vector<std::string>& runNotes = {});
 
 /// Part of a macro's key: letters, digits and . + - _ stay, anything else becomes "-". They hold
 /// nothing that LaTeX would expand.

@@ -79,7 +79,8 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
     const std::vector<config::Experiment>& experiments = run.plan.experiments;
     Results results = resultsOf(run);
     if (which.tables) {
-        report::writeTables(out, withNotes(results.tables, run::notesOf(run.manifest)));
+        const std::vector<std::string> notes = run::notesOf(run.manifest);
+        report::writeTables(out, withNotes(results.tables, notes), notes);
         tables::writeFits(out, experiments, results.tables);
     }
     if (which.claims) {

@@ -128,6 +128,18 @@ Frame runFrame(const run::StoredRun& run) {
             }};
 }
 
+/// The programs that were measured from outside, and the files that decide what they do.
+Frame programFrame(const run::Json& manifest) {
+    const std::set<run::ProgramUse> uses = run::programsOf(manifest);
+    std::vector<std::vector<FrameValue>> rows;
+    for (const run::ProgramUse& use : uses) rows.push_back({use.file, use.sha256, use.version});
+    const std::size_t count = rows.size();
+    return {
+        "programs", {"file", "sha256", "version"}, count, [rows = std::move(rows)](std::size_t i) {
+            return rows[i];
+        }};
+}
+
 }  // namespace
 
 Frame caseFrame(std::span<const run::Case> cases) {
@@ -179,10 +191,11 @@ void writeTidy(const fs::path& runDir, const run::StoredRun& run, const fs::path
     }
     takeFolder(target, runDir, run.manifest);
     std::vector<Frame> frames = {caseFrame(run.plan.cases), recordFrame(run.records),
-                                 axisFrame(run.plan), runFrame(run)};
+                                 axisFrame(run.plan), runFrame(run), programFrame(run.manifest)};
     records::writeFrameCsv(target / "cases.csv", frames[0]);
     records::writeFrameCsv(target / "records.csv", frames[1]);
     records::writeFrameCsv(target / kRunFile, frames[3]);
+    if (frames[4].rowCount > 0) records::writeFrameCsv(target / "programs.csv", frames[4]);
     if (frames[0].columns.size() > records::kMostSqliteColumns) {
         frames.push_back(parameterFrame(frames[0]));
         frames[0] = withoutParameters(frames[0]);

@@ -29,9 +29,10 @@ records::Frame caseFrame(std::span<const run::Case> cases);
 records::Frame recordFrame(const std::vector<records::Record>& records);
 
 /// Writes the folder `target`, which must not exist: cases.csv, records.csv, run.csv (key, value:
-/// of the manifest), and run.sqlite with these as tables, beside `axes` (experiment, place, axis:
-/// what is swept). Of more than records::kMostSqliteColumns the parameters stand there in
-/// `case_params` instead (case_id, param, value).
+/// of the manifest), programs.csv (file, sha256, version: of programs measured from outside; not
+/// written where there are none), and run.sqlite with these as tables, beside `axes` (experiment,
+/// place, axis: what is swept). Of more than records::kMostSqliteColumns the parameters stand there
+/// in `case_params` instead (case_id, param, value).
 void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
                const std::filesystem::path& target);
 

@@ -144,6 +144,9 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     EXPECT_THAT(imported.out, HasSubstr("warning: " + mark));
     EXPECT_EQ(readFile(dir("theirs") + "/tables/sweep-theirs.csv").substr(0, 8), "samples,");
     EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.md"), HasSubstr(mark));
+    EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.tex"),
+                HasSubstr("\\par{\\footnotesize Note: imported: these numbers were measured "
+                          "elsewhere, on RTX 4090, "));
     const std::string page = readFile(dir("theirs") + "/report.html");
     EXPECT_THAT(page, HasSubstr(mark));
     EXPECT_THAT(page, HasSubstr("gfxrepro import "));

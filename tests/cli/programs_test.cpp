@@ -191,6 +191,12 @@ TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
     EXPECT_EQ(programs[0]["sha256"].get<std::string>().size(), 64U);
     EXPECT_EQ(programs[0]["version"], "Renderer 1.2");
     EXPECT_EQ(programs[1]["file"], "picture.png");
+    const std::string tidy = (folder.path() / "tidy").string();
+    EXPECT_EQ(gfxrepro({"export", dir, "--tidy", "--out", tidy}).exitCode, 0);
+    const std::string digest = programs[0]["sha256"];
+    EXPECT_THAT(readFile(tidy + "/programs.csv"),
+                HasSubstr("file,sha256,version\n" + folder.path().string() + "/renderer.sh," +
+                          digest + ",Renderer 1.2\npicture.png,"));
     EXPECT_EQ(gfxrepro({"report", dir}).exitCode, 0);
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("Renderer 1.2"));
     const std::string artifact = (folder.path() / "artifact").string();

@@ -12,6 +12,7 @@ namespace gfxrepro::report {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> keysOf(const std::string& latex) {
     const std::regex definition(R"(\\gfxreproset\{([^}]*)\}\{)");
@@ -95,6 +96,16 @@ layout: {rows: scene, columns: {"x_1": {metric: m}, "x 1": {metric: m}, "x/1": {
     EXPECT_EQ(latexKeyPart(""), "none");
     // After \\ a bracket would be its argument.
     EXPECT_THAT(latex, HasSubstr("\\\\\n{[0, 1]} & "));
+}
+
+TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
+    tables::Table table;
+    table.id = "p/1";
+    table.columns = {{"b", ""}};
+    EXPECT_THAT(tableLatex(table), Not(HasSubstr("Note")));
+    EXPECT_THAT(tableLatex(table, {"imported: 5 % elsewhere"}),
+                HasSubstr("\\end{tabular}\n\\par{\\footnotesize Note: imported: 5 \\% "
+                          "elsewhere.\\par}\n"));
 }
 
 TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
