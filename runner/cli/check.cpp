@@ -12,6 +12,7 @@
 #include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/program.h"
+#include "runner/config/program_files.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
@@ -121,13 +122,16 @@ void requireReadable(const std::vector<run::Case>& cases, const scene::Catalog& 
     }
 }
 
-/// Says which programs are not on this machine: other machines may have them.
+/// Says which programs are not on this machine: other machines may have them. Files that they read
+/// have to be there.
 void sayAbsent(const std::string& file, const std::vector<run::Case>& cases) {
     std::set<std::string> absent;
     for (const run::Case& item : cases) {
         if (item.program.isNull()) continue;
         const config::Program program = config::readProgram(item.program);
-        const auto files = config::filesOf(program, program.valuesOf(item.params));
+        const config::Placeholders values = program.valuesOf(item.params);
+        config::requireFiles(item.program, program, values);
+        const auto files = config::filesOf(program, values);
         if (const config::ProgramFile* one = config::absentOf(files)) absent.insert(one->name);
     }
     for (const std::string& name : absent) {

@@ -46,10 +46,28 @@ bool hasPlaceholder(std::string_view text, std::string_view name) {
     return isThere;
 }
 
+/// Whether a brace is opened that nothing closes.
+bool hasOpenBrace(std::string_view text) {
+    for (std::size_t at = text.find('{'); at != std::string_view::npos; at = text.find('{', at)) {
+        if (text.substr(at + 1).starts_with('{')) {
+            at += 2;
+            continue;
+        }
+        at = text.find('}', at);
+        if (at == std::string_view::npos) return true;
+    }
+    return false;
+}
+
 /// A text with placeholders, each of which is one of `known`.
 std::string templateOf(const Node& node, std::string_view what, const Names& known) {
     if (!node.isScalar()) {
         throwNotAllowed(node, what, "text; one that begins with a brace needs quotes");
+    }
+    if (hasOpenBrace(node.text())) {
+        throw Error(node.location(), fmt::format("{}: a brace of '{}' is not closed; braces as "
+                                                 "such are {{{{ and }}}}",
+                                                 what, node.text()));
     }
     forEachPart(
         node.text(), [](std::string_view) {},
@@ -107,7 +125,8 @@ void readMetrics(const Node& metrics, Program& program) {
         const Node map = given.isMap() ? given : Node::map({{"unit", given}}, given.location());
         requireKeys(map, what, keysOf("program_metric"));
         const Node* unit = map.find("unit");
-        if (!unit) throw Error(metrics.keyLocation(name), what + " needs 'unit'; \"1\" for none");
+        if (!unit || unit->isNull())
+            throw Error(metrics.keyLocation(name), what + " needs 'unit'; \"1\" for none");
         if (const std::string why = whyNoTimeName(name, lineOf(*unit, what + ": unit"));
             !why.empty()) {
             throw Error(unit->location(), "program: metric " + why);
@@ -168,11 +187,21 @@ void readTruthFrames(const Node& truth, const std::string& what, const Program& 
     picture.truthFrames = static_cast<int>(*count);
 }
 
+/// Of one that ends with a placeholder the type is not known yet.
+void requirePictureType(const Node& file, const std::string& what) {
+    const std::string& text = file.text();
+    if (text.ends_with('}') || text.ends_with(".exr") || text.ends_with(".png")) return;
+    throwNotAllowed(file, what, "a name that ends in .exr or .png");
+}
+
 void readTruth(const Node& truth, const std::string& what, const Names& known, Program& program,
                ProgramPicture& picture) {
     if (!truth.isMap()) {
         picture.truthFile = templateOf(truth, what, known);
-        return;
+        return requirePictureType(truth, what);
+    }
+    if (truth.entries().empty()) {  // it would be the picture itself, and every error 0
+        throwNotAllowed(truth, what, "a file, or parameters that are not the case's");
     }
     Names allowed = {placeholder::kFrames};
     if (!program.givesAllFrames) allowed.emplace_back(placeholder::kFrame);
@@ -211,6 +240,7 @@ void readPictures(const Node& pictures, const Names& known, Program& program) {
         ProgramPicture picture;
         picture.name = name;
         picture.file = templateOf(*file, what + ": file", known);
+        requirePictureType(*file, what + ": file");
         if (program.givesAllFrames && !hasPlaceholder(picture.file, placeholder::kFrame)) {
             throwNotAllowed(*file, what + ": file",
                             "one with {frame}, as one run leaves the pictures of all frames");
@@ -275,6 +305,13 @@ Program readProgram(const Node& node) {
     section("env", [&](const Node& variables) {
         if (!variables.isMap()) throwNotAllowed(variables, "program: env", "a map {NAME: text}");
         for (const auto& [name, text] : variables.entries()) {
+            const std::string& variable = name;
+            if (variable.empty() || variable.find('=') != std::string::npos) {
+                throw Error(variables.keyLocation(name),
+                            fmt::format("program: env: '{}' is no name of a variable; allowed: one "
+                                        "without '='",
+                                        variable));
+            }
             program.environment.emplace_back(name, templateOf(text, "program: env", known));
         }
     });

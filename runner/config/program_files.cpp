@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "runner/config/program.h"
+#include "runner/config/program_files.h"
 #include "runner/config/sections.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"
@@ -89,6 +90,27 @@ std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& val
         add(path);
     }
     return files;
+}
+
+void requireFiles(const Node& node, const Program& program, const Placeholders& values) {
+    const auto require = [](const Node& named, const std::string& what, const fs::path& path) {
+        std::error_code isAbsent;
+        if (fs::is_regular_file(path, isAbsent)) return;
+        throw Error(named.location(), what + ": there is no file " + path.string());
+    };
+    if (const Node* files = node.find("files")) {
+        for (const Node& file : files->items()) {
+            require(file, "program: files",
+                    (fs::path(program.here) / file.text()).lexically_normal());
+        }
+    }
+    for (const ProgramPicture& picture : program.pictures) {
+        const std::string text = filled(picture.truthFile, values);
+        // What is below {out}, or of a frame, is known when the program runs.
+        if (!text.starts_with('/') || text.find('{') != std::string::npos) continue;
+        require(*node.find("images")->find(picture.name)->find("truth"),
+                "program: image '" + picture.name + "': truth", fs::path(text).lexically_normal());
+    }
 }
 
 const std::string& FileDigests::of(const fs::path& path) {

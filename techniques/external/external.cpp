@@ -28,8 +28,8 @@ namespace placeholder = config::placeholder;
 
 constexpr std::size_t kLoggedBytes = 4096;  // of what a program prints
 
-/// The last that says something, without colours and other control characters.
-std::string lastLine(std::string_view output) {
+/// The last three that say something, without colours and other control characters, in one.
+std::string lastLines(std::string_view output) {
     output.remove_prefix(output.size() - std::min(output.size(), kLoggedBytes));
     std::string plain;
     for (std::size_t i = 0; i < output.size(); ++i) {
@@ -40,8 +40,13 @@ std::string lastLine(std::string_view output) {
             plain += output[i];
         }
     }
-    const std::string_view text = trimmed(plain);
-    return std::string(text.substr(text.find_last_of("\r\n") + 1));  // npos + 1 is 0
+    std::ranges::replace(plain, '\r', '\n');
+    std::vector<std::string> lines;
+    for (const std::string& line : split(plain, '\n')) {
+        if (!trimmed(line).empty()) lines.emplace_back(trimmed(line));
+    }
+    lines.erase(lines.begin(), lines.end() - std::min<std::ptrdiff_t>(std::ssize(lines), 3));
+    return joined(lines, " / ");
 }
 
 /// A folder that goes with the object.
@@ -146,9 +151,9 @@ class External : public technique::Technique {
         }
         if (const std::string why = whyEnded(end.waitStatus); !why.empty()) {
             logOutput(end.output);
-            const std::string line = lastLine(end.output);
+            const std::string lines = lastLines(end.output);
             const std::string message = fmt::format("program '{}' ended with {}{}{}", name, why,
-                                                    line.empty() ? "" : ": ", line);
+                                                    lines.empty() ? "" : ": ", lines);
             if (WIFSIGNALED(end.waitStatus)) throw technique::CrashError(message);
             throw Error(message);
         }
@@ -180,17 +185,24 @@ class External : public technique::Technique {
             given.metric));
     }
 
+    static void requireTime(const std::string& metric, double value) {
+        if (value >= 0.0 || !metric.ends_with("_ms")) return;
+        throw Error(fmt::format("metric '{}' is {} ms; a time is 0 or more", metric, value));
+    }
+
     void recordMetrics(technique::Recorder& recorder) const {
         std::vector<std::string> given;
         for (const GivenMetric& one : given_) {
             if (one.frame != frame_) continue;
             requireItsOwn(one);
+            requireTime(one.metric, one.value);
             recorder.metric(one.metric, one.value, one.unit, one.pass);
             given.push_back(one.metric);
         }
         for (const config::ProgramPattern& pattern : program_.patterns) {
             const std::optional<double> value = numberIn(end_.output, pattern);
             if (!value) continue;
+            requireTime(pattern.metric, *value);
             recorder.metric(pattern.metric, *value, program_.outputs.find(pattern.metric)->unit,
                             "");
             given.push_back(pattern.metric);

@@ -44,8 +44,14 @@ ImageF withoutLoneAlpha(const ImageF& image) {
 
 Picture readPicture(const fs::path& file, const std::string& what, glm::ivec2 sizePx) {
     std::error_code isAbsent;
-    if (!fs::is_regular_file(file, isAbsent)) {
-        throw Error(fmt::format("{}: there is no file {}", what, file.filename().string()));
+    const fs::file_status status = fs::status(file, isAbsent);
+    if (!fs::is_regular_file(status)) {
+        const std::string name = file.filename().string();
+        if (!fs::exists(status)) throw Error(fmt::format("{}: there is no file {}", what, name));
+        throw Error(fmt::format("{}: {} is {}, no file", what, name,
+                                fs::is_directory(status) ? "a folder"
+                                : fs::is_fifo(status)    ? "a pipe"
+                                                         : "a device or socket"));
     }
     Picture picture;
     try {

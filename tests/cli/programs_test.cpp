@@ -41,6 +41,8 @@ case $1 in
     deep) head -c 3000000 /dev/zero | tr '\0' '[' >>"$GFXREPRO_METRICS_FILE" ;;
     no_json) echo "number: 1" >>"$GFXREPRO_METRICS_FILE" ;;
     twice) say number "$2" 1; say number "$2" 1 ;;
+    early) say number "$2" 1; say own_ms -5 ms ;;
+    talks) echo "one\n\ntwo\nthree\nfour" >&2; exit 3 ;;
     flatters) say number "$2" 1; say peak_memory_bytes 1 byte ;;
     no_picture) say number "$2" 1; rm "$3/result.png" ;;
     half_picture) say number "$2" 1; head -c 200 "$here/picture.png" >"$3/result.png" ;;
@@ -110,7 +112,8 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     EXPECT_THAT(lines[1], testing::StartsWith(
                               "deep: error (line 1 of its metrics has more than 200 brackets in "
                               "each other: [["));
-    EXPECT_EQ(lines[2], "fails: error (" + program + " ended with exit code 3: no such scene)");
+    EXPECT_EQ(lines[2], "fails: error (" + program +
+                            " ended with exit code 3: drawing fails / no such scene)");
     EXPECT_EQ(lines[3],
               "flatters: error (metric 'peak_memory_bytes' is taken by the runner; a program gives "
               "those of its 'metrics', and cpu_time_ms and gpu_time_ms of a pass)");
@@ -136,6 +139,22 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     EXPECT_THAT(readFile(dir + "/log.jsonl"),
                 HasSubstr("drawing fails\\n\\u001b[1;31mno such scene"));
     EXPECT_FALSE(fs::exists(dir + "/scratch"));
+}
+
+TEST_F(ExternalProgram, ATimeBelowZeroIsNoneAndItsLastLinesAreKept) {
+    std::string head = kProgram;
+    const std::string metrics = "metrics: {number: \"1\"";
+    head.insert(head.find(metrics) + metrics.size(), ", own_ms: {unit: ms, optional: true}");
+    const std::string config =
+        folder.write("mine.yaml", head + "sweep: {behaviour: [ok, early, talks]}\n").string();
+    EXPECT_EQ(run(config, {"--set", "measure.lane=quality"}).exitCode, 4);
+    std::vector<std::string> lines = statusLines(dir);
+    std::ranges::sort(lines);
+    EXPECT_THAT(
+        lines, ElementsAre("early: error (metric 'own_ms' is -5 ms; a time is 0 or more)", "ok: ok",
+                           "talks: error (program '" + folder.path().string() +
+                               "/renderer.sh' ended with exit code 3: two / three / "
+                               "four)"));
 }
 
 TEST_F(ExternalProgram, MemoryOfWhatItStartedIsLimited) {
@@ -388,6 +407,12 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
     EXPECT_EQ(check("sweep: {number: [1, 2]}\n"), "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
     EXPECT_EQ(check("sweep: {number: [1, 200]}\n"),
               "mine.yaml:11:21: technique 'external': number is 200; allowed: 0 … 100\n");
+    const std::string image = "  images: {result: {file: result.png, truth: ";
+    EXPECT_EQ(check(image + "\"{here}/gone.png\"}}\n"),
+              "mine.yaml:11:46: program: image 'result': truth: there is no file " +
+                  folder.path().string() + "/gone.png\n");
+    EXPECT_EQ(check(image + "\"{here}/truth.png\"}}\nsweep: {number: [1, 2]}\n"),
+              "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
     EXPECT_EQ(check("params: {nubmer: 1}\n"),
               "mine.yaml:11:10: technique 'external': unknown parameter 'nubmer'; did you mean "
               "'number'?\n");

@@ -1,6 +1,7 @@
 #include "techniques/external/pictures.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <limits>
 
@@ -64,6 +65,10 @@ TEST(Pictures, RefusesHalfAndWrongOnes) {
         return errorText([&] { readPicture(file, "image 'result'", size); }, folder.path());
     };
     EXPECT_EQ(errorOf(folder.path() / "none.exr"), "image 'result': there is no file none.exr");
+    EXPECT_EQ(errorOf(folder.path()),
+              "image 'result': " + folder.path().filename().string() + " is a folder, no file");
+    ASSERT_EQ(::mkfifo((folder.path() / "pipe.png").c_str(), 0600), 0);
+    EXPECT_EQ(errorOf(folder.path() / "pipe.png"), "image 'result': pipe.png is a pipe, no file");
     EXPECT_EQ(errorOf(folder.write("x.jpg", "x")).substr(0, 16), "image 'result': ");
     const auto png = writePng(folder, "p.png", 16, 51);
     EXPECT_EQ(errorOf(png, {16, 16}), "no error");

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "runner/config/program_files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::config {
@@ -282,6 +283,47 @@ TEST(Program, OneThatIsNotHereHasNoKey) {
     const Program other = programOf("command: sh\nfiles: [no-such-file]\nhere: /usr");
     EXPECT_EQ(errorText([&] { filesOf(other, {}); }),
               "program: files: there is no file /usr/no-such-file");
+}
+
+TEST(Program, NamesFilesThatAreNotThereByTheirPlace) {
+    const auto missingIn = [](const std::string& yaml) {
+        const Node node = parseYaml(yaml, "c.yaml");
+        const Program program = readProgram(node);
+        return errorText([&] { requireFiles(node, program, {{"here", "/usr"}, {"n", "gone"}}); });
+    };
+    EXPECT_EQ(missingIn("command: sh\nfiles: [bin/sh, no-such-file]\nhere: /usr"),
+              "c.yaml:2:17: program: files: there is no file /usr/no-such-file");
+    const std::string head =
+        "command: sh {n} {frame}\nparams: {n: a}\nimages: {r: {file: r.png, truth: ";
+    EXPECT_EQ(missingIn(head + "\"{here}/{n}.png\"}}"),
+              "c.yaml:3:34: program: image 'r': truth: there is no file /usr/gone.png");
+    for (const char* later : {"\"{here}/{frame}.png\"", "\"{out}/{n}.png\"", "t.png", "{n: b}"}) {
+        EXPECT_EQ(missingIn(head + later + "}}"), "no error") << later;
+    }
+}
+
+TEST(Program, RefusesWhatItCouldNotTake) {
+    EXPECT_EQ(errorOf("command: t -o {out"),
+              "c.yaml:1:10: program: command: a brace of 't -o {out' is not closed; braces as such "
+              "are {{ and }}");
+    EXPECT_EQ(errorOf("command: t {{out"), "no error");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {m: null}"),
+              "c.yaml:2:11: program: metric 'm' needs 'unit'; \"1\" for none");
+    EXPECT_EQ(errorOf("command: t\nimages: {r: r.jpg}"),
+              "c.yaml:2:13: program: image 'r': file is r.jpg; allowed: a name that ends in .exr "
+              "or .png");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: a.png}\nimages: {r: \"{n}\"}"), "no error");
+    EXPECT_EQ(errorOf("command: t\nimages: {r: {file: r.png, truth: t.jpg}}"),
+              "c.yaml:2:34: program: image 'r': truth is t.jpg; allowed: a name that ends in .exr "
+              "or .png");
+    EXPECT_EQ(errorOf("command: t\nimages: {r: {file: r.png, truth: {}}}"),
+              "c.yaml:2:34: program: image 'r': truth is {}; allowed: a file, or parameters that "
+              "are not the case's");
+    for (const std::string name : {"", "A=B"}) {
+        EXPECT_EQ(errorOf("command: t\nenv: {\"" + name + "\": x}"),
+                  "c.yaml:2:7: program: env: '" + name +
+                      "' is no name of a variable; allowed: one without '='");
+    }
 }
 
 }  // namespace
