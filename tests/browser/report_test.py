@@ -138,7 +138,7 @@ class Report(unittest.TestCase):
             self.assertIn(words, self.browser.script("return document.querySelector(arguments[0]).textContent", selector))
         self.assertEqual(self.browser.script("return [...document.querySelectorAll('.chapters li > span')].map(s => s.textContent)"),
                          ["Chapter 1. Small things", "Chapter 2. Quick things"])
-        self.assertEqual(self.shown(".highlights img"), 1, "table 1 alone has pictures")
+        self.assertEqual(self.shown(".highlights img"), 2, "table 1 alone has pictures: of two claims")
         self.assertIn("fails", self.browser.script("return document.querySelector('.highlights figcaption').textContent"))
         bars = self.browser.script("return [...document.querySelector('.tally').children].map(s => [s.textContent, s.getBoundingClientRect().width])")
         self.assertEqual([text for text, _ in bars], ["✓ 2", "✗ 2", "○ 2"])
