@@ -6,6 +6,7 @@
 
 #include "runner/core/text.h"
 #include "runner/tables/case_records.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::claims {
 
@@ -102,8 +103,9 @@ std::string ClaimReader::groupName(const Rows& rows) const {
         const bool isShared = std::all_of(rows.begin(), rows.end(), [&](std::size_t row) {
             return table_.rows[row].labels[axis] == label;
         });
-        const std::string& name = table_.rowAxes[axis];
-        if (isShared) parts.push_back(name.empty() ? label : name + "=" + label);
+        if (isShared) {
+            parts.push_back(tables::shownValue(table_.rowAxes[axis], label, table_.words));
+        }
     }
     return joined(parts);
 }

@@ -20,7 +20,8 @@ std::vector<const ClaimResult*> tellingClaims(const std::vector<ClaimResult>& cl
     std::vector<const ClaimResult*> telling;
     for (const ClaimResult& claim : claims) {
         const bool isJudged = claim.verdict == Verdict::Fails || claim.verdict == Verdict::Holds;
-        if (isJudged) telling.push_back(&claim);
+        // A sentence that goes on from the one before says nothing alone.
+        if (isJudged && !claim.text.starts_with("…")) telling.push_back(&claim);
     }
     std::ranges::stable_sort(telling, std::greater<>(), rank);
     return telling;

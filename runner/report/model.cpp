@@ -108,7 +108,8 @@ const RunPart* Page::shown() const {
 
 bool Page::isOwn() const {
     const RunPart* part = shown();
-    return part && !part->experiment->isPublished();
+    return part && part->experiment->kind == config::Experiment::Kind::Sweep &&
+           !part->experiment->isPublished();
 }
 
 std::string Page::heading() const {

@@ -2,6 +2,7 @@
 
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::report {
 
@@ -15,7 +16,8 @@ std::string paragraph(const char* cssClass, const char* label, const std::string
                        escapeXml(text));
 }
 
-std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions) {
+std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
+                            const tables::Words& words) {
     if (assumptions.empty()) return "";
     std::string html =
         "<h3>Assumptions</h3>\n<div class=\"scroll\"><table class=\"assumed\"><thead><tr>"
@@ -27,11 +29,11 @@ std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions) 
                                  : escapeXml(node.isScalar() ? node.text() : node.toFlowText());
         };
         const std::string unit = assumption.unit.empty() ? "" : ' ' + escapeXml(assumption.unit);
-        html +=
-            fmt::format("<tr><td class=\"id\">{}</td><td>{}{}</td><td>{}</td><td>{}</td></tr>\n",
-                        escapeXml(assumption.name), text(assumption.value),
-                        assumption.value.isNull() ? "" : unit, text(assumption.range),
-                        escapeXml(assumption.why));
+        html += fmt::format(
+            "<tr><td title=\"{}\">{}</td><td>{}{}</td><td>{}</td><td>{}</td></tr>\n",
+            escapeXml(assumption.name), escapeXml(tables::quantityOf(assumption.name, words).words),
+            text(assumption.value), assumption.value.isNull() ? "" : unit, text(assumption.range),
+            escapeXml(assumption.why));
     }
     return html + "</tbody></table></div>\n";
 }
@@ -146,7 +148,7 @@ std::string pageHtml(const Page& page, const Model& model) {
     html += claims;
     html += failuresHtml(page, model);
     if (!isPicture) html += images;
-    html += assumptionsHtml(shown->experiment->assumptions);
+    html += assumptionsHtml(shown->experiment->assumptions, shown->table.words);
     html += againHtml(*shown, model.runs[static_cast<std::size_t>(shown - page.parts.data())]);
     html += casesHtml(page, model);
     return html + "</section>\n";

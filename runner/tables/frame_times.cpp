@@ -213,7 +213,7 @@ std::vector<std::string> outlierTexts(const FrameTimes& times) {
         }
         texts.push_back(fmt::format(
             "Outlier: frame {} of {} took {:.4g} ms in process {}, {:.3g} times its fellows.",
-            outlier.frame, outlier.caseName, outlier.timeMs, outlier.process, outlier.factor));
+            outlier.frame, outlier.caseName, outlier.timeMs, outlier.process + 1, outlier.factor));
     }
     return texts;
 }
@@ -261,6 +261,17 @@ std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& t
     return isMost ? "processes_at_most" : "time_budget_s";
 }
 
+namespace {
+
+/// What a reader is told of `endOfRounds`.
+std::string_view endInWords(std::string_view end) {
+    if (end == "time_budget_s") return "as many as the time allowed";
+    if (end == "relative_error") return "until the times were known";
+    return end == "processes_at_most" ? "the most that are allowed" : "as many as asked for";
+}
+
+}  // namespace
+
 std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure) {
     const std::size_t rounds = times.roundCount();
     if (rounds == 0) return {};
@@ -281,9 +292,10 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
             measure.mayContinue()
                 ? fmt::format(" (asked for: {})", percentText(measure.relativeError))
                 : "";
-        notes.push_back(fmt::format(
-            "Times of {} alternating rounds, ended by {}; {} is known to ±{} or better{}.", rounds,
-            endOfRounds(measure, times), judgedName(times), percentText(*error), target));
+        notes.push_back(
+            fmt::format("Times of {} alternating rounds, {}; {} is known to ±{} or better{}.",
+                        rounds, endInWords(endOfRounds(measure, times)), judgedName(times),
+                        percentText(*error), target));
     }
     if (measure.mayRepeat()) notes.push_back(repeatsNote(times, measure));
     if (const auto noise = times.noise(Clock::Wall)) {

@@ -51,12 +51,19 @@ std::string withBlanks(std::string_view name) {
     return text;
 }
 
-/// 1 and enum are no units to read, and "clusters [cluster]" would say nothing more.
+/// 1 and enum are no units to read, and "clusters [cluster]", "vertices [vertex]" or "patches
+/// [patch]" would say nothing more.
 bool isWorthReading(std::string_view unit, std::string_view words) {
     if (unit.empty() || unit == "1" || unit == "enum") return false;
     const std::string said = fmt::format(" {} ", words);
-    return said.find(fmt::format(" {} ", unit)) == said.npos &&
-           said.find(fmt::format(" {}s ", unit)) == said.npos;
+    std::vector<std::string> forms = {std::string(unit), fmt::format("{}s", unit),
+                                      fmt::format("{}es", unit)};
+    if (unit.ends_with("ex")) {
+        forms.push_back(fmt::format("{}ices", unit.substr(0, unit.size() - 2)));
+    }
+    return std::ranges::none_of(forms, [&](const std::string& form) {
+        return said.find(fmt::format(" {} ", form)) != said.npos;
+    });
 }
 
 Quantity withUnit(std::string words, std::string_view unit) {

@@ -359,8 +359,9 @@ std::string printedCellsLine(const PrintedCells& count) {
         if (cells > 0) parts.push_back(fmt::format("{} {}", cells, at));
     };
     add(count.atPrinted, "at the printed parameters");
-    add(count.asGiven, "at those that the document gives, which leaves some open");
-    add(count.measured - count.atPrinted - count.asGiven, "at others, which each table names");
+    add(count.asGiven, "at the parameters that the document gives, which leaves some open");
+    add(count.measured - count.atPrinted - count.asGiven,
+        "at other parameters, which each table names");
     const std::string how = parts.empty() ? "" : ": " + joined(parts, "; ");
     return fmt::format("Of {} printed number{} {} {} measured again{}.", count.printed,
                        count.printed == 1 ? "" : "s",

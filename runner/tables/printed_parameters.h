@@ -54,9 +54,9 @@ struct PrintedCells {
 };
 PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
                                std::span<const Table> tables);
-/// "Of 897 printed numbers 691 were measured again: 120 at the printed parameters; 300 at those
-/// that the document gives, which leaves some open; 271 at others, which each table names."; empty
-/// when nothing is printed.
+/// "Of 897 printed numbers 691 were measured again: 120 at the printed parameters; 300 at the
+/// parameters that the document gives, which leaves some open; 271 at other parameters, which each
+/// table names."; empty when nothing is printed.
 std::string printedCellsLine(const PrintedCells& count);
 
 /// "output 128×128 (printed 512×512), light grid 4 (16), frames 3 (paper profile 50)".

@@ -154,7 +154,8 @@ TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
     writeFileAtomic(dir + "/plan.json", plan.dump());
     EXPECT_EQ(gfxrepro({"table", dir}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "Of 2 printed numbers 2 were measured again: 2 at others, which each table names.\n"
+              "Of 2 printed numbers 2 were measured again: 2 at other parameters, which each table "
+              "names.\n"
               "warning: plan.json has no frozen_hash, as those of older versions have none: that "
               "its assumptions and published parameters are those that were planned cannot be "
               "verified\n");

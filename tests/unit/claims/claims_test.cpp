@@ -96,7 +96,7 @@ TEST(Claims, Order) {
     result = judgePowers("order: a < b < c-c", records);  // b = c at n = 4
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "smallest gap 0 %");
-    EXPECT_EQ(result.reason, "worst at n=4; one sample");
+    EXPECT_EQ(result.reason, "worst at n 4; one sample");
     EXPECT_EQ(judgePowers("order: b < a", records).verdict, Verdict::Fails);
     EXPECT_EQ(judgePowers("order: a < b < c-c, at: {n: [1, 2]}", records).verdict, Verdict::Holds);
 }
@@ -170,7 +170,7 @@ TEST(Claims, Bound) {
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "8.5");
     EXPECT_EQ(result.required, "a + b ≤ 8");
-    EXPECT_EQ(result.reason, "worst at n=8; one sample");
+    EXPECT_EQ(result.reason, "worst at n 8; one sample");
 }
 
 TEST(Claims, StrictBoundsExcludeTheBound) {
@@ -193,11 +193,11 @@ TEST(Claims, KnownVerdictsAndNews) {
     EXPECT_EQ(result.because, "the scene");
     EXPECT_EQ(result.shownBy, "two others");
     EXPECT_FALSE(result.isNews());
-    EXPECT_EQ(whyText(result), "the scene (worst at n=8; one sample)") << "the cause comes first";
+    EXPECT_EQ(whyText(result), "the scene (worst at n 8; one sample)") << "the cause comes first";
     result = judgePowers("bound: a, below: 8, " + fails, records);
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_TRUE(result.isNews());
-    EXPECT_EQ(whyText(result), "worst at n=8; one sample. Where it is fails: the scene");
+    EXPECT_EQ(whyText(result), "worst at n 8; one sample. Where it is fails: the scene");
     result = judgePowers("bound: a, below: 1, because: {verdict: fails, device: gpu, reason: r}",
                          records);
     EXPECT_EQ(result.known, Verdict::Holds);
@@ -483,7 +483,7 @@ claims:
     const ClaimResult result = judgeOne(body, maker.records());
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "exponent 0.5");
-    EXPECT_EQ(result.reason, "worst at method=fast; one sample");
+    EXPECT_EQ(result.reason, "worst at fast; one sample");
 }
 
 std::string ratioBody(const std::string& between) {
@@ -588,7 +588,7 @@ TEST(Claims, OneSampleOfATimeDecidesNothing) {
     ClaimResult result = judgeTimed("bound: ms, above: 1", records);
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
     EXPECT_EQ(result.measured, "100");
-    EXPECT_EQ(result.reason, "worst at n=1; one sample of a time decides nothing" + kByTheClock);
+    EXPECT_EQ(result.reason, "worst at n 1; one sample of a time decides nothing" + kByTheClock);
     result = judgeTimed("bound: fps, below: 1000", records);
     EXPECT_EQ(result.verdict, Verdict::Ambiguous) << "a rate is a time";
 }
@@ -792,7 +792,7 @@ TEST(Claims, AcrossComparesRows) {
     ClaimResult result = judge("order: old < new");
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "smallest gap -50 %");
-    EXPECT_EQ(result.reason, "worst at scene=t, column=b; one sample");
+    EXPECT_EQ(result.reason, "worst at t, b; one sample");
     EXPECT_EQ(judge("order: old < new, at: {column: a}").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: old < new, at: {scene: s}").verdict, Verdict::Holds);
     result = judge("ratio: new / old, at_least: 20, at: {scene: t, column: a}");

@@ -111,7 +111,7 @@ TEST(Report, IsOneSafeFile) {
              "title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>",
              "title=\"models/duck\">duck <abbr title=\"stand-in\">†</abbr>",
              "<span class=\"badge fails\"><span aria-hidden=\"true\">✗</span> fails</span>",
-             "<td class=\"id\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
+             "<td title=\"padding\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
              "<td>not &lt;said&gt;</td>",
              "<span class=\"status\">crash</span> — signal &lt;11&gt;",
              "cells without a value: 2 crash; 1 of its cases failed",
@@ -165,9 +165,10 @@ TEST(Report, NoRatioAtOtherParameters) {
     EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (printed "
                                 "16).</p>\n<div"));
     EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (printed 16)\">8.0"));
-    EXPECT_THAT(html,
-                HasSubstr("Of 2 printed numbers 2 were measured again: 2 at others, which each "
-                          "table names.</p>"));
+    EXPECT_THAT(
+        html,
+        HasSubstr("Of 2 printed numbers 2 were measured again: 2 at other parameters, which each "
+                  "table names.</p>"));
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
     judge(run, records());
@@ -481,7 +482,7 @@ TEST(Report, RunsStandSideBySide) {
              "<p class=\"parameters\"><b>A</b> Of 2 printed numbers 2 were measured again: 2 at "
              "the printed parameters.</p>",
              "<p class=\"parameters\"><b>B</b> Of 2 printed numbers 2 were measured again: 2 at "
-             "others, which each table names.</p>",
+             "other parameters, which each table names.</p>",
              "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
              "<p class=\"parameters\"><b>B</b> Measured at light grid none (printed 16).</p>",
              "×0.5</span>",  // 8 of 16

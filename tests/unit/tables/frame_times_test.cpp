@@ -142,7 +142,7 @@ TEST(FrameTimes, NoiseIsOfPairsMeasuredByTurns) {
 TEST(FrameTimes, OutliersAmongRoundsAndAmongFrames) {
     EXPECT_THAT(outlierTexts(timesOf(rounds({10, 10, 49, 10}))), ElementsAre());
     EXPECT_THAT(outlierTexts(timesOf(rounds({10, 10, 55, 10}))),
-                ElementsAre("Outlier: frame 0 of models/duck took 55 ms in process 2, 5.5 times "
+                ElementsAre("Outlier: frame 0 of models/duck took 55 ms in process 3, 5.5 times "
                             "its fellows."));
     // One process of a path: its frames are fellows.
     RecordMaker path;
@@ -152,7 +152,7 @@ TEST(FrameTimes, OutliersAmongRoundsAndAmongFrames) {
         path.frame(frame).add("wall_time_ms", {times[frame]});
     }
     EXPECT_THAT(outlierTexts(timesOf(path)),
-                ElementsAre("Outlier: frame 1 of bathroom reuse took 775 ms in process 0, 8.81 "
+                ElementsAre("Outlier: frame 1 of bathroom reuse took 775 ms in process 1, 8.81 "
                             "times its fellows."));
     EXPECT_THAT(outlierTexts(timesOf(rounds({10, 99}))), ElementsAre()) << "which of the two?";
 }
@@ -172,16 +172,16 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
               "measure.time_budget_s=…` allows more.");
     EXPECT_EQ(
         first({9, 10, 10, 10, 10, 11}, measureOf(6)),
-        "Times of 6 alternating rounds, ended by processes; the CPU time of a frame is known to "
+        "Times of 6 alternating rounds, as many as asked for; the CPU time of a frame is known to "
         "±10 % or better.");
-    EXPECT_EQ(
-        first({9, 9, 9, 10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11}, measureOf(6, 0.2)),
-        "Times of 14 alternating rounds, ended by relative_error; the CPU time of a frame is known "
-        "to ±10 % or better (asked for: 20 %).");
+    EXPECT_EQ(first({9, 9, 9, 10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11}, measureOf(6, 0.2)),
+              "Times of 14 alternating rounds, until the times were known; the CPU time of a frame "
+              "is known "
+              "to ±10 % or better (asked for: 20 %).");
     config::Measure most = measureOf(6, 0.05);
-    EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, most), HasSubstr("ended by time_budget_s"));
+    EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, most), HasSubstr("as many as the time allowed"));
     most.processesAtMost = 7;
-    EXPECT_THAT(first({9, 9, 10, 10, 11, 11, 12}, most), HasSubstr("ended by processes_at_most"));
+    EXPECT_THAT(first({9, 9, 10, 10, 11, 11, 12}, most), HasSubstr("the most that are allowed"));
     EXPECT_THAT(timeNotes(timesOf(rounds({10, 10, 10, 10, 10, 10})), measureOf(6)).at(1),
                 HasSubstr("Noise of this table: two equal cases would differ by up to 0 %, by CPU "
                           "time 0 %."));

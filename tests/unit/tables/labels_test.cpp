@@ -29,6 +29,8 @@ TEST(Labels, ANameIsItsWordsAndTheUnitThatItEndsWith) {
 TEST(Labels, TheRecordedUnitIsThatOfANameWithoutOne) {
     EXPECT_EQ(quantityOf("gpu_time_ms", {}, "ms").text(), "gpu time [ms]");
     EXPECT_EQ(quantityOf("clusters", {}, "cluster").text(), "clusters");
+    EXPECT_EQ(quantityOf("vertices", {}, "vertex").text(), "vertices");
+    EXPECT_EQ(quantityOf("culled_patches", {}, "patch").text(), "culled patches");
     EXPECT_EQ(quantityOf("flip_mean", {}, "1").text(), "flip mean");
     EXPECT_EQ(quantityOf("frame_rate", {}, "1/s").text(), "frame rate [1/s]");
     EXPECT_EQ(quantityOf("rmse_level", {}, "level").text(), "rmse [level]");

@@ -148,7 +148,8 @@ TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     EXPECT_EQ(parametersLine(table),
               "Measured at the printed parameters as far as they are given (not: output, bias).");
     EXPECT_EQ(printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
-              "Of 1 printed number 1 was measured again: 1 at those that the document gives, which "
+              "Of 1 printed number 1 was measured again: 1 at the parameters that the document "
+              "gives, which "
               "leaves some open.");
 }
 
@@ -184,7 +185,7 @@ TEST(PrintedParameters, RowsAreComparedWithTheSameRow) {
     count.add(experimentFrom(kGrid), table);
     EXPECT_EQ(printedCellsLine(count),
               "Of 3 printed numbers 2 were measured again: 1 at the printed parameters; 1 at "
-              "others, which each table names.");
+              "other parameters, which each table names.");
 }
 
 /// A table of one row of measured cells beside printed values, which depart so.
