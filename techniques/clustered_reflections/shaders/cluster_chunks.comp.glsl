@@ -31,8 +31,7 @@ void main() {
         clusterCount = clusters;
         firstChunk[clusters] = total;
         uint groups = (total + uint(CHUNK_GROUP_SIZE) - 1u) / uint(CHUNK_GROUP_SIZE);
-        arguments[0] = groups;
-        arguments[3] = clusters;
-        arguments[1] = arguments[2] = arguments[4] = arguments[5] = 1u;
+        uint groupsOfPasses[] = uint[](groups, 1u, 1u, clusters, 1u, 1u);
+        for (int i = 0; i < 6; ++i) arguments[i] = groupsOfPasses[i];
     }
 }

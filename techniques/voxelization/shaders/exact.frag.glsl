@@ -122,6 +122,11 @@ bool isSeparated(whole2 edge, whole2 p, whole2 q, whole2 r) {
     return min(s, min(t, u)) > radius || max(s, max(t, u)) < -radius;
 }
 
+bool isSeparated(whole3 edge, whole3 a, whole3 b, whole3 c) {
+    return isSeparated(edge.xy, a.xy, b.xy, c.xy) || isSeparated(edge.yz, a.yz, b.yz, c.yz) ||
+           isSeparated(edge.zx, a.zx, b.zx, c.zx);
+}
+
 // Closed cube around `centre` against the closed triangle: 13 axes (Akenine-Möller 2001). Complete
 // for triangles that are a segment or a point.
 bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
@@ -131,13 +136,8 @@ bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
     if (any(greaterThan(min(a, min(b, c)), whole3(kHalf)))) return false;
     if (any(lessThan(max(a, max(b, c)), whole3(-kHalf)))) return false;
     if (abs(planeValue(n, a)) > kHalf * (abs(n.x) + abs(n.y) + abs(n.z))) return false;
-    whole3 edges[3] = whole3[3](b - a, c - b, a - c);
-    for (int i = 0; i < 3; ++i) {
-        if (isSeparated(edges[i].xy, a.xy, b.xy, c.xy)) return false;
-        if (isSeparated(edges[i].yz, a.yz, b.yz, c.yz)) return false;
-        if (isSeparated(edges[i].zx, a.zx, b.zx, c.zx)) return false;
-    }
-    return true;
+    // No array of edges: NVIDIA's compiler (580.159) stops at an index into one of 64-bit integers.
+    return !isSeparated(b - a, a, b, c) && !isSeparated(c - b, a, b, c) && !isSeparated(a - c, a, b, c);
 }
 
 void main() {
