@@ -129,10 +129,14 @@ Candidates findCandidates() {
             "install a GPU driver's EGL, or Mesa's (libegl-mesa0), which needs no GPU");
         return found;
     }
-    if (!hasExtension(extensions, "EGL_EXT_device_enumeration") ||
+    // EGL_EXT_device_base is the older name of enumeration and query together: NVIDIA's.
+    if ((!hasExtension(extensions, "EGL_EXT_device_enumeration") &&
+         !hasExtension(extensions, "EGL_EXT_device_base")) ||
         !hasExtension(extensions, "EGL_EXT_platform_device")) {
-        found.problems.push_back(
-            "EGL devices: EGL_EXT_device_enumeration or EGL_EXT_platform_device is missing");
+        found.problems.push_back(fmt::format(
+            "EGL devices: EGL_EXT_device_enumeration or EGL_EXT_platform_device is missing; there "
+            "are {}",
+            extensions));
     } else {
         const auto queryDevices = procedure<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
         EGLint count = 0;
