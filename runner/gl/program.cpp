@@ -35,6 +35,25 @@ GLenum stageOf(const std::string& file) {
                     file));
 }
 
+/// NVIDIA's has sections ("Vertex info", "Compute info"), whose places are those of one stage's text,
+/// and may end with a whole assembly.
+std::string translateLinkLog(std::string_view log, const std::vector<std::string>& files,
+                             const std::vector<ShaderSource>& sources) {
+    std::string translated;
+    const ShaderSource* source = nullptr;
+    for (const std::string& line : split(trimmed(log), '\n')) {
+        if (line.starts_with("-- internal assembly")) break;
+        for (std::size_t i = 0; i < files.size() && line.ends_with(" info"); ++i) {
+            // The line's "Vertex" is the file's ".vert.glsl"; of tessellation's two the last.
+            const std::size_t dot = files[i].find('.');
+            if (line.substr(1, 2) == files[i].substr(dot + 2, 2)) source = &sources[i];
+        }
+        if (!translated.empty()) translated += '\n';
+        translated += source ? translateLog(line, *source) : line;
+    }
+    return translated;
+}
+
 Shader compile(const std::string& file, const ShaderSource& source) {
     Shader shader(glCreateShader(stageOf(file)));
     const char* text = source.text.c_str();
@@ -60,8 +79,10 @@ Program::Program(const ShaderLibrary& library, const std::vector<std::string>& f
     : name_(glCreateProgram()) {
     // For whoever looks at it from outside; 255 characters are what every device takes.
     glObjectLabel(GL_PROGRAM, id(), -1, joined(files, " + ").substr(0, 255).c_str());
+    std::vector<ShaderSource> sources;
     for (const std::string& file : files) {
-        const Shader shader = compile(file, library.assemble(file, defines, snippets));
+        sources.push_back(library.assemble(file, defines, snippets));
+        const Shader shader = compile(file, sources.back());
         glAttachShader(id(), shader.get());  // keeps the shader as long as the program
     }
     glLinkProgram(id());
@@ -75,7 +96,8 @@ Program::Program(const ShaderLibrary& library, const std::vector<std::string>& f
     GLsizei writtenBytes = 0;
     glGetProgramInfoLog(id(), logBytes, &writtenBytes, log.data());
     log.resize(static_cast<std::size_t>(writtenBytes));
-    throw Error(fmt::format("cannot link {}:\n{}", joined(files, " + "), trimmed(log)));
+    throw Error(fmt::format("cannot link {}:\n{}", joined(files, " + "),
+                            translateLinkLog(log, files, sources)));
 }
 
 void Program::use() const {
