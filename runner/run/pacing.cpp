@@ -9,11 +9,11 @@ Pacing Pacing::of(const config::Measure& measure, bool isHardware) {
     Pacing pacing;
     pacing.repeatsAtMost = measure.repeats;
     if (!isHardware || measure.lane != config::Measure::Lane::Timing) return pacing;
-    pacing.warmUpS = 0.5;
+    pacing.warmUpS = 0.2;
     pacing.warmUpAtMostS = 3.0;
     pacing.busyS = 0.01;
-    pacing.repeatsS = 1.0 / measure.frames;
-    pacing.repeatsAtMost = std::max(measure.repeats, 100);
+    pacing.repeatsS = 0.2 / measure.frames;
+    pacing.repeatsAtMost = std::max(measure.repeats, 20);
     pacing.inFlightAtMost = 8;
     return pacing;
 }
