@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -10,10 +11,20 @@
 namespace gfxrepro::test {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+bool hasSoftwareDevice() {
+    const std::vector<gl::DeviceReport> reports = gl::listDevices();
+    return std::ranges::any_of(reports, [](const gl::DeviceReport& report) {
+        return report.problem.empty() && report.info.isSoftware;
+    });
+}
+
 TEST(DeviceTest, OpensSoftwareByNameAndByIndex) {
+    if (!hasSoftwareDevice()) GTEST_SKIP() << "no software device here";
     const gl::Device byName = gl::Device::open({"software", gl::DebugOutput::Off});
     EXPECT_TRUE(byName.info().isSoftware);
     EXPECT_THAT(byName.info().version, StartsWith("4.5"));
@@ -62,11 +73,12 @@ TEST(DeviceTest, NamesWhatItCannotOpen) {
     }
 
     const std::string count = std::to_string(gl::listDevices().size());
-    EXPECT_EQ(errorText([] {
-                  gl::Device::open({"99", gl::DebugOutput::Off});
-              }),
-              "no usable OpenGL 4.5 device for '99':\n  device 99: there are " + count +
-                  " ways to a device, counted from 0");
+    EXPECT_THAT(errorText([] {
+                    gl::Device::open({"99", gl::DebugOutput::Off});
+                }),
+                AllOf(StartsWith("no usable OpenGL 4.5 device for '99':\n"),
+                      EndsWith("  device 99: there are " + count +
+                               " ways to a device, counted from 0")));
     EXPECT_THROW(gl::Device::open({"-1", gl::DebugOutput::Off}), NoDeviceError);
 }
 
@@ -94,6 +106,8 @@ TEST(NoDeviceDeathTest, SaysThatNoDriverIsThere) {
 }
 
 TEST(NoDeviceDeathTest, SaysWhyEveryWayFailed) {
+    // Nothing may open EGL before the variable is set.
+    if (testDevice() != "software") GTEST_SKIP() << "there may be no software device here";
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     // The software device is Mesa's; what other drivers answer stands before or between.
     EXPECT_EXIT(openWith("MESA_GL_VERSION_OVERRIDE", "4.1"), ::testing::ExitedWithCode(3),
@@ -126,34 +140,34 @@ TEST_F(GlTest, ReportsLimitsAndExtensions) {
 
 TEST_F(GlTest, ThrowsARememberedMessageOnce) {
     glEnable(GL_TEXTURE_2D);  // not an enable of the core profile
-    EXPECT_EQ(errorText([&] { device.checkDebug("clearing"); }),
-              "clearing: GL_INVALID_ENUM in glEnable(GL_TEXTURE_2D)");
+    // What follows the error's name is the driver's.
+    EXPECT_THAT(errorText([&] { device.checkDebug("clearing"); }),
+                StartsWith("clearing: GL_INVALID_ENUM"));
     EXPECT_EQ(errorText([&] { device.checkDebug("clearing"); }), "no error");
     EXPECT_EQ(errorText([&] { device.finish("clearing"); }), "clearing: GL_INVALID_ENUM");
     EXPECT_EQ(errorText([&] { device.finish("clearing"); }), "no error");
 }
 
 TEST(DeviceTest, FinishThrowsAPendingErrorWithoutDebugOutput) {
-    gl::Device device = gl::Device::open({"software", gl::DebugOutput::Off});
+    gl::Device device = gl::Device::open({testDevice(), gl::DebugOutput::Off});
     glEnable(GL_TEXTURE_2D);
     EXPECT_EQ(errorText([&] { device.finish("drawing frame 3"); }),
               "drawing frame 3: GL_INVALID_ENUM");
 }
 
 TEST(DeviceTest, LogsErrorsOnRequest) {
-    gl::Device device = gl::Device::open({"software", gl::DebugOutput::Log});
+    gl::Device device = gl::Device::open({testDevice(), gl::DebugOutput::Log});
     ::testing::internal::CaptureStderr();
     glEnable(GL_TEXTURE_2D);
-    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-              "OpenGL: GL_INVALID_ENUM in glEnable(GL_TEXTURE_2D)\n");
+    EXPECT_THAT(::testing::internal::GetCapturedStderr(), StartsWith("OpenGL: GL_INVALID_ENUM"));
 }
 
 TEST(DeviceTest, MovesItsContext) {
-    gl::Device first = gl::Device::open({"software", gl::DebugOutput::Fatal});
+    gl::Device first = gl::Device::open({testDevice(), gl::DebugOutput::Fatal});
     gl::Device second = std::move(first);
     glEnable(GL_TEXTURE_2D);
-    EXPECT_EQ(errorText([&] { second.checkDebug("moved"); }),
-              "moved: GL_INVALID_ENUM in glEnable(GL_TEXTURE_2D)");
+    EXPECT_THAT(errorText([&] { second.checkDebug("moved"); }),
+                StartsWith("moved: GL_INVALID_ENUM"));
 }
 
 TEST(ErrorTest, NamesErrors) {

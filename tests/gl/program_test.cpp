@@ -7,6 +7,7 @@
 namespace gfxrepro::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::StartsWith;
@@ -135,11 +136,12 @@ TEST_F(GlTest, TranslatesADriversErrorToFileAndLine) {
     folder.write("shared/f.glsl", "\nvoid f() { undefinedName; }\n");
     folder.write("t/x.frag.glsl",
                  "#version 450 core\n#include \"shared/f.glsl\"\nvoid main() { f(); }\n");
-    EXPECT_EQ(errorText([&] {
-                  gl::Program(library, {"t/x.frag.glsl"}, {{"kUnused", 1}});
-              }),
-              "cannot compile t/x.frag.glsl:\n"
-              "shared/f.glsl:2: error: `undefinedName' undeclared");
+    // After the place the driver speaks.
+    EXPECT_THAT(errorText([&] {
+                    gl::Program(library, {"t/x.frag.glsl"}, {{"kUnused", 1}});
+                }),
+                AllOf(StartsWith("cannot compile t/x.frag.glsl:\nshared/f.glsl:2: error"),
+                      HasSubstr("undefinedName")));
 }
 
 TEST_F(GlTest, NamesTheFilesThatDoNotLink) {
@@ -151,7 +153,7 @@ TEST_F(GlTest, NamesTheFilesThatDoNotLink) {
     EXPECT_THAT(errorText([&] {
                     gl::Program(library, {"x.vert.glsl", "x.frag.glsl"});
                 }),
-                StartsWith("cannot link x.vert.glsl + x.frag.glsl:\nerror: "));
+                AllOf(StartsWith("cannot link x.vert.glsl + x.frag.glsl:\n"), HasSubstr("error")));
 }
 
 TEST_F(GlTest, RefusesAFileWithoutAStage) {

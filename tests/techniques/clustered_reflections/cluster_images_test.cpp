@@ -228,18 +228,35 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
 
     OneByOnePainter one(shaders(), scene);
     std::size_t texels = 0, drawn = 0, different = 0;
+    float worst = 0.0F;  // in steps between neighbours
     for (std::uint32_t i = 0; i < cameras.size(); ++i) {
         const glm::ivec4 place = places[i];
         one.draw(objects, buffer, i, cameras[i], {place.z, place.w}, alone);
         const auto depth = alone.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
         const auto colour = alone.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
+        const glm::ivec2 last = glm::ivec2(place.z, place.w) - 1;
         for (int y = 0; y < place.w; ++y) {
             for (int x = 0; x < place.z; ++x) {
                 const auto a = static_cast<std::size_t>(y * 512 + x);
                 const auto b = static_cast<std::size_t>((y + place.y) * 512 + x + place.x);
+                // How much a texel's neighbours differ: a device may draw from corners that lie on
+                // 256ths of a texel, and the corners of the two images are rounded differently.
+                float depthStep = 0.0F, colourStep = 0.0F;
+                for (const glm::ivec2 to : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+                    const glm::ivec2 at = glm::clamp(glm::ivec2(x, y) + to, glm::ivec2(0), last);
+                    const auto n = static_cast<std::size_t>(at.y * 512 + at.x);
+                    depthStep = std::max(depthStep, std::abs(depth[n] - depth[a]));
+                    colourStep = std::max(colourStep, glm::length(colour[n] - colour[a]));
+                }
                 // The same plane through other corners' rounding: 2e-5; colours to a step of 1023.
-                const bool isSame = std::abs(depth[a] - depths[b]) <= 2e-5F * depth[a] + 1e-7F &&
-                                    glm::length(colour[a] - colours[b]) < 2.0F / 1023.0F;
+                const bool isSame = std::abs(depth[a] - depths[b]) <=
+                                        2e-5F * depth[a] + 1e-7F + depthStep / 64.0F &&
+                                    glm::length(colour[a] - colours[b]) <
+                                        2.0F / 1023.0F + colourStep / 64.0F;
+                if (!isSame) {
+                    worst = std::max(worst, (std::abs(depth[a] - depths[b]) - 1e-7F) /
+                                                std::max(depthStep, 1e-9F));
+                }
                 different += !isSame;
                 drawn += depth[a] > 0.0F;
                 ++texels;
@@ -248,7 +265,7 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
     }
     EXPECT_GT(drawn, texels / 4);
     // Outlines through the middle of a texel: positions are rounded to 1/256 of a pixel.
-    EXPECT_LE(different, texels / 500);
+    EXPECT_LE(different, texels / 500) << worst;
 }
 
 TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {

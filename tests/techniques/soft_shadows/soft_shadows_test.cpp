@@ -110,6 +110,7 @@ TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
               "technique 'soft_shadows' needs a scene with some extent; all of its points are one");
     const scene::Scene plate = plateOverFloor();
     EXPECT_EQ(message("{light_height: 0.05}", &plate).substr(0, 18), "the light's point ");
+    if (device.limits().maxTextureSizePx >= 32768) GTEST_SKIP() << "no size is too large here";
     EXPECT_EQ(message("{reference_size: 32768}", &plate),
               fmt::format("a 2D texture of 32768 pixels is beyond this device's "
                           "GL_MAX_TEXTURE_SIZE = {}",
