@@ -13,7 +13,7 @@ Pacing Pacing::of(const config::Measure& measure, bool isHardware) {
     pacing.warmUpAtMostS = 3.0;
     pacing.busyS = 0.01;
     pacing.repeatsS = 0.2 / measure.frames;
-    pacing.repeatsAtMost = std::max(measure.repeats, 20);
+    pacing.repeatsAtMost = std::max(measure.repeats, 10);
     pacing.inFlightAtMost = 8;
     return pacing;
 }

@@ -103,7 +103,8 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
             if (glm::dot(normal, direction) > 0.0F) normal = -normal;
             // A silhouette's normal is across the view: which side is turned to it is rounding.
             if (std::abs(glm::dot(normal, direction)) > 1e-3F) {
-                ASSERT_LE(glm::distance(host.normalWorld[i], normal), 1e-3F) << x << " " << y;
+                // Corners may lie on 256ths of a pixel.
+                ASSERT_LE(glm::distance(host.normalWorld[i], normal), 3e-3F) << x << " " << y;
             }
             const glm::vec3 mirror = direction - 2.0F * glm::dot(direction, normal) * normal;
             ASSERT_LE(glm::distance(host.mirrorDirection(pixel), mirror), 3e-3F);
