@@ -35,8 +35,8 @@ GLenum stageOf(const std::string& file) {
                     file));
 }
 
-/// NVIDIA's has sections ("Vertex info", "Compute info"), whose places are those of one stage's text,
-/// and may end with a whole assembly.
+/// NVIDIA's has sections ("Vertex info", "Compute info"), whose places are those of one stage's
+/// text, and may end with a whole assembly.
 std::string translateLinkLog(std::string_view log, const std::vector<std::string>& files,
                              const std::vector<ShaderSource>& sources) {
     std::string translated;

@@ -12,24 +12,21 @@ namespace gfxrepro::run {
 
 namespace {
 
+constexpr double kCountTolerance = 1e-5;
 constexpr double kFragmentTolerance = 0.01;
 constexpr float kImageTolerance = 0.01F;
 
 std::string whyCountsDiffer(const gl::Work& first, const gl::Work& other, std::size_t repeat) {
-    const auto differs = [&](const char* what, std::uint64_t a, std::uint64_t b) {
-        return fmt::format("repeat {} has {} {}, repeat 0 has {}", repeat, b, what, a);
+    std::string why;
+    const auto compare = [&](const char* what, std::uint64_t a, std::uint64_t b, double tolerance) {
+        const auto x = static_cast<double>(a), y = static_cast<double>(b);
+        if (!why.empty() || std::abs(x - y) <= tolerance * std::max(x, y)) return;
+        why = fmt::format("repeat {} has {} {}, repeat 0 has {}", repeat, b, what, a);
     };
-    if (first.primitives != other.primitives) {
-        return differs("primitives", first.primitives, other.primitives);
-    }
-    if (first.invocations != other.invocations) {
-        return differs("compute invocations", first.invocations, other.invocations);
-    }
-    const auto a = static_cast<double>(first.fragments), b = static_cast<double>(other.fragments);
-    if (std::abs(a - b) > kFragmentTolerance * std::max(a, b)) {
-        return differs("fragments", first.fragments, other.fragments);
-    }
-    return "";
+    compare("primitives", first.primitives, other.primitives, kCountTolerance);
+    compare("compute invocations", first.invocations, other.invocations, kCountTolerance);
+    compare("fragments", first.fragments, other.fragments, kFragmentTolerance);
+    return why;
 }
 
 bool areAlike(const ImageDigest& a, const ImageDigest& b) {

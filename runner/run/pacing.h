@@ -9,8 +9,8 @@
 namespace gfxrepro::run {
 
 /// On hardware a frame can take a hundredth of the time in which a clock rises (an H100 was seen to
-/// go from 345 to 1,980 MHz). Once it has, times scatter little: the standard deviation of an H100's
-/// is 0.05 % of a frame of 2 ms, within a process as between processes.
+/// go from 345 to 1,980 MHz). Once it has, times scatter little: the standard deviation of an
+/// H100's is 0.05 % of a frame of 2 ms, within a process as between processes.
 struct Pacing {
     double warmUpS = 0.0;        // before the first frame: at least this long,
     double warmUpAtMostS = 0.0;  // until times have settled, or this long

@@ -73,12 +73,12 @@ TEST(DeviceTest, NamesWhatItCannotOpen) {
     }
 
     const std::string count = std::to_string(gl::listDevices().size());
-    EXPECT_THAT(errorText([] {
-                    gl::Device::open({"99", gl::DebugOutput::Off});
-                }),
-                AllOf(StartsWith("no usable OpenGL 4.5 device for '99':\n"),
-                      EndsWith("  device 99: there are " + count +
-                               " ways to a device, counted from 0")));
+    EXPECT_THAT(
+        errorText([] {
+            gl::Device::open({"99", gl::DebugOutput::Off});
+        }),
+        AllOf(StartsWith("no usable OpenGL 4.5 device for '99':\n"),
+              EndsWith("  device 99: there are " + count + " ways to a device, counted from 0")));
     EXPECT_THROW(gl::Device::open({"-1", gl::DebugOutput::Off}), NoDeviceError);
 }
 

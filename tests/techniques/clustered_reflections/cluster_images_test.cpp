@@ -249,10 +249,10 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
                     colourStep = std::max(colourStep, glm::length(colour[n] - colour[a]));
                 }
                 // The same plane through other corners' rounding: 2e-5; colours to a step of 1023.
-                const bool isSame = std::abs(depth[a] - depths[b]) <=
-                                        2e-5F * depth[a] + 1e-7F + depthStep / 64.0F &&
-                                    glm::length(colour[a] - colours[b]) <
-                                        2.0F / 1023.0F + colourStep / 64.0F;
+                const bool isSame =
+                    std::abs(depth[a] - depths[b]) <=
+                        2e-5F * depth[a] + 1e-7F + depthStep / 64.0F &&
+                    glm::length(colour[a] - colours[b]) < 2.0F / 1023.0F + colourStep / 64.0F;
                 if (!isSame) {
                     worst = std::max(worst, (std::abs(depth[a] - depths[b]) - 1e-7F) /
                                                 std::max(depthStep, 1e-9F));

@@ -147,8 +147,8 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
     };
     for (const ImageDrawing drawing : kDrawings) {
         const double filtered = shownPsnr(reflections::TextureFilter::Footprint, drawing);
-        // Bilinear fetches soften images of colours where tiles meet; a device's own choice of levels
-        // costs up to 2 dB.
+        // Bilinear fetches soften images of colours where tiles meet; a device's own choice of
+        // levels costs up to 2 dB.
         EXPECT_GE(filtered, drawing == ImageDrawing::Visible ? 45.0 : 41.0);
         const double finest = shownPsnr(reflections::TextureFilter::FinestLevel, drawing);
         EXPECT_LT(finest, 35.0);

@@ -84,8 +84,8 @@ FloorRay floorRay(const kit::View& view, glm::ivec2 pixel) {
     return {origin, direction};
 }
 
-/// What the floor is drawn beside the true one: corners lie on 256ths of a pixel, which is 0.1 m and
-/// more of a floor seen in 36 rows.
+/// What the floor is drawn beside the true one: corners lie on 256ths of a pixel, which is 0.1 m
+/// and more of a floor seen in 36 rows.
 constexpr double kSnappedM = 5e-4;
 
 using EmbreeTracerTest = TracerTest;

@@ -49,6 +49,12 @@ TEST(EqualWork, TheSameIsFine) {
     EXPECT_EQ(whyUnequal({{}, {}}), "");
 }
 
+TEST(EqualWork, APointOfMillionsMayDependOnTheOrder) {
+    EXPECT_EQ(whyUnequal({work(2'480'376, 100), work(2'480'377, 100)}), "");
+    EXPECT_EQ(whyUnequal({work(2'480'376, 100), work(2'480'476, 100)}),
+              "repeat 1 has 2480476 primitives, repeat 0 has 2480376");
+}
+
 TEST(EqualWork, DifferencesAreNamedWithTheirNumbers) {
     EXPECT_EQ(whyUnequal({work(5, 1000), work(5, 1000), work(6, 1000)}),
               "repeat 2 has 6 primitives, repeat 0 has 5");
