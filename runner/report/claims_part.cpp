@@ -6,6 +6,7 @@
 #include "runner/config/schema.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::report {
 
@@ -67,19 +68,33 @@ std::string paragraph(const char* label, const std::string& text) {
     return fmt::format("<p><span class=\"soft\">{}</span>{}</p>\n", label, escapeXml(text));
 }
 
-std::string requiredText(const ClaimResult& claim) {
-    if (!claim.boundFrom || claim.required.empty()) return claim.required;
-    return fmt::format("{} ({})", claim.required, config::boundSourceName(*claim.boundFrom));
+std::string_view boundText(config::ClaimSpec::BoundSource source) {
+    using Source = config::ClaimSpec::BoundSource;
+    if (source == Source::Text) return "the bound is the text's";
+    return source == Source::Print ? "the bound is from the printed numbers" : "the bound is ours";
+}
+
+std::string requiredText(const ClaimResult& claim, const tables::Table& table) {
+    if (claim.required.empty()) return "";
+    const std::string text = tables::inWords(claim.required, table);
+    if (!claim.boundFrom) return text;
+    return fmt::format("{} ({})", text, boundText(*claim.boundFrom));
+}
+
+/// That nothing was tried is said once, below the meanings of the verdicts.
+std::string restsOnText(const ClaimResult& claim) {
+    return claim.restsOn == "not tried" ? "" : claim.restsOn;
 }
 
 /// What was found in one run, below the claim's words.
-std::string detailHtml(const ClaimResult& claim, const std::string& letter, ClaimDetail detail) {
+std::string detailHtml(const ClaimResult& claim, const tables::Table& table,
+                       const std::string& letter, ClaimDetail detail) {
     std::string html;
     if (detail == ClaimDetail::Full) {
         html += paragraph("measured ", claim.measured) +
-                paragraph("required ", requiredText(claim)) +
+                paragraph("required ", requiredText(claim, table)) +
                 paragraph(claim.verdict == Verdict::Holds ? "noted: " : "why: ", whyText(claim)) +
-                paragraph("shown by ", claim.shownBy) + paragraph("rests on ", claim.restsOn);
+                paragraph("shown by ", claim.shownBy) + paragraph("rests on ", restsOnText(claim));
     } else if (claim.verdict != Verdict::Holds && claim.verdict != Verdict::NotApplicable) {
         html += paragraph("why: ", whyText(claim));
     }
@@ -104,7 +119,7 @@ std::string claimHtml(const Page& page, const std::string& id, const Model& mode
         const std::string letter = model.isComparison() ? Model::letter(run) : "";
         badges += letter.empty() ? "" : fmt::format("<b>{}</b> ", letter);
         badges += verdictBadge(claim->verdict) + newsHtml(*claim) + ' ';
-        details += detailHtml(*claim, letter, detail);
+        details += detailHtml(*claim, page.parts[run].table, letter, detail);
     }
     const std::string text = says.empty() ? id : says;
     const std::string code =
@@ -138,7 +153,10 @@ std::string legendHtml() {
         html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", verdictBadge(words.verdict),
                             words.meaning);
     }
-    return html + "</dl>\n";
+    return html +
+           "</dl>\n<p class=\"soft small\">“Rests on” names the assumptions that turn a verdict "
+           "round; of a claim without it none was tried (<code>gfxrepro sensitivity</code> tries "
+           "them).</p>\n";
 }
 
 std::string claimsHtml(const Page& page, const Model& model, ClaimDetail detail) {

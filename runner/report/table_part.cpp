@@ -93,18 +93,6 @@ std::size_t heightOf(const Overlay& overlay, std::size_t row, std::size_t axis) 
 
 using ShownLabels = std::vector<std::map<std::string, std::string>>;  // beside the row axes
 
-ShownLabels shownLabels(const std::vector<std::vector<std::string>>& rows,
-                        const tables::Words& words) {
-    std::vector<std::set<std::string>> names;
-    for (const std::vector<std::string>& labels : rows) {
-        names.resize(std::max(names.size(), labels.size()));
-        for (std::size_t i = 0; i < labels.size(); ++i) names[i].insert(labels[i]);
-    }
-    ShownLabels shown;
-    for (const auto& axis : names) shown.push_back(tables::shownNames(axis, words));
-    return shown;
-}
-
 std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& shown) {
     const std::vector<std::string>& labels = overlay.rows()[row];
     std::string html = "<tr>";
@@ -229,7 +217,7 @@ std::string tableHtml(const Page& page, const Model& model) {
                        "<div class=\"scroll\"><table class=\"results\">\n" +
                        headHtml(overlay, model.isComparison()) + "<tbody>\n";
     bool hasStandIn = false;
-    const ShownLabels shown = shownLabels(overlay.rows(), overlay.first().words);
+    const ShownLabels shown = tables::shownLabels(overlay.rows(), overlay.first().words);
     for (std::size_t row = 0; row < overlay.rows().size(); ++row) {
         html += rowHtml(overlay, row, shown);
         hasStandIn |= isStandIn(overlay, overlay.rows()[row]);

@@ -166,10 +166,15 @@ std::string tableMarkdown(const tables::Table& table) {
         rule += " ---: |";
     }
     text += "\n" + rule + "\n";
+    std::vector<std::vector<std::string>> labels;
+    for (const auto* rows : {&table.rows, &table.printedRows}) {
+        for (const tables::TableRow& row : *rows) labels.push_back(row.labels);
+    }
+    const auto shown = tables::shownLabels(labels, table.words);
     for (const tables::TableRow& row : table.rows) {
         text += "|";
-        for (const std::string& label : row.labels)
-            text += fmt::format(" {} |", escapeMarkdown(label));
+        for (std::size_t i = 0; i < row.labels.size(); ++i)
+            text += fmt::format(" {} |", escapeMarkdown(shown[i].at(row.labels[i])));
         if (table.hasSources()) text += fmt::format(" {} |", tables::sceneSourceName(row.source));
         for (const tables::Cell& cell : row.cells)
             text += fmt::format(" {} |", markdownCell(cell, table.isOnlyPrinted));
@@ -183,7 +188,9 @@ std::string tableMarkdown(const tables::Table& table) {
         text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
     std::vector<std::string> absent;
     for (const tables::TableRow& row : table.printedRows) {
-        std::vector<std::string> said = row.labels;
+        std::vector<std::string> said;
+        for (std::size_t i = 0; i < row.labels.size(); ++i)
+            said.push_back(shown[i].at(row.labels[i]));
         for (const tables::Cell& cell : row.cells) {
             if (cell.printed) said.push_back(*cell.printed);
         }

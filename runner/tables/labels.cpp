@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "runner/config/experiment.h"
@@ -18,15 +20,16 @@ struct Suffix {
     std::string_view unit;
     std::string_view quantity;  // that is measured in it; empty where it may be anything
 };
+constexpr std::string_view kMemory = "memory";
 /// The units that names of configs end with. No "_s": delta_s is no number of seconds.
 constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
                                 {"_us", "µs", "time"},
                                 {"_pct", "%", ""},
                                 {"_px", "px", ""},
                                 {"_db", "dB", ""},
-                                {"_mb", "MB", "memory"},
-                                {"_mib", "MiB", "memory"},
-                                {"_bytes", "bytes", "memory"},
+                                {"_mb", "MB", kMemory},
+                                {"_mib", "MiB", kMemory},
+                                {"_bytes", "bytes", kMemory},
                                 {"_fps", "fps", "frame rate"},
                                 {"_deg", "°", "angle"},
                                 {"_m", "m", ""}};
@@ -71,6 +74,19 @@ Quantity withUnit(std::string words, std::string_view unit) {
     return {std::move(words), isRead ? std::string(unit) : ""};
 }
 
+/// "redundant, image 0" in "%" of "redundant_pct_image_0", a metric and its pass, where percent
+/// was recorded.
+std::optional<Quantity> passOf(std::string_view own, std::string_view unit) {
+    for (const Suffix& one : kSuffixes) {
+        const std::size_t at = own.find(std::string(one.name) + '_');
+        if (one.unit != unit || at == own.npos || at == 0) continue;
+        return Quantity{
+            withBlanks(own.substr(0, at)) + ", " + withBlanks(own.substr(at + one.name.size() + 1)),
+            std::string(unit)};
+    }
+    return std::nullopt;
+}
+
 /// The unit that a name ends with, as "_level" of "rmse_level" where levels were recorded.
 bool endsWithUnit(std::string_view name, std::string_view unit) {
     std::string ending = fmt::format("_{}", unit);
@@ -85,7 +101,10 @@ std::string Quantity::text() const {
 }
 
 std::string Quantity::with(std::string_view value) const {
-    return fmt::format("{} {}{}{}", words, value, unit.empty() || unit == "°" ? "" : " ", unit);
+    // "image 0: 12 %": two numbers would run together.
+    const bool endsWithNumber = !words.empty() && parseDouble(words.substr(words.size() - 1));
+    return fmt::format("{}{} {}{}{}", words, endsWithNumber ? ":" : "", value,
+                       unit.empty() || unit == "°" ? "" : " ", unit);
 }
 
 Quantity quantityOf(std::string_view name, const Words& words, std::string_view unit) {
@@ -105,9 +124,13 @@ Quantity quantityOf(std::string_view name, const Words& words, std::string_view 
     }
     if (!isName(name)) return withUnit(std::string(name), unit);
     if (hasSuffix && own.size() > suffix->name.size()) {
-        return {withBlanks(own.substr(0, own.size() - suffix->name.size())),
-                std::string(suffix->unit)};
+        std::string before = withBlanks(own.substr(0, own.size() - suffix->name.size()));
+        // "point [MiB]" would not say what of it.
+        const bool saysMemory = before.find(kMemory) != before.npos;
+        if (suffix->quantity == kMemory && !saysMemory) before.append(" ").append(kMemory);
+        return {std::move(before), std::string(suffix->unit)};
     }
+    if (const auto of = passOf(own, unit)) return *of;
     if (hasSuffix && !suffix->quantity.empty()) {
         return {std::string(suffix->quantity), std::string(suffix->unit)};
     }
@@ -152,6 +175,72 @@ std::map<std::string, std::string> shownNames(const std::set<std::string>& names
         shown[name] = uses[text] == 1 ? text : isName(name) ? withBlanks(name) : name;
     }
     return shown;
+}
+
+std::vector<std::map<std::string, std::string>> shownLabels(
+    const std::vector<std::vector<std::string>>& rows, const Words& words) {
+    std::vector<std::set<std::string>> names;
+    for (const std::vector<std::string>& labels : rows) {
+        names.resize(std::max(names.size(), labels.size()));
+        for (std::size_t i = 0; i < labels.size(); ++i) names[i].insert(labels[i]);
+    }
+    std::vector<std::map<std::string, std::string>> shown;
+    for (const auto& axis : names) shown.push_back(shownNames(axis, words));
+    return shown;
+}
+
+std::string valueInWords(const std::string& value, const Words& words) {
+    if (words.contains(value)) return words.at(value);
+    return value.find_first_of("/.") == value.npos ? withBlanks(value) : value;
+}
+
+std::string inWords(std::string_view required, const Table& table) {
+    std::map<std::string, Quantity, std::less<>> known;
+    for (const TableRow& row : table.rows) {
+        for (const std::string& label : row.labels) {
+            if (label.find('_') != label.npos) known[label] = quantityOf(label, table.words);
+        }
+    }
+    for (const std::string& axis : table.rowAxes) known[axis] = quantityOf(axis, table.words);
+    for (const TableColumn& column : table.columns) {
+        known[column.label] = quantityOf(column, table.words);
+    }
+    struct Piece {
+        std::string_view text;
+        const Quantity* quantity;  // that it names; null of other text
+    };
+    std::vector<Piece> pieces;
+    const auto isOfName = [](char c) { return isWordCharacter(c) && c != '-'; };
+    for (std::size_t at = 0; at < required.size();) {
+        const std::size_t begin = at;
+        const char first = required[at];
+        const std::size_t quote = first == '\'' ? required.find('\'', at + 1) : required.npos;
+        std::string_view name;
+        if (quote != required.npos) {
+            name = required.substr(at + 1, quote - at - 1);
+            at = quote + 1;
+        } else {
+            const bool isName = isOfName(first);
+            while (at < required.size() && isOfName(required[at]) == isName &&
+                   (at == begin || required[at] != '\'')) {
+                ++at;
+            }
+            name = required.substr(begin, at - begin);
+        }
+        const auto found = known.find(name);
+        pieces.push_back(
+            {required.substr(begin, at - begin), found == known.end() ? nullptr : &found->second});
+    }
+    const bool isAlone = std::ranges::count_if(pieces, [](const Piece& piece) {
+                             return piece.quantity != nullptr;
+                         }) == 1;
+    std::string text;
+    for (const Piece& piece : pieces) {
+        text += !piece.quantity ? std::string(piece.text)
+                : isAlone       ? piece.quantity->text()
+                                : piece.quantity->words;
+    }
+    return text;
 }
 
 std::string shownValue(const std::string& axis, const std::string& value, const Words& words) {

@@ -5,10 +5,13 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gfxrepro::tables {
 
+struct Table;
 struct TableColumn;
+struct TableRow;
 
 /// `labels:` of a config: the words for a name.
 using Words = std::map<std::string, std::string>;
@@ -39,6 +42,18 @@ std::string shownName(std::string_view name, const Words& words = {});
 /// The shown names of an axis; those that would be alike keep their folder.
 std::map<std::string, std::string> shownNames(const std::set<std::string>& names,
                                               const Words& words = {});
+
+/// The shown names of all row labels, an axis each.
+std::vector<std::map<std::string, std::string>> shownLabels(
+    const std::vector<std::vector<std::string>>& rows, const Words& words = {});
+
+/// A value of a parameter in a sentence that names the parameter: "path 1" of "path_1". Files and
+/// scenes stay.
+std::string valueInWords(const std::string& value, const Words& words = {});
+
+/// What a claim asks, "draw_ms / lit_ms in [0.5, 1.5]", with the table's columns, axes and rows in
+/// words: "draw / lit in [0.5, 1.5]". A column that stands alone has its unit: "draw [ms] ≤ 5".
+std::string inWords(std::string_view required, const Table& table);
 
 /// A value where its axis does not stand above it: "near mirror", "light ratio 0.25", as a number
 /// or a truth value alone would not say of what.

@@ -224,10 +224,12 @@ Tally tallyOf(std::span<const TableRow> rows) {
     return besidePrinted.count() > 0 ? besidePrinted : all;
 }
 
-std::string valuesText(const std::vector<std::string>& values) {
+std::string valuesText(const std::vector<std::string>& values, const Words& words) {
     if (values.empty()) return "none";
-    if (values.size() <= kSaidValues) return joined(values, " / ");
-    return fmt::format("{} / {} / … / {}", values[0], values[1], values.back());
+    std::vector<std::string> said;
+    for (const std::string& value : values) said.push_back(valueInWords(value, words));
+    if (said.size() <= kSaidValues) return joined(said, " / ");
+    return fmt::format("{} / {} / … / {}", said[0], said[1], said.back());
 }
 
 std::string sentence(const Tally& tally, const Words& words) {
@@ -283,8 +285,9 @@ std::string departuresText(const std::vector<Departure>& departures, const Words
         const std::string_view whose = departure.isOpen ? "paper profile " : "printed ";
         Quantity quantity = quantityOf(departure.parameter, words);
         if (departure.measured.empty()) quantity.unit.clear();
-        parts.push_back(fmt::format("{} ({}{})", quantity.with(valuesText(departure.measured)),
-                                    whose == said ? "" : whose, valuesText(departure.printed)));
+        parts.push_back(
+            fmt::format("{} ({}{})", quantity.with(valuesText(departure.measured, words)),
+                        whose == said ? "" : whose, valuesText(departure.printed, words)));
         said = whose;
     }
     return joined(parts);

@@ -406,12 +406,16 @@ TEST(Report, LabelsAreReadForNames) {
     ReportRun run = runIn(folder.path());
     run.experiments[0].labels = {
         {"scene", "model"}, {"models/duck", "rubber duck"}, {"draw_ms", "time to draw"}};
+    run.experiments[0].claims[0].boundFrom = config::ClaimSpec::BoundSource::Print;
     judge(run, records());
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
     EXPECT_THAT(html, HasSubstr("title=\"scene\">model</th>"));
     EXPECT_THAT(html, HasSubstr("title=\"models/duck\">rubber duck"));
     EXPECT_THAT(html, HasSubstr(">time to draw <span"));
+    EXPECT_THAT(html, HasSubstr("<span class=\"soft\">required </span>time to draw [ms] ≤ 10 (the "
+                                "bound is from the printed numbers)</p>"));
+    EXPECT_THAT(html, Not(HasSubstr(">rests on <"))) << "that none was tried is said once";
     EXPECT_THAT(html, HasSubstr("title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>"))
         << "what has none stays";
 }

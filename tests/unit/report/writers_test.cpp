@@ -82,12 +82,11 @@ TEST(Writers, TableFiles) {
     EXPECT_THAT(markdown, HasSubstr("# Table 9.9. A table\n"));
     EXPECT_THAT(markdown, HasSubstr("\n\nMeasured at the printed parameters.\n\n| scene |"))
         << "of the printed cells: the other row has none";
-    EXPECT_THAT(markdown,
-                HasSubstr("| models/duck | stand-in | 3.00/106 → 2.00/4 (1.00/1 … 4.00/4) |"));
+    EXPECT_THAT(markdown, HasSubstr("| duck | stand-in | 3.00/106 → 2.00/4 (1.00/1 … 4.00/4) |"));
     EXPECT_THAT(markdown, HasSubstr("| \\<b\\>&amp;\\|\\_% |"));
     EXPECT_THAT(markdown, HasSubstr("| 9.0 → 8.0 |"));
     EXPECT_THAT(markdown, HasSubstr("| scene | source | error \\[ms\\] | draw \\[ms\\] |"));
-    EXPECT_THAT(markdown, HasSubstr("| models/lost |  | crash | crash |"));
+    EXPECT_THAT(markdown, HasSubstr("| lost |  | crash | crash |"));
     const std::string latex = run.read("tables/zju2005-9.9.tex");
     EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{llrrrr}\n\\toprule\n"));
     EXPECT_THAT(latex,
@@ -117,8 +116,7 @@ printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,erro
         "calibrated: an input of ours was fitted so that this comes out, which tells nothing of "
         "the method.";
     const std::string markdown = run.read("tables/zju2005-9.9.md");
-    EXPECT_THAT(markdown,
-                HasSubstr("| models/duck | 2 → 2‡ | 1 → 2 |\n| models/bunny | 3 | 3 |\n"));
+    EXPECT_THAT(markdown, HasSubstr("| duck | 2 → 2‡ | 1 → 2 |\n| bunny | 3 | 3 |\n"));
     EXPECT_THAT(markdown, HasSubstr("\n\n‡ " + legend + "\n"));
     const std::string latex = run.read("tables/zju2005-9.9.tex");
     EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/error/calibrated}{yes}\n"));

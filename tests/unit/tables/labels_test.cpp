@@ -36,6 +36,10 @@ TEST(Labels, TheRecordedUnitIsThatOfANameWithoutOne) {
     EXPECT_EQ(quantityOf("rmse_level", {}, "level").text(), "rmse [level]");
     EXPECT_EQ(quantityOf("draw_ms", {{"draw_ms", "drawing"}}, "ms").text(), "drawing [ms]");
     EXPECT_EQ(quantityOf("memory_mib").with("12.5"), "memory 12.5 MiB");
+    EXPECT_EQ(quantityOf("point_mib").with("3.914"), "point memory 3.914 MiB");
+    EXPECT_EQ(quantityOf("gpu_memory_mb").text(), "gpu memory [MB]");
+    EXPECT_EQ(quantityOf("redundant_pct_image_0", {}, "%").text(), "redundant, image 0 [%]");
+    EXPECT_EQ(quantityOf("redundant_pct_image_0", {}, "%").with("0"), "redundant, image 0: 0 %");
     EXPECT_EQ(quantityOf("silhouette_deg").with("20"), "silhouette 20°");
     EXPECT_EQ(quantityOf("light_grid").with("4 / 8"), "light grid 4 / 8");
 }
@@ -44,6 +48,32 @@ TEST(Labels, AColumnOfSeveralAxesIsItsPartsInWords) {
     const TableColumn column{"draw_ms_non_redundant", "ms", {}, {}, {"draw_ms", "non_redundant"}};
     EXPECT_EQ(quantityOf(column, {{"non_redundant", "non-redundant"}}).text(),
               "draw [ms], non-redundant");
+}
+
+TEST(Labels, WhatAClaimAsksIsSaidInTheColumnsWords) {
+    Table table;
+    table.rowAxes = {"n_lights", "measure"};
+    table.words = {{"lit_ms", "lighting"}};
+    table.columns = {{"draw_ms", "ms"}, {"lit_ms", "ms"}, {"flip_mean", "1"}, {"a-b_pct", "%"}};
+    table.rows = {{{"1", "useful_pct"}, {}, {}}};
+    EXPECT_EQ(inWords("draw_ms / lit_ms in [0.5, 1.5]", table), "draw / lighting in [0.5, 1.5]");
+    EXPECT_EQ(inWords("draw_ms/lit_ms < 2", table), "draw/lighting < 2");
+    EXPECT_EQ(inWords("draw_ms ≤ 10", table), "draw [ms] ≤ 10");
+    EXPECT_EQ(inWords("max(flip_mean, 'a-b_pct') ≤ 1", table), "max(flip mean, a-b) ≤ 1");
+    EXPECT_EQ(inWords("lit_ms < draw_ms", table), "lighting < draw");
+    EXPECT_EQ(inWords("strictly increasing with n_lights; exponent in [1, 2]", table),
+              "strictly increasing with n lights; exponent in [1, 2]");
+    EXPECT_EQ(inWords("draw_ms < useful_pct", table), "draw < useful") << "across a row axis";
+    EXPECT_EQ(inWords("another_ms < 1'", table), "another_ms < 1'") << "no name of the table";
+    EXPECT_EQ(inWords("", table), "");
+}
+
+TEST(Labels, AValueInASentenceKeepsItsFolder) {
+    EXPECT_EQ(valueInWords("path_1"), "path 1");
+    EXPECT_EQ(valueInWords("outdoor/bird_nest"), "outdoor/bird_nest");
+    EXPECT_EQ(valueInWords("my_model.glb"), "my_model.glb");
+    EXPECT_EQ(valueInWords("low_pass", {{"low_pass", "the low-pass filter"}}),
+              "the low-pass filter");
 }
 
 TEST(Labels, ACaseIsTheValuesOfItsAxes) {

@@ -247,6 +247,8 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
     EXPECT_EQ(lineOf({{output, grid, view, open}}),
               "Measured at output 128×128 (printed 512×512), light grid 4 (16), view a (paper "
               "profile b), frames 3 (50).");
+    EXPECT_EQ(lineOf({{{"view", {"path_1"}, {"path_1", "path_2"}, true}}}),
+              "Measured at view path 1 (paper profile path 1 / path 2).");
     EXPECT_EQ(lineOf({{view, output}}),
               "Measured at view a (paper profile b), output 128×128 (printed 512×512).");
     EXPECT_EQ(
