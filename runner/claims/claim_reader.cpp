@@ -231,7 +231,8 @@ bool ClaimReader::readByProcess() {
 bool ClaimReader::isPlanned(const ClaimPart& part, std::size_t row) const {
     for (const std::size_t operand : part.operands) {
         for (const std::size_t column : operands_[operand].columns()) {
-            if (!table_.rows[row].cells[column].isPlanned) return false;
+            const tables::Cell& cell = table_.rows[row].cells[column];
+            if (!cell.isPlanned && !cell.isUnrecorded) return false;
         }
     }
     return true;

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <set>
 
+#include "runner/tables/labels.h"
+
 namespace gfxrepro::run {
 
 namespace {
@@ -189,7 +191,13 @@ Json Rounds::endings() const {
 std::vector<std::string> Rounds::warnings() const {
     std::vector<std::string> lines;
     for (const std::string& name : order_) {
-        for (const std::string& text : tables::outlierTexts(tables_.at(name).times)) {
+        const Table& table = tables_.at(name);
+        tables::CaseNames names;
+        for (const Case* item : table.cases) {
+            const std::string title = item->title();
+            if (title != name) names[item->id] = tables::shownCase(title, name);
+        }
+        for (const std::string& text : tables::outlierTexts(table.times, names)) {
             lines.push_back(name + ": " + text);
         }
     }

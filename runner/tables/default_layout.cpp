@@ -187,15 +187,6 @@ void describeColumns(const config::Experiment& experiment, const config::Layout&
             column.better = info->better;
         }
     }
-    for (TableRow& row : table.rows) {
-        for (Cell& cell : row.cells) {
-            const bool isOfOthers =
-                cell.status == records::Status::Missing && !cell.caseIds.empty();
-            if (!isOfOthers) continue;
-            cell.isPlanned = false;
-            cell.measured.clear();
-        }
-    }
 }
 
 std::vector<config::PlotSpec> defaultPlots(const Table& table) {

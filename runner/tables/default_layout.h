@@ -24,8 +24,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
                             std::span<const PlannedCase> planned,
                             const std::vector<records::Record>& records);
 
-/// What the technique declares of each metric, beside the table's columns. What a case that was run
-/// did not record is blank: other methods, or more images, have it.
+/// What the technique declares of each metric, beside the table's columns.
 void describeColumns(const config::Experiment& experiment, const config::Layout& layout,
                      Table& table);
 

@@ -70,7 +70,8 @@ FrameTimes::CaseTimes& FrameTimes::caseOf(const records::Record& record) {
         for (const std::string* part : {&record.scene, &record.method}) {
             if (!part->empty()) parts.push_back(*part);
         }
-        cases_.push_back({parts.empty() ? record.caseId : joined(parts, " "), {}, {}});
+        cases_.push_back(
+            {record.caseId, parts.empty() ? record.caseId : joined(parts, " "), {}, {}});
     }
     return cases_[found->second];
 }
@@ -194,7 +195,8 @@ std::vector<Outlier> FrameTimes::outliers() const {
                 const double usual = medianOf(fellows);
                 for (const auto& [repeat, value] : repeats) {
                     if (value < kOutlierFactor * usual) continue;
-                    outliers.push_back({times.name, frame, process, repeat, value, value / usual});
+                    outliers.push_back(
+                        {times.id, times.name, frame, process, repeat, value, value / usual});
                 }
             }
         }
@@ -202,7 +204,7 @@ std::vector<Outlier> FrameTimes::outliers() const {
     return outliers;
 }
 
-std::vector<std::string> outlierTexts(const FrameTimes& times) {
+std::vector<std::string> outlierTexts(const FrameTimes& times, const CaseNames& names) {
     constexpr std::size_t kMostNamed = 5;
     const std::vector<Outlier> outliers = times.outliers();
     std::vector<std::string> texts;
@@ -211,9 +213,11 @@ std::vector<std::string> outlierTexts(const FrameTimes& times) {
             texts.push_back(fmt::format("{} more such frames.", outliers.size() - kMostNamed));
             break;
         }
+        const auto known = names.find(outlier.caseId);
+        const std::string& name = known == names.end() ? outlier.caseName : known->second;
         texts.push_back(fmt::format(
             "Outlier: frame {} of {} took {:.4g} ms in process {}, {:.3g} times its fellows.",
-            outlier.frame, outlier.caseName, outlier.timeMs, outlier.process + 1, outlier.factor));
+            outlier.frame, name, outlier.timeMs, outlier.process + 1, outlier.factor));
     }
     return texts;
 }
@@ -272,7 +276,8 @@ std::string_view endInWords(std::string_view end) {
 
 }  // namespace
 
-std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure) {
+std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure,
+                                   const CaseNames& names) {
     const std::size_t rounds = times.roundCount();
     if (rounds == 0) return {};
     std::vector<std::string> notes;
@@ -305,7 +310,7 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
             "difference below it are not decided.",
             percentText(*noise), own ? fmt::format(", by CPU time {}", percentText(*own)) : ""));
     }
-    const std::vector<std::string> outliers = outlierTexts(times);
+    const std::vector<std::string> outliers = outlierTexts(times, names);
     notes.insert(notes.end(), outliers.begin(), outliers.end());
     return notes;
 }

@@ -15,7 +15,8 @@ namespace gfxrepro::tables {
 
 /// A frame that took far longer than its fellows.
 struct Outlier {
-    std::string caseName;  // "models/duck slices"
+    std::string caseId;
+    std::string caseName;  // "models/duck slices": its scene and method, for who knows no better
     int frame = 0;
     int process = 0;
     int repeat = 0;
@@ -75,7 +76,7 @@ class FrameTimes {
     using Repeats = std::map<int, double>;
     using Frames = std::map<int, Repeats>;
     struct CaseTimes {
-        std::string name;
+        std::string id, name;
         std::map<int, Frames> wall, cpu;  // by process
         std::vector<double> fellowsOf(int frame) const;
     };
@@ -99,10 +100,15 @@ bool isRepeated(const config::Measure& measure, std::span<const double> timesMs)
 /// "relative_error", "processes_at_most", or "time_budget_s".
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times);
 
-/// A sentence an outlier, of the first few.
-std::vector<std::string> outlierTexts(const FrameTimes& times);
+/// What a reader knows cases by, by their ids: "torus, light ratio 0.25".
+using CaseNames = std::map<std::string, std::string>;
+
+/// A sentence an outlier, of the first few. A case without a name is called by its scene and
+/// method.
+std::vector<std::string> outlierTexts(const FrameTimes& times, const CaseNames& names = {});
 
 /// Sentences below a table of times: its rounds and what ended them, its noise, its outliers.
-std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure);
+std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure,
+                                   const CaseNames& names = {});
 
 }  // namespace gfxrepro::tables

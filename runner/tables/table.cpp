@@ -10,6 +10,7 @@
 #include "runner/tables/default_layout.h"
 #include "runner/tables/fit.h"
 #include "runner/tables/frame_times.h"
+#include "runner/tables/labels.h"
 #include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::tables {
@@ -45,9 +46,22 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
     }
 }
 
+/// Of each case that has swept values these in words.
+CaseNames namesOf(const LayoutCases& cases, const Words& words) {
+    CaseNames names;
+    for (const CaseRecords& item : cases.cases) {
+        std::vector<std::string> parts;
+        for (std::size_t i = 0; i < item.axes.size(); ++i) {
+            if (item.axes[i]) parts.push_back(shownValue(cases.axes[i], *item.axes[i], words));
+        }
+        if (!parts.empty()) names[item.id] = joined(parts);
+    }
+    return names;
+}
+
 /// The noise of a table of times, what ended its rounds, and what stands out.
 void addTimes(const config::Experiment& experiment, const std::vector<records::Record>& records,
-              Table& table) {
+              const LayoutCases& cases, Table& table) {
     if (experiment.measure.lane != config::Measure::Lane::Timing) return;
     FrameTimes times(!config::programOf(experiment).isNull());
     for (const records::Record& record : records) {
@@ -55,7 +69,31 @@ void addTimes(const config::Experiment& experiment, const std::vector<records::R
     }
     table.wallNoise = times.noise(Clock::Wall);
     table.processNoise = times.noise(Clock::Process);
-    table.notes = timeNotes(times, experiment.measure);
+    table.notes = timeNotes(times, experiment.measure, namesOf(cases, table.words));
+}
+
+bool hasValue(const Cell& cell) {
+    return !cell.values.empty();
+}
+
+/// What the cases of a cell did not record is blank where others of its row and of its column were
+/// recorded: other methods, or more images, have it. A whole row or column without a value is
+/// missing, as one of a misspelt metric, and so is what is printed.
+void blankWhatOthersHave(Table& table) {
+    std::vector<bool> isRecorded;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        isRecorded.push_back(std::ranges::any_of(
+            table.rows, [&](const TableRow& row) { return hasValue(row.cells[i]); }));
+    }
+    for (TableRow& row : table.rows) {
+        if (std::ranges::none_of(row.cells, hasValue)) continue;
+        for (std::size_t i = 0; i < row.cells.size(); ++i) {
+            Cell& cell = row.cells[i];
+            if (!cell.isUnrecorded || !isRecorded[i] || cell.printed) continue;
+            cell.isPlanned = false;
+            cell.measured.clear();
+        }
+    }
 }
 
 /// The columns of `printed` that name row axes and table columns.
@@ -106,7 +144,9 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
     const PrintedColumns found = findColumns(printed, table);
     const std::vector<std::string> absent = absentColumns(printed, table);
     if (!absent.empty()) {
-        table.notes.push_back("printed columns that are not part of this run: " + joined(absent));
+        std::vector<std::string> said;
+        for (const std::string& name : absent) said.push_back(shownName(name, table.words));
+        table.notes.push_back("printed columns that are not part of this run: " + joined(said));
     }
     const auto layInto = [&](TableRow& row, const std::vector<std::string>& printedRow) {
         for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -284,8 +324,9 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
         }
     }
     if (given.hasDefaultLayout()) describeColumns(given, layout, table);
-    addTimes(experiment, records, table);
+    addTimes(experiment, records, cases, table);
     layPrintedBeside(experiment, columns, table);
+    blankWhatOthersHave(table);
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));
     }

@@ -452,6 +452,17 @@ TEST(Claims, UnmeasuredNamesTheCell) {
     EXPECT_EQ(zero.verdict, Verdict::Unmeasured);
 }
 
+/// The table shows it blank, as other rows have it, and a claim that asks for it is not judged
+/// without it.
+TEST(Claims, WhatACaseDidNotRecordIsUnmeasuredWhereAClaimReadsIt) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").add("a", {1.0}).add("b", {1.0});
+    maker.beginCase("", R"({"n":2})").add("b", {1.0});
+    const ClaimResult result = judgePowers("bound: a, below: 2", maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Unmeasured);
+    EXPECT_THAT(result.reason, testing::HasSubstr("no 'a' was recorded"));
+}
+
 /// A failing row counts even where another row could not be measured.
 TEST(Claims, FailureOutweighsAMissingRow) {
     tables::RecordMaker maker;

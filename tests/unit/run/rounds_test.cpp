@@ -192,7 +192,7 @@ TEST(Rounds, WarnOfOutliers) {
     const run::Rounds rounds(plan, rows(plan, 6, 9.0), {});
     EXPECT_EQ(rounds.warnings().size(), 3U);
     EXPECT_EQ(rounds.warnings()[0],
-              "t/1: Outlier: frame 0 of t/1 a 1 took 100 ms in process 6, 10 times its fellows.");
+              "t/1: Outlier: frame 0 of a, size 1 took 100 ms in process 6, 10 times its fellows.");
 }
 
 }  // namespace

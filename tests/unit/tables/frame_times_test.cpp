@@ -157,6 +157,25 @@ TEST(FrameTimes, OutliersAmongRoundsAndAmongFrames) {
     EXPECT_THAT(outlierTexts(timesOf(rounds({10, 99}))), ElementsAre()) << "which of the two?";
 }
 
+TEST(FrameTimes, ARowNamesTheOutlierOfAUsersOwnTable) {
+    const config::Experiment experiment = experimentFrom(
+        "scene: /home/me/room.glb\nsweep: {light_grid: [4, 8]}\n"
+        "measure: {lane: timing, processes: 4}\n"
+        "layout:\n  rows: light_grid\n  columns: {ms: {metric: wall_time_ms}}\n");
+    RecordMaker maker;
+    for (const char* params :
+         {R"({"light_grid":4,"method":"x"})", R"({"light_grid":8,"method":"x"})"}) {
+        maker.beginCase("/home/me/room.glb", params);
+        for (int i = 0; i < 4; ++i) {
+            const bool isLate = i == 2 && std::string(params).find('8') != std::string::npos;
+            maker.process(i).add("wall_time_ms", {isLate ? 60.0 : 10.0});
+        }
+    }
+    EXPECT_THAT(buildTable(experiment, maker.records()).notes,
+                testing::Contains("Outlier: frame 0 of light grid 8 took 60 ms in process 3, 6 "
+                                  "times its fellows."));
+}
+
 TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
     const auto first = [](std::initializer_list<double> valuesMs, const config::Measure& measure) {
         return timeNotes(timesOf(rounds(valuesMs)), measure).at(0);

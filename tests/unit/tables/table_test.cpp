@@ -157,7 +157,7 @@ TEST(Table, PrintedColumnsThatASweepTookAwayAreNoted) {
     for (auto& row : experiment.printed.rows) row.push_back("1");
     const Table table = buildTable(experiment, duckAndBunny().records());
     EXPECT_EQ(table.rows[0].cells[0].printed, "1254");
-    EXPECT_EQ(table.notes.at(0), "printed columns that are not part of this run: clear_ms");
+    EXPECT_EQ(table.notes.at(0), "printed columns that are not part of this run: clear [ms]");
 }
 
 TEST(Table, CasesNotRunAreMissing) {
@@ -171,6 +171,27 @@ TEST(Table, CasesNotRunAreMissing) {
     EXPECT_EQ(table.rows[1].cells[0].message, "no 'triangles' was recorded");
     EXPECT_EQ(table.rows[1].cells[1].measured, "4.0");
     EXPECT_EQ(table.rows[1].cells[1].low, "");
+}
+
+TEST(Table, WhatOthersOfItsRowAndColumnRecordIsBlank) {
+    config::Experiment experiment = experimentFrom(std::string(kPlain) +
+                                                   "printed:\n  values: |\n"
+                                                   "    scene,triangles,draw_ms\n"
+                                                   "    models/bunny,69451,12.0\n");
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("gpu_time_ms", {4.0}, "draw");
+    maker.beginCase("models/bunny").add("triangles", {69451.0}, "", "triangle");
+    const Table table = buildTable(experiment, maker.records());
+    EXPECT_FALSE(table.rows[0].cells[0].isPlanned);
+    EXPECT_EQ(table.rows[0].cells[0].measured, "");
+    EXPECT_TRUE(table.rows[1].cells[1].isPlanned) << "printed, so it should be there";
+    EXPECT_EQ(table.rows[1].cells[1].measured, "missing");
+    // Of a column that nothing recorded the metric may be misspelt.
+    maker = {};
+    maker.beginCase("models/duck").add("triangles", {1254.0}, "", "triangle");
+    maker.beginCase("models/bunny").add("triangles", {69451.0}, "", "triangle");
+    experiment.printed = {};
+    EXPECT_EQ(buildTable(experiment, maker.records()).rows[0].cells[1].measured, "missing");
 }
 
 TEST(Table, WrongPassSaysWhichThereAre) {
