@@ -51,20 +51,21 @@ void sayUnread(const Context& context, const scene::Catalog& catalog, const std:
     }
 }
 
-/// Throws Error for a printed row or value that has no place in the table, whatever the profile.
-void requirePrinted(const Context& context, const scene::Catalog& catalog,
-                    const std::string& file) {
+/// Throws Error for what is wrong under some profile, as a value that it fixes and the file sweeps,
+/// and for a printed row or value that has no place in the table, whatever the profile.
+void requireProfiles(const Context& context, const scene::Catalog& catalog,
+                     const std::string& file) {
     std::optional<config::Experiment> whole;
     std::vector<tables::Table> tables;
     for (const char* profile : {"full", "quick", "paper"}) {
         const config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
-        if (one.technique.empty() || one.printed.rows.empty()) return;
+        if (one.technique.empty() || one.printed.rows.empty()) continue;
         const std::vector<run::Case> cases =
             run::resolveParameters(one, catalog, context.techniques, 1);
         tables.push_back(tables::buildTable(one, run::plannedCases(cases), {}));
         if (!whole) whole = one;
     }
-    tables::requirePrintedValues(*whole, tables);
+    if (whole) tables::requirePrintedValues(*whole, tables);
 }
 
 /// Throws Error for a sweep that the text names ("sweeps/NAME") and that is not among the configs.
@@ -154,7 +155,7 @@ int check(const Context& context, const Selection& selection) {
         run::bindAssumptions(experiment, cases, catalog, context.techniques);
         run::requireRanges(experiment, cases, catalog, context.techniques);
         requireReadable(cases, catalog);
-        requirePrinted(context, catalog, file);
+        requireProfiles(context, catalog, file);
         for (const char* section : {"claims", "assumptions", "printed"}) {
             const config::Node* node = experiment.document.find(section);
             if (node) requireNamedSweeps(*node);

@@ -6,6 +6,7 @@
 
 #include "runner/config/checks.h"
 #include "runner/config/experiment.h"
+#include "runner/config/scene_reference.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
 
@@ -271,7 +272,13 @@ std::vector<Fixed> fixedOf(const Experiment& experiment) {
     add("scene_params", experiment.sceneParams, kSceneAxisPrefix);
     const Node* output = experiment.document.find("output");
     if (output && output->isMap()) add("output", *output, "output.");
-    if (!experiment.scene.isNull()) all.push_back({"scene", "scene", experiment.scene.location()});
+    if (!experiment.scene.isNull()) {
+        all.push_back({"scene", "scene", experiment.scene.location()});
+        for (const auto& [name, value] : SceneReference::from(experiment.scene).params.entries()) {
+            all.push_back(
+                {std::string(kSceneAxisPrefix) + name, "scene", experiment.scene.location()});
+        }
+    }
     return all;
 }
 

@@ -223,6 +223,21 @@ TEST(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
                   allowed);
 }
 
+TEST(OwnExperiment, CheckFindsWhatASceneReferenceOrAProfileFixesAndTheFileSweeps) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(checked(folder,
+                      "technique: soft_shadows\nscene: outdoor/city?building_height=2\n"
+                      "sweep: {scene.building_height: [1, 2]}"),
+              "gfxrepro: DIR/mine.yaml:4:8: 'scene.building_height' is swept, too, in "
+              "DIR/mine.yaml:5:9; allowed: in 'scene' or in 'sweep'\n");
+    EXPECT_EQ(checked(folder,
+                      "technique: voxelization\nscene: shapes/torus\n"
+                      "sweep: {resolution: [32, 64]}\n"
+                      "profiles: {quick: {params: {resolution: 64}}}"),
+              "gfxrepro: DIR/mine.yaml:6:41: 'resolution' is swept, too, in DIR/mine.yaml:5:9; "
+              "allowed: in 'params' or in 'sweep'\n");
+}
+
 /// Stands at `name`: 17 × 17 samples that rise by `step` a column.
 void writeRamp(const TemporaryFolder& folder, const std::string& name, int step) {
     image::Image16 heights(17, 17, 1);
