@@ -23,6 +23,19 @@ const CLI::App* chosenCommand(const CLI::App& app) {
     return chosen.empty() ? &app : chosenCommand(*chosen.front());
 }
 
+/// What a command asks for and was not given, with an example.
+UsageError missingError(const CLI::App& command, const std::string& problem) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (!option->get_required() || option->count() > 0) continue;
+        const std::string name = option->get_positional() ? valueName(*option) : option->get_name();
+        const std::string example = command.get_footer();
+        return UsageError(fmt::format("{}: {} is missing: {}{}", command.get_name(), name,
+                                      option->get_description(),
+                                      example.empty() ? "" : "; for example: " + example));
+    }
+    return UsageError(command.get_name() + ": " + problem);
+}
+
 /// One clear message for what the parser did not take.
 UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
     const CLI::App& command = *chosenCommand(app);
@@ -43,6 +56,9 @@ UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
                               suggestion(extra, commandNames(app)) + "; see 'gfxrepro --help'");
         }
         return UsageError(whose + "unexpected argument '" + extra + "'");
+    }
+    if (dynamic_cast<const CLI::RequiredError*>(&problem)) {
+        return missingError(command, problem.what());
     }
     return UsageError(whose + problem.what());
 }

@@ -51,6 +51,19 @@ TEST(Usage, MissingConfig) {
               "gfxrepro: cannot read DIR/none.yaml: No such file or directory\n");
 }
 
+TEST(Usage, WhatIsNotGivenIsNamedWithAnExample) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(refusal({"check"}, folder),
+              "gfxrepro: check: CONFIG is missing: config files; for example: gfxrepro check "
+              "my-scene.yaml\n");
+    EXPECT_EQ(refusal({"plan"}, folder),
+              "gfxrepro: plan: TABLE is missing: PAPER, PAPER/TABLE or config files; for example: "
+              "gfxrepro plan my-scene.yaml --profile quick\n");
+    EXPECT_EQ(refusal({"merge", "a", "b"}, folder),
+              "gfxrepro: merge: --out is missing: folder of the whole run; for example: gfxrepro "
+              "merge shard-1 shard-2 --out whole\n");
+}
+
 TEST(Usage, BadKeyHasItsPlace) {
     const TemporaryFolder folder;
     const std::string config = folder.write("bad.yaml",
