@@ -62,6 +62,16 @@ for action in ("actions/checkout@v4", "other/action@" + "0123456789" * 4 + "  # 
     code, output = run("check_style", {**GOOD, WORKFLOW: f"      - uses: {action}\n"})
     if code != 0:
         sys.exit(f"check_style found something in {action}:\n{output}")
+TABLE = "configs/x/a.yaml"
+for says in ("… too", '"and so on"', "nor this"):
+    expect("check_style", {TABLE: f"  A: {{says: {says}, origin: ours}}\n"},
+           f"{TABLE}:1: a claim is read alone: say of what it goes on")
+expect("check_style", {TABLE: 'printed: {remark: "text. full_ewa_ms is ours"}\n'},
+       f"{TABLE}:1: 'full_ewa_ms' in a remark, which people read: say it in words")
+code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/README.md": "", TABLE:
+    "  A: {says: soft shadows do}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"})
+if code != 0:
+    sys.exit(f"check_style found something in good words:\n{output}")
 expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")
 expect("check_style", {"runner/core/a.cpp": "\n" * 401}, "runner/core/a.cpp: 401 lines, at most 400")
 expect("check_style", {"runner/core/CMakeLists.txt": "a(b\n    SOURCES b.cpp a.cpp\n    PUBLIC c)\n"},
