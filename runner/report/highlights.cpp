@@ -1,8 +1,10 @@
 #include "runner/report/highlights.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 
+#include "runner/image/png_io.h"
 #include "runner/report/picture_grid.h"
 
 namespace gfxrepro::report {
@@ -51,9 +53,40 @@ std::vector<Highlight> spread(const std::vector<Highlight>& all, std::size_t cou
     return chosen;
 }
 
+/// Moves to `chosen` the first of `left` whose picture is least like those of its page there.
+void takeLeastAlike(const ShotDifference& difference, std::vector<Highlight>& left,
+                    std::vector<Highlight>& chosen) {
+    const auto isNew = [&](const Highlight& one) {
+        double least = 1.0;
+        for (const Highlight& other : chosen) {
+            if (other.page != one.page) continue;
+            least = std::min(least, difference(one.run, *one.shot, *other.shot));
+        }
+        return least;
+    };
+    const auto best = std::ranges::max_element(left, {}, isNew);
+    chosen.push_back(*best);
+    left.erase(best);
+}
+
 }  // namespace
 
-std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages) {
+double shotDifference(const std::filesystem::path& runFolder, const Shot& a, const Shot& b) {
+    const image::Image16 first = image::readPng16(runFolder / a.png);
+    const image::Image16 second = image::readPng16(runFolder / b.png);
+    if (first.width() != second.width() || first.height() != second.height() ||
+        first.channels() != second.channels()) {
+        return 1.0;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < first.values().size(); ++i) {
+        sum += std::abs(int{first.values()[i]} - int{second.values()[i]});
+    }
+    return sum / (65535.0 * static_cast<double>(std::max<std::size_t>(first.values().size(), 1)));
+}
+
+std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
+                                    const ShotDifference& difference) {
     std::vector<Highlight> failing, holding;
     std::vector<std::vector<Highlight>> further;  // of each page, of its next claims
     for (const Page* page : pages) {
@@ -77,11 +110,14 @@ std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages) {
     std::vector<Highlight> chosen = spread(holding, kHighlights - bad.size());
     chosen.insert(chosen.end(), bad.begin(), bad.end());
     const bool areAllShown = chosen.size() == failing.size() + holding.size();
+    std::vector<Highlight> left;
     for (std::size_t i = 0; areAllShown && i < kHighlights; ++i) {
         for (const std::vector<Highlight>& others : further) {
-            if (i < others.size() && chosen.size() < kHighlights) chosen.push_back(others[i]);
+            if (i < others.size()) left.push_back(others[i]);
         }
     }
+    const std::size_t missing = std::min(left.size(), kHighlights - chosen.size());
+    for (std::size_t i = 0; i < missing; ++i) takeLeastAlike(difference, left, chosen);
     std::ranges::stable_sort(chosen, {}, [&](const Highlight& one) {
         return std::ranges::find(pages, one.page) - pages.begin();
     });

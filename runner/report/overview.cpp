@@ -135,7 +135,10 @@ std::string chaptersHtml(const DocumentPages& document) {
 
 std::string highlightsHtml(const DocumentPages& document, const Model& model) {
     std::string html;
-    for (const Highlight& one : highlightsOf(document.pages())) {
+    const auto difference = [&](std::size_t run, const Shot& a, const Shot& b) {
+        return shotDifference(model.runs[run].folder, a, b);
+    };
+    for (const Highlight& one : highlightsOf(document.pages(), difference)) {
         html += fmt::format(
             "<figure><a href=\"#{0}\"><img src=\"{1}\" alt=\"{2}\" width=\"{3}\" "
             "height=\"{4}\"></a><figcaption>{5} {6} <a href=\"#{0}\">{7}</a></figcaption>"

@@ -43,7 +43,11 @@ std::vector<std::string> namesOf(const std::vector<Page>& pages) {
     std::vector<const Page*> all;
     for (const Page& page : pages) all.push_back(&page);
     std::vector<std::string> names;
-    for (const Highlight& one : highlightsOf(all)) {
+    // Pictures are as different as their distances from the truth.
+    const auto difference = [](std::size_t, const Shot& a, const Shot& b) {
+        return std::abs(a.flipMean - b.flipMean);
+    };
+    for (const Highlight& one : highlightsOf(all, difference)) {
         names.push_back(one.page->id + ' ' + one.claim->id + ' ' +
                         std::to_string(one.shot->flipMean).substr(0, 3));
     }
@@ -60,6 +64,18 @@ TEST(Highlights, AreThoseOfFurtherClaimsWhereFewPagesHavePictures) {
         pageOf("c", experiment, {holds("C1"), holds("C2")}, {0.5})};
     EXPECT_THAT(namesOf(pages),
                 ElementsAre("a A1 0.1", "a A2 0.2", "b B2 0.4", "b B1 0.1", "c C1 0.5"));
+}
+
+TEST(Highlights, AreOfSeveralOfAPageThoseThatLookLeastAlike) {
+    const config::Experiment experiment;
+    const auto holds = [](const char* id) { return claim(id, Verdict::Holds); };
+    const std::vector<Page> pages = {
+        pageOf("a", experiment, {holds("1"), holds("2")}, {0.10, 0.11}),
+        pageOf("b", experiment, {holds("1"), holds("2"), holds("3")}, {0.1, 0.3, 0.6}),
+        pageOf("c", experiment, {holds("1"), holds("2")}, {0.2, 0.5}),
+        pageOf("d", experiment, {holds("1")}, {0.2})};
+    EXPECT_THAT(namesOf(pages),
+                ElementsAre("a 1 0.1", "b 1 0.1", "b 3 0.6", "c 1 0.2", "c 2 0.5", "d 1 0.2"));
 }
 
 TEST(Highlights, AreOneEachOfSixPages) {
