@@ -131,6 +131,23 @@ std::size_t measuredCount(const Table& table, std::size_t column) {
         table.rows, [&](const TableRow& row) { return row.cells[column].isOk(); }));
 }
 
+/// What is counted in frames, and one frame does not have.
+std::vector<std::string> frameNotes(const config::Experiment& experiment,
+                                    const std::vector<Series>& recorded) {
+    std::vector<std::string> notes;
+    if (experiment.measure.frames > 1 || recorded.empty()) return notes;
+    for (const config::MetricInfo& info : experiment.outputs.metrics) {
+        const bool isRecorded =
+            std::ranges::find(recorded, info.name, &Series::metric) != recorded.end();
+        if (info.unit != "frame" || isRecorded) continue;
+        notes.push_back(fmt::format(
+            "One frame of each case is measured: the {}, and whatever follows from frames before, "
+            "needs several (`measure: {{frames: 20}}`).",
+            quantityOf(info.name, experiment.labels).words));
+    }
+    return notes;
+}
+
 }  // namespace
 
 DefaultLayout defaultLayout(const config::Experiment& experiment,
@@ -145,6 +162,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         }
     }
     const std::vector<Series> all = seriesOf(experiment.id, records);
+    result.notes = frameNotes(experiment, all);
     std::set<std::string> measured;
     for (const Series& series : all) measured.insert(series.cases.begin(), series.cases.end());
     config::LayoutAxis columns{"measured", {}};

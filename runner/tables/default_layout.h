@@ -14,6 +14,8 @@ namespace gfxrepro::tables {
 struct DefaultLayout {
     config::Layout layout;               // not given where nothing was recorded
     std::vector<std::string> constants;  // "triangles 69451": alike in all cases, so no column
+    /// Of one frame alone, where the technique declares a number of frames, which no case recorded.
+    std::vector<std::string> notes;
 };
 
 /// For an experiment of one's own without a `layout`: a row a point of its sweep; columns are the

@@ -288,10 +288,12 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
                  const std::vector<records::Record>& records) {
     config::Experiment experiment = given;
     Table table;
+    std::vector<std::string> notes;
     if (given.hasDefaultLayout()) {
         DefaultLayout made = defaultLayout(given, planned, records);
         experiment.layout = std::move(made.layout);
         table.constants = std::move(made.constants);
+        notes = std::move(made.notes);
     }
     table.id = experiment.id;
     table.slug = experiment.slug();
@@ -325,6 +327,7 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
     }
     if (given.hasDefaultLayout()) describeColumns(given, layout, table);
     addTimes(experiment, records, cases, table);
+    table.notes.insert(table.notes.end(), notes.begin(), notes.end());
     layPrintedBeside(experiment, columns, table);
     blankWhatOthersHave(table);
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {

@@ -11,6 +11,7 @@ namespace gfxrepro::tables {
 namespace {
 
 using config::Better;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -76,6 +77,21 @@ TEST(DefaultLayout, WhatACaseDoesNotRecordIsBlank) {
     EXPECT_FALSE(table.rows[0].cells[2].isPlanned);
     EXPECT_EQ(table.rows[0].cells[2].measured, "");
     EXPECT_EQ(table.rows[1].cells[2].measured, "1.562");
+}
+
+TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
+    config::Experiment experiment = sweepOf("{resolution: [32, 64]}");
+    const auto notes = [&] { return buildTable(experiment, recordedAt({32, 64})).notes; };
+    experiment.outputs.metrics.push_back({"key_frame_interval", "frame", "since the last"});
+    EXPECT_THAT(notes(), Contains("One frame of each case is measured: the key frame interval, and "
+                                  "whatever follows from frames before, needs several (`measure: "
+                                  "{frames: 20}`)."));
+    const auto saysSo = Contains(testing::StartsWith("One frame"));
+    experiment.outputs.metrics.back().name = "digest";  // which is recorded
+    EXPECT_THAT(notes(), testing::Not(saysSo));
+    experiment.outputs.metrics.back().name = "key_frame_interval";
+    experiment.measure.frames = 2;
+    EXPECT_THAT(notes(), testing::Not(saysSo));
 }
 
 TEST(DefaultLayout, OfOneCaseNothingIsFolded) {
