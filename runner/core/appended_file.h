@@ -6,15 +6,14 @@
 #include <filesystem>
 #include <string_view>
 
+#include "runner/core/descriptor.h"
+
 namespace gfxrepro {
 
 class AppendedFile {
   public:
     /// Opens it, or makes an empty one. Throws Error, also for a link.
     explicit AppendedFile(const std::filesystem::path& path);
-    ~AppendedFile();
-    AppendedFile(const AppendedFile&) = delete;
-    AppendedFile& operator=(const AppendedFile&) = delete;
 
     /// Leaves the first `sizeBytes`: what follows them was torn.
     void cut(std::size_t sizeBytes);
@@ -27,7 +26,7 @@ class AppendedFile {
 
   private:
     std::filesystem::path path_;
-    int fd_ = -1;
+    Descriptor file_;
     off_t endBytes_ = 0;
 };
 

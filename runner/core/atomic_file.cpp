@@ -43,12 +43,11 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
     temporary_ = path_;
     temporary_ += ".tmp" + std::to_string(::getpid());
     constexpr int kSafe = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
-    fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | kSafe, 0644);
-    if (fd_ < 0) fail("write", temporary_);
+    file_ = Descriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | kSafe, 0644));
+    if (file_.get() < 0) fail("write", temporary_);
 }
 
 AtomicFile::~AtomicFile() {
-    ::close(fd_);
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
@@ -64,7 +63,7 @@ void AtomicFile::write(std::string_view text) {
 
 void AtomicFile::put(std::string_view text) {
     while (!text.empty()) {
-        const ssize_t written = ::write(fd_, text.data(), text.size());
+        const ssize_t written = ::write(file_.get(), text.data(), text.size());
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) fail("write", path_);
         text.remove_prefix(static_cast<std::size_t>(written));
@@ -74,7 +73,7 @@ void AtomicFile::put(std::string_view text) {
 void AtomicFile::commit() {
     put(unwritten_);
     unwritten_.clear();
-    if (::fsync(fd_) != 0) fail("flush", temporary_);
+    if (::fsync(file_.get()) != 0) fail("flush", temporary_);
     if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename to", path_);
     temporary_.clear();
 }

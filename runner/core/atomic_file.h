@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "runner/core/descriptor.h"
+
 namespace gfxrepro {
 
 /// Goes to a temporary name beside its path until commit() puts it in its place: a reader sees the
@@ -29,7 +31,7 @@ class AtomicFile {
     std::filesystem::path path_;
     std::filesystem::path temporary_;  // empty once it is in its place
     std::string unwritten_;
-    int fd_ = -1;
+    Descriptor file_;
 };
 
 }  // namespace gfxrepro

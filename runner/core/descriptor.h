@@ -4,16 +4,20 @@
 #include <unistd.h>
 
 #include <string>
+#include <utility>
 
 namespace gfxrepro {
 
 /// Closes itself; below 0 there is nothing to close.
 class Descriptor {
   public:
-    explicit Descriptor(int fd) : fd_(fd) {}
+    explicit Descriptor(int fd = -1) : fd_(fd) {}
+    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(fd_, other.fd_);
+        return *this;
+    }
     ~Descriptor() { close(); }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
     int get() const { return fd_; }
     void close() {
         if (fd_ >= 0) ::close(fd_);

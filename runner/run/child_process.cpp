@@ -75,21 +75,17 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
     if (pid_ == 0) becomeProgram(pointers.data(), input[1], messages[1], output[1], parent);
     const int reason = errno;
     for (const int childEnd : {input[1], messages[1], output[1]}) ::close(childEnd);
-    inputFd_ = input[0];
-    messageFd_ = messages[0];
-    outputFd_ = output[0];
-    if (pid_ < 0) {
-        for (const int end : {inputFd_, messageFd_, outputFd_}) ::close(end);
-        throw Error("cannot start a worker: " + std::string(std::strerror(reason)));
-    }
+    input_ = Descriptor(input[0]);
+    messages_ = Descriptor(messages[0]);
+    output_ = Descriptor(output[0]);
+    if (pid_ < 0) throw Error("cannot start a worker: " + std::string(std::strerror(reason)));
     ::setpgid(pid_, pid_);  // here too: kill() may come before the child has done it
-    ::fcntl(messageFd_, F_SETFL, O_NONBLOCK);
-    ::fcntl(outputFd_, F_SETFL, O_NONBLOCK);
+    ::fcntl(messages_.get(), F_SETFL, O_NONBLOCK);
+    ::fcntl(output_.get(), F_SETFL, O_NONBLOCK);
 }
 
 ChildProcess::~ChildProcess() {
     kill();
-    for (const int fd : {inputFd_, messageFd_, outputFd_}) ::close(fd);
 }
 
 void ChildProcess::sendLine(std::string_view line) {
@@ -102,7 +98,7 @@ bool ChildProcess::sendRest() {
     std::string_view rest = unsent_;
     while (!rest.empty()) {
         const ssize_t sent =
-            ::send(inputFd_, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            ::send(input_.get(), rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent < 0 && errno == EINTR) continue;
         if (sent < 0 && errno == EAGAIN) break;
         rest.remove_prefix(sent < 0 ? rest.size() : static_cast<std::size_t>(sent));

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runner/core/descriptor.h"
+
 namespace gfxrepro::run {
 
 /// The descriptor on which a worker answers.
@@ -26,8 +28,8 @@ class ChildProcess {
     ChildProcess& operator=(const ChildProcess&) = delete;
 
     pid_t pid() const { return pid_; }
-    int messageFd() const { return messageFd_; }  // not blocking
-    int outputFd() const { return outputFd_; }    // standard output and error, not blocking
+    int messageFd() const { return messages_.get(); }  // not blocking
+    int outputFd() const { return output_.get(); }     // standard output and error, not blocking
 
     /// Sends `line` and a newline after what was sent before, as far as the child has room: it
     /// waits for none. The rest goes with sendRest().
@@ -52,9 +54,7 @@ class ChildProcess {
     bool hasEndedAlone() const;
 
     pid_t pid_ = -1;
-    int inputFd_ = -1;
-    int messageFd_ = -1;
-    int outputFd_ = -1;
+    Descriptor input_, messages_, output_;
     std::string unsent_;
     bool isReaped_ = false;
     int waitStatus_ = 0;

@@ -105,11 +105,11 @@ std::string foreignFile(const fs::path& folder) {
     return "";
 }
 
-int openFile(const fs::path& path, int flags) {
+Descriptor openFile(const fs::path& path, int flags) {
     const int safe = O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
-    const int fd = ::open(path.c_str(), flags | safe, 0644);
-    if (fd < 0) throw Error("cannot write " + path.string() + ": " + std::strerror(errno));
-    return fd;
+    Descriptor file(::open(path.c_str(), flags | safe, 0644));
+    if (file.get() < 0) throw Error("cannot write " + path.string() + ": " + std::strerror(errno));
+    return file;
 }
 
 }  // namespace
@@ -143,27 +143,16 @@ void requirePlainFiles(const fs::path& runDir) {
     if (problem) throw Error("cannot read " + runDir.string() + ": " + problem.message());
 }
 
-RunDirectory::RunDirectory(const fs::path& path) : path_(path) {
-    lockFd_ = openFile(path_ / "lock", O_RDWR);
+RunDirectory::RunDirectory(const fs::path& path)
+    : path_(path), lock_(openFile(path / "lock", O_RDWR)) {
     const auto until = std::chrono::steady_clock::now() + kLockPatience;
-    while (::flock(lockFd_, LOCK_EX | LOCK_NB) != 0) {
+    while (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) {
         if (std::chrono::steady_clock::now() >= until) {
-            ::close(lockFd_);
             throw Error(path.string() + ": another run is writing to this folder");
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    logFd_ = openFile(path_ / "log.jsonl", O_WRONLY | O_APPEND);
-}
-
-RunDirectory::RunDirectory(RunDirectory&& other) noexcept
-    : path_(std::move(other.path_)),
-      lockFd_(std::exchange(other.lockFd_, -1)),
-      logFd_(std::exchange(other.logFd_, -1)) {}
-
-RunDirectory::~RunDirectory() {
-    if (logFd_ >= 0) ::close(logFd_);
-    if (lockFd_ >= 0) ::close(lockFd_);
+    log_ = openFile(path_ / "log.jsonl", O_WRONLY | O_APPEND);
 }
 
 RunDirectory RunDirectory::create(const fs::path& path) {
@@ -200,7 +189,7 @@ void RunDirectory::removeScratch() const {
 }
 
 void RunDirectory::requireOurs() const {
-    if (isStillAt(path_ / "lock", lockFd_)) return;
+    if (isStillAt(path_ / "lock", lock_.get())) return;
     throw Error(path_.string() +
                 ": was removed or moved, or its lock was, while a run wrote to it; nothing is "
                 "measured into it any more");
@@ -208,7 +197,7 @@ void RunDirectory::requireOurs() const {
 
 void RunDirectory::log(const nlohmann::ordered_json& event) const {
     requireOurs();
-    const off_t bytes = sizeOf(logFd_);
+    const off_t bytes = sizeOf(log_.get());
     if (bytes > kMostBytes) {
         throw Error(
             fmt::format("{}: has {} MiB, and a larger one is not read again: nothing more "
@@ -217,21 +206,21 @@ void RunDirectory::log(const nlohmann::ordered_json& event) const {
     }
     if (bytes > kMostWholeBytes) return appendToLog(inShort(event));
     appendToLog(event);
-    if (sizeOf(logFd_) > kMostWholeBytes) appendToLog(inShortFromHere());
+    if (sizeOf(log_.get()) > kMostWholeBytes) appendToLog(inShortFromHere());
 }
 
 void RunDirectory::appendToLog(const nlohmann::ordered_json& event) const {
     nlohmann::ordered_json line = {{"time", utcTime()}};
-    line.update(logged(event, sizeOf(logFd_)));
+    line.update(logged(event, sizeOf(log_.get())));
     const std::string text =
         line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
     // One write a line; a log that cannot be written (disk full) does not stop the measurement.
-    [[maybe_unused]] const ssize_t written = ::write(logFd_, text.data(), text.size());
+    [[maybe_unused]] const ssize_t written = ::write(log_.get(), text.data(), text.size());
 }
 
 void RunDirectory::logFlushed(const nlohmann::ordered_json& event) const {
     log(event);
-    ::fdatasync(logFd_);
+    ::fdatasync(log_.get());
 }
 
 }  // namespace gfxrepro::run

@@ -5,6 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "runner/core/descriptor.h"
+
 namespace gfxrepro::run {
 
 /// plan.json, manifest.json, records.csv, log.jsonl, images/, artifacts/, tables/, … under one
@@ -18,9 +20,6 @@ class RunDirectory {
     /// A run that was begun; removes the temporary files of processes that were killed. Throws
     /// Error when there is none, when another run writes to it, and as requirePlainFiles().
     static RunDirectory open(const std::filesystem::path& path);
-    RunDirectory(RunDirectory&& other) noexcept;
-    RunDirectory& operator=(RunDirectory&&) = delete;
-    ~RunDirectory();
 
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path planFile() const { return path_ / "plan.json"; }
@@ -46,8 +45,7 @@ class RunDirectory {
     void appendToLog(const nlohmann::ordered_json& event) const;
 
     std::filesystem::path path_;
-    int lockFd_ = -1;
-    int logFd_ = -1;
+    Descriptor lock_, log_;
 };
 
 /// Below a run folder, where programs of any kind work while it is under way; it goes at the end.

@@ -14,6 +14,8 @@
 #include <limits>
 #include <utility>
 
+#include "runner/core/descriptor.h"
+
 namespace gfxrepro::scene {
 
 namespace fs = std::filesystem;
@@ -72,17 +74,14 @@ std::size_t fileBytes(glm::ivec2 sizeSamples) {
 class OpenFile {
   public:
     OpenFile(const fs::path& path, int flags)
-        : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {
-        if (fd_ < 0) fail("write", path);
+        : path_(path), file_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {
+        if (file_.get() < 0) fail("write", path);
     }
-    ~OpenFile() { ::close(fd_); }
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
 
     void write(std::size_t offset, const void* data, std::size_t bytes) const {
         const auto* from = static_cast<const char*>(data);
         while (bytes > 0) {
-            const ssize_t written = ::pwrite(fd_, from, bytes, static_cast<off_t>(offset));
+            const ssize_t written = ::pwrite(file_.get(), from, bytes, static_cast<off_t>(offset));
             if (written < 0 && errno == EINTR) continue;
             if (written < 0) fail("write", path_);
             from += written;
@@ -91,18 +90,18 @@ class OpenFile {
         }
     }
     void flush() const {
-        if (::fsync(fd_) != 0) fail("flush", path_);
+        if (::fsync(file_.get()) != 0) fail("flush", path_);
     }
     /// Until it is closed, by whatever.
     void lock() const {
-        while (::flock(fd_, LOCK_EX) != 0) {
+        while (::flock(file_.get(), LOCK_EX) != 0) {
             if (errno != EINTR) fail("lock", path_);
         }
     }
 
   private:
     fs::path path_;
-    int fd_;
+    Descriptor file_;
 };
 
 /// Removes a file that was left behind; nothing where it was renamed.
