@@ -373,6 +373,38 @@ TEST_F(ClusteredTracerTest, InAndOutsideOfATubeShareNoClusterAsPartsOfIt) {
     EXPECT_GT(wrongShare(false), 0.05);
 }
 
+TEST_F(ClusteredTracerTest, PartsOfOneObjectThatDoNotTouchReflectEachOther) {
+    scene::Scene potRoom = rooms::room();
+    // Their colour is in nothing else; they are convex, and show nothing of themselves.
+    rooms::add(potRoom, rooms::potAndKnob(), {1.0F, 0.0F, 1.0F}, Surface::Mirror);
+    const ReflectiveScene scene(potRoom, {.splitsParts = true});
+    const scene::Camera camera = rooms::cameraAt({0.4F, 0.6F, 1.4F}, {0.0F, -0.1F, 0.0F});
+    const auto meets = [](const rooms::Ball& ball, const glm::vec3& from, const glm::vec3& to) {
+        const float along = glm::dot(ball.centre - from, to);
+        return along > 0.0F && glm::distance(from + along * to, ball.centre) < ball.radius;
+    };
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        const Traced traced = trace(scene, camera, settings);
+        double reflecting = 0.0, right = 0.0;  // the other one
+        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
+            if (!traced.gbuffer.isReflective(i)) continue;
+            const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+            const glm::vec3 from = traced.gbuffer.positionWorld(pixel);
+            const bool isOnKnob = glm::distance(from, rooms::kKnob.centre) < 0.25F;
+            const bool isOther = meets(isOnKnob ? rooms::kPot : rooms::kKnob, from,
+                                       traced.gbuffer.mirrorDirection(pixel));
+            const glm::vec3& c = traced.radiance[i];
+            const bool isMagenta = c.y < 0.02F && c.x > 0.1F && c.z > 0.1F;
+            reflecting += isOther;
+            right += isOther && isMagenta;
+        }
+        EXPECT_GT(reflecting, 150.0);
+        EXPECT_GT(right, 0.6 * reflecting);  // its outline is a large part of so small a thing
+    }
+}
+
 TEST_F(ClusteredTracerTest, ABallHidesWhatItsRaysMeetWhereItsBackIsDrawn) {
     scene::Scene ballRoom = rooms::room();
     // The ball's own colour is in nothing else, and none of its rays meets it.
