@@ -88,6 +88,35 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     }
 }
 
+// A hundredth of the light: steps of linear colours in 10 bits are three levels there.
+TEST_F(ClusteredTracerTest, APlanarMirrorShowsDarkColours) {
+    scene::Scene dark = rooms::room(false);
+    for (scene::Material& material : dark.materials) {
+        material.baseColor = glm::vec4(0.01F * glm::vec3(material.baseColor), 1.0F);
+    }
+    const ReflectiveScene mirrored(rooms::mirroredInZ(dark, -2.0F));
+    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(128)));
+    reflections::GBufferRenderer(shaders(), mirrored)
+        .render(reflections::GpuObjects(mirrored), truth);
+    const reflections::HostGBuffer expected = readGBuffer(truth);
+    rooms::add(dark, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
+    const ReflectiveScene scene(dark);
+    for (const ImageDrawing drawing : kDrawings) {
+        ClusteredSettings settings = settingsFor(scene);
+        settings.drawing = drawing;
+        const Traced traced = trace(scene, frontCamera(), settings);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
+            if (!traced.gbuffer.isReflective(i)) continue;
+            for (int c = 0; c < 3; ++c) {
+                sum += 255.0 * std::abs(image::srgbOf(traced.radiance[i][c]) -
+                                        image::srgbOf(expected.diffuse[i][c]));
+            }
+        }
+        EXPECT_LE(sum / (3.0 * static_cast<double>(traced.reflectiveCount())), 0.2);
+    }
+}
+
 /// The wall at +z and the floor have tiles with grain in them, a texel wide: much finer than
 /// samples are apart.
 void addPattern(scene::Scene& scene) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "runner/image/srgb.h"
 #include "techniques/reflections/gbuffer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
@@ -118,6 +119,27 @@ void main() {
         if (glm::vec3(found[i]) != host.radianceFrom(glm::vec3(directions[i]))) ++different;
     }
     EXPECT_LE(different, 3);
+}
+
+// Half way between steps of linear colours in 10 bits: those are 1.6 levels off there.
+TEST_F(EnvironmentMapTest, KeepsDarkColours) {
+    scene::Scene dark = room();
+    const auto colourOf = [](int wall) { return (static_cast<float>(wall) + 0.5F) / 1023.0F; };
+    for (int wall = 0; wall < 6; ++wall) {
+        dark.materials[static_cast<std::size_t>(wall)].emissive = glm::vec3(colourOf(wall));
+    }
+    const ReflectiveScene scene(dark);
+    const GpuObjects objects(scene);
+    EnvironmentMap map(shaders, scene, kCentre);
+    map.render(objects);
+    const EnvironmentMap::Host host = map.read();
+    for (int wall = 0; wall < 6; ++wall) {
+        glm::vec3 direction(0.0F);
+        direction[wall / 2] = wall % 2 == 0 ? 1.0F : -1.0F;
+        const float kept = host.radianceFrom(direction).x;
+        EXPECT_LE(255.0 * std::abs(image::srgbOf(kept) - image::srgbOf(colourOf(wall))), 0.4)
+            << wall;  // steps of 0.36 levels; llvmpipe rounds down
+    }
 }
 
 TEST_F(EnvironmentMapTest, ShowsTheBackgroundWhereNothingIs) {
