@@ -19,10 +19,10 @@ std::size_t& bytesReadBack() {
 namespace {
 
 /// Notes the call and hands it on to the library that has it.
-template <class Result = void, class... Arguments>
-Result passOn(GlCall call, const char* name, Arguments... arguments) {
+template <class... Arguments>
+void passOn(GlCall call, const char* name, Arguments... arguments) {
     glCalls().push_back(call);
-    return reinterpret_cast<Result (*)(Arguments...)>(dlsym(RTLD_NEXT, name))(arguments...);
+    reinterpret_cast<void (*)(Arguments...)>(dlsym(RTLD_NEXT, name))(arguments...);
 }
 
 }  // namespace
@@ -44,8 +44,9 @@ void glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices
 void glDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect) {
     passOn(GlCall::DrawList, __func__, mode, type, indirect);
 }
-GLint glGetUniformLocation(GLuint program, const GLchar* name) {
-    return passOn<GLint>(GlCall::LookUp, __func__, program, name);
+void glProgramUniformMatrix4fv(GLuint program, GLint location, GLsizei count, GLboolean transpose,
+                               const GLfloat* value) {
+    passOn(GlCall::SetView, __func__, program, location, count, transpose, value);
 }
 void glMemoryBarrier(GLbitfield barriers) {
     passOn(GlCall::Barrier, __func__, barriers);

@@ -10,7 +10,7 @@ enum class GlCall {
     DrawObject,  // glDrawElementsInstancedBaseInstance
     DrawList,    // glDrawElements, glDrawElementsIndirect
     Flush,       // glFlush
-    LookUp,      // glGetUniformLocation: one a uniform that is set
+    SetView,     // glProgramUniformMatrix4fv: a program is told of a frame's view
     Barrier,     // glMemoryBarrier
     Parameter,   // glTextureParameteri: the driver validates the texture anew
     Write,       // glNamedBufferSubData: into what the device may still read
