@@ -59,7 +59,7 @@ void Progress::unitsAdded(const std::vector<run::Unit>& units) {
 void Progress::unitBegan(const run::Unit& unit) {
     title_ = titleOf(unit);
     lastDraw_ = {};
-    tick();
+    tick({});
 }
 
 void Progress::unitEnded(const run::Unit& unit, records::Status status,
@@ -81,7 +81,7 @@ std::string Progress::etaText() const {
     return fmt::format("{}:{:02}", leftS / 60, leftS % 60);
 }
 
-void Progress::tick() {
+void Progress::tick(std::string_view) {
     if (isQuiet_ || !isTerminal_ || Clock::now() - lastDraw_ < kDrawInterval) return;
     lastDraw_ = Clock::now();
     const int filled = unitCount_ == 0 ? kBarWidth : kBarWidth * ended_ / unitCount_;

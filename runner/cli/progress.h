@@ -19,7 +19,7 @@ class Progress : public run::Observer {
     void unitBegan(const run::Unit& unit) override;
     void unitEnded(const run::Unit& unit, records::Status status,
                    const std::string& message) override;
-    void tick() override;
+    void tick(std::string_view phase) override;
     /// Takes the bar away.
     void clear();
 

@@ -6,6 +6,7 @@
 
 #include "runner/core/text.h"
 #include "runner/report/markup.h"
+#include "runner/tables/moved_clocks.h"
 #include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
@@ -24,6 +25,8 @@ constexpr std::string_view kMacros =
 
 /// Of calibrated cells, as TeX sets it.
 constexpr const char* kMark = "\\textsuperscript{\\ddag}";
+/// Of times that are not of one clock.
+constexpr const char* kClockMark = "\\textsuperscript{\\S}";
 
 std::string oneLine(std::string text) {
     std::replace_if(
@@ -72,6 +75,10 @@ class LatexWriter {
         if (table_.hasCalibrated()) {
             text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kMark,
                                  tables::kCalibratedLegend);
+        }
+        if (const auto clock = tables::movedClock(table_)) {
+            text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kClockMark,
+                                 escapeLatex(tables::movedClockLegend(*clock)));
         }
         for (const std::string& note : runNotes_) {
             text_ += fmt::format("\\par{{\\footnotesize Note: {}.\\par}}\n", escapeLatex(note));
@@ -122,6 +129,7 @@ class LatexWriter {
         if (!cell.isPlanned) return;
         set(key, cell.measured);
         if (cell.isCalibrated) set(key + "/calibrated", "yes");
+        if (cell.movedClock) set(key + "/clock", tables::clockText(*cell.movedClock));
         if (!cell.low.empty()) {
             set(key + "/low", cell.low);
             set(key + "/high", cell.high);
@@ -175,7 +183,8 @@ class LatexWriter {
 
     static std::string measuredCell(const tables::Cell& cell, const std::string& key) {
         if (!cell.isPlanned) return "";
-        const std::string number = cite(key) + (cell.isCalibrated ? kMark : "");
+        const std::string number =
+            cite(key) + (cell.isCalibrated ? kMark : "") + (cell.movedClock ? kClockMark : "");
         if (!cell.hasShownBounds()) return number;
         return fmt::format(fmt::runtime(cell.bounds() == tables::Bounds::Interval
                                             ? "{} {{\\scriptsize[{}, {}]}}"

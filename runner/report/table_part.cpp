@@ -8,6 +8,7 @@
 #include "runner/report/overlay.h"
 #include "runner/report/parts.h"
 #include "runner/tables/labels.h"
+#include "runner/tables/moved_clocks.h"
 #include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
@@ -54,6 +55,11 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
     std::string html = fmt::format("<td class=\"num\"{}>{}", attributes, escapeXml(cell->measured));
     if (cell->isCalibrated) {
         html += fmt::format(" <abbr title=\"calibrated\">{}</abbr>", tables::kCalibratedMark);
+    }
+    if (cell->movedClock) {
+        html += fmt::format(" <abbr title=\"{}\">{}</abbr>",
+                            escapeXml(tables::movedClockLegend(*cell->movedClock)),
+                            tables::kMovedClockMark);
     }
     std::string below;
     if (cell->hasShownBounds()) {
@@ -227,6 +233,13 @@ std::string tableHtml(const Page& page, const Model& model) {
     if (std::ranges::any_of(overlay.runs(), isMarked)) {
         html += fmt::format("<p class=\"soft small\">{} {}.</p>\n", tables::kCalibratedMark,
                             tables::kCalibratedLegend);
+    }
+    for (const std::size_t run : overlay.runs()) {
+        const auto clock = tables::movedClock(page.parts[run].table);
+        if (!clock) continue;
+        html += fmt::format("<p class=\"soft small\">{}{} {}.</p>\n",
+                            model.isComparison() ? Model::letter(run) + ": " : "",
+                            tables::kMovedClockMark, escapeXml(tables::movedClockLegend(*clock)));
     }
     if (hasStandIn) {
         html +=

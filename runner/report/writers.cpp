@@ -9,6 +9,7 @@
 #include "runner/records/csv.h"
 #include "runner/report/markup.h"
 #include "runner/tables/labels.h"
+#include "runner/tables/moved_clocks.h"
 #include "runner/tables/printed_parameters.h"
 
 namespace gfxrepro::report {
@@ -53,7 +54,8 @@ bool saysPrinted(const tables::Table& table, std::size_t column) {
 std::string tableCsv(const tables::Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
-    std::vector<bool> isPrinted, isCalibrated;  // asked once a column: both look at every row
+    // Asked once a column: all look at every row.
+    std::vector<bool> isPrinted, isCalibrated, hasMovedClock;
     records::CsvRow header(text);
     for (const std::string& axis : table.rowAxes) header.text(axis);
     if (table.hasSources()) header.text("source");
@@ -71,6 +73,8 @@ std::string tableCsv(const tables::Table& table) {
         header.text(label + "_status");
         if (table.isPublished) header.text(label + "_at_printed");
         if (isCalibrated[i]) header.text(label + "_calibrated");
+        hasMovedClock.push_back(tables::movedClock(table, i).has_value());
+        if (hasMovedClock[i]) header.text(label + "_clock_low_ghz").text(label + "_clock_high_ghz");
     }
     if (table.isPublished) header.text("parameters");
     header.end();
@@ -94,6 +98,11 @@ std::string tableCsv(const tables::Table& table) {
             line.text(cell.isPlanned ? records::statusName(cell.status) : "");
             if (table.isPublished) line.text(atPrintedWord(table, cell));
             if (isCalibrated[i]) line.text(cell.isCalibrated ? "yes" : "no");
+            if (hasMovedClock[i] && cell.movedClock) {
+                line.number(cell.movedClock->lowHz / 1e9).number(cell.movedClock->highHz / 1e9);
+            } else if (hasMovedClock[i]) {
+                line.text("").text("");
+            }
         }
         if (table.isPublished) line.text(tables::parametersLine(table, row));
         line.end();
@@ -106,6 +115,7 @@ std::string markdownCell(const tables::Cell& cell, bool isOnlyPrinted) {
     if (cell.printed) text += escapeMarkdown(*cell.printed) + (isOnlyPrinted ? "" : " → ");
     text += cell.isPlanned ? escapeMarkdown(cell.measured) : "";
     if (cell.isPlanned && cell.isCalibrated) text += tables::kCalibratedMark;
+    if (cell.movedClock) text += tables::kMovedClockMark;
     if (cell.hasShownBounds()) {
         const bool isInterval = cell.bounds() == tables::Bounds::Interval;
         text += fmt::format(fmt::runtime(isInterval ? " [{}, {}]" : " ({} … {})"),
@@ -182,6 +192,10 @@ std::string tableMarkdown(const tables::Table& table) {
     }
     if (table.hasCalibrated()) {
         text += fmt::format("\n{} {}.\n", tables::kCalibratedMark, tables::kCalibratedLegend);
+    }
+    if (const auto clock = tables::movedClock(table)) {
+        text +=
+            fmt::format("\n{} {}.\n", tables::kMovedClockMark, tables::movedClockLegend(*clock));
     }
     if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
     for (const std::string& note : table.notes)

@@ -15,6 +15,7 @@
 #include "runner/run/plan.h"
 #include "runner/studies/sensitivity.h"
 #include "runner/tables/fit.h"
+#include "runner/tables/moved_clocks.h"
 
 namespace gfxrepro::results {
 
@@ -68,6 +69,8 @@ Results resultsOf(const run::StoredRun& run) {
     results.tables =
         tables::buildTables(run.plan.experiments, run::plannedCases(run.plan.cases), run.records);
     tables::addNotes(results.context.tableNotes, results.tables);
+    const tables::MovedClocks clocks = run::movedClocks(run.manifest);
+    for (tables::Table& table : results.tables) tables::markMovedClocks(clocks, table);
     results.claims = claims::evaluateClaims(run.plan.experiments, results.tables, results.context);
     results.printedCells = tables::countPrintedCells(run.plan.experiments, results.tables);
     return results;

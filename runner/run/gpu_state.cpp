@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "runner/core/text.h"
+#include "runner/tables/moved_clocks.h"
 
 namespace gfxrepro::run {
 
@@ -33,9 +34,9 @@ Value numberOf(const Json& json, const char* key) {
 
 }  // namespace
 
-void GpuState::add(const gl::GpuReading& reading, const std::set<int>& own) {
+void GpuState::add(const gl::GpuReading& reading, const std::set<int>& own, bool isTimed) {
     ++samples_;
-    if (reading.busyShare.value_or(1.0) >= kBusyShare) {
+    if (isTimed && reading.busyShare.value_or(1.0) >= kBusyShare) {
         lower(lowestHz_, reading.clockHz);
         raise(highestHz_, reading.clockHz);
         throttledBy_.insert(reading.throttled.begin(), reading.throttled.end());
@@ -102,11 +103,15 @@ GpuState GpuState::fromJson(const Json& json) {
     return state;
 }
 
+std::optional<tables::ClockRange> GpuState::movedClock() const {
+    if (!lowestHz_ || !highestHz_ || *highestHz_ <= kSteady * *lowestHz_) return std::nullopt;
+    return tables::ClockRange{*lowestHz_, *highestHz_};
+}
+
 std::vector<std::string> GpuState::problems() const {
     std::vector<std::string> problems;
-    if (lowestHz_ && *highestHz_ > kSteady * *lowestHz_) {
-        problems.push_back(fmt::format("the GPU's clock moved between {:.3g} and {:.3g} GHz",
-                                       *lowestHz_ * 1e-9, *highestHz_ * 1e-9));
+    if (const auto moved = movedClock()) {
+        problems.push_back("the GPU's clock moved between " + tables::clockText(*moved));
     }
     if (!throttledBy_.empty()) {
         const std::vector<std::string> reasons(throttledBy_.begin(), throttledBy_.end());

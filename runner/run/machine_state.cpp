@@ -83,6 +83,12 @@ void MachineState::add(const MachineState& other) {
         lowestHz_ = std::min(lowestHz_.value_or(*other.lowestHz_), *other.lowestHz_);
     if (other.highestHz_) highestHz_ = std::max(highestHz_.value_or(0.0), *other.highestHz_);
     gpu_.add(other.gpu_);
+    for (const auto& [caseId, gpu] : other.cases_) cases_[caseId].add(gpu);
+}
+
+void MachineState::add(const std::string& caseId, const MachineState& unit) {
+    add(unit);
+    cases_[caseId].add(unit.gpu_);
 }
 
 double MachineState::othersS() const {
@@ -112,6 +118,12 @@ Json MachineState::json() const {
     put("lowest_clock_hz", lowestHz_);
     put("highest_clock_hz", highestHz_);
     if (gpu_.isKnown()) json["gpu"] = gpu_.json();
+    for (const auto& [caseId, gpu] : cases_) {
+        const auto moved = gpu.movedClock();
+        if (!moved) continue;
+        json["gpu_clock_moved"][caseId] = {{"lowest_clock_hz", moved->lowHz},
+                                           {"highest_clock_hz", moved->highHz}};
+    }
     return json;
 }
 
@@ -133,6 +145,11 @@ MachineState MachineState::fromJson(const Json& json) {
     state.highestHz_ = valueOf<double>(json, "highest_clock_hz");
     if (const auto gpu = json.find("gpu"); gpu != json.end() && gpu->is_object()) {
         state.gpu_ = GpuState::fromJson(*gpu);
+    }
+    if (const auto moved = json.find("gpu_clock_moved"); moved != json.end()) {
+        for (const auto& [caseId, gpu] : moved->items()) {
+            state.cases_[caseId] = GpuState::fromJson(gpu);
+        }
     }
     return state;
 }
@@ -186,35 +203,41 @@ std::string MachineState::sentence() const {
 void MachineWatch::unitBegan(const Unit& unit) {
     before_.reset();
     gpuState_ = {};
+    wasTimed_ = false;
     if (unit.item->measure.lane == config::Measure::Lane::Timing) before_ = readMachine(root_);
     next_.unitBegan(unit);
 }
 
-void MachineWatch::tick() {
-    if (before_) {
-        std::optional<gl::GpuReading> reading;
-        if (!gpu_.empty()) reading = gl::readGpu(gpu_);
-        if (!reading) {
-            const auto now = std::chrono::steady_clock::now().time_since_epoch();
-            reading = kernelGpu_.read(std::chrono::duration<double>(now).count());
-        }
-        if (reading) {
-            const std::vector<int> own = processTree(::getpid());
-            gpuState_.add(*reading, {own.begin(), own.end()});
-        }
+void MachineWatch::tick(std::string_view phase) {
+    if (before_) readGpu(phase == "render");
+    next_.tick(phase);
+}
+
+/// Right behind timed work its clock is still that of the work.
+void MachineWatch::readGpu(bool isTimed) {
+    std::optional<gl::GpuReading> reading;
+    if (!gpu_.empty()) reading = gl::readGpu(gpu_);
+    if (!reading) {
+        const auto now = std::chrono::steady_clock::now().time_since_epoch();
+        reading = kernelGpu_.read(std::chrono::duration<double>(now).count());
     }
-    next_.tick();
+    if (reading) {
+        const std::vector<int> own = processTree(::getpid());
+        gpuState_.add(*reading, {own.begin(), own.end()}, isTimed || wasTimed_);
+    }
+    wasTimed_ = isTimed;
 }
 
 void MachineWatch::unitEnded(const Unit& unit, records::Status status, const std::string& message) {
     // Timing units run alone: the one that ends is the one that began.
     if (before_ && unit.item->measure.lane == config::Measure::Lane::Timing) {
+        if (wasTimed_) readGpu(false);
         MachineState state;
         state.add(*before_, readMachine(root_));
         state.add(gpuState_);
         before_.reset();
         if (state.isKnown()) {
-            tables_[unit.item->experiment].add(state);
+            tables_[unit.item->experiment].add(unit.item->id, state);
             Json event = {{"event", "machine_state"},
                           {"table", unit.item->experiment},
                           {"unit", unit.item->id},
@@ -256,9 +279,22 @@ std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& log
         const std::string name = event.value("event", "");
         const std::string table = event.value("table", "");
         if (name == "machine") tables.erase(table);  // measured again from there
-        if (name == "machine_state") tables[table].add(MachineState::fromJson(event));
+        if (name != "machine_state") continue;
+        tables[table].add(event.value("unit", ""), MachineState::fromJson(event));
     }
     return tables;
+}
+
+tables::MovedClocks movedClocks(const Json& manifest) {
+    tables::MovedClocks clocks;
+    const Json states = manifest.value("machine_states", Json::object());
+    for (const Json& json : states) {
+        const MachineState state = MachineState::fromJson(json);
+        for (const auto& [caseId, gpu] : state.cases_) {
+            if (const auto moved = gpu.movedClock()) clocks[caseId] = *moved;
+        }
+    }
+    return clocks;
 }
 
 std::string machineStateNote(const Json& manifest, const std::string& table) {

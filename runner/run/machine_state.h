@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/scheduler.h"
+#include "runner/tables/moved_clocks.h"
 
 namespace gfxrepro::run {
 
@@ -24,13 +26,16 @@ class MachineState {
     void add(const MachineReading& before, const MachineReading& after);
     void add(const MachineState& other);
     void add(const GpuState& gpu) { gpu_.add(gpu); }
+    /// Of a unit of that case.
+    void add(const std::string& caseId, const MachineState& unit);
 
     bool isKnown() const {
         return processorS_ > 0.0 || throttleCount_ || limitedS_ || heat_ || gpu_.isKnown();
     }
     /// {"processors", "processor_s", "busy_s", "own_s", "stolen_s", "waited_s", "load_before",
     /// "throttle_count", "limited_s", "hottest_c", "hot_from_c", "lowest_clock_hz",
-    /// "highest_clock_hz", "gpu"}: of these what is known.
+    /// "highest_clock_hz", "gpu", "gpu_clock_moved": {case: {"lowest_clock_hz",
+    /// "highest_clock_hz"}}}: of these what is known.
     Json json() const;
     static MachineState fromJson(const Json& json);
 
@@ -43,6 +48,7 @@ class MachineState {
 
   private:
     double othersS() const;
+    friend tables::MovedClocks movedClocks(const Json& manifest);
 
     int processorCount_ = 0;
     double processorS_ = 0.0, busyS_ = 0.0, ownS_ = 0.0, stolenS_ = 0.0;
@@ -50,6 +56,7 @@ class MachineState {
     std::optional<long long> throttleCount_;
     std::optional<Heat> heat_;
     GpuState gpu_;
+    std::map<std::string, GpuState> cases_;  // of each case alone
 };
 
 /// Watches the machine around each unit of the timing lane, and passes on what a run tells. The
@@ -74,7 +81,7 @@ class MachineWatch : public Observer {
     void unitBegan(const Unit& unit) override;
     void unitEnded(const Unit& unit, records::Status status, const std::string& message) override;
     /// The GPU is read while a unit runs: behind it, it rests.
-    void tick() override;
+    void tick(std::string_view phase) override;
 
     /// By table, of those that are known: for the manifest.
     Json states() const;
@@ -82,19 +89,25 @@ class MachineWatch : public Observer {
     std::string warning() const;
 
   private:
+    void readGpu(bool isTimed);
+
     Observer& next_;
     const RunDirectory& directory_;
     std::filesystem::path root_;
     std::string gpu_;
     KernelGpu kernelGpu_;
     std::optional<MachineReading> before_;
-    GpuState gpuState_;  // of the unit that runs
+    GpuState gpuState_;      // of the unit that runs
+    bool wasTimed_ = false;  // what ran when the GPU was read last
     std::map<std::string, MachineState> tables_;
 };
 
 /// By table, from the lines of log.jsonl; of a table that was measured again on another machine
 /// what came after.
 std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& log);
+
+/// Of which cases, by the manifest, the GPU's clock moved while they were timed.
+tables::MovedClocks movedClocks(const Json& manifest);
 
 /// What the manifest tells of the machine while the table was timed; empty for none.
 std::string machineStateNote(const Json& manifest, const std::string& table);

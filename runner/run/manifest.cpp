@@ -66,7 +66,7 @@ void endInvocation(Json& manifest, const PhaseClock& phases, double wallS) {
     invocation["ended"] = utcTime();
     invocation["wall_s"] = wallS;
     Json& totals = invocation["phases_s"] = Json::object();
-    for (const char* phase : {"device", "load", "setup", "render", "record"}) {
+    for (const char* phase : {"device", "load", "setup", "warm-up", "render", "record"}) {
         const auto found = phases.totalsS().find(phase);
         totals[phase] = found == phases.totalsS().end() ? 0.0 : found->second;
     }

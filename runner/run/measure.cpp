@@ -157,9 +157,12 @@ class FrameLoop {
             technique::FrameContext frameContext{frame, measure_.frames, profiler_};
             const std::size_t firstSample = result.samples.size();
             guard_.beginFrame();
+            if (frame == 0) {
+                const PhaseScope phase(context_, "warm-up", result.cost.renderS);
+                warmUp(frameContext);
+            }
             {
                 const PhaseScope phase(context_, "render", result.cost.renderS);
-                if (frame == 0) warmUp(frameContext);
                 repeat(frameContext, recorder);
             }
             guard_.endFrame(frame, firstSample, result);

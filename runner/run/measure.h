@@ -22,7 +22,7 @@ struct MeasureContext {
     std::filesystem::path runDir;
     std::string command;            // as typed
     long long baselineMemoryBytes;  // resident before the first scene was loaded
-    /// Told at the begin (true) and end (false) of load, setup, render and record.
+    /// Told at the begin (true) and end (false) of load, setup, warm-up, render and record.
     std::function<void(std::string_view phase, bool isBegin)> onPhase;
 };
 

@@ -7,8 +7,9 @@
 
 namespace gfxrepro::run {
 
-/// Sums the time of phases (device, load, setup, render, record) over all workers, and the time in
-/// which at least one worker was inside of any: what is left of the wall time is the runner's own.
+/// Sums the time of phases (device, load, setup, warm-up, render, record) over all workers, and the
+/// time in which at least one worker was inside of any: what is left of the wall time is the
+/// runner's own.
 class PhaseClock {
   public:
     using Clock = std::chrono::steady_clock;

@@ -2,7 +2,7 @@
 //
 //   runner → worker   {"case": {…}, "process": 0}
 //   worker → runner   {"ready": {device}}  or  {"unavailable": "reason"}, once, after its start
-//                     {"begin": "load"}, {"end": "load"}: load, setup, render, record
+//                     {"begin": "load"}, {"end": "load"}: load, setup, warm-up, render, record
 //                     {"done": {status, message, samples, images, scenes, programs, cost}}
 #pragma once
 

@@ -108,7 +108,7 @@ class Scheduler {
                 break;
             }
             collect();
-            observer_.tick();
+            observer_.tick(workers_.empty() ? "" : workers_.front()->phase());
             if (!outcome_.stopReason.empty()) break;
         }
         workers_.clear();

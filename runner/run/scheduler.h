@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runner/run/expectations.h"
@@ -25,8 +26,9 @@ class Observer {
     /// Also for the unit of each twin that this one was measured for.
     virtual void unitEnded(const Unit& unit, records::Status status,
                            const std::string& message) = 0;
-    /// Now and then, for a display that shows time.
-    virtual void tick() = 0;
+    /// Now and then, for a display that shows time; `phase` is the one that a unit is in, of
+    /// several units the first's (protocol.h), empty between two.
+    virtual void tick(std::string_view phase) = 0;
 };
 
 struct SchedulerOptions {

@@ -52,6 +52,8 @@ class WorkerHandle {
     std::string startProblem() const;
     bool isBusy() const { return unit_.has_value(); }
     const std::optional<Unit>& unit() const { return unit_; }
+    /// What it does of it: "load", "render"; empty between two.
+    const std::string& phase() const { return phase_; }
     const std::optional<gl::DeviceInfo>& device() const { return device_; }
     /// What the present case wrote to standard output and error (the last 64 KiB).
     const std::string& output() const { return output_; }

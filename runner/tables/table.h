@@ -49,6 +49,13 @@ struct Departure {
 /// By which clock a time is told: the one on the wall, or what all threads of the process spent.
 enum class Clock { Wall, Process };
 
+/// A GPU's lowest and highest clock, in Hz.
+struct ClockRange {
+    double lowHz = 0.0, highHz = 0.0;
+
+    bool operator==(const ClockRange&) const = default;
+};
+
 /// What stands at a row and a column.
 struct Cell {
     bool isPlanned = true;      // the sweep has such cases; if not, the cell is blank, not missing
@@ -79,6 +86,8 @@ struct Cell {
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, not formatted.
     /// Empty where it was not recorded: on a GPU, or of a time that a technique tells itself.
     std::vector<Measured> byProcess;
+    /// Of a time, where the GPU's clock moved while one of its cases was timed (moved_clocks.h).
+    std::optional<ClockRange> movedClock;
 
     bool isOk() const { return status == records::Status::Ok && !values.empty(); }
     /// What the bounds beside the cell's numbers are.

@@ -13,6 +13,7 @@
 #include "runner/image/png_io.h"
 #include "runner/records/images.h"
 #include "runner/tables/labels.h"
+#include "runner/tables/moved_clocks.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -151,6 +152,22 @@ printed: {calibrated: [{scene: models/duck}], values: "scene,draw_ms\nmodels/duc
     EXPECT_THAT(html, HasSubstr(">8.0 <abbr title=\"calibrated\">‡</abbr>"));
     EXPECT_THAT(html, Not(HasSubstr(">0.3 <abbr")));
     EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">" + legend));
+}
+
+TEST(Report, MarksTimesThatAreNotOfOneClock) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    const std::string legend = "timed while the GPU&#39;s clock moved between 0.345 and 1.98 GHz";
+    writeReport(folder.path() / "report.html", {&run, 1});
+    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr(legend)));
+    for (const std::string& caseId : run.tables[0].rows[0].cells[0].caseIds) {
+        tables::markMovedClocks({{caseId, {0.345e9, 1.98e9}}}, run.tables[0]);
+    }
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr(">8.0 <abbr title=\"" + legend + "\">§</abbr>"));
+    EXPECT_THAT(html, Not(HasSubstr(">0.3 <abbr")));
+    EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">§ " + legend + ".</p>"));
 }
 
 /// A number of other parameters is no multiple of what is printed.

@@ -5,7 +5,7 @@
 #include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
 #include "runner/report/writers.h"
-#include "runner/tables/table.h"
+#include "runner/tables/moved_clocks.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -123,6 +123,35 @@ printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,erro
     EXPECT_THAT(latex, HasSubstr("& \\gfxrepro{zju2005/9.9/models-duck/error}"
                                  "\\textsuperscript{\\ddag} &"));
     EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\ddag} " + legend + "\\par}\n"));
+}
+
+TEST(Writers, TimesThatAreNotOfOneClockAreMarked) {
+    const Written run;
+    tables::RecordMaker maker;
+    maker.beginCase("models/duck").add("error", {2.0}).add("gpu_time_ms", {4.0});
+    maker.beginCase("models/bunny").add("error", {3.0}).add("gpu_time_ms", {5.0});
+    std::vector<tables::Table> made = tables::buildTables({tables::experimentFrom(R"(
+sweep: {scene: [models/duck, models/bunny]}
+layout: {rows: scene, columns: {error: {metric: error, format: "{median:.0f}"}, draw: {metric: gpu_time_ms, format: "{median:.0f}"}}}
+)")},
+                                                          maker.records());
+    tables::markMovedClocks({{"case:models/duck{}", {0.345e9, 1.98e9}}}, made[0]);
+    writeTables(run.folder.path(), made);
+    const std::string csv = run.read("tables/zju2005-9.9.csv");
+    EXPECT_THAT(csv, HasSubstr("draw_at_printed,draw_clock_low_ghz,draw_clock_high_ghz,"));
+    EXPECT_THAT(csv, Not(HasSubstr("error_clock")));
+    EXPECT_THAT(csv, HasSubstr("models/duck,,2,2,2,,ok,,,4,4,4,,ok,,0.345,1.98,"));
+    EXPECT_THAT(csv, HasSubstr("models/bunny,,3,3,3,,ok,,,5,5,5,,ok,,,,"));
+    const std::string legend = "timed while the GPU's clock moved between 0.345 and 1.98 GHz.";
+    const std::string markdown = run.read("tables/zju2005-9.9.md");
+    EXPECT_THAT(markdown,
+                HasSubstr("| models/duck | 2 | 4§ |\n| models/bunny | 3 | 5 |\n\n§ " + legend));
+    const std::string latex = run.read("tables/zju2005-9.9.tex");
+    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw/clock}"
+                                 "{0.345 and 1.98 GHz}\n"));
+    EXPECT_THAT(latex, HasSubstr("\\gfxrepro{zju2005/9.9/models-duck/draw}"
+                                 "\\textsuperscript{\\S} \\\\\n"));
+    EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\S} " + legend + "\\par}\n"));
 }
 
 TEST(Writers, ClaimFiles) {

@@ -190,7 +190,7 @@ TEST(KernelGpu, AClockThatMovedWhileItWorkedIsAProblem) {
     const auto look = [&](const char* clockHz, const char* busyPercent, double nowS) {
         kernel.device("hwmon/hwmon4/freq1_input", clockHz);
         kernel.device("gpu_busy_percent", busyPercent);
-        state.add(*gpu.read(nowS), {});
+        state.add(*gpu.read(nowS), {}, true);
     };
     look("2410000000", "99", 0.0);
     look("500000000", "2", 0.25);  // at rest

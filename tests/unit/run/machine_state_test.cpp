@@ -206,7 +206,7 @@ class Told : public run::Observer {
     int began = 0, ended = 0;
     void unitBegan(const run::Unit&) override { ++began; }
     void unitEnded(const run::Unit&, records::Status, const std::string&) override { ++ended; }
-    void tick() override {}
+    void tick(std::string_view) override {}
 };
 
 TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
@@ -250,6 +250,67 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     log.push_back({{"event", "machine"}, {"table", "t/1"}});
     EXPECT_FALSE(run::machineStatesIn(log).contains("t/1"));
     EXPECT_TRUE(run::machineStatesIn(log).contains("t/2"));
+}
+
+/// Its clock rises while frames warm up and falls while a case loads: neither is in its times.
+TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
+    const TemporaryFolder runs;
+    const auto directory = run::RunDirectory::create(runs.path() / "run");
+    const Machine machine;
+    Told told;
+    const std::string device = "sys/class/drm/renderD128/device/";
+    machine.write(device + "gpu_busy_percent", "98\n");
+    run::MachineWatch watch(told, directory, {}, machine.root(), "", "/dev/dri/renderD128");
+    const auto see = [&](const char* phase, int clockMHz) {
+        machine.write(device + "pp_dpm_sclk", fmt::format("0: {}Mhz *\n", clockMHz));
+        watch.tick(phase);
+    };
+    const auto run = [&](const run::Case& item, int process, int first, int second) {
+        const run::Unit unit{&item, process, {}};
+        watch.unitBegan(unit);
+        see("load", 345);
+        see("warm-up", 510);
+        see("render", first);
+        see("render", second);
+        see("", second);
+        see("record", 345);
+        watch.unitEnded(unit, records::Status::Ok, "");
+    };
+    using Lane = config::Measure::Lane;
+    const run::Case steady = makeCase("t/1", "a", 1, Lane::Timing);
+    const run::Case moving = makeCase("t/1", "b", 1, Lane::Timing);
+    const run::Case apart = makeCase("t/1", "c", 1, Lane::Timing);
+    run(steady, 0, 1980, 1950);
+    run(moving, 0, 1980, 1410);
+    run(apart, 0, 1980, 1980);
+    run(apart, 1, 1695, 1695);
+    const tables::MovedClocks expected = {{moving.id, {1.41e9, 1.98e9}},
+                                          {apart.id, {1.695e9, 1.98e9}}};
+    EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}), expected);
+    // Of a run that goes on, too.
+    const auto states = run::machineStatesIn(run::readLog(directory.path() / "log.jsonl"));
+    const Json again = {{"machine_states", {{"t/1", states.at("t/1").json()}}}};
+    EXPECT_EQ(run::movedClocks(again), expected);
+    EXPECT_TRUE(run::movedClocks(Json::object()).empty());
+}
+
+/// A frame that is drawn between two ticks: the clock behind it is its own.
+TEST(MachineWatch, SeesTheClockOfShortFrames) {
+    const TemporaryFolder runs;
+    const auto directory = run::RunDirectory::create(runs.path() / "run");
+    const Machine machine;
+    Told told;
+    const std::string device = "sys/class/drm/renderD128/device/";
+    machine.write(device + "gpu_busy_percent", "98\n");
+    machine.write(device + "pp_dpm_sclk", "0: 1980Mhz *\n");
+    run::MachineWatch watch(told, directory, {}, machine.root(), "", "/dev/dri/renderD128");
+    const run::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
+    const run::Unit unit{&item, 0, {}};
+    watch.unitBegan(unit);
+    watch.tick("render");
+    machine.write(device + "pp_dpm_sclk", "0: 1410Mhz *\n");
+    watch.unitEnded(unit, records::Status::Ok, "");
+    EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}).size(), 1U);
 }
 
 }  // namespace
