@@ -85,5 +85,13 @@ code, output = run("check_style", {"scenes/README.md": "", "scenes/a.cpp": DATA}
 if code != 0:
     sys.exit(f"check_style found something in a long scene:\n{output}")
 expect("check_style", {"runner/core/a.cpp": "// TO" + "DO later\n"}, "runner/core/a.cpp:1: unfinished")
+for line in ("a[0] = a[1] = 1u;", "b.x = a = c + 1;"):
+    expect("check_style", {"techniques/a/a.glsl": line + "\n"}, "techniques/a/a.glsl:1: a chained assignment")
+for line in ("i64vec3 edges[3];", "whole3 e[] = whole3[](a, b);"):
+    expect("check_style", {"techniques/a/a.glsl": line + "\n"}, "techniques/a/a.glsl:1: an array of vectors of 64-bit")
+GLSL = "for (int i = 0, j = 1; i <= j; ++i) a = b == c;\nvec2 low = a, high = b;\nivec3 e[3];  // i64vec3 e[3], a = b = c\n"
+code, output = run("check_style", {"techniques/README.md": "", "techniques/a/README.md": "", "techniques/a/a.glsl": GLSL})
+if code != 0:
+    sys.exit(f"check_style found something in good GLSL:\n{output}")
 expect("check_style", {"runner/core/a.cpp": ""}, "runner/core: no README.md")
 print("checks find violations")

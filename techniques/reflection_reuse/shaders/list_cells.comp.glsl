@@ -39,7 +39,8 @@ void main() {
     // Rows y = −1 … 4 of the tile, a bit a column: bit x + 1 for x = −1 … 8.
     uint valid[6], bridged[6];
     for (int row = 0; row < 6; ++row) {
-        valid[row] = bridged[row] = 0u;
+        valid[row] = 0u;
+        bridged[row] = 0u;
         for (int bit = 0; bit < 10; ++bit) {
             ivec2 pixel = first + ivec2(bit, row) - 1;
             if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) continue;

@@ -42,7 +42,8 @@ void main() {
         rays += uint(raysOf(glossinessOf(surface)));
     }
     if (found == 0u) return;
-    groups[1] = groups[2] = 1u;  // cleared with the counts
+    groups[1] = 1u;  // cleared with the counts
+    groups[2] = 1u;
     // The order of tiles in the list is left to chance: each sample writes only its own pixel.
     uint count = uint(bitCount(found));
     uint begin = atomicAdd(sampleCount, count);
