@@ -1,5 +1,6 @@
 #include "tests/techniques/soft_shadows/reference_mesh.h"
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 

@@ -1,4 +1,5 @@
 // What the casters draw into a shadow map.
+#include <algorithm>
 #include <cmath>
 
 #include "techniques/soft_shadows/shadow_casters.h"

@@ -1,4 +1,6 @@
 // No background shows through terrain from anywhere.
+#include <algorithm>
+
 #include "techniques/terrain_tessellation/terrain_measures.h"
 #include "tests/techniques/terrain_tessellation/terrain_fixture.h"
 
