@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runner/gl/barrier.h"
+#include "runner/gl/debug_group.h"
 #include "runner/run/equal_work.h"
 #include "runner/run/pacing.h"
 #include "runner/run/process_memory.h"
@@ -178,10 +179,14 @@ class FrameLoop {
     }
 
   private:
+    void render(technique::FrameContext& frame) {
+        const gl::DebugGroup group(context_.device, "frame");
+        technique_.render(frame);
+    }
     /// The time of a frame whose passes nobody asks for.
     double drawUnmeasuredMs(technique::FrameContext& frame) {
         const Clock::time_point begin = Clock::now();
-        technique_.render(frame);
+        render(frame);
         context_.device.finish("warming up");
         profiler_.collect();
         return millisecondsSince(begin);
@@ -223,7 +228,7 @@ class FrameLoop {
         guard_.beginRepeat();
         const double processBeginMs = gl::processTimeMs();
         const Clock::time_point begin = Clock::now();
-        technique_.render(frame);
+        render(frame);
         context_.device.finish("rendering");
         const double wallTimeMs = millisecondsSince(begin) / atOnce_;
         const double processTimeMs = gl::processTimeMs() - processBeginMs;
@@ -245,7 +250,7 @@ class FrameLoop {
         if (count == 1 || atOnce_ > 1) return wallTimeMs;
         const Clock::time_point begin = Clock::now();
         for (int i = 0; i < count; ++i) {
-            technique_.render(frame);
+            render(frame);
             gl::orderAllMemory();
         }
         context_.device.finish("rendering frames in flight");

@@ -32,6 +32,11 @@ KEY = ["frame", "repeat", "process", "pass", "metric"]
 # Mesa 22.3's zink reads a count back before it is drawn (voxelization-mixed: the run says so), and ends invocations at a
 # barrier for memory in divergent flow (the ray tracer on the device finds nothing): both are gone in 25.0.
 ZINK_22_FAILS = ["voxelization-mixed", "clustered_reflections", "reflection_reuse"]
+# What a frame has to read back, by what drew or was dispatched before, and why.
+READ_IN_FRAMES = {"clustered_reflections/concavity.comp.glsl": "sizes of clusters that are drawn one by one, as the thesis has it",
+                  "reflections/gbuffer.frag.glsl": "what is clustered, or traced, on the CPU",
+                  "reflection_reuse/list_cells.comp.glsl": "on software devices alone: the draws that are split there",
+                  "kit/prefix_sum.comp.glsl": "the size of soft shadows' mesh, whose buffers are made then"}
 # What a driver may take or count otherwise.
 UNITS_OF_TIME = re.compile("ms|.*/s")
 OWN_COUNTS = re.compile("(.*_)?memory_bytes|work_.*|draw_calls")
@@ -140,7 +145,8 @@ elif WHAT == "zink":
     compare("zink", without, tolerance=1e-5)
 elif WHAT == "hazards":
     lines = set(HAZARDS.read_text().splitlines())
-    hazards = sorted(line for line in lines if line.startswith("hazard: "))
+    hazards = sorted(line for line in lines if line.startswith("hazard: ") and
+                     not ("reads back within a frame" in line and line.endswith(tuple(READ_IN_FRAMES))))
     print(*hazards, sep="\n")
     print(f"{len(lines) - len(hazards)} programs drew or were dispatched, {len(hazards)} hazards")
     assert len(lines) > len(hazards) and not hazards

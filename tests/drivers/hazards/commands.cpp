@@ -69,6 +69,22 @@ GLAPI void APIENTRY glMultiDrawElementsIndirect(GLenum mode, GLenum type, const 
     NEXT(glMultiDrawElementsIndirect)(mode, type, indirect, drawcount, stride);
 }
 
+GLAPI void APIENTRY glGetQueryObjectui64v(GLuint id, GLenum pname, GLuint64* params) {
+    hazards::readBack("glGetQueryObjectui64v");
+    NEXT(glGetQueryObjectui64v)(id, pname, params);
+}
+
+GLAPI void APIENTRY glPushDebugGroup(GLenum source, GLuint id, GLsizei length,
+                                     const GLchar* message) {
+    hazards::beginGroup(message);
+    NEXT(glPushDebugGroup)(source, id, length, message);
+}
+
+GLAPI void APIENTRY glPopDebugGroup() {
+    hazards::endGroup();
+    NEXT(glPopDebugGroup)();
+}
+
 GLAPI void APIENTRY glMemoryBarrier(GLbitfield barriers) {
     hazards::memoryBarrier(barriers);
     NEXT(glMemoryBarrier)(barriers);
@@ -106,6 +122,7 @@ GLAPI void APIENTRY glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizei
 
 GLAPI void APIENTRY glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size,
                                             void* data) {
+    hazards::readBack("glGetNamedBufferSubData");
     hazards::useBuffer("glGetNamedBufferSubData", buffer);
     NEXT(glGetNamedBufferSubData)(buffer, offset, size, data);
 }
@@ -150,6 +167,7 @@ GLAPI void APIENTRY glTextureSubImage3D(GLuint texture, GLint level, GLint xoffs
 
 GLAPI void APIENTRY glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type,
                                       GLsizei bufSize, void* pixels) {
+    hazards::readBack("glGetTextureImage");
     hazards::useTexture("glGetTextureImage", texture);
     NEXT(glGetTextureImage)(texture, level, format, type, bufSize, pixels);
 }

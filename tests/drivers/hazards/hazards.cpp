@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <map>
@@ -36,6 +37,8 @@ std::map<GLuint, Program> programs;
 std::set<Memory> drawnInto;  // since the framebuffer was bound, or glTextureBarrier
 bool isBehindTextureBarrier = false;
 std::vector<std::string> found;
+std::vector<std::string> groups;  // that are open, the innermost last
+GLuint lastProgram = 0;           // that drew or was dispatched
 
 Storage storageOf(std::map<GLuint, Storage>& names, GLuint name) {
     static int last = 0;
@@ -283,7 +286,7 @@ std::vector<std::string> take() {
 }
 
 void dispatch(GLenum arguments) {
-    const GLuint id = getName(GL_CURRENT_PROGRAM);
+    const GLuint id = lastProgram = getName(GL_CURRENT_PROGRAM);
     std::vector<Use> uses;
     addShaderUses(id, programOf(id), uses);
     useArguments(arguments, uses);
@@ -291,7 +294,7 @@ void dispatch(GLenum arguments) {
 }
 
 void draw(bool isIndexed, GLenum arguments) {
-    const GLuint id = getName(GL_CURRENT_PROGRAM);
+    const GLuint id = lastProgram = getName(GL_CURRENT_PROGRAM);
     std::vector<Use> uses;
     addShaderUses(id, programOf(id), uses);
     addDrawUses(nameOf(id), isIndexed, uses);
@@ -328,6 +331,19 @@ void clearPicture(GLuint framebuffer, GLenum buffer, GLint index) {
         check(0, "glClearNamedFramebuffer",
               {{attachment.memory, GL_FRAMEBUFFER_BARRIER_BIT, "the picture", false, false}});
     }
+}
+
+void beginGroup(const char* name) {
+    groups.emplace_back(name);
+}
+
+void endGroup() {
+    groups.pop_back();
+}
+
+void readBack(const char* command) {
+    if (std::ranges::find(groups, "frame") == groups.end()) return;
+    find(std::string(command) + ": reads back within a frame, behind " + nameOf(lastProgram));
 }
 
 void memoryBarrier(GLbitfield bits) {

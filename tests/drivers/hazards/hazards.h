@@ -4,6 +4,8 @@
 //             barrier of glMemoryBarrier between (7.12.2). glFinish is none. A program that writes
 //             again what it wrote last is taken for one pass in parts, whose places are apart.
 //   feedback  what is drawn into is read, but right behind glTextureBarrier (9.3.1)
+//   wait      within a frame (a debug group of that name) something is read back, for which the CPU
+//             waits. glFinish is left out: a software device takes its stamps with it.
 //   unbound   a block, a sampler or an image that a program uses has nothing bound to it
 // Whatever is found is kept, and is a line "hazard: PROGRAM: …" of the file that HAZARDS names; a
 // line "checked: PROGRAM" is of each that draws or is dispatched.
@@ -36,6 +38,9 @@ void clearTexture(GLuint texture);
 /// glClearNamedFramebuffer.
 void clearPicture(GLuint framebuffer, GLenum buffer, GLint index);
 void memoryBarrier(GLbitfield bits);
+void beginGroup(const char* name);
+void endGroup();
+void readBack(const char* command);
 void textureBarrier();
 void bindFramebuffer(GLuint framebuffer);
 void viewTexture(GLuint view, GLuint texture, GLuint firstLevel);

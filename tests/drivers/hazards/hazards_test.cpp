@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "runner/gl/debug_group.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
@@ -240,6 +241,31 @@ void main() { value = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r; }
     EXPECT_THAT(hazards::take(), IsEmpty());
     glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
+}
+
+TEST_F(Hazards, NothingIsReadBackWithinAFrame) {
+    const gl::Program write = program({{"write.comp.glsl", kWrite}});
+    first.bindStorage(0);
+    const gl::PrimitiveQuery query;
+    const auto readAll = [&] {
+        dispatch(write);
+        glMemoryBarrier(GL_ALL_BARRIER_BITS);
+        query.begin();
+        query.end();
+        first.read<std::uint32_t>(1);
+        query.result();
+    };
+    readAll();
+    EXPECT_THAT(hazards::take(), IsEmpty());
+    {
+        const gl::DebugGroup frame(device, "frame");
+        const gl::DebugGroup pass(device, "pass");
+        readAll();
+    }
+    EXPECT_THAT(
+        hazards::take(),
+        ElementsAre("glGetNamedBufferSubData: reads back within a frame, behind write.comp.glsl",
+                    "glGetQueryObjectui64v: reads back within a frame, behind write.comp.glsl"));
 }
 
 TEST_F(Hazards, NothingIsLeftUnbound) {
