@@ -129,19 +129,24 @@ void TerrainRenderer::inTurns(const gl::Pass& pass, std::span<const Tile> tiles,
 }
 
 template <class Draw>
-DrawCounts TerrainRenderer::drawInTurns(const gl::Pass& pass, std::span<const Tile> tiles,
-                                        const Draw& draw) {
-    DrawCounts counts;
+void TerrainRenderer::drawInTurns(const gl::Pass& pass, std::span<const Tile> tiles,
+                                  const Draw& draw) {
+    counters_.clear();
+    drawn_ = {};
+    primitives_.begin();
     inTurns(pass, tiles, [&](std::span<const Tile> some) {
-        primitives_.begin();
-        DrawCounts drawn = draw(some);
-        primitives_.end();
-        drawn.triangles = primitives_.result();
-        drawn.tiles = static_cast<int>(some.size());
-        counts.add(drawn);
+        drawn_.add(draw(some));
+        drawn_.tiles += static_cast<int>(some.size());
     });
+    primitives_.end();
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     glDisable(GL_CULL_FACE);
+}
+
+DrawCounts TerrainRenderer::counts() const {
+    DrawCounts counts = drawn_;
+    counts.triangles = primitives_.result();
+    counts.culledPatches = static_cast<int>(counters_.read<std::uint32_t>(1).front());
     return counts;
 }
 
@@ -204,18 +209,15 @@ void TerrainRenderer::setTessellated(const kit::View& view) {
     setShading(tessellated_);
     setTerrain(tessellated_, *terrain_, view);
     setFactors(tessellated_, settings_, view);
-    counters_.clear();
     glPatchParameteri(GL_PATCH_VERTICES, 4);
 }
 
-DrawCounts TerrainRenderer::drawTessellated(std::span<const Tile> tiles, const kit::View& view,
-                                            const gl::Framebuffer& target) {
+void TerrainRenderer::drawTessellated(std::span<const Tile> tiles, const kit::View& view,
+                                      const gl::Framebuffer& target) {
     target.bind();
     setTessellated(view);
-    DrawCounts counts = drawInTurns(
-        tessellated_, tiles, [&](std::span<const Tile> some) { return drawPatches(some, view); });
-    counts.culledPatches = static_cast<int>(counters_.read<std::uint32_t>(1).front());
-    return counts;
+    drawInTurns(tessellated_, tiles,
+                [&](std::span<const Tile> some) { return drawPatches(some, view); });
 }
 
 /// Every triangle is culled. Not GL_RASTERIZER_DISCARD, with which llvmpipe counts no primitives.
@@ -229,10 +231,9 @@ std::uint64_t TerrainRenderer::countSkirtTriangles(std::span<const Tile> tiles,
                                                    const kit::View& view) {
     setTessellated(view);
     bindNothing();
-    const DrawCounts counts = drawInTurns(tessellated_, tiles, [&](std::span<const Tile> some) {
-        return drawPatches(some, view, Parts::Skirts);
-    });
-    return counts.triangles;
+    drawInTurns(tessellated_, tiles,
+                [&](std::span<const Tile> some) { return drawPatches(some, view, Parts::Skirts); });
+    return primitives_.result();
 }
 
 std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles,
@@ -279,12 +280,12 @@ int TerrainRenderer::drawGridTile(const gl::Pass& pass, int tile) const {
     return draws;
 }
 
-DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& view,
-                                     const gl::Framebuffer& target) {
+void TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& view,
+                               const gl::Framebuffer& target) {
     target.bind();
     setShading(grid_);
     setTerrain(grid_, *terrain_, view);
-    return drawInTurns(grid_, tiles, [&](std::span<const Tile> some) {
+    drawInTurns(grid_, tiles, [&](std::span<const Tile> some) {
         DrawCounts counts;
         for (int i = 0; i < static_cast<int>(some.size()); ++i) {
             counts.drawCalls += drawGridTile(grid_, i);
@@ -293,13 +294,13 @@ DrawCounts TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::Vie
     });
 }
 
-DrawCounts TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
-                                        const kit::View& view, const gl::Framebuffer& target) {
+void TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
+                                  const kit::View& view, const gl::Framebuffer& target) {
     target.bind();
     setShading(morphed_);
     setTerrain(morphed_, *terrain_, view);
     morphed_.set("eye", view.eyeWorld);
-    return drawInTurns(morphed_, tiles, [&](std::span<const Tile> some) {
+    drawInTurns(morphed_, tiles, [&](std::span<const Tile> some) {
         DrawCounts counts;
         for (std::size_t i = 0; i < some.size(); ++i) {
             const float range = ranges.rangesM.at(static_cast<std::size_t>(some[i].level));

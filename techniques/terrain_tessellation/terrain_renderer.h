@@ -84,18 +84,21 @@ class TerrainRenderer {
                     const RenderSettings& settings);
 
     /// [zhang2012] Sec. 3.2, 4.2 and 5.
-    DrawCounts drawTessellated(std::span<const Tile> tiles, const kit::View& view,
-                               const gl::Framebuffer& target);
-    /// Of these, the triangles of skirts; draws nothing.
+    void drawTessellated(std::span<const Tile> tiles, const kit::View& view,
+                         const gl::Framebuffer& target);
+    /// Every sample of each tile's level: of level 0, the full resolution (the truth).
+    void drawGrid(std::span<const Tile> tiles, const kit::View& view,
+                  const gl::Framebuffer& target);
+    void drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges, const kit::View& view,
+                     const gl::Framebuffer& target);
+    /// Of the last draw; waits for the device.
+    DrawCounts counts() const;
+
+    /// Of what drawTessellated() draws, the triangles of skirts; draws nothing.
     std::uint64_t countSkirtTriangles(std::span<const Tile> tiles, const kit::View& view);
     /// Three vertices a triangle of what drawTessellated() draws, without skirts; draws nothing.
     /// Needs RenderSettings::capturesVertices.
     std::vector<CapturedVertex> capture(std::span<const Tile> tiles, const kit::View& view);
-    /// Every sample of each tile's level: of level 0, the full resolution (the truth).
-    DrawCounts drawGrid(std::span<const Tile> tiles, const kit::View& view,
-                        const gl::Framebuffer& target);
-    DrawCounts drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
-                           const kit::View& view, const gl::Framebuffer& target);
 
     const RenderSettings& settings() const { return settings_; }
     void setShowsUnderside(bool isShown) { settings_.showsUnderside = isShown; }
@@ -105,9 +108,9 @@ class TerrainRenderer {
     /// draw(tiles) of as many tiles as there are pages at a time, which `pass` is given.
     template <class Draw>
     void inTurns(const gl::Pass& pass, std::span<const Tile> tiles, const Draw& draw);
-    /// The same; what draw() counts, and primitives and tiles.
+    /// The same, counted: by draw(), and primitives and tiles.
     template <class Draw>
-    DrawCounts drawInTurns(const gl::Pass& pass, std::span<const Tile> tiles, const Draw& draw);
+    void drawInTurns(const gl::Pass& pass, std::span<const Tile> tiles, const Draw& draw);
     enum class Parts { AsSet, Surface, Skirts };
     DrawCounts drawPatches(std::span<const Tile> tiles, const kit::View& view,
                            Parts parts = Parts::AsSet) const;
@@ -125,6 +128,7 @@ class TerrainRenderer {
     gl::Framebuffer nowhere_;
     gl::VertexArray noAttributes_;
     gl::PrimitiveQuery primitives_;
+    DrawCounts drawn_;  // without what the device counts
 };
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -76,7 +76,7 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
         throw Error("technique 'terrain_tessellation' needs a scene with a height map");
     }
     shaders_ = &context.shaders;
-    device_ = &context.device;
+    isSoftware_ = context.device.info().isSoftware;
     sizePx_ = context.outputSizePx;
     const scene::HeightMap& map = *scene_->heights;
     const Clock::time_point begin = Clock::now();
@@ -88,7 +88,7 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
     terrain_.emplace(map, *metadata_, params_.heights);
     camera_.emplace(*scene_, params_.view);
     RenderSettings settings = params_.render;
-    if (context.device.info().isSoftware) settings.batches.emplace();
+    if (isSoftware_) settings.batches.emplace();
     if (params_.method == Method::Patches) settings = untessellated(settings);
     if (hasColourMap(settings.shading)) {
         colourMap_ = colourMapOf(*scene_, settings.shading);
@@ -138,19 +138,21 @@ MorphRanges TerrainTessellation::morphRanges() const {
     return ranges;
 }
 
-DrawCounts TerrainTessellation::draw(Method method, const TileSelection& selection,
-                                     const kit::View& view, const Target& target) {
+void TerrainTessellation::draw(Method method, const TileSelection& selection, const kit::View& view,
+                               const Target& target) {
     target.clear();
     switch (method) {
         case Method::UniformGrid:
-            return renderer_->drawGrid(selection.tiles, view, target.framebuffer);
+            renderer_->drawGrid(selection.tiles, view, target.framebuffer);
+            break;
         case Method::Cdlod:
-            return renderer_->drawMorphed(selection.tiles, morphRanges(), view, target.framebuffer);
+            renderer_->drawMorphed(selection.tiles, morphRanges(), view, target.framebuffer);
+            break;
         case Method::Adaptive:
         case Method::Patches:
+            renderer_->drawTessellated(selection.tiles, view, target.framebuffer);
             break;
     }
-    return renderer_->drawTessellated(selection.tiles, view, target.framebuffer);
 }
 
 void TerrainTessellation::render(technique::FrameContext& context) {
@@ -168,15 +170,13 @@ void TerrainTessellation::render(technique::FrameContext& context) {
         const gl::CpuScope scope(context.profiler, "load_tiles");
         const auto pages = static_cast<std::size_t>(terrain_->pages().capacity());
         if (selection_.tiles.size() <= pages) terrain_->pages().load(selection_.tiles);
-        device_->finish("loading heights");  // nothing of before is timed
     }
-    const Clock::time_point begin = Clock::now();
+    drawTime_.emplace(isSoftware_);
     {
+        const gl::GpuScope own(*drawTime_, "draw");
         const gl::GpuScope scope(context.profiler, "draw");
-        counts_ = draw(params_.method, selection_, view_, *target_);
+        draw(params_.method, selection_, view_, *target_);
     }
-    device_->finish("drawing terrain");
-    drawS_ = secondsSince(begin);
     loadedTiles_ = terrain_->pages().loadedCount() - loadedBefore;
 }
 

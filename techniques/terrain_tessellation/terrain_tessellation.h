@@ -81,15 +81,15 @@ class TerrainTessellation final : public technique::Technique {
     /// Every visible tile in full resolution.
     TileSelection selectAll() const;
     MorphRanges morphRanges() const;
-    DrawCounts draw(Method method, const TileSelection& selection, const kit::View& view,
-                    const Target& target);
+    void draw(Method method, const TileSelection& selection, const kit::View& view,
+              const Target& target);
     /// The frame again, `params_.supersampling` times as large, with the tiles and the factors that
     /// it was drawn with; with the underside of terrain, which frames cull, or without.
     Drawn drawnAgain(Method method, const TileSelection& selection, bool showsUnderside);
 
     void recordDrawn(technique::Recorder& recorder);
     void recordFactors(technique::Recorder& recorder);
-    void recordNetRate(technique::Recorder& recorder);
+    void recordNetRate(technique::Recorder& recorder, const DrawCounts& counts, double drawS);
     void recordSeams(technique::Recorder& recorder, std::span<const PatchFactors> drawn);
     void recordCulling(technique::Recorder& recorder);
     void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Drawn& truth);
@@ -99,7 +99,7 @@ class TerrainTessellation final : public technique::Technique {
     glm::ivec2 sizePx_{0};
     double preprocessMs_ = 0.0;
     const gl::ShaderLibrary* shaders_ = nullptr;
-    gl::Device* device_ = nullptr;
+    bool isSoftware_ = false;
     std::optional<TerrainMetadata> metadata_;
     std::optional<TileTree> tree_;
     std::optional<TerrainView> camera_;
@@ -112,9 +112,8 @@ class TerrainTessellation final : public technique::Technique {
     kit::View view_;  // of the last frame
     TileView tileView_;
     TileSelection selection_;
-    DrawCounts counts_;
-    double drawS_ = 0.0;             // wall clock, until the device is done
-    std::uint64_t loadedTiles_ = 0;  // for the last frame
+    std::optional<gl::Profiler> drawTime_;  // of its draw alone: nothing is waited for in a frame
+    std::uint64_t loadedTiles_ = 0;         // for the last frame
 };
 
 extern const technique::TechniqueInfo kTerrainTessellation;

@@ -1,7 +1,6 @@
 // What is recorded of a frame: what was drawn, how far it is from the full resolution, pictures.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -18,7 +17,10 @@
 namespace gfxrepro::terrain_tessellation {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+/// Of the one scope of a profiler.
+double secondsOf(gl::Profiler& profiler) {
+    return 1e-3 * profiler.collect().front().timeMs;
+}
 
 DepthMap readDepths(const gl::Texture& depth, const kit::View& view) {
     DepthMap map{view, depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)};
@@ -54,10 +56,12 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     const auto count = [&](const char* name, double value, const char* unit) {
         recorder.metric(name, value, unit);
     };
-    const auto triangles = static_cast<double>(counts_.triangles);
+    const DrawCounts counts = renderer_->counts();
+    const double drawS = secondsOf(*drawTime_);
+    const auto triangles = static_cast<double>(counts.triangles);
     count("drawn_triangles", triangles, "triangle");
-    count("triangles_per_second", triangles / drawS_, "triangle/s");
-    count("draw_calls", counts_.drawCalls, "call");
+    count("triangles_per_second", triangles / drawS, "triangle/s");
+    count("draw_calls", counts.drawCalls, "call");
     count("tiles", static_cast<double>(selection_.tiles.size()), "tile");
     count("visited_tiles", selection_.visitedCount, "tile");
     count("culled_tiles", selection_.culledCount, "tile");
@@ -71,9 +75,9 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     count("memory_bytes", static_cast<double>(terrain_->sizeBytes()), "byte");
     const bool hasPatches = params_.method == Method::Adaptive || params_.method == Method::Patches;
     if (!hasPatches) return;
-    count("patches", counts_.patches, "patch");
-    count("culled_patches", counts_.culledPatches, "patch");
-    count("culled_patches_pct", kit::percent(counts_.culledPatches, counts_.patches), "%");
+    count("patches", counts.patches, "patch");
+    count("culled_patches", counts.culledPatches, "patch");
+    count("culled_patches_pct", kit::percent(counts.culledPatches, counts.patches), "%");
     if (params_.method != Method::Adaptive) return;
     const auto skirts =
         params_.render.hasSkirts
@@ -81,7 +85,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
             : 0.0;
     count("surface_triangles", triangles - skirts, "triangle");
     recordFactors(recorder);
-    if (params_.drawsYardstick) recordNetRate(recorder);
+    if (params_.drawsYardstick) recordNetRate(recorder, counts, drawS);
 }
 
 void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
@@ -116,23 +120,24 @@ void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
 }
 
 /// What clearing the window and shading its ground cost without tessellation is taken off.
-void TerrainTessellation::recordNetRate(technique::Recorder& recorder) {
+void TerrainTessellation::recordNetRate(technique::Recorder& recorder, const DrawCounts& counts,
+                                        double drawS) {
     constexpr int kDraws = 3;
     double leastS = std::numeric_limits<double>::infinity();
-    DrawCounts counts;
     for (int i = 0; i < kDraws; ++i) {
-        device_->finish("before the yardstick");
-        const Clock::time_point begin = Clock::now();
-        target_->clear();
-        counts = yardstick_->drawTessellated(selection_.tiles, view_, target_->framebuffer);
-        device_->finish("drawing the yardstick");
-        leastS = std::min(leastS, std::chrono::duration<double>(Clock::now() - begin).count());
+        gl::Profiler profiler(isSoftware_);
+        {
+            const gl::GpuScope scope(profiler, "yardstick");
+            target_->clear();
+            yardstick_->drawTessellated(selection_.tiles, view_, target_->framebuffer);
+        }
+        leastS = std::min(leastS, secondsOf(profiler));
     }
     recorder.metric("yardstick_ms", 1000.0 * leastS, "ms");
     const auto triangles =
-        static_cast<double>(counts_.triangles) - static_cast<double>(counts.triangles);
-    if (drawS_ <= leastS) return;
-    recorder.metric("triangles_per_second", triangles / (drawS_ - leastS), "triangle/s", "net");
+        static_cast<double>(counts.triangles) - static_cast<double>(yardstick_->counts().triangles);
+    if (drawS <= leastS) return;
+    recorder.metric("triangles_per_second", triangles / (drawS - leastS), "triangle/s", "net");
 }
 
 void TerrainTessellation::recordSeams(technique::Recorder& recorder,
