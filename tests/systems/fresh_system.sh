@@ -3,6 +3,7 @@
 # 24.04) and there runs, from a clone of the last commit,
 #   1 2 3      the README's commands, by their order in its first block
 #   container  what containers/Containerfile runs, each stage in a bare system of its own
+#   arm64      compiles every source, and links the program, for an ARM processor, in a bare system of its own (trixie)
 #   bundle     the bundle of this machine's build/release, which is an older system's; left out where it is not built
 # or only the steps that are named.
 # GFXREPRO_SYSTEMS  the folder for systems and for the compiler's cache, which stays (default build/systems)
@@ -12,7 +13,7 @@ suite=$1
 shift
 source=$(cd "$(dirname "$0")/../.." && pwd)
 systems=${GFXREPRO_SYSTEMS:-$source/build/systems}
-steps=${*:-1 2 3 container $([ ! -x "$source/build/release/gfxrepro" ] || echo bundle)}
+steps=${*:-1 2 3 container $([ "$suite" != trixie ] || echo arm64) $([ ! -x "$source/build/release/gfxrepro" ] || echo bundle)}
 
 skip() { echo "skipped: $*"; exit 77; }
 [ "$(id -u)" = 0 ] || skip "a chroot needs root"
@@ -22,7 +23,7 @@ unshare --mount true 2>/dev/null || skip "this machine grants no mount namespace
 root=$systems/$suite
 cache=$systems/ccache-$suite
 mkdir -p "$systems" "$cache"
-trap 'rm -rf --one-file-system "$root" "$root-final"' EXIT
+trap 'rm -rf --one-file-system "$root" "$root-final" "$root-arm64"' EXIT
 
 # bare FOLDER: a minimal system with certificates, from the servers that mmdebstrap knows for the suite.
 bare() {
@@ -39,6 +40,12 @@ bare() {
     fi
 }
 
+# with_source FOLDER: a bare system with a clone of the last commit.
+with_source() {
+    bare "$1"
+    git -c safe.directory="$source" clone --quiet --no-hardlinks "$source" "$1/src"
+}
+
 # inside FOLDER COMMAND: in the system, with the clone as the current folder.
 inside() {
     unshare --mount bash -c 'for name in proc dev sys; do mount --rbind "/$name" "$1/$name"; done
@@ -50,8 +57,7 @@ inside() {
 # stage_commands N: what the N-th stage of the Containerfile runs.
 stage_commands() { awk -v n="$1" '/^FROM /{s++} s == n && sub(/^RUN /, "")' "$source/containers/Containerfile"; }
 
-bare "$root"
-git -c safe.directory="$source" clone --quiet --no-hardlinks "$source" "$root/src"
+with_source "$root"
 for step in $steps; do
     echo "== $suite: $step"
     case $step in
@@ -73,6 +79,22 @@ for step in $steps; do
         cp "$source/containers/10_nvidia.json" "$root-final/usr/share/glvnd/egl_vendor.d/"
         inside "$root-final" "$(stage_commands 2)"
         inside "$root-final" "gfxrepro doctor; gfxrepro run /usr/share/gfxrepro/configs/smoke/template.yaml --device software --quiet --out run; gfxrepro table run"
+        ;;
+    arm64)
+        with_source "$root-arm64"
+        inside "$root-arm64" '
+            export DEBIAN_FRONTEND=noninteractive CMAKE_CXX_COMPILER_LAUNCHER=ccache
+            dpkg --add-architecture arm64
+            apt-get update -qq
+            libraries=$(sed -n "/^packages=/,/^)/p; /^test_packages=/,/^)/p" scripts/setup | grep -oE "(lib|nlohmann)[a-z0-9+-]*-dev" |
+                while read -r package; do
+                    # What holds headers alone is of no processor.
+                    apt-cache policy "$package:arm64" | grep -q "Candidate: [0-9]" && package=$package:arm64
+                    echo "$package"
+                done)
+            apt-get install -y -qq --no-install-recommends g++-aarch64-linux-gnu cmake ninja-build ccache python3-minimal $libraries >/dev/null
+            cmake --preset arm64
+            cmake --build --preset arm64 -- --quiet gfxrepro $(ninja -C build/arm64 -t targets all | sed -n "s/: CXX_COMPILER.*//p")'
         ;;
     bundle)
         "$source/scripts/bundle" "$root/bundle"
