@@ -274,7 +274,8 @@ std::vector<Fixed> fixedOf(const Experiment& experiment) {
     if (output && output->isMap()) add("output", *output, "output.");
     if (!experiment.scene.isNull()) {
         all.push_back({"scene", "scene", experiment.scene.location()});
-        for (const auto& [name, value] : SceneReference::from(experiment.scene).params.entries()) {
+        const SceneReference scene = SceneReference::from(experiment.scene);
+        for (const auto& [name, value] : scene.params.entries()) {
             all.push_back(
                 {std::string(kSceneAxisPrefix) + name, "scene", experiment.scene.location()});
         }
