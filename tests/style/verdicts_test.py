@@ -1,0 +1,43 @@
+"""update_verdicts says of each claim that does not hold why: by its config, else by the run."""
+
+import csv
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SCRIPT = pathlib.Path(sys.argv[1]) / "update_verdicts"
+MARKERS = "<!-- begin verdicts -->\n<!-- end verdicts -->\n"
+CLAIMS = [  # claim, verdict, the run's reason, the config's, what the page says
+    ("A", "ambiguous", "worst at n 1; one sample of a time decides nothing", "",
+     ". Why: One process a case ran, and a time is judged from six."),
+    ("B", "ambiguous", "a range of 3 processes; an interval needs 6", "",
+     ". Why: 3 processes a case ran, and a time is judged from six."),
+    ("C", "ambiguous", "nearer to the bound than the noise of this table, 6.89 %; by the CPU time of the process", "",
+     ". Why: What was measured is nearer to the bound than the noise of the table, 6.89 %."),
+    ("D", "ambiguous", "the interval straddles the bound", "",
+     ". Why: The interval of what was measured lies on both sides of the bound."),
+    ("E", "ambiguous", "the interval straddles the bound", "A cause.", ". Why: A cause."),
+    ("F", "fails", "worst at n 1", "Another.", ". Why: Another."),
+    ("G", "holds", "worst at n 1", "", ""),
+]
+
+with tempfile.TemporaryDirectory() as folder:
+    root = pathlib.Path(folder)
+    kept = root / "results" / "reference" / "machine" / "run"
+    kept.mkdir(parents=True)
+    (root / "configs").mkdir()
+    (root / "README.md").write_text(MARKERS)
+    (root / "results" / "README.md").write_text(MARKERS)
+    with open(kept / "claims.csv", "w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(["claim", "table", "profile", "origin", "verdict", "reason", "because", "says"])
+        for claim, verdict, reason, because, _ in CLAIMS:
+            rows.writerow([claim, "p/1", "quick", "document", verdict, reason, because, "it is so"])
+    subprocess.run([sys.executable, SCRIPT, root], check=True)
+    lines = (root / "results" / "reference" / "machine" / "quick.md").read_text(encoding="utf-8").splitlines()
+    for claim, verdict, _, _, why in CLAIMS:
+        line = next((line for line in lines if f"({claim})" in line), "")
+        if not line.endswith(f"**{verdict}** it is so ({claim}){why}"):
+            sys.exit(f"of {claim} the page should have said {why!r}: {line!r}")
+print("each claim that does not hold has its reason")
