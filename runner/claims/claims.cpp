@@ -251,8 +251,9 @@ std::string sceneClass(const config::Experiment& experiment, const SceneFiles& f
 std::string whyText(const ClaimResult& claim) {
     if (claim.because.empty()) return claim.reason;
     if (claim.verdict != claim.known) {
-        return fmt::format("{}{}Where it is {}: {}", claim.reason, claim.reason.empty() ? "" : ". ",
-                           verdictName(claim.known), claim.because);
+        return fmt::format("{}{}Where it {}{}: {}", claim.reason, claim.reason.empty() ? "" : ". ",
+                           claim.known == Verdict::Fails ? "" : "is ", verdictName(claim.known),
+                           claim.because);
     }
     return claim.because + (claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason));
 }

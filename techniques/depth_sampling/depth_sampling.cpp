@@ -169,7 +169,7 @@ void DepthSampling::record(technique::Recorder& recorder) {
         if (params_.showsPictures) recordPictures(recorder);
     }
     const glm::ivec2 size = views_.images.front().sizePx;
-    recordMeasures(recorder, *measures_,
+    recordMeasures(recorder, *measures_, params_.measures.usefulness,
                    static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y));
     recorder.metric("reference_image_bytes",
                     static_cast<double>(experiment_->referenceImageBytes()), "byte");
@@ -193,7 +193,8 @@ void DepthSampling::recordPictures(technique::Recorder& recorder) const {
                    kit::seenFrom(frame.image.view));
 }
 
-void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels) {
+void recordMeasures(technique::Recorder& recorder, const Measures& measures, bool hasUsefulness,
+                    std::uint64_t pixels) {
     double occludedSumPct = 0.0;
     double usefulSumPct = 0.0;
     for (std::size_t i = 0; i < measures.images.size(); ++i) {
@@ -211,6 +212,8 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
                         pass);
         ofSamples("occluded_pct", counts.occluded);
         ofSamples("occluded_literal_pct", counts.occludedLiterally);
+        occludedSumPct += kit::percent(counts.occluded, counts.samples);
+        if (!hasUsefulness) continue;
         ofSamples("useful_of_samples_pct", counts.useful);
         // Of no occluded sample none is useful: the thesis prints 0 for the first images.
         if (counts.occluded == 0) {
@@ -219,11 +222,10 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, std
             recorder.share("useful_pct", static_cast<double>(counts.useful),
                            static_cast<double>(counts.occluded), "sample", pass);
         }
-        occludedSumPct += kit::percent(counts.occluded, counts.samples);
         usefulSumPct += kit::percent(counts.useful, counts.samples);
     }
     recorder.metric("occluded_sum_pct", occludedSumPct, "%");
-    recorder.metric("useful_sum_pct", usefulSumPct, "%");
+    if (hasUsefulness) recorder.metric("useful_sum_pct", usefulSumPct, "%");
     if (!measures.frames.empty()) recordAvailability(recorder, measures.frames);
 }
 

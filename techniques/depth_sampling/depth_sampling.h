@@ -76,8 +76,10 @@ class DepthSampling final : public technique::Technique {
 };
 
 /// Records `measures` of images of so many pixels as metrics. An image without samples has no
-/// shares but its coverage; frames without samples have no availability.
-void recordMeasures(technique::Recorder& recorder, const Measures& measures, std::uint64_t pixels);
+/// shares but its coverage; frames without samples have no availability; nothing is said of useful
+/// samples that nobody counted.
+void recordMeasures(technique::Recorder& recorder, const Measures& measures, bool hasUsefulness,
+                    std::uint64_t pixels);
 
 extern const technique::TechniqueInfo kDepthSampling;
 

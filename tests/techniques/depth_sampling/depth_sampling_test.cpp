@@ -121,6 +121,18 @@ TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:9: technique 'depth_sampling': views is 17; allowed: 1 … 16 images");
 }
 
+TEST_F(DepthSamplingTest, SaysNothingOfUsefulSamplesThatNobodyCounted) {
+    const scene::Scene scene = clutter();
+    for (const std::string redundancy : {"pixel", "visibility"}) {
+        const Metrics metrics =
+            run("{method: non_redundant, redundancy: " + redundancy + "}", scene);
+        EXPECT_GT(metrics.at("occluded_pct/image_1"), 0) << redundancy;
+        for (const auto& [name, value] : metrics) {
+            EXPECT_EQ(name.find("useful"), std::string::npos) << redundancy << ' ' << name;
+        }
+    }
+}
+
 TEST_F(DepthSamplingTest, NeedsASceneWithTriangles) {
     EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
               "technique 'depth_sampling' needs a scene");

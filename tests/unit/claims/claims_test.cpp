@@ -197,7 +197,7 @@ TEST(Claims, KnownVerdictsAndNews) {
     result = judgePowers("bound: a, below: 8, " + fails, records);
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_TRUE(result.isNews());
-    EXPECT_EQ(whyText(result), "worst at n 8; one sample. Where it is fails: the scene");
+    EXPECT_EQ(whyText(result), "worst at n 8; one sample. Where it fails: the scene");
     result = judgePowers("bound: a, below: 1, because: {verdict: fails, device: gpu, reason: r}",
                          records);
     EXPECT_EQ(result.known, Verdict::Holds);
