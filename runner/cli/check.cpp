@@ -103,23 +103,30 @@ void requireNamedSweeps(const config::Node& node) {
 /// and what may be is said.
 void requireReadable(const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
     std::set<std::string> read;
-    for (const run::Case& item : cases) {
-        const bool isOwn = !item.scene.isNull() && config::isSceneFile(item.scene.text());
-        if (!isOwn || !read.insert(item.scene.text()).second) continue;
+    const auto requireOne = [&](const config::Node* reference) {
+        if (!reference || reference->isNull() || reference->text().empty()) return;
+        const std::string& name = reference->text();
+        if (!read.insert(name).second) return;
+        catalog.resolve(*reference);
+        if (!config::isSceneFile(name)) return;
         try {
-            const scene::Scene scene = catalog.load(item.scene);
+            const scene::Scene scene = catalog.load(*reference);
             for (const std::string& line : scene.warnings) {
-                tell("warning: {}: {}\n", config::sceneName(item.scene.text()), line);
+                tell("warning: {}: {}\n", config::sceneName(name), line);
             }
             if (scene.triangleCount() == 0 && !scene.points.positions.empty()) {
                 tell(
                     "warning: {}: {} points and no triangles, which only a technique that draws "
                     "points can take\n",
-                    config::sceneName(item.scene.text()), scene.points.positions.size());
+                    config::sceneName(name), scene.points.positions.size());
             }
         } catch (const Error& error) {
-            throw Error(item.scene.location(), error.what());
+            throw Error(reference->location(), error.what());
         }
+    };
+    for (const run::Case& item : cases) {
+        if (!item.scene.isNull() && config::isSceneFile(item.scene.text())) requireOne(&item.scene);
+        requireOne(item.params.find("scene_b"));
     }
 }
 

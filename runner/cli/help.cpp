@@ -1,6 +1,8 @@
 #include "runner/cli/help.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -12,7 +14,13 @@ namespace gfxrepro::cli {
 
 namespace {
 
-constexpr std::size_t kScreenWidth = 80;
+/// Of the terminal that is written to, within what can be read; 80 of anything else.
+std::size_t screenWidth() {
+    winsize size{};
+    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+    return std::clamp<std::size_t>(size.ws_col, 50, 120);
+}
+
 constexpr std::size_t kMaxNameWidth = 30;
 
 /// A command's place in the help, and an example.
@@ -132,9 +140,10 @@ std::string entryLines(const std::string& name, const std::string& doc, std::siz
         line.clear();
     }
     line.append(column - widthOf(line), ' ');
+    const std::size_t width = screenWidth();
     for (const std::string& word : split(doc, ' ')) {
         const bool isFirst = line.find_last_not_of(' ') == std::string::npos || line.back() == ' ';
-        if (!isFirst && widthOf(line) + 1 + widthOf(word) > kScreenWidth) {
+        if (!isFirst && widthOf(line) + 1 + widthOf(word) > width) {
             text += line + "\n";
             line = std::string(column, ' ');
         } else if (!isFirst) {

@@ -162,8 +162,8 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
     return Node::scalar(file.string(), reference.location(), true);
 }
 
-/// The same for every key `scene` below a node whose maps go by axis (`isAxisMap`), or below the
-/// selectors `where` and `at`.
+/// The same for every key `scene`, or `scene_b` for a second model, below a node whose maps go by
+/// axis (`isAxisMap`), or below the selectors `where` and `at`.
 Node withSceneFiles(const Node& node, bool isAxisMap) {
     if (node.isSequence()) {
         Node::Sequence items;
@@ -173,7 +173,8 @@ Node withSceneFiles(const Node& node, bool isAxisMap) {
     if (!node.isMap()) return node;
     Node result = node;
     for (const auto& [key, value] : node.entries()) {
-        const bool isReference = isAxisMap && key == "scene" && !value.isMap();
+        const bool isReference =
+            isAxisMap && (key == "scene" || key == "scene_b") && !value.isMap();
         const bool isSelector = key == "where" || key == "at";
         result.set(
             key,
@@ -197,6 +198,7 @@ Node withSceneFileKeys(const Node& map) {
 void resolveScenes(Node& document) {
     setProgramFolder(document);
     if (Node* scene = document.find("scene")) *scene = withSceneFile(*scene);
+    if (Node* params = document.find("params")) *params = withSceneFiles(*params, true);
     if (Node* params = document.find("params_by_scene")) *params = withSceneFileKeys(*params);
     if (Node* sweep = document.find("sweep")) *sweep = withSceneFiles(*sweep, true);
     for (const char* key : {"layout", "claims"}) {

@@ -16,6 +16,7 @@ namespace gfxrepro::test {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -273,6 +274,20 @@ TEST(OwnExperiment, HeightsThatStandAsSpikesAreSaidBeforeTheyAreMeasured) {
     EXPECT_EQ(shown.exitCode, 0) << shown.err;
     EXPECT_THAT(shown.out, HasSubstr("heights    17 x 17 samples, 1 m apart, 0 filled"));
     EXPECT_THAT(shown.out, HasSubstr("warning    heights from 0 to 1600 m"));
+}
+
+TEST(OwnExperiment, CheckLooksForASecondModelBesideTheFile) {
+    const TemporaryFolder folder;
+    const std::string voxels = "technique: voxelization\nscene: shapes/torus\n";
+    EXPECT_THAT(checked(folder, voxels + "params: {csg: union, scene_b: none.obj}\n"),
+                AllOf(HasSubstr("mine.yaml:5:31: "), HasSubstr("none.obj")));
+    EXPECT_THAT(checked(folder, voxels + "params: {csg: union, scene_b: models/none}\n"),
+                HasSubstr("models/none"));
+    folder.write("second.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+    const std::string config = folder.write(
+        "mine.yaml", "sweep_of: mine\ntitle: Mine\n" + voxels +
+                         "params: {csg: union, scene_b: second.obj, resolution: 32}\n");
+    EXPECT_EQ(gfxrepro({"check", config}).exitCode, 0);
 }
 
 TEST(OwnExperiment, CheckSaysThatAModelHasPointsAlone) {

@@ -35,6 +35,23 @@ TEST(Usage, UnknownCommand) {
     EXPECT_EQ(refusal({}, folder), "gfxrepro: no command; see 'gfxrepro --help'\n");
 }
 
+TEST(Usage, TextsAreAsWideAsTheTerminal) {
+    for (const std::size_t columns : {72U, 100U}) {
+        const std::string command = "stty cols " + std::to_string(columns) +
+                                    "; '" GFXREPRO_PROGRAM "' describe voxelization";
+        const ProcessResult shown = runProgram({"/usr/bin/script", "-qec", command, "/dev/null"});
+        std::istringstream lines(shown.out);
+        std::size_t longest = 0;
+        for (std::string line; std::getline(lines, line);) {
+            const auto isBegin = [](char c) { return (c & 0xC0) != 0x80 && c != '\r'; };
+            longest =
+                std::max(longest, static_cast<std::size_t>(std::ranges::count_if(line, isBegin)));
+        }
+        EXPECT_LE(longest, columns);
+        EXPECT_GT(longest, columns - 15);
+    }
+}
+
 TEST(Usage, UnknownOption) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"run", "--jbos", "2", "x.yaml"}, folder),
