@@ -12,6 +12,7 @@
 #include "runner/cli/help.h"
 #include "runner/core/error.h"
 #include "runner/core/text.h"
+#include "runner/gl/device_name.h"
 
 namespace gfxrepro::cli {
 
@@ -63,6 +64,17 @@ UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
     return UsageError(whose + problem.what());
 }
 
+/// Of all commands those whose value the help calls so.
+std::vector<CLI::Option*> optionsCalled(const std::string& value, CLI::App& app) {
+    std::vector<CLI::Option*> found;
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        for (CLI::Option* option : command->get_options()) {
+            if (valueName(*option) == value) found.push_back(option);
+        }
+    }
+    return found;
+}
+
 /// `latest` is the newest run of runs/ wherever a run is named.
 void takeLatest(CLI::App& app) {
     const auto toFolder = [](std::string& name) {
@@ -72,12 +84,22 @@ void takeLatest(CLI::App& app) {
         name = runs.back().string();
         return std::string();
     };
-    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-        for (CLI::Option* option : command->get_options()) {
-            if (valueName(*option) == "RUN") {
-                option->transform(CLI::Validator(toFolder, "", "latest"));
-            }
+    for (CLI::Option* option : optionsCalled("RUN", app)) {
+        option->transform(CLI::Validator(toFolder, "", "latest"));
+    }
+}
+
+void refuseUnknownDevices(CLI::App& app) {
+    const auto whyNot = [](std::string& name) -> std::string {
+        try {
+            gl::requireDeviceName(name);
+            return "";
+        } catch (const UsageError& error) {
+            return error.what();
         }
+    };
+    for (CLI::Option* option : optionsCalled("DEVICE", app)) {
+        option->check(CLI::Validator(whyNot, "", "device"));
     }
 }
 
@@ -97,6 +119,7 @@ std::vector<const char*> spelledOut(int argc, const char* const* argv) {
 
 void parse(CLI::App& app, int argc, const char* const* argv) {
     takeLatest(app);
+    refuseUnknownDevices(app);
     try {
         const std::vector<const char*> words = spelledOut(argc, argv);
         app.parse(static_cast<int>(words.size()), words.data());

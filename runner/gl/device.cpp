@@ -15,6 +15,7 @@
 #include "runner/core/error.h"
 #include "runner/core/processors.h"
 #include "runner/core/text.h"
+#include "runner/gl/device_name.h"
 #include "runner/gl/egl_context.h"
 #include "runner/gl/gl.h"
 #include "runner/gl/gpu_nodes.h"
@@ -218,6 +219,10 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
 }
 
 }  // namespace
+
+void requireDeviceName(const std::string& name) {
+    if (name != "none") Wanted::parse(name);
+}
 
 Device::Device(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Device::Device(Device&&) noexcept = default;

@@ -110,6 +110,12 @@ TEST_F(DeviceChoice, WithoutAGpuOnlyWhoAsksForOneIsRefused) {
     EXPECT_THAT(run.err, HasSubstr(" is no GPU\n"));
 }
 
+TEST_F(DeviceChoice, AWordThatIsNoDeviceIsAMistakeOfTheCommandLine) {
+    const ProcessResult run = mockGfxrepro({"run", config, "--device", "nonsense"});
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_THAT(run.err, HasSubstr("unknown device 'nonsense'; allowed: auto, gpu, software, or "));
+}
+
 TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
     config = writeMockConfig(folder,
