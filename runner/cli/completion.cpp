@@ -1,6 +1,7 @@
 #include "runner/cli/completion.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -150,7 +151,16 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
         {"DIR", [&] { return paths(prefix, [](const fs::path&) { return false; }); }},
         {"FILE", [&] { return paths(prefix, isAnyFile); }},
         {"NAME", [&] { return describedNames(context, prefix); }},
-        {"RUN", [&] { return paths(prefix, isRun, prefix.empty() ? Words{"runs/"} : Words{}); }},
+        {"DEVICE",
+         [] {
+             return Words{"auto", "gpu", "software"};
+         }},
+        {"RUN",
+         [&] {
+             Words names = paths(prefix, isRun, prefix.empty() ? Words{"runs/"} : Words{});
+             if (!runFolders().empty()) names.emplace_back("latest");
+             return names;
+         }},
         {"SCENE",
          [&] {
              Words names = sceneNames(context);
@@ -159,7 +169,11 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
          }},
         {"TABLE",
          [&] {
-             Words names = paperNames();
+             // "zju2005/figure-4.3" only where "zju2005/f" is typed: "zju2005/4.3" is the same.
+             const std::size_t slash = prefix.find('/');
+             const bool hasKind = slash != std::string::npos && slash + 1 < prefix.size() &&
+                                  std::isalpha(static_cast<unsigned char>(prefix[slash + 1]));
+             Words names = hasKind ? paperFileNames() : paperNames();
              append(names, paths(prefix, isYaml));
              return names;
          }},

@@ -100,6 +100,14 @@ std::vector<std::string> paperNames() {
     return names;
 }
 
+std::vector<std::string> paperFileNames() {
+    std::vector<std::string> names;
+    for (const fs::path& file : paperConfigs()) {
+        names.push_back(paperOf(file) + "/" + file.stem().string());
+    }
+    return names;
+}
+
 std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names) {
     const std::vector<fs::path> all = paperConfigs();
     const std::vector<std::string> known = paperNames();

@@ -17,6 +17,8 @@ std::vector<std::filesystem::path> paperConfigs();
 
 /// Each "PAPER" and its "PAPER/TABLE"s.
 std::vector<std::string> paperNames();
+/// Each "PAPER/KIND-TABLE", as its file is called.
+std::vector<std::string> paperFileNames();
 
 /// The run directories in runs/, by name, which begins with their time: the newest last.
 std::vector<std::filesystem::path> runFolders();

@@ -146,6 +146,10 @@ TEST(Completion, OffersWhatTheCommandLineTakes) {
     EXPECT_THAT(completed({"list", "t"}), ElementsAre("tables", "techniques"));
     EXPECT_THAT(completed({"list", "tables", ""}), IsEmpty());
     EXPECT_THAT(completed({"reproduce", "zju2005/2.2", "zju2005/2."}), Contains("zju2005/2.1"));
+    EXPECT_THAT(completed({"reproduce", "zju2005/figure-2.8"}), ElementsAre("zju2005/figure-2.8"));
+    EXPECT_THAT(completed({"reproduce", "zju2005/"}), testing::Not(Contains("zju2005/figure-2.8")))
+        << "zju2005/2.8 is the same";
+    EXPECT_THAT(completed({"run", "--device", "s"}), ElementsAre("software"));
     EXPECT_THAT(completed({"describe", "voxel"}), ElementsAre("voxelization"));
     EXPECT_THAT(completed({"scene", "models/bu"}), ElementsAre("models/buddha", "models/bunny"));
 }
