@@ -50,8 +50,10 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     if (isNamed) reasons.push_back("worst at " + groupName);
     switch (outcome.judgement.verdict) {
         case Verdict::Ambiguous:
-            reasons.push_back(outcome.judgement.why.empty() ? "the interval straddles the bound"
-                                                            : outcome.judgement.why);
+            reasons.push_back(
+                outcome.judgement.why.empty()
+                    ? "the interval reaches over the bound, so neither verdict is sure"
+                    : outcome.judgement.why);
             break;
         case Verdict::Unmeasured:
             reasons.emplace_back(
@@ -146,6 +148,7 @@ ClaimResult unjudged(const ClaimSpec& claim, const config::Experiment& experimen
     result.boundFrom = claim.boundFrom;
     result.timeKind = claim.timeKind;
     takeKnown(claim, experiment, context, result);
+    if (context.isAltered) result.known.reset();
     std::vector<std::string> required;
     for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
     result.required = joined(required, "; ");
@@ -250,12 +253,15 @@ std::string sceneClass(const config::Experiment& experiment, const SceneFiles& f
 
 std::string whyText(const ClaimResult& claim) {
     if (claim.because.empty()) return claim.reason;
-    if (claim.verdict != claim.known) {
-        return fmt::format("{}{}Where it {}{}: {}", claim.reason, claim.reason.empty() ? "" : ". ",
-                           claim.known == Verdict::Fails ? "" : "is ", verdictName(claim.known),
-                           claim.because);
+    if (claim.verdict == claim.known) {
+        return claim.because + (claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason));
     }
-    return claim.because + (claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason));
+    const std::string where =
+        !claim.known ? "In the table as configured"
+                     : fmt::format("Where it {}{}", *claim.known == Verdict::Fails ? "" : "is ",
+                                   verdictName(*claim.known));
+    return fmt::format("{}{}{}: {}", claim.reason, claim.reason.empty() ? "" : ". ", where,
+                       claim.because);
 }
 
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,

@@ -47,6 +47,8 @@ struct ReportContext {
     KeptSensitivity tried = {};
     tables::TableNotes tableNotes = {};
     SceneFiles sceneFiles = {};
+    /// The command line left rows out or gave values of its own: verdicts are not known of that.
+    bool isAltered = false;
 };
 
 struct ClaimResult {
@@ -64,9 +66,10 @@ struct ClaimResult {
     config::ClaimSpec::Origin origin = config::ClaimSpec::Origin::Ours;
     std::optional<config::ClaimSpec::BoundSource> boundFrom;
     std::optional<config::ClaimSpec::TimeKind> timeKind;
-    Verdict known = Verdict::Holds;  // what it comes to as far as the config knows
-    std::string because;             // why, where it does not hold
-    std::string shownBy = {};        // and what proves it
+    /// What it comes to as far as the config knows; none where the run is altered.
+    std::optional<Verdict> known = Verdict::Holds;
+    std::string because;       // why, where it does not hold
+    std::string shownBy = {};  // and what proves it
 
     /// A statement of the document itself: what counts.
     bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
@@ -76,8 +79,9 @@ struct ClaimResult {
         const auto isVerdict = [](Verdict one) {
             return one != Verdict::Ambiguous && one != Verdict::NotApplicable;
         };
-        if (known == Verdict::Ambiguous) return verdict == Verdict::Fails;
-        return isVerdict(verdict) && isVerdict(known) && verdict != known;
+        if (!known) return false;
+        if (*known == Verdict::Ambiguous) return verdict == Verdict::Fails;
+        return isVerdict(verdict) && isVerdict(*known) && verdict != *known;
     }
 
     SourceLocation where{};  // its config, with the line where that is known; not in claims.csv

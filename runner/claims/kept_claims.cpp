@@ -56,6 +56,7 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
         claim.reason = row["reason"];
         claim.because = row["because"];
         claim.restsOn = row["rests_on"];
+        claim.known.reset();
         if (!row["known"].empty()) claim.known = verdictAt(reader.location(), row["known"]);
         claim.origin =
             valueOf<Spec::Origin>(config::kOrigins, row["origin"]).value_or(claim.origin);

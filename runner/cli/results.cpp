@@ -103,7 +103,7 @@ void sayVerdicts(const std::vector<claims::ClaimResult>& claims) {
     for (const claims::ClaimResult& claim : claims) {
         if (!claim.isNews()) continue;
         say("  news: {} {}: {} ({}); known: {}\n", claim.table, claims::verdictName(claim.verdict),
-            wordsOf(claim), claim.id, claims::verdictName(claim.known));
+            wordsOf(claim), claim.id, claims::verdictName(*claim.known));
     }
     static const std::pair<claims::Verdict, const char*> kMeanings[] = {
         {claims::Verdict::Ambiguous, "too few rounds or too much noise to tell: more rounds may"},

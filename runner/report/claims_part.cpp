@@ -60,7 +60,7 @@ std::string whoseText(const ClaimResult& claim) {
 
 std::string newsHtml(const ClaimResult& claim) {
     if (!claim.isNews()) return "";
-    return fmt::format(" <span class=\"news\">news: known as {}</span>", verdictName(claim.known));
+    return fmt::format(" <span class=\"news\">news: known as {}</span>", verdictName(*claim.known));
 }
 
 std::string paragraph(const char* label, const std::string& text) {

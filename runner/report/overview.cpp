@@ -223,7 +223,7 @@ std::string newsHtml(const Model& model) {
                     model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(page.slug),
                     escapeXml(page.label), verdictName(claim.verdict),
                     escapeXml(claim.text.empty() ? claim.id : claim.text), escapeXml(claim.id),
-                    verdictName(claim.known));
+                    verdictName(*claim.known));
             }
         }
     }

@@ -228,7 +228,8 @@ std::string claimsCsv(const std::vector<claims::ClaimResult>& results,
         row.text(result.id).text(result.text).text(result.table);
         row.text(context.device).text(context.profile);
         row.text(config::originName(result.origin)).text(bound).text(kind);
-        row.text(claims::verdictName(result.verdict)).text(claims::verdictName(result.known));
+        row.text(claims::verdictName(result.verdict))
+            .text(result.known ? claims::verdictName(*result.known) : "");
         row.text(result.measured).text(result.required).text(result.margin).text(result.reason);
         row.text(result.because).text(result.restsOn).end();
     }

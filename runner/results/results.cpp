@@ -41,6 +41,8 @@ claims::ReportContext reportContext(const run::Json& manifest) {
 claims::ReportContext reportContext(const run::StoredRun& run) {
     claims::ReportContext context = reportContext(run.manifest);
     context.tried = studies::keptSensitivity(run.plan);
+    const run::Request& request = run.plan.request;
+    context.isAltered = !request.only.empty() || !request.sets.empty() || !request.sweeps.empty();
     context.tableNotes =
         tables::keptCalibrations(dataFolder("configs").parent_path() / "results/calibration");
     for (const config::Experiment& experiment : run.plan.experiments) {

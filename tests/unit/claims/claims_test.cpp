@@ -207,6 +207,18 @@ TEST(Claims, KnownVerdictsAndNews) {
     EXPECT_TRUE(judgePowers("bound: a, below: 1, " + ambiguous, records).isNews());
 }
 
+TEST(Claims, NothingIsKnownOfAnAlteredRun) {
+    ReportContext context = kSoftware;
+    context.isAltered = true;
+    const ClaimResult result =
+        judgeOne(powersBody("bound: a, below: 8, because: {verdict: fails, reason: the scene}"),
+                 powers([](double n) { return n; }), context);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.known, std::nullopt);
+    EXPECT_FALSE(result.isNews());
+    EXPECT_EQ(whyText(result), "worst at n 8; one sample. In the table as configured: the scene");
+}
+
 /// What is known of real models alone is no news where generated ones stand for them, and hold.
 TEST(Claims, AReasonMayBeOfScenesOfFilesOrOfGeneratedOnesAlone) {
     const auto records = powers([](double n) { return n; });
@@ -550,7 +562,8 @@ const std::string kByTheClock = "; by the clock: no CPU time was recorded of the
 TEST(Claims, AmbiguousSaysSo) {
     const ClaimResult result = judgeOne(ratioBody("[2, 2.5]"), noisyPair(2.0, 0.05, 3));
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
-    EXPECT_EQ(result.reason, "the interval straddles the bound" + kByTheClock);
+    EXPECT_EQ(result.reason,
+              "the interval reaches over the bound, so neither verdict is sure" + kByTheClock);
     EXPECT_THAT(result.measured, testing::MatchesRegex("[0-9.]+ \\[[0-9.]+, [0-9.]+\\]"));
 }
 
