@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -34,6 +34,7 @@ class Pictures {
         }
         rest_ = pictureGrid(part.table, shots_, rest);
         findTruths();
+        if (part.experiment) findMissing(part.experiment->shows);
     }
 
     std::string html() const {
@@ -43,13 +44,27 @@ class Pictures {
             further = "<details class=\"further\"><summary>Further pictures of these cases: " +
                       escapeXml(namesOf(rest_)) + "</summary>\n" + further + "</details>\n";
         }
-        html += further;
+        html += further + missing_;
         if (html.empty() || letter_.empty()) return html;
         return fmt::format("<h4>{}</h4>\n{}", letter_, html);
     }
 
   private:
     using Cell = std::vector<std::size_t>;
+
+    /// Says which of the pictures that are to be shown no case saved.
+    void findMissing(const std::vector<std::string>& shows) {
+        for (const std::string& name : shows) {
+            const auto isMeant = [&](const Shot& shot) { return isCalled(shot, name); };
+            if (std::ranges::any_of(shots_, isMeant)) continue;
+            std::set<std::string> names;
+            for (const Shot& shot : shots_) names.insert(shot.baseName);
+            missing_ += fmt::format(
+                "<p class=\"soft small\">None of these cases saved the picture '{}', which `shows` "
+                "names; they saved {}.</p>\n",
+                escapeXml(name), escapeXml(fmt::format("{}", fmt::join(names, ", "))));
+        }
+    }
 
     static void collect(const PictureGrid& grid, std::set<std::size_t>& shown) {
         const auto add = [&](const Cell& cell) { shown.insert(cell.begin(), cell.end()); };
@@ -236,6 +251,7 @@ class Pictures {
     const tables::Words& words_;
     PictureGrid main_;  // what the page shows first
     PictureGrid rest_;
+    std::string missing_;  // in words
     std::string letter_;
     std::string prefix_;
     std::map<std::size_t, std::size_t> truths_;  // of each shot, the one that is shown

@@ -186,15 +186,17 @@ void addTruths(const std::vector<Shot>& shots, PictureGrid& grid) {
 
 }  // namespace
 
+bool isCalled(const Shot& shot, const std::string& name) {
+    return shot.baseName == name || shot.baseName.starts_with(name + '_');
+}
+
 std::set<std::size_t> mainShots(const std::vector<Shot>& shots,
                                 const std::vector<std::string>& names) {
     std::set<std::size_t> named, withTruth, first;
     std::map<std::string, std::string> firstName;
     for (std::size_t i = 0; i < shots.size(); ++i) {
         const Shot& shot = shots[i];
-        const auto isMeant = [&](const std::string& name) {
-            return shot.baseName == name || shot.baseName.starts_with(name + '_');
-        };
+        const auto isMeant = [&](const std::string& name) { return isCalled(shot, name); };
         if (std::ranges::any_of(names, isMeant)) named.insert(i);
         if (shot.isTruth()) continue;
         if (!shot.truth.empty()) withTruth.insert(i);

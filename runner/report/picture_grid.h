@@ -39,6 +39,9 @@ struct PictureGrid {
 PictureGrid pictureGrid(const tables::Table& table, const std::vector<Shot>& shots,
                         const std::set<std::size_t>& chosen);
 
+/// Whether `shows` means the shot by this name: "classes" is classes_0 and classes_1, too.
+bool isCalled(const Shot& shot, const std::string& name);
+
 /// The shots that a page shows first: those of the names (also "classes_0" of "classes"); where
 /// none is of them those that have a truth; where none has, those of the first name of each case.
 /// Truths are not among them.

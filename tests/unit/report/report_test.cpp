@@ -380,6 +380,11 @@ TEST(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
     EXPECT_EQ(orderOf({}), "truth result | classes_0 reflection ");
     EXPECT_EQ(orderOf({"classes"}), "classes_0 | truth result reflection ");
     EXPECT_EQ(orderOf({"no_such"}), "truth result | classes_0 reflection ");
+    EXPECT_NE(
+        readFile(folder.path() / "report.html")
+            .find("None of these cases saved the picture 'no_such', which `shows` names; they "
+                  "saved classes_0, reflection, result, truth."),
+        std::string::npos);
 }
 
 TEST(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
