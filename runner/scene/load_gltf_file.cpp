@@ -180,8 +180,10 @@ File readFile(const std::filesystem::path& path) {
     const std::string_view content = mapped.text();
     File file;
     file.name = path.string();
+    constexpr std::size_t kLeastBytes = 4;  // of what tinygltf parses
     const bool isBinary = content.starts_with("glTF");
-    if (!isBinary && !beginsAsJson(content)) {
+    const bool isLongEnough = content.size() >= kLeastBytes;
+    if (!isLongEnough || (!isBinary && !beginsAsJson(content))) {
         throw Error(
             fmt::format("{}: {}; a .gltf file is a JSON object, a .glb file begins with "
                         "'glTF'",

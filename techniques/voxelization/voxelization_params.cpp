@@ -163,7 +163,7 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
         getOneOf(params, "resolution", 256, std::array{32, 64, 128, 256, 512, 1024},
                  {"voxels along each axis, a power of two", "voxels", 32, 1024});
     const int voxelBits = getOneOf(params, "voxel_bits", 1, std::array{1, 8, 16, 32},
-                                   {"bits a voxel: 1, 8, 16 or 32", "bits", 1, 32});
+                                   {"bits of each voxel: 1, 8, 16 or 32", "bits", 1, 32});
     settings.grid.layout = WorksheetLayout(resolution, voxelBits);
     settings.grid.value = params.getEnum("value", VoxelValue::Occupancy, kValues,
                                          {"what a voxel says; more than occupancy needs 8 bits"});

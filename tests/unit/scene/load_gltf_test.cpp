@@ -357,6 +357,7 @@ TEST_F(LoadGltf, RefusesWhatItCannotRead) {
     EXPECT_THAT(error("{\"asset\": {\"version\": 2"), testing::StartsWith("DIR/a.gltf: "));
     const std::string rule = "; a .gltf file is a JSON object, a .glb file begins with 'glTF'";
     EXPECT_EQ(error("[1, 2, 3]"), "DIR/a.gltf: is no glTF" + rule);
+    EXPECT_EQ(error("{"), "DIR/a.gltf: is no glTF" + rule);
     EXPECT_EQ(error("v/1\x01 an EXR"), "DIR/a.gltf: is no glTF" + rule);
     EXPECT_EQ(error(""), "DIR/a.gltf: is empty" + rule);
 }
