@@ -61,6 +61,19 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
     }
 }
 
+/// What the runner takes of a whole frame or process has no pass.
+void requireOfPasses(const std::string& metric, const SourceLocation& where) {
+    static constexpr std::string_view kOfPasses[] = {"gpu_time_ms", "cpu_time_ms",
+                                                     "process_time_ms"};
+    const bool isCommon =
+        std::ranges::find(technique::commonMetrics(), metric, &config::MetricInfo::name) !=
+        technique::commonMetrics().end();
+    if (!isCommon || std::ranges::find(kOfPasses, metric) != std::end(kOfPasses)) return;
+    throw Error(where, fmt::format("metric '{}' is not taken of a pass; those that are: {}, and "
+                                   "metrics of the technique",
+                                   metric, fmt::join(kOfPasses, ", ")));
+}
+
 /// What is laid out is recorded: metrics and passes of the technique.
 void requireOutputs(const config::Experiment& experiment,
                     std::span<const technique::TechniqueInfo> techniques) {
@@ -74,6 +87,7 @@ void requireOutputs(const config::Experiment& experiment,
         if (selection.metric) outputs.requireMetric(*selection.metric, owner, where);
         if (selection.pass && !selection.pass->empty()) {
             outputs.requirePass(*selection.pass, owner, where);
+            if (selection.metric) requireOfPasses(*selection.metric, where);
         }
         if (!selection.shareOf) return;
         outputs.requireMetric(selection.shareOf->metric, owner, where);
