@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -99,34 +100,62 @@ void requireNamedSweeps(const config::Node& node) {
     }
 }
 
-/// Reads the user's own files, each once: what is wrong in one would be found by the first case,
-/// and what may be is said.
-void requireReadable(const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
-    std::set<std::string> read;
-    const auto requireOne = [&](const config::Node* reference) {
-        if (!reference || reference->isNull() || reference->text().empty()) return;
-        const std::string& name = reference->text();
-        if (!read.insert(name).second) return;
-        catalog.resolve(*reference);
-        if (!config::isSceneFile(name)) return;
-        try {
-            const scene::Scene scene = catalog.load(*reference);
-            for (const std::string& line : scene.warnings) {
-                tell("warning: {}: {}\n", config::sceneName(name), line);
-            }
-            if (scene.triangleCount() == 0 && !scene.points.positions.empty()) {
-                tell(
-                    "warning: {}: {} points and no triangles, which only a technique that draws "
-                    "points can take\n",
-                    config::sceneName(name), scene.points.positions.size());
-            }
-        } catch (const Error& error) {
-            throw Error(reference->location(), error.what());
-        }
+/// Throws Error for a scene that the technique of a case cannot take.
+void requireTaken(const Context& context, const run::Case& item, const config::Node& reference,
+                  const scene::Scene& scene) {
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(context.techniques, item.technique, {});
+    config::Params params(item.given, "technique '" + item.technique + "'");
+    if (!item.offered.isNull()) params.offer(item.offered);
+    const auto technique = technique::makeTechnique(info, item.program, params);
+    try {
+        technique->requireScene(scene);
+    } catch (const Error& error) {
+        if (!error.where().file.empty()) throw;
+        throw Error(reference.location(), error.what());
+    }
+}
+
+/// The scene; what may be wrong in a user's own file is said.
+scene::Scene loadScene(const config::Node& reference, const scene::Catalog& catalog) {
+    try {
+        scene::Scene scene = catalog.load(reference);
+        const std::string name = config::sceneName(reference.text());
+        if (!config::isSceneFile(name)) return scene;
+        for (const std::string& line : scene.warnings) tell("warning: {}: {}\n", name, line);
+        return scene;
+    } catch (const Error& error) {
+        throw Error(reference.location(), error.what());
+    }
+}
+
+/// Reads the user's own files, and the scenes of an experiment that nobody has laid out, each once:
+/// what is wrong in one, or what the technique cannot take, the first case would find.
+void requireScenes(const Context& context, const config::Experiment& experiment,
+                   const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
+    struct Use {
+        const config::Node* reference;
+        const run::Case* item;
+    };
+    std::map<std::string, std::vector<Use>> uses;
+    const auto add = [&](const config::Node& reference, const run::Case& item) {
+        if (reference.isNull() || reference.text().empty()) return;
+        uses[reference.text()].push_back({&reference, &item});
     };
     for (const run::Case& item : cases) {
-        if (!item.scene.isNull() && config::isSceneFile(item.scene.text())) requireOne(&item.scene);
-        requireOne(item.params.find("scene_b"));
+        add(item.scene, item);
+        for (const auto& [name, value] : item.params.entries()) {
+            if (config::isSceneKey(name)) add(value, item);
+        }
+    }
+    for (const auto& [name, users] : uses) {
+        const config::Node& first = *users.front().reference;
+        const scene::SceneSource source = catalog.resolve(first);
+        const bool isOwn =
+            config::isSceneFile(name) || (experiment.hasDefaultLayout() && !source.heightMap);
+        if (!isOwn) continue;
+        const scene::Scene scene = loadScene(first, catalog);
+        for (const Use& use : users) requireTaken(context, *use.item, *use.reference, scene);
     }
 }
 
@@ -161,7 +190,7 @@ int check(const Context& context, const Selection& selection) {
             run::resolveCases(experiment, catalog, context.techniques, 1);
         run::bindAssumptions(experiment, cases, catalog, context.techniques);
         run::requireRanges(experiment, cases, catalog, context.techniques);
-        requireReadable(cases, catalog);
+        requireScenes(context, experiment, cases, catalog);
         requireProfiles(context, catalog, file);
         for (const char* section : {"claims", "assumptions", "printed"}) {
             const config::Node* node = experiment.document.find(section);

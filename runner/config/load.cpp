@@ -162,8 +162,8 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
     return Node::scalar(file.string(), reference.location(), true);
 }
 
-/// The same for every key `scene`, or `scene_b` for a second model, below a node whose maps go by
-/// axis (`isAxisMap`), or below the selectors `where` and `at`.
+/// The same for every isSceneKey() below a node whose maps go by axis (`isAxisMap`), or below the
+/// selectors `where` and `at`.
 Node withSceneFiles(const Node& node, bool isAxisMap) {
     if (node.isSequence()) {
         Node::Sequence items;
@@ -173,8 +173,7 @@ Node withSceneFiles(const Node& node, bool isAxisMap) {
     if (!node.isMap()) return node;
     Node result = node;
     for (const auto& [key, value] : node.entries()) {
-        const bool isReference =
-            isAxisMap && (key == "scene" || key == "scene_b") && !value.isMap();
+        const bool isReference = isAxisMap && isSceneKey(key) && !value.isMap();
         const bool isSelector = key == "where" || key == "at";
         result.set(
             key,

@@ -43,6 +43,11 @@ Node paramsFrom(const std::string& text, const Node& reference) {
 
 }  // namespace
 
+bool isSceneKey(std::string_view key) {
+    constexpr std::string_view kFurther = "scene_";
+    return key == "scene" || (key.starts_with(kFurther) && key.size() == kFurther.size() + 1);
+}
+
 bool isSceneFile(const std::string& reference) {
     return std::filesystem::path(reference.substr(0, reference.find(kParamsMark))).has_extension();
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "runner/config/node.h"
 
@@ -20,6 +21,10 @@ struct SceneReference {
     static SceneReference from(const Node& reference);
     std::string text() const;
 };
+
+/// Whether a parameter or selector of this name is a reference: `scene`, and `scene_b`, `scene_c`,
+/// … of techniques that take further models.
+bool isSceneKey(std::string_view key);
 
 /// Whether the reference is a file's path: it has a file extension.
 bool isSceneFile(const std::string& reference);

@@ -312,7 +312,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     {
         const PhaseScope phase(context, "setup", result.cost.setupS);
         const Clock::time_point begin = Clock::now();
-        technique->setup(setup);
+        technique::setUp(*technique, setup);
         context.device.finish("setting up");
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
         recordPasses(profiler, context.device.info().isSoftware, recorder);

@@ -90,6 +90,14 @@ std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const config
     return info.create(params);
 }
 
+void setUp(Technique& technique, SetupContext& context) {
+    if (!context.scene && technique.sceneNeed() != SceneNeed::Nothing) {
+        throw Error("the technique needs a scene, and the case has none");
+    }
+    if (context.scene) technique.requireScene(*context.scene);
+    technique.setup(context);
+}
+
 bool needsDevice(const TechniqueInfo& info, const config::Node& program) {
     return !info.createFrom || program.isNull() || config::readProgram(program).usesGpu;
 }

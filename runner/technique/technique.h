@@ -106,7 +106,8 @@ struct ProcessUsage {
 };
 
 /// A method under measurement with its competitors. Life: constructor (parameters only, no GL) →
-/// setup → render, repeatedly → record, after the last repeat of a frame. Errors are thrown.
+/// requireScene → setup → render, repeatedly → record, after the last repeat of a frame. Errors are
+/// thrown.
 class Technique {
   public:
     virtual ~Technique() = default;
@@ -119,6 +120,9 @@ class Technique {
     virtual const gl::Texture* frameImage() const { return nullptr; }
     /// What it asks of the case's scene: known without a device.
     virtual SceneNeed sceneNeed() const { return SceneNeed::Nothing; }
+    /// Throws Error for a scene that it cannot take: the case's, or one that a parameter names
+    /// (config::isSceneKey). Known without a device.
+    virtual void requireScene(const scene::Scene& /*scene*/) const {}
     /// Of one that does not work in this process: recorded instead of what this one took.
     virtual std::optional<ProcessUsage> usageElsewhere() const { return std::nullopt; }
 };
@@ -140,6 +144,10 @@ struct TechniqueInfo {
 /// there is none, or the other way about, and as its constructor does.
 std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const config::Node& program,
                                          config::Params& params);
+
+/// requireScene() and setup(). Throws Error where the technique needs a scene and the case has
+/// none.
+void setUp(Technique& technique, SetupContext& context);
 
 /// Whether cases of the technique open a device.
 bool needsDevice(const TechniqueInfo& info, const config::Node& program);

@@ -10,7 +10,7 @@ ClusteredReflections::ClusteredReflections(config::Params& params) : params_(par
 
 void ClusteredReflections::setup(technique::SetupContext& context) {
     const gl::ShaderLibrary& shaders = context.shaders;
-    frame_.emplace(context, "clustered_reflections", params_);
+    frame_.emplace(context, params_);
     gbufferRenderer_.emplace(shaders, frame_->scene);
     gbuffer_.emplace(frame_->viewAt(kit::frameTime(0, 1)));
     target_.emplace(frame_->samplesPx());

@@ -118,8 +118,12 @@ Views DepthSampling::makeViews(technique::SetupContext& context) const {
     return views;
 }
 
+void DepthSampling::requireScene(const scene::Scene& scene) const {
+    kit::requireTriangles(scene, "depth_sampling");
+}
+
 void DepthSampling::setup(technique::SetupContext& context) {
-    const scene::Scene& scene = kit::requireTriangles(context, "depth_sampling");
+    const scene::Scene& scene = *context.scene;
     kit::requireIdsFor(scene.triangleCount());
     const Views views = makeViews(context);
     views_ = views;

@@ -90,7 +90,6 @@ class External : public technique::Technique {
         values_[placeholder::kHeight] = std::to_string(size_.y);
         values_[placeholder::kSeed] = std::to_string(context.seed);
         if (sceneNeed() == technique::SceneNeed::Nothing) return;
-        if (!context.scene) throw Error("the program takes {scene}, and the case has none");
         const fs::path scene = folder_->path() / "scene.glb";
         scene::saveGlb(scene, *context.scene);
         values_[placeholder::kScene] = scene.string();

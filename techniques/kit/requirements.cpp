@@ -6,23 +6,17 @@
 
 namespace gfxrepro::kit {
 
-const scene::Scene& requireScene(const technique::SetupContext& context,
-                                 std::string_view technique) {
-    if (!context.scene) throw Error(fmt::format("technique '{}' needs a scene", technique));
-    return *context.scene;
-}
-
-const scene::Scene& requireTriangles(const technique::SetupContext& context,
-                                     std::string_view technique) {
-    const scene::Scene& scene = requireScene(context, technique);
+void requireTriangles(const scene::Scene& scene, std::string_view technique) {
     if (scene.triangleCount() == 0) {
-        throw Error(fmt::format("technique '{}' needs a scene with triangles", technique));
+        const std::size_t points = scene.points.positions.size();
+        throw Error(
+            fmt::format("technique '{}' needs a scene with triangles{}", technique,
+                        points == 0 ? "" : fmt::format(", and this one has {} points", points)));
     }
     if (glm::length(scene.bounds().size()) == 0.0F) {
         throw Error(fmt::format(
             "technique '{}' needs a scene with some extent; all of its points are one", technique));
     }
-    return scene;
 }
 
 }  // namespace gfxrepro::kit

@@ -1,18 +1,13 @@
-// What techniques ask of the case's scene.
+// What techniques ask of a scene.
 #pragma once
 
 #include <string_view>
 
-#include "runner/technique/technique.h"
+#include "runner/scene/scene.h"
 
 namespace gfxrepro::kit {
 
-/// The case's scene. Throws Error where it has none.
-const scene::Scene& requireScene(const technique::SetupContext& context,
-                                 std::string_view technique);
-
-/// The same with triangles, not all of whose points are one.
-const scene::Scene& requireTriangles(const technique::SetupContext& context,
-                                     std::string_view technique);
+/// Throws Error for a scene without triangles, and for one all of whose points are one.
+void requireTriangles(const scene::Scene& scene, std::string_view technique);
 
 }  // namespace gfxrepro::kit

@@ -46,16 +46,21 @@ PointSplatting::PointSplatting(config::Params& params) : params_(params) {
     if (params.isGiven("points")) pointsAt_ = params.locationOf("points");
 }
 
-scene::PointCloud PointSplatting::takePoints(const scene::Scene& scene) {
-    scene::PointCloud points = scene.points;
-    if (points.positions.empty()) {
-        if (scene.triangleCount() == 0) {
-            throw Error("technique 'point_splatting' needs a scene with points or triangles");
-        }
-        points = scene::sampledPoints(scene, static_cast<std::size_t>(params_.points));
-    } else if (pointsAt_) {
+void PointSplatting::requireScene(const scene::Scene& scene) const {
+    const bool hasPoints = !scene.points.positions.empty();
+    if (!hasPoints && scene.triangleCount() == 0) {
+        throw Error("technique 'point_splatting' needs a scene with points or triangles");
+    }
+    if (hasPoints && pointsAt_) {
         throw Error(*pointsAt_, "'points' needs a scene without points of its own");
     }
+}
+
+scene::PointCloud PointSplatting::takePoints(const scene::Scene& scene) {
+    scene::PointCloud points =
+        scene.points.positions.empty()
+            ? scene::sampledPoints(scene, static_cast<std::size_t>(params_.points))
+            : scene.points;
     repairs_ = scene::completePoints(points);
     return points;
 }
@@ -63,7 +68,7 @@ scene::PointCloud PointSplatting::takePoints(const scene::Scene& scene) {
 void PointSplatting::setup(technique::SetupContext& context) {
     shaders_ = &context.shaders;
     sizePx_ = context.outputSizePx;
-    const scene::PointCloud points = takePoints(kit::requireScene(context, "point_splatting"));
+    const scene::PointCloud points = takePoints(*context.scene);
     const auto begin = std::chrono::steady_clock::now();
     model_ = params_.keepsModel
                  ? ModelFile::openOrBuild(cacheFolder() / "points", points, params_.tree)

@@ -13,7 +13,7 @@ ReflectionReuse::ReflectionReuse(config::Params& params) : params_(params) {}
 
 void ReflectionReuse::setup(technique::SetupContext& context) {
     const gl::ShaderLibrary& shaders = context.shaders;
-    frame_.emplace(context, "reflection_reuse", params_);
+    frame_.emplace(context, params_);
     tracer_ = std::make_unique<RestingTracer>(makeTracer(shaders));
     place({0, 1, context.profiler});
     if (params_.method == Method::RayTraced) {

@@ -6,7 +6,6 @@
 #include "runner/scene/animation.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/path_view.h"
-#include "techniques/kit/requirements.h"
 #include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflections {
@@ -53,22 +52,24 @@ void FrameSettings::readRays(config::Params& params) {
 
 namespace {
 
-ReflectiveScene prepared(const technique::SetupContext& context, const char* technique,
-                         const FrameSettings& settings) {
-    ReflectiveScene scene(kit::requireScene(context, technique), settings.reflectors,
-                          settings.textureFilter);
+ReflectiveScene prepared(const scene::Scene& given, const FrameSettings& settings) {
+    ReflectiveScene scene(given, settings.reflectors, settings.textureFilter);
     scene.printWarnings();
-    scene.requireReflectors();
     if (settings.glossiness) scene.setGlossiness(*settings.glossiness);
     return scene;
 }
 
 }  // namespace
 
-Frame::Frame(technique::SetupContext& context, const char* technique, const FrameSettings& wanted)
+void FrameSettings::requireScene(const scene::Scene& scene) const {
+    requireReflectors(scene, reflectors);
+    kit::cameraAtTime(scene, view, 0.0, 1.0F);
+}
+
+Frame::Frame(technique::SetupContext& context, const FrameSettings& wanted)
     : settings(wanted),
       outputSizePx(context.outputSizePx),
-      scene(prepared(context, technique, wanted)),
+      scene(prepared(*context.scene, wanted)),
       objects(scene, context.device.info().isSoftware),
       map(context.shaders, scene),
       composite(context.shaders, outputSizePx, wanted.supersampling, wanted.blend) {

@@ -33,12 +33,14 @@ struct FrameSettings {
     void readRoughness(config::Params& params);
     void readTextureFilter(config::Params& params);
     void readRays(config::Params& params);
+
+    /// Throws Error for a scene without triangles, reflectors or the view.
+    void requireScene(const scene::Scene& scene) const;
 };
 
 /// Made in setup(), with the environment map drawn; all members live as long as it.
 struct Frame {
-    /// Throws Error for a case without a scene or a scene without reflectors.
-    Frame(technique::SetupContext& context, const char* technique, const FrameSettings& settings);
+    Frame(technique::SetupContext& context, const FrameSettings& settings);
 
     /// The eye's view of the samples at a time of 0 … 1.
     kit::View viewAt(double time) const;

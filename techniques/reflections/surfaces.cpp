@@ -16,7 +16,6 @@ namespace gfxrepro::reflections {
 namespace {
 
 constexpr int kMostReflectors = 0xFFFF;    // 16 bits of the G-buffer
-constexpr float kTransmissive = 0.5F;      // materials above are left out
 constexpr float kPlanarTolerance = 1e-3F;  // see Object::isPlanar
 constexpr float kHangingBelowTop = 0.05F;  // of the box's height: the light that is made up
 constexpr float kMadeUpLightIntensity = 0.9F;
@@ -31,8 +30,7 @@ int dropTransmissive(scene::Scene& scene) {
     std::vector<scene::Instance> kept;
     std::vector<int> newIndex;
     for (const scene::Instance& instance : scene.instances) {
-        const bool isKept =
-            materialOf(scene, meshOf(scene, instance)).transmission <= kTransmissive;
+        const bool isKept = !isTransmissive(materialOf(scene, meshOf(scene, instance)));
         newIndex.push_back(isKept ? static_cast<int>(kept.size()) : -1);
         if (isKept) kept.push_back(instance);
     }
@@ -45,71 +43,6 @@ int dropTransmissive(scene::Scene& scene) {
     }
     scene.motions = std::move(motions);
     return dropped;
-}
-
-/// The part of light that a surface reflects head-on (Fresnel at normal incidence).
-float headOnReflectivity(float indexOfRefraction) {
-    const float ratio = (indexOfRefraction - 1.0F) / (indexOfRefraction + 1.0F);
-    return ratio * ratio;
-}
-
-float in255ths(float value) {
-    return std::round(255.0F * std::clamp(value, 0.0F, 1.0F)) / 255.0F;
-}
-
-bool isTextured(const scene::Mesh& mesh, int texture) {
-    return texture >= 0 && !mesh.texcoords.empty();
-}
-
-/// A channel of the texel at `texcoord`, 0 to 1; repeats.
-float texelAt(const image::Image8& image, const glm::vec2& texcoord, int channel) {
-    const glm::vec2 place =
-        (texcoord - glm::floor(texcoord)) * glm::vec2(image.width(), image.height());
-    const int x = std::clamp(static_cast<int>(place.x), 0, image.width() - 1);
-    const int y = std::clamp(static_cast<int>(place.y), 0, image.height() - 1);
-    return static_cast<float>(image.at(x, y, channel)) / 255.0F;
-}
-
-float reflectivityOf(const scene::Material& material, float metallic) {
-    return in255ths(std::max(metallic, headOnReflectivity(material.indexOfRefraction)));
-}
-
-/// Whether some place of the mesh is as smooth as `maxRoughness`, and reflects, by the material's
-/// texture. Looked at are the middles of a grid over each triangle.
-bool reflectsByTexture(const scene::Mesh& mesh, const scene::Material& material,
-                       const image::Image8& texture, float maxRoughness) {
-    constexpr double kPlaces = 4096.0;
-    const auto side = static_cast<int>(std::ceil(
-        std::sqrt(kPlaces / static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1)))));
-    const auto reflectsAt = [&](const glm::vec2& texcoord) {
-        const float roughness = material.roughness * texelAt(texture, texcoord, 1);
-        return roughness <= maxRoughness &&
-               reflectivityOf(material, material.metallic * texelAt(texture, texcoord, 2)) > 0.0F;
-    };
-    for (const glm::uvec3& corners : mesh.triangles) {
-        // side² small triangles: the upright ones, and those between them.
-        for (int i = 0; i < side; ++i) {
-            for (int j = 0; j < 2 * (side - i) - 1; ++j) {
-                const float third = j % 2 == 0 ? 1.0F / 3.0F : 2.0F / 3.0F;
-                const glm::vec2 b = (glm::vec2(i, j / 2) + third) / static_cast<float>(side);
-                if (reflectsAt((1.0F - b.x - b.y) * mesh.texcoords[corners.x] +
-                               b.x * mesh.texcoords[corners.y] + b.y * mesh.texcoords[corners.z])) {
-                    return true;
-                }
-            }
-        }
-    }
-    return false;
-}
-
-/// Whether the mesh is smooth enough to reflect, some place of it at least.
-bool isSmooth(const scene::Scene& scene, const scene::Mesh& mesh, float maxRoughness) {
-    const scene::Material material = materialOf(scene, mesh);
-    if (!isTextured(mesh, material.metallicRoughnessTexture)) {
-        return material.roughness <= maxRoughness;
-    }
-    const auto texture = static_cast<std::size_t>(material.metallicRoughnessTexture);
-    return reflectsByTexture(mesh, material, scene.textures[texture], maxRoughness);
 }
 
 bool isUsable(const glm::vec3& normal) {
@@ -179,13 +112,6 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
     : scene_(scene), rule_(rule), filter_(filter) {
     for (const std::string& line : scene_.warnings) warn(line);
     transmissiveCount_ = dropTransmissive(scene_);
-    if (scene_.triangleCount() == 0) {
-        throw Error(fmt::format(
-            "scene {}: reflections need triangles, it has none{}", scene_.name,
-            transmissiveCount_ > 0
-                ? fmt::format(" (transmissive objects left out: {})", transmissiveCount_)
-                : std::string()));
-    }
     if (transmissiveCount_ > 0) {
         warn(fmt::format("{} of {} objects let light through and are left out", transmissiveCount_,
                          scene.instances.size()));
@@ -291,14 +217,6 @@ void ReflectiveScene::fillLayers(Layers& layers) {
         }
         layers.levels.push_back(std::move(coarser));
     }
-}
-
-void ReflectiveScene::requireReflectors() const {
-    if (reflectorCount_ > 0) return;
-    throw Error(
-        fmt::format("scene '{}' has no reflectors: no material's roughness is at most {} "
-                    "('reflector_roughness')",
-                    scene_.name, rule_.maxRoughness));
 }
 
 void ReflectiveScene::addObject(const scene::Instance& instance) {

@@ -10,24 +10,11 @@
 
 #include "runner/image/image.h"
 #include "runner/scene/scene.h"
+#include "techniques/reflections/reflector_rule.h"
 #include "techniques/reflections/texture_filter.h"
 #include "techniques/reflections/texture_layer.h"
 
 namespace gfxrepro::reflections {
-
-/// Which materials reflect, and how. A material reflects when its roughness is at most
-/// `maxRoughness`; its reflectivity s is then its metalness, but at least what its index of
-/// refraction reflects head-on; its glossiness g is its roughness, 0 a mirror. Both count as the
-/// G-buffer keeps them, in 255ths; s of 0 does not reflect.
-///
-/// Where a texture holds roughness and metalness, each sample is judged by its own texel, and the
-/// object is a reflector where some place of its triangles is (looked at are at least 4096 places).
-struct ReflectorRule {
-    float maxRoughness = 0.4F;
-    /// The smooth parts of an object are reflectors (and Objects) of their own; see
-    /// reflector_parts.h.
-    bool splitsParts = false;
-};
 
 /// At most so many lights of a scene are taken, the first, and a warning tells of the others; where
 /// it has none, one hangs under the top of its box.
@@ -91,8 +78,8 @@ class ReflectiveScene {
     static constexpr int kLeastLayerSizePx = 512, kMostLayerSizePx = 2048;
     static constexpr std::size_t kMostLayersBytes = std::size_t{1} << 29;
 
-    /// Throws Error for a scene without triangles, UnsupportedError for more reflectors than the
-    /// G-buffer numbers (65535).
+    /// `scene` has triangles. Throws UnsupportedError for more reflectors than the G-buffer numbers
+    /// (65535).
     explicit ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule = {},
                              TextureFilter filter = TextureFilter::Footprint);
 
@@ -112,9 +99,7 @@ class ReflectiveScene {
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
     int wholeReflectorCount() const { return wholeReflectorCount_; }  // objects, not their parts
-    /// Throws Error where reflectorCount() is 0: for methods that measure reflectors only.
-    void requireReflectors() const;
-    int transmissiveCount() const { return transmissiveCount_; }  // objects left out
+    int transmissiveCount() const { return transmissiveCount_; }      // objects left out
     /// Vertices of reflectors whose normals were missing, not finite or zero.
     int repairedNormalCount() const { return repairedNormalCount_; }
     const scene::Box& boundsWorld() const { return boundsWorld_; }  // rest pose

@@ -6,8 +6,12 @@ namespace gfxrepro::shadow_mapping {
 
 ShadowMapping::ShadowMapping(config::Params& params) : params_(params) {}
 
+void ShadowMapping::requireScene(const scene::Scene& scene) const {
+    kit::requireTriangles(scene, "shadow_mapping");
+}
+
 void ShadowMapping::setup(technique::SetupContext& context) {
-    const scene::Scene& scene = kit::requireTriangles(context, "shadow_mapping");
+    const scene::Scene& scene = *context.scene;
     shaders_ = &context.shaders;
     lights_ = makeLights(params_, scene);
     tracer_.emplace(scene);

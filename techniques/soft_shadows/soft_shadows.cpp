@@ -46,9 +46,13 @@ std::vector<const kit::DepthImage*> firstOf(const std::vector<kit::DepthImage>& 
 
 SoftShadows::SoftShadows(config::Params& params) : params_(params) {}
 
+void SoftShadows::requireScene(const scene::Scene& scene) const {
+    kit::requireTriangles(scene, "soft_shadows");
+}
+
 void SoftShadows::setup(technique::SetupContext& context) {
     shaders_ = &context.shaders;
-    scene_ = kit::requireTriangles(context, "soft_shadows");
+    scene_ = *context.scene;
     light_ = makeAreaLight(scene_.bounds(), params_.light);
     for (int corner = 0; corner < 4; ++corner) lightView(light_, light_.corner(corner), 64);
     const glm::vec2 size(context.outputSizePx);

@@ -44,6 +44,11 @@ class TemplateTechnique : public technique::Technique {
                                              : technique::SceneNeed::Nothing;
     }
 
+    // The same, once the scene is read.
+    void requireScene(const scene::Scene& scene) const override {
+        if (method_ == Method::Silhouette) kit::requireTriangles(scene, "template");
+    }
+
     // Compile, allocate, upload. The runner times it as set-up.
     void setup(technique::SetupContext& context) override {
         size_ = context.outputSizePx;
@@ -56,7 +61,7 @@ class TemplateTechnique : public technique::Technique {
             wholeImage_.emplace();
             return;
         }
-        const scene::Scene& scene = kit::requireTriangles(context, "template");
+        const scene::Scene& scene = *context.scene;
         const float aspect = static_cast<float>(size_.x) / static_cast<float>(size_.y);
         view_ = kit::viewOf(scene::framingCamera(scene.bounds(), aspect), size_);
         mesh_.emplace(scene::flattened(scene));

@@ -36,13 +36,8 @@ gl::Texture colourMapOf(const scene::Scene& scene, Shading shading) {
     if (shading == Shading::GeneratedMap) {
         return gl::Texture::fromImage(groundPicture(*scene.heights, kGroundPicturePx), kIsSrgb);
     }
-    const int index = scene.materials.empty() ? -1 : scene.materials.front().baseColorTexture;
-    if (index < 0) {
-        throw Error(
-            "'shading: colour_map' needs a scene with a colour map; sources of height maps take "
-            "one as 'colour_map'");
-    }
-    return gl::Texture::fromImage(scene.textures[static_cast<std::size_t>(index)], kIsSrgb);
+    const auto index = static_cast<std::size_t>(scene.materials.front().baseColorTexture);
+    return gl::Texture::fromImage(scene.textures[index], kIsSrgb);
 }
 
 /// Patches as they come take one segment an edge.
@@ -70,11 +65,22 @@ void TerrainTessellation::Target::clear() const {
 
 TerrainTessellation::TerrainTessellation(config::Params& params) : params_(params) {}
 
-void TerrainTessellation::setup(technique::SetupContext& context) {
-    scene_ = &kit::requireScene(context, "terrain_tessellation");
-    if (!scene_->heights || scene_->heights->isEmpty()) {
+void TerrainTessellation::requireScene(const scene::Scene& scene) const {
+    if (!scene.heights || scene.heights->isEmpty()) {
         throw Error("technique 'terrain_tessellation' needs a scene with a height map");
     }
+    const bool hasColours =
+        !scene.materials.empty() && scene.materials.front().baseColorTexture >= 0;
+    if (params_.render.shading == Shading::ColourMap && !hasColours) {
+        throw Error(
+            "'shading: colour_map' needs a scene with a colour map; sources of height maps take "
+            "one as 'colour_map'");
+    }
+    TerrainView(scene, params_.view);
+}
+
+void TerrainTessellation::setup(technique::SetupContext& context) {
+    scene_ = context.scene;
     shaders_ = &context.shaders;
     isSoftware_ = context.device.info().isSoftware;
     sizePx_ = context.outputSizePx;

@@ -55,6 +55,7 @@ class TerrainTessellation final : public technique::Technique {
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::HeightMap; }
+    void requireScene(const scene::Scene& scene) const override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override { return &target_->colour; }

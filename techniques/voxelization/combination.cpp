@@ -43,7 +43,9 @@ CombinationSettings::CombinationSettings(config::Params& params)
 
 scene::Box Combination::loadSecond(technique::SetupContext& context, VoxelValue value,
                                    const scene::Box& firstBounds) {
-    secondInput_.emplace(context.scenes.load(settings_.sceneB), value);
+    const scene::Scene& second = context.scenes.load(settings_.sceneB);
+    requireVoxelizable(second);
+    secondInput_.emplace(second, value);
     const scene::Box bounds = secondInput_->mesh().bounds();
     const glm::vec3 size = firstBounds.size();
     offsetWorld_ = settings_.offsetB * std::max({size.x, size.y, size.z});

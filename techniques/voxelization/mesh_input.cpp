@@ -22,14 +22,6 @@ scene::Scene coloured(scene::Scene scene) {
     return scene;
 }
 
-[[noreturn]] void refuse(const scene::Scene& scene, const std::string& found) {
-    const std::string& from = scene.origin.description;
-    throw Error(fmt::format(
-        "scene '{}'{} has {}; allowed to voxelize: triangles that reach from "
-        "one point to another",
-        scene.name, from.empty() || from == scene.name ? "" : " (" + from + ")", found));
-}
-
 }  // namespace
 
 scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels) {
@@ -40,21 +32,37 @@ scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels)
     return {bounds.centre() - half, bounds.centre() + half};
 }
 
-MeshInput::MeshInput(const scene::Scene& scene, VoxelValue value) {
+void requireVoxelizable(const scene::Scene& scene) {
+    const auto refuse = [&](const std::string& found) {
+        const std::string& from = scene.origin.description;
+        throw Error(fmt::format(
+            "scene '{}'{} has {}; allowed to voxelize: triangles that reach from one point to "
+            "another",
+            scene.name, from.empty() || from == scene.name ? "" : " (" + from + ")", found));
+    };
     if (scene.triangleCount() == 0) {
         const std::size_t points = scene.points.positions.size();
-        refuse(scene,
-               points == 0 ? "no triangles" : fmt::format("no triangles, but {} points", points));
+        refuse(points == 0 ? "no triangles" : fmt::format("no triangles, but {} points", points));
     }
+    scene::Box corners;  // of the triangles: points are not voxelized
+    for (const scene::Instance& instance : scene.instances) {
+        const scene::Box box = scene.meshes[static_cast<std::size_t>(instance.mesh)].bounds();
+        for (const glm::vec3& corner : {box.min, box.max}) {
+            corners.add(glm::vec3(instance.worldFromMesh * glm::vec4(corner, 1.0F)));
+        }
+    }
+    if (corners.size() == glm::vec3(0.0F)) {
+        refuse(fmt::format("all its {} vertices at one point", scene.vertexCount()));
+    }
+}
+
+MeshInput::MeshInput(const scene::Scene& scene, VoxelValue value) {
     const bool needsColors = value == VoxelValue::Color;
     if (isPlain(scene))
         original_ = &scene.meshes[static_cast<std::size_t>(scene.instances[0].mesh)];
     if (!original_ || (needsColors && original_->colors.empty())) {
         original_ = nullptr;
         copy_ = scene::flattened(needsColors ? coloured(scene) : scene);
-    }
-    if (mesh().bounds().size() == glm::vec3(0.0F)) {
-        refuse(scene, fmt::format("all its {} vertices at one point", mesh().positions.size()));
     }
 }
 

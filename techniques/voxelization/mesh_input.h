@@ -13,10 +13,13 @@ scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels)
 
 /// All triangles of a scene in world space: the scene's own mesh where it is the only one and lies
 /// there already, else a copy.
+/// Throws Error for a scene without triangles, or with all of them at one point.
+void requireVoxelizable(const scene::Scene& scene);
+
 class MeshInput {
   public:
     /// `scene` must outlive this. For VoxelValue::Color, vertices without a colour take their
-    /// material's. Throws Error for a scene without triangles, or with all of them at one point.
+    /// material's.
     MeshInput(const scene::Scene& scene, VoxelValue value);
     MeshInput(const MeshInput&) = delete;
     MeshInput& operator=(const MeshInput&) = delete;

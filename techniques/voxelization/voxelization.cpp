@@ -62,10 +62,14 @@ void Voxelization::setup(technique::SetupContext& context) {
     if (params_.drawing.isOn()) drawing_.setup(context, layout, box_, box_, false);
 }
 
+void Voxelization::requireScene(const scene::Scene& scene) const {
+    if (params_.input == InputKind::Mesh) requireVoxelizable(scene);
+}
+
 void Voxelization::setupMesh(technique::SetupContext& context) {
     const MeshVoxelizerSettings& settings = params_.voxelizer;
     const WorksheetLayout& layout = settings.grid.layout;
-    input_.emplace(kit::requireScene(context, "voxelization"), settings.grid.value);
+    input_.emplace(*context.scene, settings.grid.value);
     scene::Box bounds = input_->mesh().bounds();
     if (params_.combination.needsSecond()) {
         bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));

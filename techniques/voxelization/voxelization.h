@@ -40,6 +40,7 @@ class Voxelization final : public technique::Technique {
         return params_.input == InputKind::Mesh ? technique::SceneNeed::Model
                                                 : technique::SceneNeed::Nothing;
     }
+    void requireScene(const scene::Scene& scene) const override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
 

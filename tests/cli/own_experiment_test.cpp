@@ -290,16 +290,37 @@ TEST(OwnExperiment, CheckLooksForASecondModelBesideTheFile) {
     EXPECT_EQ(gfxrepro({"check", config}).exitCode, 0);
 }
 
-TEST(OwnExperiment, CheckSaysThatAModelHasPointsAlone) {
+TEST(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
     const TemporaryFolder folder;
     folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\np 1 2 3\n");
-    const std::string config = folder.write(
-        "mine.yaml", "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: points.obj\n");
-    EXPECT_THAT(gfxrepro({"check", config}).err,
-                HasSubstr("points.obj: 3 points and no triangles, which only a technique that "
-                          "draws points can take\n"));
+    folder.write("rough.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+    EXPECT_THAT(checked(folder, "technique: voxelization\nscene: points.obj\n"),
+                AllOf(HasSubstr("mine.yaml:4:8: "),
+                      HasSubstr("has no triangles, but 3 points; allowed to voxelize: triangles")));
+    EXPECT_THAT(checked(folder, "technique: soft_shadows\nscene: points.obj\n"),
+                HasSubstr("mine.yaml:4:8: technique 'soft_shadows' needs a scene with triangles, "
+                          "and this one has 3 points\n"));
+    const auto isTaken = [&](const std::string& lines) {
+        const std::string head = "sweep_of: taken\ntitle: Taken\n";
+        return gfxrepro({"check", folder.write("taken.yaml", head + lines)}).exitCode == 0;
+    };
+    EXPECT_TRUE(isTaken("technique: point_splatting\nscene: points.obj\n"));
+    EXPECT_THAT(checked(folder,
+                        "technique: voxelization\nscene: shapes/torus\n"
+                        "params: {csg: union, scene_b: points.obj, resolution: 32}\n"),
+                AllOf(HasSubstr("mine.yaml:5:31: "), HasSubstr("no triangles, but 3 points")));
+    for (const char* scene : {"rough.obj", "shapes/torus"}) {
+        const std::string reflections =
+            std::string("technique: clustered_reflections\nscene: ") + scene + "\n";
+        EXPECT_THAT(checked(folder, reflections),
+                    AllOf(HasSubstr("mine.yaml:4:8: scene '"),
+                          HasSubstr("has no reflectors: no material's roughness is at most 0.4; "
+                                    "'reflector_roughness: 1' takes them all\n")));
+        EXPECT_TRUE(isTaken(reflections + "params: {reflector_roughness: 1}\n"));
+        EXPECT_THAT(checked(folder, reflections + "params: {reflector_roughness: 1, view: walk}\n"),
+                    HasSubstr("mine.yaml:4:8: the scene has no path or camera 'walk'"));
+    }
 }
-
 TEST(OwnExperiment, AFixedValueIsThatOfTheCasesThatASweepLeavesItTo) {
     const TemporaryFolder folder;
     const std::string config = folder.write(
@@ -366,6 +387,10 @@ TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
     EXPECT_EQ(laidOut("{metric: gpu_time_ms, pass: synthesys}"),
               "gfxrepro: DIR/mine.yaml:5:36: technique 'voxelization' has no pass 'synthesys'; did "
               "you mean 'synthesis'?\n");
+    EXPECT_EQ(
+        laidOut("{metric: wall_time_ms, pass: synthesis}"),
+        "gfxrepro: DIR/mine.yaml:5:36: metric 'wall_time_ms' is not taken of a pass; those "
+        "that are: gpu_time_ms, cpu_time_ms, process_time_ms, and metrics of the technique\n");
     EXPECT_THAT(laidOut("{metric: voxels, share_of: voxel}"), HasSubstr("did you mean 'voxels'?"));
 }
 

@@ -33,7 +33,7 @@ class TechniqueTest : public GlTest {
         NoScenes scenes;
         technique::SetupContext context{device,        shaders_, scenes,   scene,
                                         outputSizePx_, 1,        profiler_};
-        technique->setup(context);
+        technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         technique::FrameContext frameContext{frame, frameCount, profiler_};
         technique->render(frameContext);

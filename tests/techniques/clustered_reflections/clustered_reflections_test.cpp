@@ -124,12 +124,12 @@ TEST_F(ClusteredReflectionsTest, RefusesScenesWithoutReflectorsAndUnknownViews) 
     const auto message = [&](const std::string& yaml, const scene::Scene* scene) {
         return errorText([&] { recorded(yaml, scene); });
     };
-    EXPECT_EQ(message("{}", nullptr), "technique 'clustered_reflections' needs a scene");
+    EXPECT_EQ(message("{}", nullptr), "the technique needs a scene, and the case has none");
     scene::Scene dull;
     addRoom(dull);
     EXPECT_EQ(message("{}", &dull),
-              "scene 'room' has no reflectors: no material's roughness is at most 0.4 "
-              "('reflector_roughness')");
+              "scene 'room' has no reflectors: no material's roughness is at most 0.4; "
+              "'reflector_roughness: 1' takes them all");
     const scene::Scene room = roomWithMirror();
     EXPECT_EQ(message("{view: path_1}", &room),
               "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'");

@@ -30,7 +30,7 @@ class DepthSamplingTest : public test::GlTest {
         test::NoScenes scenes;
         technique::SetupContext context{device,           shaders_, scenes,   scene,
                                         {sizePx, sizePx}, 1,        profiler_};
-        technique->setup(context);
+        technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         technique::FrameContext frame{0, 1, profiler_};
         technique->render(frame);
@@ -135,7 +135,7 @@ TEST_F(DepthSamplingTest, SaysNothingOfUsefulSamplesThatNobodyCounted) {
 
 TEST_F(DepthSamplingTest, NeedsASceneWithTriangles) {
     EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
-              "technique 'depth_sampling' needs a scene");
+              "the technique needs a scene, and the case has none");
     const scene::Scene empty{.name = "void"};
     EXPECT_EQ(errorText([&] { recorded("{}", &empty); }),
               "technique 'depth_sampling' needs a scene with triangles");

@@ -313,7 +313,7 @@ TEST_F(PointSplattingTest, RefusesScenesWithoutPoints) {
     const auto message = [&](const scene::Scene* scene) {
         return errorText([&] { recorded("{cache: false}", scene); });
     };
-    EXPECT_EQ(message(nullptr), "technique 'point_splatting' needs a scene");
+    EXPECT_EQ(message(nullptr), "the technique needs a scene, and the case has none");
     scene::Scene empty;
     EXPECT_EQ(message(&empty),
               "technique 'point_splatting' needs a scene with points or triangles");

@@ -67,7 +67,7 @@ class ReflectionReuseTest : public test::GlTest {
         const auto technique = info.create(params);
         test::NoScenes scenes;
         technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
-        technique->setup(context);
+        technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         std::vector<test::MetricRecorder> frames(static_cast<std::size_t>(frameCount));
         for (int frame = 0; frame < frameCount; ++frame) {
@@ -156,12 +156,12 @@ TEST_F(ReflectionReuseTest, RefusesScenesWithoutReflectorsUnknownViewsAndFramesB
     const auto message = [&](const std::string& yaml, const scene::Scene* scene, int frames = 1) {
         return errorText([&] { recorded(yaml, scene, frames); });
     };
-    EXPECT_EQ(message("{}", nullptr), "technique 'reflection_reuse' needs a scene");
+    EXPECT_EQ(message("{}", nullptr), "the technique needs a scene, and the case has none");
     scene::Scene dull;
     clustered_reflections::addRoom(dull);
     EXPECT_EQ(message("{}", &dull),
-              "scene 'room' has no reflectors: no material's roughness is at most 0.4 "
-              "('reflector_roughness')");
+              "scene 'room' has no reflectors: no material's roughness is at most 0.4; "
+              "'reflector_roughness: 1' takes them all");
     EXPECT_EQ(message("{view: run}", &room_),
               "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'still', 'jump', "
               "'none'; cameras: 'front', 'ceiling'");

@@ -130,14 +130,21 @@ TEST(ReflectiveSceneTest, LeavesOutWhatLetsLightThrough) {
     EXPECT_EQ(prepared.diagonalM(), std::sqrt(12.0F));
 }
 
-TEST(ReflectiveSceneTest, NeedsTriangles) {
+TEST(ReflectiveSceneTest, NeedsTrianglesAndReflectors) {
+    const auto message = [](const scene::Scene& scene, const ReflectorRule& rule = {}) {
+        return errorText([&] { requireReflectors(scene, rule); });
+    };
     scene::Scene empty;
     empty.name = "void";
-    EXPECT_EQ(errorText([&] { ReflectiveScene prepared(empty); }),
-              "scene void: reflections need triangles, it has none");
+    EXPECT_EQ(message(empty), "scene 'void': reflections need triangles, it has none");
     EXPECT_EQ(
-        errorText([] { ReflectiveScene prepared(sceneOf(squareMesh(), {.transmission = 1.0F})); }),
-        "scene test: reflections need triangles, it has none (transmissive objects left out: 1)");
+        message(sceneOf(squareMesh(), {.transmission = 1.0F})),
+        "scene 'test': reflections need triangles, it has none (transmissive objects left out: 1)");
+    const scene::Scene rough = sceneOf(squareMesh(), {.roughness = 0.5F});
+    EXPECT_EQ(message(rough),
+              "scene 'test' has no reflectors: no material's roughness is at most 0.4; "
+              "'reflector_roughness: 1' takes them all");
+    EXPECT_EQ(message(rough, {.maxRoughness = 1.0F}), "no error");
 }
 
 TEST(ReflectiveSceneTest, RepairsNormals) {

@@ -110,7 +110,7 @@ TEST_F(ShadowMappingTest, BadInput) {
               "case.yaml:1:19: technique 'shadow_mapping': shadow_map_size is 32768; allowed: 16 … "
               "16384 pixels");
     EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
-              "technique 'shadow_mapping' needs a scene");
+              "the technique needs a scene, and the case has none");
     const scene::Scene empty;
     EXPECT_EQ(errorText([&] { recorded("{}", &empty); }),
               "technique 'shadow_mapping' needs a scene with triangles");

@@ -100,7 +100,7 @@ TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
     const auto message = [&](const std::string& yaml, const scene::Scene* scene) {
         return errorText([&] { recorded(yaml, scene); });
     };
-    EXPECT_EQ(message("{}", nullptr), "technique 'soft_shadows' needs a scene");
+    EXPECT_EQ(message("{}", nullptr), "the technique needs a scene, and the case has none");
     const scene::Scene empty;
     EXPECT_EQ(message("{}", &empty), "technique 'soft_shadows' needs a scene with triangles");
     scene::MeshBuilder point;

@@ -57,7 +57,7 @@ TEST_F(TemplateTest, ASilhouetteCoversWhatItsCornersEnclose) {
 
 TEST_F(TemplateTest, ASilhouetteNeedsTriangles) {
     EXPECT_EQ(test::errorText([&] { recorded("{method: silhouette}", nullptr); }),
-              "technique 'template' needs a scene");
+              "the technique needs a scene, and the case has none");
 }
 
 }  // namespace

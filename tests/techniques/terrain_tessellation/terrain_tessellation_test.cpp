@@ -299,7 +299,7 @@ TEST_F(TerrainTessellationTest, SeesNothingFromUnderTheGroundAndFarOutside) {
 
 TEST_F(TerrainTessellationTest, NeedsHeights) {
     EXPECT_EQ(errorText([&] { recorded("{}", nullptr); }),
-              "technique 'terrain_tessellation' needs a scene");
+              "the technique needs a scene, and the case has none");
     const scene::Scene nothing;
     EXPECT_EQ(errorText([&] { recorded("{}", &nothing); }),
               "technique 'terrain_tessellation' needs a scene with a height map");

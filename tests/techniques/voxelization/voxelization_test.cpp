@@ -23,7 +23,7 @@ class VoxelizationTest : public VoxelizerTest {
         const auto technique = kVoxelization.create(params);
         technique::SetupContext context = setupContext();
         context.scene = &scene;
-        technique->setup(context);
+        technique::setUp(*technique, context);
         technique::FrameContext frame{0, 1, profiler()};
         technique->render(frame);
         passes_ = profiler().collect();

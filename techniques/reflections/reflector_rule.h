@@ -1,0 +1,44 @@
+// Which objects of a scene are reflectors.
+#pragma once
+
+#include "runner/scene/scene.h"
+
+namespace gfxrepro::reflections {
+
+/// Which materials reflect, and how. A material reflects when its roughness is at most
+/// `maxRoughness`; its reflectivity s is then its metalness, but at least what its index of
+/// refraction reflects head-on; its glossiness g is its roughness, 0 a mirror. Both count as the
+/// G-buffer keeps them, in 255ths; s of 0 does not reflect.
+///
+/// Where a texture holds roughness and metalness, each sample is judged by its own texel, and the
+/// object is a reflector where some place of its triangles is (looked at are at least 4096 places).
+struct ReflectorRule {
+    float maxRoughness = 0.4F;
+    /// The smooth parts of an object are reflectors (and Objects) of their own; see
+    /// reflector_parts.h.
+    bool splitsParts = false;
+};
+
+/// Throws Error for a scene without triangles, and for one without a reflector: for methods that
+/// measure reflectors only.
+void requireReflectors(const scene::Scene& scene, const ReflectorRule& rule);
+
+/// Whether objects of the material let light through: they are left out, for nothing here refracts.
+bool isTransmissive(const scene::Material& material);
+
+/// Whether the mesh is smooth enough to reflect, some place of it at least.
+bool isSmooth(const scene::Scene& scene, const scene::Mesh& mesh, float maxRoughness);
+
+/// Whether it has the texture, and where.
+bool isTextured(const scene::Mesh& mesh, int texture);
+
+/// The part of light that a surface reflects head-on (Fresnel at normal incidence).
+float headOnReflectivity(float indexOfRefraction);
+
+/// s of ReflectorRule.
+float reflectivityOf(const scene::Material& material, float metallic);
+
+/// As the G-buffer keeps it.
+float in255ths(float value);
+
+}  // namespace gfxrepro::reflections
