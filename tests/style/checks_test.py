@@ -63,7 +63,7 @@ for action in ("actions/checkout@v4", "other/action@" + "0123456789" * 4 + "  # 
     if code != 0:
         sys.exit(f"check_style found something in {action}:\n{output}")
 TABLE = "configs/x/a.yaml"
-for says in ("… too", '"and so on"', "nor this"):
+for says in ("… too", '"and so on"', "nor this", '"and, unlike it, that"'):
     expect("check_style", {TABLE: f"  A: {{says: {says}, origin: ours}}\n"},
            f"{TABLE}:1: a claim is read alone: say of what it goes on")
 expect("check_style", {TABLE: 'printed: {remark: "text. full_ewa_ms is ours"}\n'},
