@@ -63,6 +63,7 @@ class Builder : public YAML::EventHandler {
                   const std::string& value) override {
         rejectTag(mark, tag);
         const bool isQuoted = tag == "!";
+        if (isQuoted) requireClosed(mark);
         if (isQuoted && characterAt(mark) == '|') {
             finish(Node::block(value, at(mark)), at(mark), anchor, true);
         } else {
@@ -111,6 +112,27 @@ class Builder : public YAML::EventHandler {
         const auto line = static_cast<std::size_t>(mark.line);
         const auto column = static_cast<std::size_t>(mark.column);
         return line < lines_.size() && column < lines_[line].size() ? lines_[line][column] : '\0';
+    }
+
+    /// yaml-cpp takes the end of the file for a quote.
+    void requireClosed(const YAML::Mark& mark) const {
+        const char quote = characterAt(mark);
+        if (quote != '"' && quote != '\'') return;
+        auto column = static_cast<std::size_t>(mark.column) + 1;
+        for (auto i = static_cast<std::size_t>(mark.line); i < lines_.size(); ++i, column = 0) {
+            const std::string& line = lines_[i];
+            for (; column < line.size(); ++column) {
+                const bool isEscape = line[column] == '\\' && quote == '"';
+                const bool isDoubled =
+                    quote == '\'' && std::string_view(line).substr(column, 2) == "''";
+                if (isEscape || isDoubled) {
+                    ++column;
+                } else if (line[column] == quote) {
+                    return;
+                }
+            }
+        }
+        throw Error(at(mark), std::string(1, quote) + " is not closed");
     }
 
     void rejectTag(const YAML::Mark& mark, const std::string& tag) const {

@@ -92,6 +92,10 @@ TEST(Node, ParseErrorsSayWhere) {
     EXPECT_EQ(parseError("x: 1\na: {b: \"[\", c: [1, 2]  # ]\nd: 2\n"),
               "a.yaml:2:4: '{' is not closed");
     EXPECT_EQ(parseError("a: {b: [1, 2}\n"), "a.yaml:1:8: '[' is not closed");
+    EXPECT_EQ(parseError("a: 1\nb: \"x\nc: \\\"y\n"), "a.yaml:2:4: \" is not closed");
+    EXPECT_EQ(parseError("a: 'it''s\nb: 1\n"), "a.yaml:1:4: ' is not closed");
+    EXPECT_EQ(parseError("{é: \"\\\" 'x\\\\\", b: 'it''s \"', \"c\": \"y\n  z\", d: &d 'z'}"),
+              "no error");
     EXPECT_EQ(parseError("{a: 1"),
               "a.yaml:1:1: a key must be text, found a map; perhaps a bracket is not closed");
     EXPECT_EQ(parseError("a: b: c"),
