@@ -8,6 +8,7 @@ ShadowMapping::ShadowMapping(config::Params& params) : params_(params) {}
 
 void ShadowMapping::requireScene(const scene::Scene& scene) const {
     kit::requireTriangles(scene, "shadow_mapping");
+    makeLights(params_, scene);  // refuses a scene with fewer lights than are asked for
 }
 
 void ShadowMapping::setup(technique::SetupContext& context) {

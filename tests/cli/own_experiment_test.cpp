@@ -309,6 +309,10 @@ TEST(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
                         "technique: voxelization\nscene: shapes/torus\n"
                         "params: {csg: union, scene_b: points.obj, resolution: 32}\n"),
                 AllOf(HasSubstr("mine.yaml:5:31: "), HasSubstr("no triangles, but 3 points")));
+    EXPECT_THAT(checked(folder,
+                        "technique: shadow_mapping\nscene: rough.obj\n"
+                        "params: {light_place: scene}\n"),
+                HasSubstr("mine.yaml:4:8: 'light_place: scene' with 1 lights: the scene has 0\n"));
     for (const char* scene : {"rough.obj", "shapes/torus"}) {
         const std::string reflections =
             std::string("technique: clustered_reflections\nscene: ") + scene + "\n";
